@@ -2,10 +2,10 @@
 #include <iostream>
 #include <vector>
 
+#include "blum/axis/collapse_axis.hpp"
 #include "blum/core/error.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/mesh_io.hpp"
-#include "blum/medial_axis/collapse_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"

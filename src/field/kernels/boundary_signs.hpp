@@ -1,13 +1,297 @@
 // Blum: signs of a slab of nodes around a surface with a boundary. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
-#include "field/kernels/boundary.hpp"
+#include "field/kernels/connectivity.hpp"
+#include "field/kernels/row_crossings.hpp"
 #include "field/kernels/tile_grid.hpp"
 
 namespace blum::kernels {
+
+/// An edge that triangles do not run along as often one way as the other.
+struct BoundaryEdge {
+  std::uint32_t from;
+  std::uint32_t to;
+  double count;  ///< surplus of triangles that run from `from` to `to`; may be negative
+};
+
+struct FlagBoundary {
+  const std::int32_t* balance;
+  std::uint32_t* is_boundary;
+  BLUM_HD void operator()(std::size_t e) const { is_boundary[e] = balance[e] != 0 ? 1 : 0; }
+};
+
+struct ListBoundary {
+  const Segment* edges;
+  const std::int32_t* balance;
+  const std::uint32_t* place;
+  BoundaryEdge* out;
+  BLUM_HD void operator()(std::size_t e) const {
+    if (balance[e] != 0) out[place[e]] = {edges[e][0], edges[e][1], static_cast<double>(balance[e])};
+  }
+};
+
+/// The two ends of an edge by position, in an order that its direction does not change.
+struct EdgePositions {
+  Vec3d low, high;
+  bool is_reversed;  ///< `from` is the higher end
+
+  BLUM_HD EdgePositions(const Vec3d* vertices, const BoundaryEdge& edge)
+      : low(vertices[edge.from]), high(vertices[edge.to]), is_reversed(is_before(high, low)) {
+    if (!is_reversed) return;
+    const Vec3d other = low;
+    low = high;
+    high = other;
+  }
+  [[nodiscard]] BLUM_HD bool operator==(const EdgePositions& other) const {
+    return low == other.low && high == other.high;
+  }
+  [[nodiscard]] BLUM_HD std::uint64_t hash() const {
+    std::uint64_t value = 0;
+    for (const Vec3d& p : {low, high}) {
+      for (const double x : {p.x, p.y, p.z}) value = mixed(value ^ bits(x));
+    }
+    return value;
+  }
+
+ private:
+  [[nodiscard]] BLUM_HD static bool is_before(const Vec3d& a, const Vec3d& b) {
+    if (a.x != b.x) return a.x < b.x;
+    return a.y != b.y ? a.y < b.y : a.z < b.z;
+  }
+  [[nodiscard]] BLUM_HD static std::uint64_t bits(double x) {
+    x += 0.0;  // -0 is 0
+#if defined(__CUDA_ARCH__)
+    return static_cast<std::uint64_t>(__double_as_longlong(x));
+#else
+    return std::bit_cast<std::uint64_t>(x);
+#endif
+  }
+  /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+  [[nodiscard]] BLUM_HD static std::uint64_t mixed(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15U;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+    return x ^ (x >> 31U);
+  }
+};
+
+struct HashEdges {
+  const BoundaryEdge* edges;
+  const Vec3d* vertices;
+  std::uint64_t* key;
+  std::uint32_t* edge;
+  BLUM_HD void operator()(std::size_t k) const {
+    key[k] = EdgePositions(vertices, edges[k]).hash();
+    edge[k] = static_cast<std::uint32_t>(k);
+  }
+};
+
+/// Gives the first edge of those at the same place, in the order of their keys, the sum of their counts.
+struct SumCoincident {
+  const BoundaryEdge* edges;
+  const Vec3d* vertices;
+  const std::uint64_t* key;
+  const std::uint32_t* edge;
+  std::uint32_t count;
+  BoundaryEdge* sum;
+  std::uint32_t* is_kept;
+
+  BLUM_HD void operator()(std::size_t k) const {
+    is_kept[k] = 0;
+    BoundaryEdge own = edges[edge[k]];
+    const EdgePositions at(vertices, own);
+    if (at.low == at.high) return;
+    for (std::size_t before = k; before > 0 && key[before - 1] == key[k];) {
+      if (EdgePositions(vertices, edges[edge[--before]]) == at) return;  // that one has the sum
+    }
+    for (std::size_t next = k + 1; next < count && key[next] == key[k]; ++next) {
+      const BoundaryEdge& other = edges[edge[next]];
+      const EdgePositions there(vertices, other);
+      if (there == at) own.count += there.is_reversed == at.is_reversed ? other.count : -other.count;
+    }
+    sum[k] = own;
+    is_kept[k] = own.count != 0 ? 1 : 0;
+  }
+};
+
+struct KeepEdges {
+  const BoundaryEdge* sum;
+  const std::uint32_t* is_kept;
+  const std::uint32_t* place;
+  std::uint32_t count;
+  BoundaryEdge* out;
+  std::uint32_t* kept;
+  BLUM_HD void operator()(std::size_t k) const {
+    if (is_kept[k] != 0) out[place[k]] = sum[k];
+    if (k + 1 == count) *kept = place[k] + is_kept[k];
+  }
+};
+
+/// The boundary of a mesh: by its indices once per connectivity, and each frame without the edges that lie upon each
+/// other and cancel, as those of triangles that do not share their vertices do.
+template <class Device>
+class Boundary {
+ public:
+  explicit Boundary(Device& device) : device_(device) {}
+
+  /// Waits for the device.
+  void set_connectivity(const ConnectivityView& connectivity) {
+    flags_.resize(connectivity.edge_count);
+    device_.for_each(connectivity.edge_count, FlagBoundary{connectivity.balance, flags_.data()});
+    device_.exclusive_sum(flags_, sums_);
+    count_ = total_of(device_, flags_, sums_);
+    edges_.resize(count_);
+    kept_.resize(count_);
+    device_.for_each(connectivity.edge_count,
+                     ListBoundary{connectivity.edges, connectivity.balance, sums_.data(), edges_.data()});
+  }
+  /// Edges by index: with none, winding numbers are whole.
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+  /// Once per frame. Cost: a sort.
+  void place(const Vec3d* vertices) {
+    key_.resize(count_);
+    edge_.resize(count_);
+    sum_.resize(count_);
+    flags_.resize(count_);
+    kept_count_.resize(1);
+    device_.for_each(count_, HashEdges{edges_.data(), vertices, key_.data(), edge_.data()});
+    device_.sort_pairs(key_, edge_, 64);
+    device_.for_each(
+        count_, SumCoincident{edges_.data(), vertices, key_.data(), edge_.data(), count_, sum_.data(), flags_.data()});
+    device_.exclusive_sum(flags_, sums_);
+    device_.for_each(count_,
+                     KeepEdges{sum_.data(), flags_.data(), sums_.data(), count_, kept_.data(), kept_count_.data()});
+  }
+  /// Of the last place(), in the device's memory.
+  [[nodiscard]] const BoundaryEdge* kept() const { return kept_.data(); }
+  [[nodiscard]] const std::uint32_t* kept_count() const { return kept_count_.data(); }
+  /// Waits for the device.
+  [[nodiscard]] std::uint32_t download_kept_count() {
+    std::uint32_t count = 0;
+    device_.download(kept_count_.data(), 1, &count);
+    return count;
+  }
+
+ private:
+  template <class T>
+  using Array = typename Device::template Array<T>;
+
+  Device& device_;
+  std::uint32_t count_ = 0;
+  Array<std::uint32_t> flags_, sums_, edge_, kept_count_;
+  Array<std::uint64_t> key_;
+  Array<BoundaryEdge> edges_, sum_, kept_;
+};
+
+inline constexpr double pi = 3.141592653589793;
+
+/// The direction u to a vertex as a quotient (y, z) / weight, so that it may be infinite.
+struct ProjectedDirection {
+  double weight = 1;
+  double y = 0;
+  double z = 0;
+
+  /// @param v  from the query to the vertex.
+  BLUM_HD explicit ProjectedDirection(const Vec3d& v) {
+    const double across = hypot(v.y, v.z);  // whose squares may underflow
+    const double distance = norm(v);
+    if (v.x > 0) {
+      weight = distance + v.x;
+      y = v.y;
+      z = v.z;
+      return;
+    }
+    const double scale = distance - v.x;
+    if (across > 0) {
+      weight = across;
+      y = v.y / across * scale;
+      z = v.z / across * scale;
+    } else if (scale > 0) {
+      // On the ray itself. Crossings are counted for rays that are shifted towards larger y and, by less, larger z.
+      weight = 0;
+      y = -scale;
+    }
+  }
+};
+
+/// What an edge of the boundary adds to the winding number at a node, and how fast that may change around it.
+class BoundaryTerms {
+ public:
+  BoundaryTerms() = default;
+  /// @param edges, count  in the device's memory.
+  /// @param places        of the vertices, in units of nodes.
+  BoundaryTerms(const BoundaryEdge* edges, const std::uint32_t* count, const Vec3d* places, const Vec3d& spacing,
+                bool is_mirrored)
+      : edges_(edges), count_(count), places_(places), spacing_(spacing), is_mirrored_(is_mirrored) {}
+
+  [[nodiscard]] BLUM_HD std::uint32_t count() const { return *count_; }
+
+  /// @param node  in units of nodes: whole numbers.
+  [[nodiscard]] BLUM_HD double term(std::uint32_t index, const Vec3d& node) const {
+    const BoundaryEdge edge = edges_[index];
+    const double winding = edge.count * angle(places_[edge.from], places_[edge.to], node) * (0.5 / pi);
+    return is_mirrored_ ? -winding : winding;
+  }
+
+  /// A bound on the gradient of the term along paths that cross no strip, within a distance of a node; infinite where
+  /// the edge may be that close. The winding number's gradient is the Biot-Savart field of the boundary.
+  /// @param reach  mesh units.
+  [[nodiscard]] BLUM_HD double gradient_bound(std::uint32_t index, const Vec3d& node, double reach) const {
+    const BoundaryEdge edge = edges_[index];
+    const Vec3d a = scaled(places_[edge.from] - node);
+    const Vec3d along = scaled(places_[edge.to] - node) - a;
+    const double squared = squared_length(along);
+    const double t = squared > 0 ? clamped(-dot(a, along) / squared, 0.0, 1.0) : 0.0;
+    // Rounding of places and of this sum stays far below a hundredth of a percent of the distance and the edge.
+    const double gap = 0.9999 * norm(a + along * t) - 1e-9 * root(squared) - reach;
+    if (!(gap > 0)) return HUGE_VAL;
+    return magnitude(edge.count) * root(squared) / (4 * pi * gap * gap);
+  }
+
+ private:
+  [[nodiscard]] BLUM_HD Vec3d scaled(const Vec3d& v) const {
+    return {v.x * spacing_.x, v.y * spacing_.y, v.z * spacing_.z};
+  }
+
+  /// How far the edge turns to the left around the ray of a node, seen from +x (y to the right, z up).
+  ///
+  /// The angles of edges that share a vertex have the same rounded direction in common, so their sums are right but for
+  /// whole turns, however close the ray comes to the vertex. Which whole turn is due, the crossings decide: by the
+  /// comparison that tells which rows cross a triangle with this edge, and not by a rounded angle's sign.
+  [[nodiscard]] BLUM_HD double angle(const Vec3d& from, const Vec3d& to, const Vec3d& node) const {
+    const Vec3d a = from - node;
+    const Vec3d b = to - node;
+    const ProjectedDirection u(scaled(a));
+    const ProjectedDirection v(scaled(b));
+    const double real = u.weight * v.weight + u.y * v.y + u.z * v.z;
+    const double turned = u.y * v.z - u.z * v.y;
+    const double angle = atan2(turned, real);
+    const bool is_a_above = a.z > 0;
+    const bool is_b_above = b.z > 0;
+    if (is_a_above == is_b_above) {
+      if (turned != 0) return angle;
+      return (b.y > a.y) != is_a_above ? magnitude(angle) : -magnitude(angle);
+    }
+    const SlicePoint cut = is_b_above ? edge_point(from, to, node.z) : edge_point(to, from, node.z);
+    if (!(cut.x < node.x)) return angle;  // no strip here
+    const bool is_left = (cut.y <= node.y) != is_b_above;
+    // The sign of `turned` is that of the angle, which may underflow.
+    const bool is_contradicted = turned != 0 ? is_left != (turned > 0) : real < 0 && is_left != (angle > 0);
+    if (!is_contradicted) return angle;
+    return angle + (is_left ? 2 * pi : -2 * pi);
+  }
+
+  const BoundaryEdge* edges_ = nullptr;
+  const std::uint32_t* count_ = nullptr;
+  const Vec3d* places_ = nullptr;
+  Vec3d spacing_;
+  bool is_mirrored_ = false;
+};
 
 /// Negates the distances of nodes whose winding number is above level + 1/2. One block per tile of 8^3 nodes.
 ///

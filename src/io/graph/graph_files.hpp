@@ -13,11 +13,11 @@
 #include <variant>
 #include <vector>
 
+#include "blum/axis/axis_graph.hpp"
 #include "blum/core/describe.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/io/file_metadata.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/axis_graph.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_sites.hpp"
 

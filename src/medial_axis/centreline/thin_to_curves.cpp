@@ -11,10 +11,15 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/grid/voxel_topology.hpp"
-#include "medial_axis/thinning_order.hpp"
+#include "medial_axis/cells/thinning_order.hpp"
 
 namespace blum::centrelines {
 namespace {
+
+using detail::DepthOrder;
+using detail::Line;
+using detail::SimpleCache;
+using detail::Waiting;
 
 constexpr Neighbourhood middle = 1U << 13U;
 constexpr std::size_t steps_between_looks = std::size_t{1} << 16U;

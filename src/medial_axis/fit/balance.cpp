@@ -5,10 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "medial_axis/governors.hpp"
-#include "medial_axis/walls.hpp"
+#include "medial_axis/surface/governors.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr int most_steps = 24;
@@ -149,4 +148,4 @@ std::optional<AxisVertex> balance(const Surface& surface, const Vec3d& start, st
   return std::nullopt;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

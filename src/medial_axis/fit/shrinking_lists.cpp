@@ -4,10 +4,10 @@
 #include <numeric>
 #include <utility>
 
-#include "medial_axis/place_vertices.hpp"
-#include "medial_axis/void_points.hpp"
+#include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/surface/void_points.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface, int reach)
     : lists_(lists),
@@ -121,4 +121,4 @@ void ShrinkingLists::write() {
   keep(cells_, lists_);
 }
 
-}  // namespace blum
+}  // namespace blum::detail

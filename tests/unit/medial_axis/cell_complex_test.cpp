@@ -1,5 +1,5 @@
 // Proves that the cells of voxels, their faces and their cofaces are those of direct enumeration.
-#include "medial_axis/cell_complex.hpp"
+#include "medial_axis/cells/cell_complex.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,8 @@
 
 namespace blum {
 namespace {
+
+using detail::CellComplex;
 
 /// A cell by its middle, in half steps: odd along the axes that it spans.
 using Middle = std::array<std::int64_t, 3>;

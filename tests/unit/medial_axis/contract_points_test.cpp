@@ -1,6 +1,6 @@
 // Proves that contracting edges without length keeps topology and places, leaves the curve of a ribbon, and contracts
 // all that may be contracted.
-#include "medial_axis/contract_points.hpp"
+#include "medial_axis/fit/contract_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,8 @@
 
 namespace blum {
 namespace {
+
+using detail::contract_points;
 
 using test::AxisRows;
 using test::EdgeRow;

@@ -1,5 +1,5 @@
 // Proves that cells have the largest importance of what they are faces of, and others none, against a plain map.
-#include "medial_axis/importance.hpp"
+#include "medial_axis/cells/importance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,8 @@
 
 namespace blum {
 namespace {
+
+using detail::Importance;
 
 /// Adds a cell, its faces, their faces and so on.
 void add_closure(const CellLattice& lattice, Cell cell, float degrees, std::map<Cell, float>& values) {

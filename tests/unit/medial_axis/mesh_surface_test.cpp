@@ -1,5 +1,5 @@
 // Proves that closest points of triangle meshes, and the sites that they lie on, are those of brute force.
-#include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +15,11 @@
 
 namespace blum {
 namespace {
+
+using detail::Footprint;
+using detail::MeshSurface;
+using detail::NearestPoint;
+using detail::SurfacePoint;
 
 /// A mesh with its sites and its surface.
 struct Sample {

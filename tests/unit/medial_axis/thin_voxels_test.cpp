@@ -1,6 +1,6 @@
 // Proves that thinning keeps the topology and all that is important, and equals plain sequential thinning in the order
 // of depth, for any number of threads.
-#include "medial_axis/thin_voxels.hpp"
+#include "medial_axis/cells/attached_voxels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +18,12 @@
 
 namespace blum {
 namespace {
+
+using detail::AttachedVoxels;
+using detail::CellComplex;
+using detail::Importance;
+using detail::thin_voxels;
+using detail::VoxelSolid;
 
 using Place = std::array<std::int64_t, 3>;
 

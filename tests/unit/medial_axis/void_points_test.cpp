@@ -1,5 +1,5 @@
 // Proves that a point is found deep in each void, and that what moves over such points is seen.
-#include "medial_axis/void_points.hpp"
+#include "medial_axis/surface/void_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,14 @@
 #include "blum/core/random.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/shapes/generators.hpp"
-#include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 
 namespace blum {
 namespace {
+
+using detail::holds_any;
+using detail::MeshSurface;
+using detail::moves_over_any;
 
 /// A mesh inside out, moved and scaled.
 void add_void(TriangleMesh& mesh, const TriangleMesh& solid, double scale, const Vec3d& at) {

@@ -1,5 +1,5 @@
 // Proves that the faces of voxels are found where they are, against all voxels one by one.
-#include "medial_axis/voxel_surface.hpp"
+#include "medial_axis/surface/voxel_surface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +18,10 @@
 
 namespace blum {
 namespace {
+
+using detail::Footprint;
+using detail::NearestPoint;
+using detail::VoxelSurface;
 
 using Place = std::array<std::int64_t, 3>;
 

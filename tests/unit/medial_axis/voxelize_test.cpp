@@ -1,6 +1,6 @@
 // Proves that bodies and images become the voxels whose centres are inside, on a grid with room around them, with the
 // depth and the closest site of each.
-#include "medial_axis/voxelize.hpp"
+#include "medial_axis/cells/voxelize.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,6 +20,12 @@
 
 namespace blum {
 namespace {
+
+using detail::voxelize_body;
+using detail::voxelize_by_winding;
+using detail::voxelize_image;
+using detail::Voxelized;
+using detail::VoxelSolid;
 
 SolidBody body_of(const TriangleMesh& mesh) {
   const Solid solid = Solid::of(mesh);

@@ -1,0 +1,18 @@
+// Blum: angles that are asked for. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
+
+namespace blum::detail {
+
+/// @param angle  degrees.  @throws InvalidOption where it is not 0 to 180.
+inline void check_angle(std::string_view name, double angle) {
+  if (angle >= 0 && angle <= 180) return;
+  throw InvalidOption(std::string(name) + " is " + exact_text(angle) + " degrees, but must be 0 to 180");
+}
+
+}  // namespace blum::detail

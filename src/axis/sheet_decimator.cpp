@@ -1,0 +1,397 @@
+#include "blum/axis/sheet_decimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <utility>
+
+#include "blum/core/inline_list.hpp"
+#include "blum/core/parallel.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// The cosine that a triangle may turn by at most: 75 degrees.
+constexpr double least_cosine = 0.25;
+constexpr std::size_t most_ring = 64;
+
+/// A point seen along the normal of a fan, from its centre.
+struct Seen {
+  double x = 0, y = 0;
+  double height = 0, radius = 0;  ///< radius: less that of the centre
+};
+
+double cross(const Seen& a, const Seen& b) {
+  return a.x * b.y - a.y * b.x;
+}
+double cross(const Seen& from, const Seen& a, const Seen& b) {
+  return (a.x - from.x) * (b.y - from.y) - (a.y - from.y) * (b.x - from.x);
+}
+
+struct Difference {
+  double height = 0, radius = 0;
+  void include(double h, double r) {
+    height = std::max(height, std::abs(h));
+    radius = std::max(radius, std::abs(r));
+  }
+};
+
+/// What the ring looks like along a normal.
+class View {
+ public:
+  View(const AxisPoint& centre, std::span<const AxisPoint> ring, const Vec3d& normal) {
+    const Vec3d side = std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    Vec3d u = blum::cross(normal, side);
+    u = u / length(u);
+    const Vec3d v = blum::cross(normal, u);
+    for (const AxisPoint& point : ring) {
+      const Vec3d at = point.position - centre.position;
+      seen_.push_back({dot(at, u), dot(at, v), dot(at, normal), point.radius - centre.radius});
+    }
+  }
+
+  /// Whether the fan lies above the plane once, before the centre goes.
+  [[nodiscard]] bool is_above_plane(bool is_closed) const {
+    for (std::size_t k = 0; k + 1 < seen_.size() + (is_closed ? 1 : 0); ++k) {
+      if (!(cross(seen_[k], seen_[(k + 1) % seen_.size()]) > 0)) return false;
+    }
+    return true;
+  }
+  /// The same afterwards.
+  [[nodiscard]] bool is_unfolded() const {
+    for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
+      if (!(cross(seen_[0], seen_[k], seen_[k + 1]) > 0)) return false;
+    }
+    return true;
+  }
+
+  /// Whether the centre of an open fan lies beyond the line between the ends of its ring.
+  [[nodiscard]] bool is_tip() const { return cross(seen_[0], seen_[seen_.size() - 1]) > 0; }
+
+  /// At the centre, where the fan covers it afterwards.
+  void include_centre(Difference& difference) const {
+    for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
+      const double a = cross(seen_[k], seen_[k + 1]);
+      const double b = cross(seen_[k + 1], seen_[0]);
+      const double c = cross(seen_[0], seen_[k]);
+      if (a < 0 || b < 0 || c < 0 || !(a + b + c > 0)) continue;
+      const double sum = a + b + c;
+      difference.include((a * seen_[0].height + b * seen_[k].height + c * seen_[k + 1].height) / sum,
+                         (a * seen_[0].radius + b * seen_[k].radius + c * seen_[k + 1].radius) / sum);
+      return;
+    }
+  }
+
+  /// Where edges from the centre cross those afterwards: between these places both are linear.
+  void include_crossings(Difference& difference) const {
+    for (std::size_t j = 2; j < seen_.size(); ++j) {
+      const Seen& from = seen_[0];
+      const Seen& to = seen_[j];
+      const Seen along{to.x - from.x, to.y - from.y, to.height - from.height, to.radius - from.radius};
+      const double start = cross(from, along);
+      for (std::size_t i = 1; i < seen_.size(); ++i) {
+        if (i == j) continue;
+        const Seen& spoke = seen_[i];
+        const double turn = cross(spoke, along);
+        // Signs tell mostly that there is no crossing, without dividing.
+        if (turn == 0 || (turn > 0 ? !(start > 0 && start <= turn) : !(start < 0 && start >= turn))) continue;
+        const double s = start / turn;
+        const double t = cross(from, spoke) / turn;
+        if (!(s > 0 && s < 1 && t > 0 && t < 1)) continue;
+        difference.include(s * spoke.height - (from.height + t * along.height),
+                           s * spoke.radius - (from.radius + t * along.radius));
+      }
+    }
+  }
+
+ private:
+  InlineList<Seen, most_ring> seen_;
+};
+
+/// Whether a triangle faces to where a normal does, roughly.
+bool faces(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& normal) {
+  const Vec3d own = blum::cross(b - a, c - a);
+  return dot(own, normal) > least_cosine * length(own);
+}
+
+constexpr std::size_t most_in_batch = 256;
+/// At each step sheets may move by this part of the least radius nearby; by the second one of the tolerance anyway:
+/// flat ones do by rounding, and reach out to where the radius is 0.
+constexpr double part_of_radius = 0.5;
+constexpr double nothing = 1e-6;
+/// Rims, seams and curves may move by this part of the tolerance: they say most for the fewest vertices.
+constexpr double part_of_borders = 0.4;
+
+/// Whether any vertex of the first fans, or any other end of a border, is of a kind.
+template <class Is>
+bool is_any_of(std::span<const Fan> fans, std::span<const std::pair<std::uint32_t, std::uint32_t>> chain,
+               const Is& is) {
+  const auto has = [&](const Fan& fan) { return std::any_of(fan.ring.begin(), fan.ring.end(), is); };
+  return std::any_of(fans.begin(), fans.end(), has) ||
+         std::any_of(chain.begin(), chain.end(), [&](const auto& border) { return is(border.second); });
+}
+
+}  // namespace
+
+Deviation deviation(const AxisPoint& point, const AxisPoint& a, const AxisPoint& b) {
+  const Vec3d along = b.position - a.position;
+  const double squared = squared_length(along);
+  const double t = squared > 0 ? std::clamp(dot(point.position - a.position, along) / squared, 0.0, 1.0) : 0;
+  const double distance = length(point.position - (a.position + along * t));
+  return {std::max(distance, std::abs(a.radius + (b.radius - a.radius) * t - point.radius)), distance};
+}
+
+std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const AxisPoint> ring, bool is_closed) {
+  if (ring.size() > most_ring) return std::nullopt;
+  Vec3d normal;
+  for (std::size_t k = 0; k + 1 < ring.size() + (is_closed ? 1 : 0); ++k) {
+    normal += blum::cross(ring[k].position - centre.position, ring[(k + 1) % ring.size()].position - centre.position);
+  }
+  const double size = length(normal);
+  if (!(size > 0)) return std::nullopt;
+  normal = normal / size;
+  for (std::size_t k = 1; k + 1 < ring.size(); ++k) {
+    if (!faces(ring[0].position, ring[k].position, ring[k + 1].position, normal)) return std::nullopt;
+  }
+  const View view(centre, ring, normal);
+  if (!view.is_unfolded()) return std::nullopt;
+  // Each point of a triangle moves with its corner, and so no further than that.
+  const double moved = length(ring[0].position - centre.position);
+  const Deviation bound{std::max(moved, std::abs(ring[0].radius - centre.radius)), moved};
+  if (!view.is_above_plane(is_closed)) return bound;
+  Difference difference;
+  view.include_centre(difference);
+  view.include_crossings(difference);
+  Deviation out{std::max(difference.height, difference.radius), difference.height};
+  if (!is_closed) {
+    const Deviation border = deviation(centre, ring.front(), ring.back());
+    out.by = std::max(out.by, border.by);
+    if (!view.is_tip()) out.beyond = std::max(out.beyond, border.beyond);
+  }
+  return out.by < bound.by ? out : bound;
+}
+
+SheetDecimator::SheetDecimator(DecimatorInput input, double tolerance, const Context& context)
+    : input_(std::move(input)),
+      tolerance_(tolerance),
+      context_(context),
+      cells_({input_.points.size(), input_.borders, input_.triangles}),
+      of_triangle_(input_.triangles.size(), 0),
+      of_edge_(input_.borders.size(), 0),
+      is_waiting_(input_.points.size(), 0),
+      touched_at_(input_.points.size(), 0),
+      looks_(most_in_batch) {}
+
+void SheetDecimator::run(std::span<const double> levels) {
+  for (const double level : levels) {
+    for (std::uint32_t v = 0; v < is_waiting_.size(); ++v) is_waiting_[v] = may_wait(v) ? 1 : 0;
+    while (sweep(level * tolerance_) > 0) {
+    }
+  }
+}
+
+/// Takes out vertices that are not next to one taken out before, once over all. All threads look at those of a batch
+/// as they are before any of it goes; what something goes next to is looked at again. The order, and so the result,
+/// does not depend on the threads: those of a batch are far apart in memory, and next to those of the batch before.
+/// @return  how many went.
+std::size_t SheetDecimator::sweep(double limit) {
+  const std::vector<std::uint32_t> waiting = waiting_vertices();
+  const std::size_t batches = (waiting.size() + most_in_batch - 1) / most_in_batch;
+  const std::size_t at_first = taken_;
+  const auto is_touched = [&](std::uint32_t v) { return touched_at_[v] > at_first; };
+  for (std::size_t batch = 0; batch < batches; ++batch) {
+    batch_.clear();
+    for (std::size_t k = batch; k < waiting.size(); k += batches) {
+      if (!is_touched(waiting[k])) batch_.push_back(waiting[k]);
+    }
+    take_batch(limit);
+  }
+  return taken_ - at_first;
+}
+std::vector<std::uint32_t> SheetDecimator::waiting_vertices() const {
+  std::vector<std::uint32_t> waiting;
+  for (std::uint32_t v = 0; v < is_waiting_.size(); ++v) {
+    if (is_waiting_[v] != 0 && cells_.has_vertex(v)) waiting.push_back(v);
+  }
+  return waiting;
+}
+void SheetDecimator::take_batch(double limit) {
+  constexpr std::size_t grain = 16;
+  parallel_for(context_, batch_.size(), grain, {}, [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) look_at(batch_[k], limit, looks_[k]);
+  });
+  const std::size_t at_first = taken_;
+  const auto is_touched = [&](std::uint32_t v) { return touched_at_[v] > at_first; };
+  for (std::size_t k = 0; k < batch_.size(); ++k) {
+    const std::uint32_t v = batch_[k];
+    if (is_touched(v)) continue;
+    Look& look = looks_[k];
+    is_waiting_[v] = 0;
+    // What went on the other side of a neighbour may forbid to go there.
+    if (look.candidate && is_any_of(std::span(look.fans).first(look.fan_count), look.chain, is_touched))
+      look_at(v, limit, look);
+    if (look.candidate) take(v, look);
+  }
+}
+void SheetDecimator::look_at(std::uint32_t v, double limit, Look& look) const {
+  look.candidate = gather(v, look) ? best(v, limit, look) : std::nullopt;
+}
+
+/// Finds the fans of a vertex and its neighbours along a chain, if it has two of these or none.
+/// @return  whether it may go at all.
+bool SheetDecimator::gather(std::uint32_t v, Look& look) const {
+  auto& chain = look.chain;
+  auto& sides = look.sides;
+  chain.clear();
+  cells_.for_each_edge(v, [&](std::uint32_t e, std::uint32_t other) { chain.emplace_back(e, other); });
+  if (!chain.empty() && (chain.size() != 2 || chain[0].second == chain[1].second)) return false;
+  if (!chain.empty() && input_.border_kind[chain[0].first] != input_.border_kind[chain[1].first]) return false;
+  sides.clear();
+  cells_.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t p, std::uint32_t q) { sides.emplace_back(t, p, q); });
+  look.fan_count = 0;
+  if (sides.empty()) return !chain.empty();
+  if (chain.empty()) return add_fan(look, sides.front().ends[0], none) && sides.empty();
+  while (!sides.empty()) {
+    const std::uint32_t from = chain[0].second;
+    if (!add_fan(look, from, chain[1].second)) return false;
+  }
+  return true;
+}
+/// Follows triangles from a ring vertex to another one, or round to the same. They leave `sides`.
+bool SheetDecimator::add_fan(Look& look, std::uint32_t from, std::uint32_t to) {
+  auto& sides = look.sides;
+  if (look.fan_count == look.fans.size()) look.fans.emplace_back();
+  Fan& fan = look.fans[look.fan_count++];
+  fan.ring.assign(1, from);
+  fan.triangles.clear();
+  fan.is_closed = to == none;
+  const std::uint32_t last = fan.is_closed ? from : to;
+  for (std::uint32_t at = from;;) {
+    const auto next =
+        std::find_if(sides.begin(), sides.end(), [&](const Side& s) { return s.ends[0] == at || s.ends[1] == at; });
+    if (next == sides.end()) return false;
+    at = next->ends[0] == at ? next->ends[1] : next->ends[0];
+    fan.triangles.push_back(next->triangle);
+    sides.erase(next);
+    if (at == last) break;
+    if (std::find(fan.ring.begin(), fan.ring.end(), at) != fan.ring.end()) return false;
+    fan.ring.push_back(at);
+  }
+  if (!fan.is_closed) fan.ring.push_back(to);
+  return !fan.is_closed || fan.ring.size() > 2;
+}
+
+/// The neighbour that a vertex had best go to.
+std::optional<SheetDecimator::Candidate> SheetDecimator::best(std::uint32_t v, double limit, Look& look) const {
+  auto& targets = look.targets;
+  targets.clear();
+  if (look.chain.empty()) {
+    for (const std::uint32_t to : look.fans[0].ring) {
+      double sum = 0;
+      for (const std::uint32_t other : look.fans[0].ring) {
+        sum += squared_length(point(to).position - point(other).position);
+      }
+      targets.emplace_back(sum, to);
+    }
+  } else {
+    for (const auto& [edge, to] : look.chain) {
+      targets.emplace_back(squared_length(point(to).position - point(v).position), to);
+    }
+  }
+  std::sort(targets.begin(), targets.end());
+  for (const auto& [order, to] : targets) {
+    const std::optional<Candidate> moved = moved_to(v, to, limit, look);
+    if (moved && cells_.may_contract(v, to, look.links)) return moved;
+  }
+  return std::nullopt;
+}
+
+/// How far all cells around a vertex would be from where they were at first; nullopt where that is too far.
+std::optional<SheetDecimator::Candidate> SheetDecimator::moved_to(std::uint32_t v, std::uint32_t to, double limit,
+                                                                  Look& look) const {
+  double along = 0;
+  double least_radius = std::min(point(v).radius, point(to).radius);
+  for (const auto& [edge, other] : look.chain) along = std::max(along, of_edge_[edge]);
+  double before = along;
+  for (std::size_t f = 0; f < look.fan_count; ++f) {
+    for (const std::uint32_t t : look.fans[f].triangles) before = std::max(before, of_triangle_[t]);
+    for (const std::uint32_t r : look.fans[f].ring) least_radius = std::min(least_radius, point(r).radius);
+  }
+  if (before > limit) return std::nullopt;
+  const double most_beyond = std::max(part_of_radius * least_radius, nothing * tolerance_);
+  double by = 0;
+  if (!look.chain.empty()) {
+    const std::uint32_t other = look.chain[0].second == to ? look.chain[1].second : look.chain[0].second;
+    if (is_border(to, other)) return std::nullopt;
+    const Deviation own = deviation(point(v), point(to), point(other));
+    if (look.fan_count == 0 && own.beyond > most_beyond) return std::nullopt;
+    by = own.by;
+    along += own.by;
+    if (along > part_of_borders * limit) return std::nullopt;
+  }
+  for (std::size_t f = 0; f < look.fan_count && before + by <= limit; ++f) {
+    const std::optional<Deviation> own = deviation_of(v, look.fans[f], to, look.ring);
+    if (!own || own->beyond > most_beyond) return std::nullopt;
+    by = std::max(by, own->by);
+  }
+  return before + by <= limit ? std::optional(Candidate{to, before + by, along}) : std::nullopt;
+}
+
+bool SheetDecimator::is_border(std::uint32_t a, std::uint32_t b) const {
+  bool found = false;
+  cells_.for_each_edge(a, [&](std::uint32_t, std::uint32_t other) { found = found || other == b; });
+  return found;
+}
+
+std::optional<Deviation> SheetDecimator::deviation_of(std::uint32_t v, Fan& fan, std::uint32_t to,
+                                                      std::vector<AxisPoint>& ring) const {
+  if (fan.is_closed) {
+    const auto at = std::find(fan.ring.begin(), fan.ring.end(), to) - fan.ring.begin();
+    std::rotate(fan.ring.begin(), fan.ring.begin() + at, fan.ring.end());
+    std::rotate(fan.triangles.begin(), fan.triangles.begin() + at, fan.triangles.end());
+  } else if (fan.ring.front() != to) {
+    std::reverse(fan.ring.begin(), fan.ring.end());
+    std::reverse(fan.triangles.begin(), fan.triangles.end());
+  }
+  ring.clear();
+  for (const std::uint32_t r : fan.ring) ring.push_back(point(r));
+  return deviation(point(v), ring, fan.is_closed);
+}
+
+void SheetDecimator::take(std::uint32_t v, const Look& look) {
+  const Candidate& candidate = *look.candidate;
+  ++taken_;
+  for (std::size_t f = 0; f < look.fan_count; ++f) {
+    const Fan& fan = look.fans[f];
+    pass_angle_on(fan);
+    for (const std::uint32_t t : fan.triangles) of_triangle_[t] = candidate.moved;
+    for (const std::uint32_t r : fan.ring) touch(r);
+  }
+  for (const auto& [edge, other] : look.chain) {
+    of_edge_[edge] = candidate.along;
+    touch(other);
+  }
+  moved_ = std::max(moved_, candidate.moved);
+  cells_.contract(v, candidate.to);
+}
+void SheetDecimator::touch(std::uint32_t v) {
+  touched_at_[v] = taken_;
+  is_waiting_[v] = may_wait(v) ? 1 : 0;
+}
+
+/// The angle of a sheet is the largest of its triangles': what goes leaves its own to the triangle beside it.
+void SheetDecimator::pass_angle_on(const Fan& fan) {
+  const std::size_t count = fan.triangles.size();
+  const auto pass = [&](std::uint32_t from, std::uint32_t to) {
+    input_.triangle_angle[to] = std::max(input_.triangle_angle[to], input_.triangle_angle[from]);
+  };
+  if (count > 1) pass(fan.triangles[0], fan.triangles[1]);
+  if (fan.is_closed && count > 2) pass(fan.triangles[count - 1], fan.triangles[count - 2]);
+  if (count > 1) return;
+  cells_.for_each_triangle(fan.ring[0], [&](std::uint32_t t, std::uint32_t p, std::uint32_t q) {
+    if (p == fan.ring[1] || q == fan.ring[1]) pass(fan.triangles[0], t);
+  });
+}
+
+}  // namespace blum::detail

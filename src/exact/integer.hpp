@@ -1,0 +1,16 @@
+// Blum: integers of any size, by Boost: the fast ones. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include <memory>
+
+namespace blum::detail {
+
+/// An integer of any size. Up to 1024 bits, which is enough for most coordinates, it needs no memory of its own.
+using Integer = boost::multiprecision::number<
+    boost::multiprecision::cpp_int_backend<1024, 0, boost::multiprecision::signed_magnitude,
+                                           boost::multiprecision::unchecked, std::allocator<unsigned long long>>,
+    boost::multiprecision::et_off>;
+
+}  // namespace blum::detail

@@ -1,0 +1,358 @@
+#include "proximity/exact_impact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "blum/proximity/impact.hpp"
+#include "proximity/polynomial.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// start + slope * t.
+struct Linear {
+  Integer start;
+  Integer slope;
+};
+
+using MovingVector = std::array<Linear, 3>;
+
+/// Positions over time, and a distance, scaled by one power of two such that all are integers.
+struct IntegerPoints {
+  std::array<MovingVector, 4> at;
+  Integer distance;
+};
+[[nodiscard]] IntegerPoints integer_points(const FourMovingPoints& points, double distance = 0);
+
+[[nodiscard]] MovingVector operator-(const MovingVector& a, const MovingVector& b);
+[[nodiscard]] Polynomial operator*(const Linear& a, const Linear& b);
+
+using PolynomialVector = std::array<Polynomial, 3>;
+[[nodiscard]] Polynomial dot(const PolynomialVector& a, const PolynomialVector& b);
+[[nodiscard]] Polynomial dot(const PolynomialVector& a, const MovingVector& b);
+
+/// A finite double as mantissa * 2^exponent, the mantissa odd or zero.
+struct WholeDouble {
+  std::int64_t mantissa;
+  int exponent;
+};
+
+WholeDouble parts_of(double value) {
+  if (value == 0) return {0, std::numeric_limits<int>::max()};
+  int exponent = 0;
+  constexpr int digits = std::numeric_limits<double>::digits;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), digits));
+  exponent -= digits;
+  const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
+  return {mantissa / (std::int64_t{1} << zeros), exponent + zeros};
+}
+
+IntegerPoints integer_points(const FourMovingPoints& points, double distance) {
+  int least = parts_of(distance).exponent;
+  for (const auto* ends : {&points.start, &points.end}) {
+    for (const Vec3d& p : *ends) {
+      for (const double x : {p.x, p.y, p.z}) least = std::min(least, parts_of(x).exponent);
+    }
+  }
+  const auto integer = [&](double x) {
+    const WholeDouble parts = parts_of(x);
+    return parts.mantissa == 0 ? Integer(0) : Integer(parts.mantissa) << static_cast<unsigned>(parts.exponent - least);
+  };
+  IntegerPoints out;
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Integer start = integer(points.start[k][axis]);
+      out.at[k][axis] = {start, integer(points.end[k][axis]) - start};
+    }
+  }
+  out.distance = integer(distance);
+  return out;
+}
+
+MovingVector operator-(const MovingVector& a, const MovingVector& b) {
+  MovingVector out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out[axis] = {a[axis].start - b[axis].start, a[axis].slope - b[axis].slope};
+  }
+  return out;
+}
+
+Polynomial operator*(const Linear& a, const Linear& b) {
+  return {a.start * b.start, a.start * b.slope + a.slope * b.start, a.slope * b.slope};
+}
+
+/// One component of a cross product.
+Polynomial cross_component(const MovingVector& a, const MovingVector& b, std::size_t axis) {
+  const std::size_t next = (axis + 1) % 3;
+  const std::size_t last = (axis + 2) % 3;
+  return a[next] * b[last] - a[last] * b[next];
+}
+
+Polynomial dot(const MovingVector& a, const MovingVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+PolynomialVector cross(const MovingVector& a, const MovingVector& b) {
+  return {cross_component(a, b, 0), cross_component(a, b, 1), cross_component(a, b, 2)};
+}
+
+Polynomial dot(const PolynomialVector& a, const PolynomialVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Polynomial dot(const PolynomialVector& a, const MovingVector& b) {
+  Polynomial sum;
+  for (std::size_t axis = 0; axis < 3; ++axis) sum = sum + a[axis] * Polynomial{b[axis].start, b[axis].slope};
+  return sum;
+}
+
+/// The depth at which intervals are no wider than a tolerance, from 2^-40 to 1.
+unsigned depth_of(double tolerance) {
+  int exponent = 0;
+  std::frexp(tolerance, &exponent);
+  return static_cast<unsigned>(std::max(1 - exponent, 0)) + 1;
+}
+
+/// Two parts of features (a vertex, the inside of an edge or a face) that are no further apart than the distance where
+/// `excess` is not positive, `parts` are not negative, as the closest points lie on the parts, and `size` is positive.
+struct Parts {
+  Polynomial excess;
+  std::vector<Polynomial> inside;
+  Polynomial size;
+};
+
+class Approach {
+ public:
+  explicit Approach(const IntegerPoints& points)
+      : points_(points), square_{points.distance * points.distance}, one_{Integer(1)} {}
+
+  void add_vertices(std::size_t a, std::size_t b) {
+    const MovingVector between = vector(a, b);
+    parts_.push_back({dot(between, between) - square_, {}, one_});
+  }
+  /// A point, and the line from one to another.
+  void add_vertex_and_edge(std::size_t point, std::size_t from, std::size_t to) {
+    const MovingVector edge = vector(from, to);
+    const MovingVector way = vector(from, point);
+    const Polynomial size = dot(edge, edge);
+    const Polynomial along = dot(edge, way);
+    const PolynomialVector area = cross(edge, way);
+    parts_.push_back({dot(area, area) - square_ * size, {along, size - along}, size});
+  }
+  void add_vertex_and_face() { add_insides(vector(1, 2), vector(1, 3), vector(1, 0), true); }
+  void add_edge_and_edge() { add_insides(vector(0, 1), vector(2, 3), vector(0, 2), false); }
+
+  /// They are close for the first time at the start, or where two parts are exactly as far apart as the distance; of
+  /// those that always are, where the closest points come to lie on them.
+  [[nodiscard]] std::optional<double> first(double tolerance) const {
+    const RealRoots start(Polynomial{0, 1});
+    const auto holds_at_start = [&](const Parts& parts) { return holds(parts, start, start.all().front()); };
+    if (std::any_of(parts_.begin(), parts_.end(), holds_at_start)) return 0.0;
+    std::optional<double> best;
+    for (const Parts& parts : parts_) {
+      if (!parts.excess.is_zero()) {
+        look_at_roots_of(parts.excess, parts, tolerance, best);
+        continue;
+      }
+      for (const Polynomial& one : parts.inside) look_at_roots_of(one, parts, tolerance, best);
+      look_at_roots_of(parts.size, parts, tolerance, best);
+    }
+    return best;
+  }
+
+ private:
+  [[nodiscard]] MovingVector vector(std::size_t from, std::size_t to) const {
+    return points_.at[to] - points_.at[from];
+  }
+
+  /// Features that are a + s u and, w further on, b + r v; of a face, a point w from a + s u + r v.
+  void add_insides(const MovingVector& u, const MovingVector& v, const MovingVector& w, bool is_face) {
+    const PolynomialVector normal = cross(u, v);
+    const Polynomial size = dot(normal, normal);
+    const Polynomial volume = dot(normal, w);
+    const Polynomial s = dot(normal, cross(w, v));
+    const Polynomial r = dot(normal, is_face ? cross(u, w) : cross(w, u));
+    std::vector<Polynomial> inside{s, r};
+    if (is_face) {
+      inside.push_back(size - s - r);
+    } else {
+      inside.insert(inside.end(), {size - s, size - r});
+    }
+    parts_.push_back({volume * volume - square_ * size, std::move(inside), size});
+  }
+
+  [[nodiscard]] static bool holds(const Parts& parts, const RealRoots& roots, const RealRoot& root) {
+    return roots.sign_at(root, parts.excess) <= 0 && roots.sign_at(root, parts.size) > 0 &&
+           std::all_of(parts.inside.begin(), parts.inside.end(),
+                       [&](const Polynomial& one) { return roots.sign_at(root, one) >= 0; });
+  }
+
+  static void look_at_roots_of(const Polynomial& polynomial, const Parts& parts, double tolerance,
+                               std::optional<double>& best) {
+    if (polynomial.degree() <= 0) return;
+    const RealRoots roots(polynomial);
+    for (const RealRoot& isolated : roots.all()) {
+      const RealRoot root = roots.refined(isolated, depth_of(tolerance));
+      if (best && root.lower_bound() >= *best) return;
+      if (!holds(parts, roots, root)) continue;
+      best = root.lower_bound();
+      return;
+    }
+  }
+
+  const IntegerPoints& points_;
+  Polynomial square_;
+  Polynomial one_;
+  std::vector<Parts> parts_;
+};
+
+/// Two features, in a plane of which two vectors are along both.
+class Features {
+ public:
+  /// A point that may lie on a segment, by their numbers.
+  struct Touch {
+    std::size_t point;
+    std::size_t from;
+    std::size_t to;
+  };
+
+  static Features vertex_and_face(const FourMovingPoints& points) {
+    return {integer_points(points).at, {1, 2}, {1, 3}, {1, 0}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}};
+  }
+  static Features edge_and_edge(const FourMovingPoints& points) {
+    return {integer_points(points).at, {0, 1}, {2, 3}, {0, 2}, {{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}}};
+  }
+
+  /// Zero where all points lie in one plane.
+  [[nodiscard]] Polynomial volume() const {
+    return dot(cross(vector(first_[0], first_[1]), vector(second_[0], second_[1])), vector(between_[0], between_[1]));
+  }
+  /// Zero along all axes where the points of a face, or directions of edges, have no plane of their own.
+  [[nodiscard]] Polynomial normal(std::size_t axis) const {
+    return cross_component(vector(first_[0], first_[1]), vector(second_[0], second_[1]), axis);
+  }
+  /// Zero along all axes where the three points lie on a line.
+  [[nodiscard]] Polynomial area(const Touch& touch, std::size_t axis) const {
+    return cross_component(vector(touch.from, touch.to), vector(touch.from, touch.point), axis);
+  }
+  /// On that line: positive beyond the ends of the segment.
+  [[nodiscard]] Polynomial beyond(const Touch& touch) const {
+    return dot(vector(touch.from, touch.point), vector(touch.to, touch.point));
+  }
+  /// With no plane, features meet where one of these points lies on its segment.
+  [[nodiscard]] const std::vector<Touch>& touches() const { return touches_; }
+
+  /// Whether they meet at a root, where their points lie in one plane.
+  [[nodiscard]] bool meet_at(const RealRoots& roots, const RealRoot& root) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (roots.sign_at(root, normal(axis)) != 0) return overlap_along(axis, roots, root);
+    }
+    return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (roots.sign_at(root, area(touch, axis)) != 0) return false;
+      }
+      return roots.sign_at(root, beyond(touch)) <= 0;
+    });
+  }
+
+ private:
+  using Ends = std::array<std::size_t, 2>;
+
+  Features(const std::array<MovingVector, 4>& points, Ends first, Ends second, Ends between, std::vector<Touch> touches)
+      : points_(points), first_(first), second_(second), between_(between), touches_(std::move(touches)) {}
+
+  [[nodiscard]] MovingVector vector(std::size_t from, std::size_t to) const { return points_[to] - points_[from]; }
+
+  /// Whether they meet, seen along an axis that their plane does not hold.
+  [[nodiscard]] bool overlap_along(std::size_t axis, const RealRoots& roots, const RealRoot& root) const {
+    const auto side = [&](std::size_t k) { return roots.sign_at(root, area(touches_[k], axis)); };
+    const int first = side(0);
+    const int second = side(1);
+    const bool is_face = touches_.size() == 3;
+    if (!is_face) return first * second <= 0 && side(2) * side(3) <= 0;
+    if (first * second < 0) return false;
+    const int third = side(2);
+    return first * third >= 0 && second * third >= 0;
+  }
+
+  std::array<MovingVector, 4> points_;
+  Ends first_;
+  Ends second_;
+  Ends between_;  ///< a point of the first and one of the second
+  std::vector<Touch> touches_;
+};
+
+/// The first root at which the features meet.
+std::optional<double> first_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance) {
+  const RealRoots roots(polynomial);
+  for (const RealRoot& isolated : roots.all()) {
+    // Narrow, signs next to it are soon told.
+    const RealRoot root = roots.refined(isolated, depth_of(tolerance));
+    if (features.meet_at(roots, root)) return root.lower_bound();
+  }
+  return std::nullopt;
+}
+
+/// Of points that never leave their common plane: the features meet for the first time at the start or where one of the
+/// signs that tell it changes.
+std::optional<double> first_in_plane(const Features& features, double tolerance) {
+  std::optional<double> first = first_at_roots_of(Polynomial{0, 1}, features, tolerance);
+  const auto look_at = [&](const Polynomial& polynomial) {
+    if (polynomial.is_zero() || first == 0.0) return;
+    const std::optional<double> next = first_at_roots_of(polynomial, features, tolerance);
+    if (next && !(first && *first <= *next)) first = next;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    look_at(features.normal(axis));
+    for (const Features::Touch& touch : features.touches()) look_at(features.area(touch, axis));
+  }
+  for (const Features::Touch& touch : features.touches()) look_at(features.beyond(touch));
+  return first;
+}
+
+std::optional<double> first_meeting(const Features& features, double tolerance) {
+  const Polynomial volume = features.volume();
+  return volume.is_zero() ? first_in_plane(features, tolerance) : first_at_roots_of(volume, features, tolerance);
+}
+
+}  // namespace
+
+std::optional<double> exact_vertex_face_approach(const FourMovingPoints& points, double distance, double tolerance) {
+  const IntegerPoints integers = integer_points(points, distance);
+  Approach approach(integers);
+  for (std::size_t k = 1; k < 4; ++k) {
+    approach.add_vertices(0, k);
+    approach.add_vertex_and_edge(0, k, k % 3 + 1);
+  }
+  approach.add_vertex_and_face();
+  return approach.first(tolerance);
+}
+
+std::optional<double> exact_edge_edge_approach(const FourMovingPoints& points, double distance, double tolerance) {
+  const IntegerPoints integers = integer_points(points, distance);
+  Approach approach(integers);
+  for (const std::size_t a : {0U, 1U}) {
+    for (const std::size_t b : {2U, 3U}) approach.add_vertices(a, b);
+    approach.add_vertex_and_edge(a, 2, 3);
+    approach.add_vertex_and_edge(a + 2, 0, 1);
+  }
+  approach.add_edge_and_edge();
+  return approach.first(tolerance);
+}
+
+std::optional<double> exact_vertex_face_impact(const FourMovingPoints& points, double tolerance) {
+  return first_meeting(Features::vertex_and_face(points), tolerance);
+}
+
+std::optional<double> exact_edge_edge_impact(const FourMovingPoints& points, double tolerance) {
+  return first_meeting(Features::edge_and_edge(points), tolerance);
+}
+
+}  // namespace blum::detail

@@ -1,0 +1,123 @@
+// Blum: polynomials with integer coefficients. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+#include "exact/integer.hpp"
+
+namespace blum::detail {
+
+/// numerator / 2^exponent.
+struct Dyadic {
+  Integer numerator = 0;
+  unsigned exponent = 0;
+};
+
+/// A polynomial in one variable.
+class Polynomial {
+ public:
+  static constexpr std::size_t most_coefficients = 13;
+
+  Polynomial() = default;
+  /// From the constant on.
+  Polynomial(std::initializer_list<Integer> coefficients) {
+    for (const Integer& c : coefficients) coefficients_[size_++] = c;
+    trim();
+  }
+
+  // Copies of what there is: the places behind it would take most of the time.
+  Polynomial(const Polynomial& other) : size_(other.size_) {
+    std::copy_n(other.coefficients_.begin(), size_, coefficients_.begin());
+  }
+  Polynomial(Polynomial&& other) noexcept : size_(other.size_) {
+    std::move(other.coefficients_.begin(), other.coefficients_.begin() + static_cast<std::ptrdiff_t>(size_),
+              coefficients_.begin());
+  }
+  Polynomial& operator=(const Polynomial& other) {
+    if (this != &other) *this = Polynomial(other);
+    return *this;
+  }
+  Polynomial& operator=(Polynomial&& other) noexcept {
+    for (std::size_t k = 0; k < std::max(size_, other.size_); ++k) {
+      coefficients_[k] = k < other.size_ ? std::move(other.coefficients_[k]) : Integer(0);
+    }
+    size_ = other.size_;
+    return *this;
+  }
+  ~Polynomial() = default;
+
+  /// -1 for zero.
+  [[nodiscard]] int degree() const { return static_cast<int>(size_) - 1; }
+  [[nodiscard]] bool is_zero() const { return size_ == 0; }
+  [[nodiscard]] const Integer& operator[](std::size_t power) const { return coefficients_[power]; }
+  [[nodiscard]] const Integer& leading() const { return coefficients_[size_ - 1]; }
+
+  [[nodiscard]] int sign_at(const Dyadic& t) const;
+  [[nodiscard]] Polynomial derivative() const;
+  /// Without the factor (t - root), as often as it is there.
+  [[nodiscard]] Polynomial without_root(const Dyadic& root) const;
+
+  /// Makes coefficients that have a common divisor smaller, by a positive number.
+  void divide_by_content();
+
+  friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
+  friend Polynomial operator-(const Polynomial& a, const Polynomial& b);
+  friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
+  friend Polynomial operator-(Polynomial a);
+  /// The remainder of dividing a by b, times a positive number.
+  friend Polynomial positive_remainder(Polynomial a, const Polynomial& b);
+
+ private:
+  void trim() {
+    while (size_ > 0 && coefficients_[size_ - 1] == 0) --size_;
+  }
+
+  std::array<Integer, most_coefficients> coefficients_;
+  std::size_t size_ = 0;
+};
+
+/// A root: cell / 2^depth where it is exact, else the only one between this and (cell + 1) / 2^depth, which are none.
+struct RealRoot {
+  Integer cell = 0;
+  unsigned depth = 0;
+  bool is_exact = false;
+
+  [[nodiscard]] Dyadic low() const { return {cell, depth}; }
+  [[nodiscard]] Dyadic high() const { return {cell + 1, depth}; }
+  /// A number that is no more than the root, and less by 2^-52 at most besides the width of the interval.
+  [[nodiscard]] double lower_bound() const;
+};
+
+/// The real roots of a polynomial in [0, 1], and the signs of others there. All answers are exact.
+/// Method: counts of roots by sequences of remainders (Sturm 1829; of those with a sign condition: Tarski 1951).
+class RealRoots {
+ public:
+  /// @param polynomial  not zero.
+  explicit RealRoots(Polynomial polynomial);
+
+  /// The roots, each once, by rising value.
+  [[nodiscard]] const std::vector<RealRoot>& all() const { return roots_; }
+
+  /// The same root in an interval no wider than 2^-depth.
+  [[nodiscard]] RealRoot refined(RealRoot root, unsigned depth) const;
+
+  /// -1, 0 or 1: that of another polynomial at a root.
+  [[nodiscard]] int sign_at(const RealRoot& root, const Polynomial& other) const;
+
+ private:
+  void isolate();
+  void separate();
+  [[nodiscard]] RealRoot guessed(const RealRoot& root, int low_sign, unsigned depth) const;
+  [[nodiscard]] static int sign_over(const RealRoot& root, const Polynomial& other);
+
+  Polynomial rest_;  ///< without the roots that were met exactly
+  std::vector<Polynomial> sequence_;
+  std::vector<RealRoot> roots_;
+};
+
+}  // namespace blum::detail
