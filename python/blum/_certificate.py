@@ -6,15 +6,17 @@ import os
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
+
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number
 from ._complex import Complex
 from ._errors import InputWarning
 from ._grid import Grid
-from ._image import as_image, is_image
-from ._mesh import as_mesh
+from ._image import Image, as_image, is_image
+from ._mesh import MeshOrVertices, as_mesh
 from ._progress import Progress, reporting
 from ._structs import Certificate, CertificateOptions, MeshSolidRule
 
@@ -41,8 +43,8 @@ class Claim:
 
 def certified(
     claim: Claim,
-    shape: Any,
-    triangles: Any = None,
+    shape: MeshOrVertices | Image,
+    triangles: npt.ArrayLike | None = None,
     *,
     label: Integer | None = None,
     threshold: Real | None = None,
@@ -80,7 +82,7 @@ def certified(
     else:
         # Meshes in memory are as they are.
         from_file = isinstance(shape, (str, os.PathLike))
-        mesh = as_mesh(shape, triangles, "shape", weld=merged if from_file else weld)
+        mesh = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=merged if from_file else weld)
         with reporting(progress) as report:
             found = _core.verify_mesh(claim.complex._core, said, has, mesh._arrays, asked, count, report)
     return found
@@ -105,7 +107,12 @@ def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
 
 
 def solid_rule(
-    mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
 ) -> MeshSolidRule:
     """Whether a mesh bounds a polyhedron, and if not, why.
 
