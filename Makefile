@@ -17,7 +17,7 @@ setup: ## Install what the build needs (apt, as root or through sudo)
 	@tools/setup.sh
 
 build: setup ## Build the library and the tool: build/release/bin/blum
-	@tools/build.sh release $(configure_options)
+	@tools/build.sh release $(configure_options) -DBLUM_TESTS=OFF
 	@echo "make build: the tool is build/release/bin/blum"
 
 test: ## Install what the tests need, build, and run every test
@@ -25,17 +25,17 @@ test: ## Install what the tests need, build, and run every test
 
 demo: setup ## Build the tool and run the main job on a generated shape: a field, pictures, a medial axis and a page in out/demo
 	@tools/demo.sh --time $(JOBS)
-	@tools/build.sh release $(configure_options) -- blum
+	@tools/build.sh release $(configure_options) -DBLUM_TESTS=OFF -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
 
 simulate: ## Run a simulation without a missed collision, and make a page of it in out/simulations: make simulate S=cloth (or bodies, breaking, large) FRAMES=60
 	@tools/setup.sh --tests
-	@tools/build.sh release $(configure_options) -- blum simulations
+	@tools/build.sh release $(configure_options) -DBLUM_TESTS=ON -- blum simulations
 	@tools/simulate.sh '$(or $(S),cloth)' out/simulations $(if $(FRAMES),--frames '$(FRAMES)')
 
 python: ## Build the Python package alone: build/release/python, for PYTHONPATH, with the Python of build/venv
 	@tools/setup.sh --python
-	@tools/build.sh release $(configure_options) -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_python
+	@tools/build.sh release $(configure_options) -DBLUM_TESTS=OFF -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_python
 	@echo "make python: PYTHONPATH=$(CURDIR)/build/release/python build/venv/bin/python"
 
 format: ## Bring the sources into the project's format (clang-format 19)
@@ -48,7 +48,7 @@ lint: ## Check format, clang-tidy of what changed, shell scripts, layer rules, w
 
 tidy: ## Check everything with clang-tidy, and record the commit that passed (tools/tidy-base)
 	@tools/setup.sh --lint
-	@tools/build.sh release -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_header_check
+	@tools/build.sh release -DBLUM_TESTS=ON -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_header_check
 	@tools/tidy.py --all
 
 check: ## Build and run the tests whose names match: make check T=geometry, T=test_field.WindingSign, T=pytest.test_cli, T=viewer

@@ -21,9 +21,10 @@ if [[ $pattern == viewer* ]]; then
   tools/viewer.sh test
   exit
 fi
-[[ -f build/$preset/build.ninja ]] || tools/setup.sh --tests
-if [[ ! -f build/$preset/build.ninja ]]; then
-  cmake --preset "$preset" -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/venv/bin/python" >/dev/null
+# `make demo` and `make python` build without the tests.
+if ! grep -qs '^BLUM_TESTS:BOOL=ON' "build/$preset/CMakeCache.txt" || [[ ! -f build/$preset/build.ninja ]]; then
+  tools/setup.sh --tests
+  cmake --preset "$preset" -DBLUM_TESTS=ON -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/venv/bin/python" >/dev/null
 fi
 mapfile -t targets < <(
   PATTERN=$pattern python3 - <<'PYTHON'

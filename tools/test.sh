@@ -9,7 +9,7 @@ tools/setup.sh --tests
 results=${RESULTS:-build/results/test}
 [[ -n ${RESULTS:-} ]] || rm -rf "$results"
 
-options=(-DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/venv/bin/python")
+options=(-DBLUM_TESTS=ON -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/venv/bin/python")
 [[ -n ${CI:-} ]] && options+=(-DBLUM_WERROR=ON)
 tools/results.py check "$results" build -- tools/build.sh release "${options[@]}"
 if [[ -f build/release/build.ninja ]]; then
