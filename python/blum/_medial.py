@@ -98,6 +98,7 @@ class MedialAxis:
         (True, 12)
         """
         most = optional_number(tolerance, "tolerance")
+        assert self._origin.shape is not None  # medial_axis() says what it is of
         verifier = ShapeVerifier(self._origin.shape)
         found, failed = self._first_certified(theta, most, verifier, threads, progress)
         if not found.certificate.holds and self._grids is not None and self.report.topology_matches:

@@ -401,8 +401,29 @@ def test_options_of_cleaning(parts, tmp_path):
     box, out, clean = parts / "box.ply", tmp_path / "o.vtp", tmp_path / "c.ply"
     assert "--clean" in run("voronoi", box, "--clean", 0, status=2)[1]
     assert "--cleaned" in run("voronoi", box, "--clean", 1e-3, "--cleaned", tmp_path / "c.vti", status=2)[1]
-    assert "tolerance" in run("voronoi", box, "--cleaned", clean, status=2)[1]
     assert "--cleaned" in run("voronoi", box, "--clean", 1e-3, "--medial", "-o", out, status=2)[1]
     assert "tolerance" in run("voronoi", box, "--clean", 100, "-o", out, status=2)[1]
     run("voronoi", box, "--clean", 1e-3, "--cleaned", box, status=2)
     assert names(tmp_path) == []
+    run("voronoi", box, "--cleaned", clean)
+    assert run_json("info", clean)["betti"] == [1, 0, 0]
+
+
+def test_a_mesh_that_crosses_itself(tmp_path):
+    """Its diagram is that of the solid without the crossings, whose mesh is written where it is asked for."""
+    corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    squares = [(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)]
+    lines = []
+    for k, (dx, dy, dz) in enumerate([(0, 0, 0), (0.5, 0.25, 0.125)]):
+        lines += [f"v {x + dx} {y + dy} {z + dz}" for x, y, z in corners]
+        lines += ["f " + " ".join(str(v + 8 * k) for v in square) for square in squares]
+    crossing, mesh, axis = tmp_path / "crossing.obj", tmp_path / "apart.ply", tmp_path / "axis.vtp"
+    crossing.write_text("\n".join(lines), "utf-8")
+    facts = run_json("voronoi", crossing, "-o", tmp_path / "walls.vtp", "--cleaned", mesh, warns=True)
+    assert facts["certified"] and any("resolved exactly" in warning for warning in facts["warnings"])
+    assert run_json("info", mesh)["betti"] == [1, 0, 0]
+    assert "--cleaned" in run("voronoi", crossing, "--medial", "-o", axis, status=1)[1]
+    run("voronoi", crossing, "--medial", "-o", axis, "--cleaned", mesh, warns=True)
+    run("verify", mesh, axis)
+    assert any("--cleaned" in warning for warning in run_json("voronoi", crossing, warns=True)["warnings"])
+

@@ -19,7 +19,6 @@
 #include "common/options.hpp"
 #include "common/progress.hpp"
 #include "common/summary.hpp"
-#include "medial/centreline_files.hpp"
 
 namespace blum::cli {
 namespace {

@@ -389,7 +389,8 @@ void add_voronoi_command(const CommandLine& line) {
       command, "--clean", a->clean, "TOL",
       "Take needles and needless vertices out of the mesh first, as `blum clean` does: nowhere further than "
       "TOL from it, mesh units");
-  add_text_option(command, "--cleaned", a->cleaned, "FILE", "Write the mesh that --clean makes, which ids are then of");
+  add_text_option(command, "--cleaned", a->cleaned, "FILE",
+                  "Write the mesh that ids are of: as --clean makes it, and without crossings");
   command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even where it is not certified");
   add_weld_option(command, a->weld);
   add_threads_option(command, a->threads);
