@@ -14,7 +14,7 @@
 
 #include "blum/core/random.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/medial_axis/collapse_axis.hpp"
+#include "blum/axis/collapse_axis.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/axis_graph.hpp"
+#include "blum/axis/axis_graph.hpp"
 #include "summary.hpp"
 
 namespace CLI {

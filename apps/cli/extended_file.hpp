@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "blum/medial_axis/extend_axis.hpp"
+#include "blum/axis/extend_axis.hpp"
 #include "summary.hpp"
 
 namespace CLI {

@@ -1,4 +1,4 @@
-#include "blum/medial_axis/axis_graph.hpp"
+#include "blum/axis/axis_graph.hpp"
 
 #include <nanobind/stl/filesystem.h>
 

@@ -1,4 +1,4 @@
-#include "blum/medial_axis/extend_axis.hpp"
+#include "blum/axis/extend_axis.hpp"
 
 #include <nanobind/stl/filesystem.h>
 

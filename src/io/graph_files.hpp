@@ -4,7 +4,7 @@
 #include <string>
 
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/axis_graph.hpp"
+#include "blum/axis/axis_graph.hpp"
 #include "io/graph_ml.hpp"
 
 namespace blum::graph_files {

@@ -12,7 +12,7 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/random.hpp"
-#include "blum/medial_axis/decimate.hpp"
+#include "blum/axis/decimate.hpp"
 #include "support/known_axes.hpp"
 #include "support/medial_check.hpp"
 #include "support/medial_rows.hpp"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "blum/medial_axis/decimate.hpp"
-#include "blum/medial_axis/prune_sheets.hpp"
+#include "blum/axis/decimate.hpp"
+#include "blum/axis/prune_sheets.hpp"
 #include "blum/shapes/shape_catalog.hpp"
 #include "support/known_axes.hpp"
 #include "support/medial_check.hpp"

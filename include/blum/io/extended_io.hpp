@@ -8,7 +8,7 @@
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/extend_axis.hpp"
+#include "blum/axis/extend_axis.hpp"
 
 namespace blum {
 

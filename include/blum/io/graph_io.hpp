@@ -5,7 +5,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/axis_graph.hpp"
+#include "blum/axis/axis_graph.hpp"
 
 namespace blum {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
-#include "blum/medial_axis/decimate.hpp"
+#include "blum/axis/decimate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 
 namespace blum {

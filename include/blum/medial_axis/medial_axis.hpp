@@ -21,7 +21,7 @@
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
-#include "blum/medial_axis/decimate.hpp"
+#include "blum/axis/decimate.hpp"
 #include "blum/solid/cellular_model.hpp"
 #include "blum/solid/solid.hpp"
 

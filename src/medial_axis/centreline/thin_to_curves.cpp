@@ -11,7 +11,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/grid/voxel_topology.hpp"
-#include "medial_axis/thinning_order.hpp"
+#include "medial_axis/cells/thinning_order.hpp"
 
 namespace blum::centrelines {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "medial_axis/governors.hpp"
-#include "medial_axis/walls.hpp"
+#include "medial_axis/surface/governors.hpp"
+#include "medial_axis/surface/walls.hpp"
 
 namespace blum {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "blum/core/vec3.hpp"
-#include "medial_axis/axis_vertex.hpp"
-#include "medial_axis/surface.hpp"
+#include "medial_axis/shape/axis_vertex.hpp"
+#include "medial_axis/surface/surface.hpp"
 
 namespace blum {
 

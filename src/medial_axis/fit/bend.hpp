@@ -6,7 +6,7 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/vec3.hpp"
-#include "medial_axis/axis_lists.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/fit/kind.hpp"
 
 namespace blum {

@@ -21,9 +21,9 @@
 #include "medial_axis/fit/settled.hpp"
 #include "medial_axis/fit/split_curves.hpp"
 #include "medial_axis/fit/vertex_mover.hpp"
-#include "medial_axis/governors.hpp"
-#include "medial_axis/place_vertices.hpp"
-#include "medial_axis/walls.hpp"
+#include "medial_axis/surface/governors.hpp"
+#include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/surface/walls.hpp"
 
 namespace blum {
 

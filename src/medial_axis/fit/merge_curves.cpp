@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "medial_axis/fit/kind.hpp"
-#include "medial_axis/place_vertices.hpp"
-#include "medial_axis/solid_paths.hpp"
+#include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
 
 namespace blum {
 namespace {

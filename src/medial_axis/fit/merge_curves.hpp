@@ -2,8 +2,8 @@
 #pragma once
 
 #include "blum/core/context.hpp"
-#include "medial_axis/axis_lists.hpp"
-#include "medial_axis/surface.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
+#include "medial_axis/surface/surface.hpp"
 
 namespace blum {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "medial_axis/equidistant_point.hpp"
-#include "medial_axis/governors.hpp"
+#include "medial_axis/surface/equidistant_point.hpp"
+#include "medial_axis/surface/governors.hpp"
 
 namespace blum {
 namespace {

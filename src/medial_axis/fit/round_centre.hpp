@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "blum/core/vec3.hpp"
-#include "medial_axis/surface.hpp"
+#include "medial_axis/surface/surface.hpp"
 
 namespace blum {
 

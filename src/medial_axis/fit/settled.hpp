@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <unordered_set>
 
-#include "medial_axis/axis_vertex.hpp"
+#include "medial_axis/shape/axis_vertex.hpp"
 
 namespace blum {
 

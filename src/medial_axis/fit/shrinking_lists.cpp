@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "medial_axis/place_vertices.hpp"
-#include "medial_axis/void_points.hpp"
+#include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/surface/void_points.hpp"
 
 namespace blum {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "blum/complex/incidence.hpp"
-#include "medial_axis/axis_lists.hpp"
-#include "medial_axis/shrinking_complex.hpp"
-#include "medial_axis/solid_paths.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
+#include "blum/axis/shrinking_complex.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
 
 namespace blum {
 

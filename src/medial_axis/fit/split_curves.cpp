@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
-#include "medial_axis/place_vertices.hpp"
-#include "medial_axis/solid_paths.hpp"
+#include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
 
 namespace blum {
 namespace {

@@ -10,7 +10,7 @@
 #include "blum/core/parallel.hpp"
 #include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/kind.hpp"
-#include "medial_axis/sheet_decimator.hpp"
+#include "blum/axis/sheet_decimator.hpp"
 
 namespace blum {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
-#include "medial_axis/axis_lists.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/fit/fit_axis.hpp"
 
 namespace blum {

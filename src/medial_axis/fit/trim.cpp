@@ -13,7 +13,7 @@
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "medial_axis/fit/kind.hpp"
-#include "medial_axis/solid_paths.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
 
 namespace blum {
 namespace {

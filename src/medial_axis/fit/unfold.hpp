@@ -5,8 +5,8 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
-#include "medial_axis/axis_lists.hpp"
-#include "medial_axis/surface.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
+#include "medial_axis/surface/surface.hpp"
 
 namespace blum {
 

@@ -10,9 +10,9 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/gather.hpp"
-#include "medial_axis/axis_lists.hpp"
-#include "medial_axis/solid_paths.hpp"
-#include "medial_axis/surface.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
+#include "medial_axis/surface/surface.hpp"
 
 namespace blum {
 

@@ -1,5 +1,5 @@
 // Proves that the cells of voxels, their faces and their cofaces are those of direct enumeration.
-#include "medial_axis/cell_complex.hpp"
+#include "medial_axis/cells/cell_complex.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Proves where edges of a mesh and a box meet, and which way leads into the solid from there without leaving the box.
-#include "medial_axis/clip_points.hpp"
+#include "medial_axis/surface/clip_points.hpp"
 
 #include <gtest/gtest.h>
 

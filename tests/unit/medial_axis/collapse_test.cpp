@@ -1,6 +1,6 @@
 // Proves that every step of a collapse is elementary, in the order of importance, and keeps the topology: each recorded
 // removal is made again and looked at.
-#include "medial_axis/collapse.hpp"
+#include "medial_axis/cells/collapse.hpp"
 
 #include <gtest/gtest.h>
 

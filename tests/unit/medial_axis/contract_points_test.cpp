@@ -1,6 +1,6 @@
 // Proves that contracting edges without length keeps topology and places, leaves the curve of a ribbon, and contracts
 // all that may be contracted.
-#include "medial_axis/contract_points.hpp"
+#include "medial_axis/fit/contract_points.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Proves that points as far from some points as from others are found exactly where these tell one, and that
 // directions in which they say little are left alone.
-#include "medial_axis/equidistant_point.hpp"
+#include "medial_axis/surface/equidistant_point.hpp"
 
 #include <gtest/gtest.h>
 

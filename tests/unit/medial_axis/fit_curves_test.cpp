@@ -18,7 +18,7 @@
 #include "medial_axis/fit/split_curves.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/vertex_mover.hpp"
-#include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 #include "support/exact_axes.hpp"
 
 namespace blum {

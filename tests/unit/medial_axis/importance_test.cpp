@@ -1,5 +1,5 @@
 // Proves that cells have the largest importance of what they are faces of, and others none, against a plain map.
-#include "medial_axis/importance.hpp"
+#include "medial_axis/cells/importance.hpp"
 
 #include <gtest/gtest.h>
 

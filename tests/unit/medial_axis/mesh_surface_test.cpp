@@ -1,5 +1,5 @@
 // Proves that closest points of triangle meshes, and the sites that they lie on, are those of brute force.
-#include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Proves that the vertices of an axis lie in the solid, as far from one wall as from another, with the exact distance
 // to the surface as their radius, near the corners that they stand for.
-#include "medial_axis/place_vertices.hpp"
+#include "medial_axis/shape/place_vertices.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,10 @@
 #include "blum/grid/image_generators.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/shapes/generators.hpp"
-#include "medial_axis/axis_piece.hpp"
-#include "medial_axis/mesh_surface.hpp"
-#include "medial_axis/voxel_surface.hpp"
-#include "medial_axis/voxelize.hpp"
+#include "medial_axis/shape/axis_piece.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
+#include "medial_axis/surface/voxel_surface.hpp"
+#include "medial_axis/cells/voxelize.hpp"
 #include "support/mesh_places.hpp"
 #include "support/voxel_sets.hpp"
 

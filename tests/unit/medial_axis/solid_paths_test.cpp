@@ -1,6 +1,6 @@
 // Proves that paths stay in the solid: lines past a corner are bent around it, lines across a gap are found out however
 // narrow it is, and ways over landmarks lead around it.
-#include "medial_axis/solid_paths.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "blum/shapes/generators.hpp"
-#include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {

@@ -1,5 +1,5 @@
 // Proves that a set spreads to the voxels near its own, as plain counting finds them, for any number of threads.
-#include "medial_axis/spread_voxels.hpp"
+#include "medial_axis/cells/spread_voxels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Proves that a point is found deep in each void, and that what moves over such points is seen.
-#include "medial_axis/void_points.hpp"
+#include "medial_axis/surface/void_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "blum/core/random.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/shapes/generators.hpp"
-#include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 
 namespace blum {
 namespace {

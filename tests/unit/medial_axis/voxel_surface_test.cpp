@@ -1,5 +1,5 @@
 // Proves that the faces of voxels are found where they are, against all voxels one by one.
-#include "medial_axis/voxel_surface.hpp"
+#include "medial_axis/surface/voxel_surface.hpp"
 
 #include <gtest/gtest.h>
 

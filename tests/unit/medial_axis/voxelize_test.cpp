@@ -1,6 +1,6 @@
 // Proves that bodies and images become the voxels whose centres are inside, on a grid with room around them, with the
 // depth and the closest site of each.
-#include "medial_axis/voxelize.hpp"
+#include "medial_axis/cells/voxelize.hpp"
 
 #include <gtest/gtest.h>
 

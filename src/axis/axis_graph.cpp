@@ -1,0 +1,246 @@
+#include "blum/axis/axis_graph.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "blum/complex/medial_columns.hpp"
+#include "blum/core/sort_unique.hpp"
+#include "axis/axis_parts.hpp"
+#include "blum/axis/check_angle.hpp"
+#include "axis/surface_patches.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// Follows seams and curves from junction to junction.
+class LineWalker {
+ public:
+  LineWalker(const AxisParts& parts, std::optional<double> homotopy_angle, AxisGraph& graph)
+      : parts_(parts),
+        graph_(graph),
+        is_for_homotopy_(parts.incidence().edges().size(), false),
+        junction_at_(parts.view().positions.size(), none),
+        line_of_edge_(parts.incidence().edges().size(), none) {
+    for (std::size_t e = 0; e < parts.view().edges.size(); ++e) {
+      is_for_homotopy_[parts.incidence().edge_of_listed()[e]] =
+          homotopy_angle && parts.view().edge_angle[e] <= *homotopy_angle;
+    }
+  }
+
+  void walk(const Context& context) {
+    find_junctions();
+    for (std::uint32_t j = 0; j < graph_.junctions.size(); ++j) {
+      if (j % 4096 == 0) throw_if_cancelled(context);
+      const std::uint32_t vertex = graph_.junctions[j].vertex;
+      for (const std::uint32_t e : parts_.incidence().edges_of_vertex()[vertex]) begin_at(vertex, e);
+    }
+    // What is left has no junction. The first edge of a loop begins at its smallest vertex.
+    for (std::uint32_t e = 0; e < line_of_edge_.size(); ++e) begin_at(parts_.incidence().edges()[e][0], e);
+  }
+
+  /// Of incidence().edges(): the place of its line in the seams or the curves.
+  [[nodiscard]] const std::vector<std::uint32_t>& line_of_edge() const { return line_of_edge_; }
+
+ private:
+  void find_junctions() {
+    const MedialView& axis = parts_.view();
+    for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
+      const auto [is_junction, kind] = parts_.junction(v);
+      if (!is_junction) continue;
+      junction_at_[v] = static_cast<std::uint32_t>(graph_.junctions.size());
+      AxisJunction& junction = graph_.junctions.emplace_back();
+      junction.vertex = v;
+      junction.kind = kind;
+      junction.position = axis.positions[v];
+      junction.radius = axis.radius[v];
+      for (const std::uint32_t t : parts_.incidence().triangles_of_vertex()[v]) {
+        junction.sheets.push_back(static_cast<std::uint32_t>(axis.sheet[t]));
+      }
+      detail::sort_unique(junction.sheets);
+    }
+  }
+
+  void begin_at(std::uint32_t vertex, std::uint32_t edge) {
+    const EdgePart part = parts_.part(edge);
+    if (line_of_edge_[edge] != none || (part != EdgePart::seam && part != EdgePart::curve)) return;
+    std::vector<AxisLine>& lines = part == EdgePart::seam ? graph_.seams : graph_.curves;
+    const auto number = static_cast<std::uint32_t>(lines.size());
+    AxisLine line;
+    add_vertex(vertex, line);
+    for (; edge != none; edge = next_edge(vertex, part)) {
+      line_of_edge_[edge] = number;
+      line.length += parts_.edge_length(edge);
+      if (is_for_homotopy_[edge]) line.homotopy_length += parts_.edge_length(edge);
+      const auto& ends = parts_.incidence().edges()[edge];
+      vertex = ends[0] == vertex ? ends[1] : ends[0];
+      add_vertex(vertex, line);
+      if (part == EdgePart::seam) {
+        for (const std::uint32_t t : parts_.incidence().triangles_of_edge()[edge]) {
+          line.sheets.push_back(static_cast<std::uint32_t>(parts_.view().sheet[t]));
+        }
+      }
+    }
+    finish(line, part, number);
+    lines.push_back(std::move(line));
+  }
+
+  void add_vertex(std::uint32_t vertex, AxisLine& line) const {
+    line.vertices.push_back(vertex);
+    line.points.push_back(parts_.view().positions[vertex]);
+    line.radii.push_back(parts_.view().radius[vertex]);
+    line.arc_length.push_back(line.length);
+  }
+
+  /// The one that goes on from a vertex; none at a junction, and where a loop ends.
+  [[nodiscard]] std::uint32_t next_edge(std::uint32_t vertex, EdgePart part) const {
+    if (junction_at_[vertex] != none) return none;
+    for (const std::uint32_t e : parts_.incidence().edges_of_vertex()[vertex]) {
+      if (parts_.part(e) == part && line_of_edge_[e] == none) return e;
+    }
+    return none;
+  }
+
+  void finish(AxisLine& line, EdgePart part, std::uint32_t number) {
+    const auto [least, most] = std::minmax_element(line.radii.begin(), line.radii.end());
+    std::vector<LinearPart> parts;
+    for (std::size_t k = 1; k < line.radii.size(); ++k) {
+      const double length = line.arc_length[k] - line.arc_length[k - 1];
+      parts.push_back(LinearPart::on_edge(line.radii[k - 1], line.radii[k], length));
+    }
+    line.radius = {*least, 0, 0, *most};
+    add_quantiles(std::move(parts), line.radius);
+    const std::uint32_t first = junction_at_[line.vertices.front()];
+    const std::uint32_t last = junction_at_[line.vertices.back()];
+    line.closed = first == none;
+    if (!line.closed) {
+      line.junctions = {first, last};
+      for (const std::uint32_t j : {first, last}) {
+        AxisJunction& junction = graph_.junctions[j];
+        (part == EdgePart::seam ? junction.seams : junction.curves).push_back(number);
+        if (part == EdgePart::curve) {
+          line.sheets.insert(line.sheets.end(), junction.sheets.begin(), junction.sheets.end());
+        }
+      }
+    }
+    detail::sort_unique(line.sheets);
+    (part == EdgePart::seam ? graph_.seam_length : graph_.curve_length) += line.length;
+    if (part == EdgePart::curve) graph_.homotopy_curve_length += line.homotopy_length;
+  }
+
+  const AxisParts& parts_;
+  AxisGraph& graph_;
+  std::vector<bool> is_for_homotopy_;        ///< of edges
+  std::vector<std::uint32_t> junction_at_;   ///< of each vertex
+  std::vector<std::uint32_t> line_of_edge_;  ///< among the seams or the curves
+};
+
+/// @throws InvalidOption where a column is missing that says what is what.
+void check_needed(const Complex& axis) {
+  if (!axis.positions.empty() && axis.vertex_columns.find(medial_columns::radius) == nullptr) {
+    throw InvalidOption(missing_medial_column("vertices", medial_columns::radius));
+  }
+  if (!axis.triangles.empty() && axis.triangle_columns.find(medial_columns::sheet) == nullptr) {
+    throw InvalidOption(missing_medial_column("triangles", medial_columns::sheet));
+  }
+}
+
+/// For each sheet the pairs of patches that the footprints of its vertices lie on. Each corner of a triangle stands for
+/// a third of the area.
+class PatchPairs {
+ public:
+  PatchPairs(const AxisParts& parts, const SurfacePatches& patches, AxisGraph& graph)
+      : parts_(parts), patches_(patches), graph_(graph), areas_(graph.sheets.size()) {}
+
+  void add() {
+    find_sides();
+    const MedialView& axis = parts_.view();
+    for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
+      const auto& [a, b, c] = axis.triangles[t];
+      const Vec3d& at = axis.positions[a];
+      const double third = length(cross(axis.positions[b] - at, axis.positions[c] - at)) / 6;
+      for (const std::uint32_t v : axis.triangles[t]) {
+        if (sides_[v].first != none) areas_[parts_.sheet_place(t)][sides_[v]] += third;
+      }
+    }
+    for (std::size_t s = 0; s < areas_.size(); ++s) {
+      for (const auto& [sides, area] : areas_[s]) {
+        graph_.sheets[s].patch_pairs.push_back(
+            {sets_[sides.first], sets_[sides.second], graph_.sheets[s].area > 0 ? area / graph_.sheets[s].area : 0});
+      }
+      std::sort(graph_.sheets[s].patch_pairs.begin(), graph_.sheets[s].patch_pairs.end(),
+                [](const AxisPatchPair& a, const AxisPatchPair& b) {
+                  return std::tie(b.share, a.first, a.second) < std::tie(a.share, b.first, b.second);
+                });
+    }
+  }
+
+ private:
+  /// Of each vertex: the numbers of two sets of patches; none where it knows no two.
+  void find_sides() {
+    const MedialView& axis = parts_.view();
+    for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
+      sides_.emplace_back(none, none);
+      if (axis.footprint(v, 0) == axis.footprint(v, 1)) continue;
+      if (!axis.site(v, 0).has_value() || !axis.site(v, 1).has_value()) continue;
+      std::vector<std::uint32_t> first = patches_.at(axis.site(v, 0));
+      std::vector<std::uint32_t> second = patches_.at(axis.site(v, 1));
+      if (second < first) std::swap(first, second);
+      sides_.back() = {number_of(std::move(first)), number_of(std::move(second))};
+    }
+  }
+  std::uint32_t number_of(std::vector<std::uint32_t> set) {
+    const auto [at, is_new] = numbers_.try_emplace(std::move(set), static_cast<std::uint32_t>(sets_.size()));
+    if (is_new) sets_.push_back(at->first);
+    return at->second;
+  }
+
+  const AxisParts& parts_;
+  const SurfacePatches& patches_;
+  AxisGraph& graph_;
+  std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
+  std::vector<std::vector<std::uint32_t>> sets_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides_;
+  std::vector<std::map<std::pair<std::uint32_t, std::uint32_t>, double>> areas_;  ///< of each sheet
+};
+
+AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const AxisGraphOptions& options,
+                   const Context& context) {
+  check_angle("homotopy_angle", options.homotopy_angle.value_or(0));
+  check_needed(axis);
+  const CompleteAxis all(axis);
+  if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
+    throw InvalidOption("there is no graph of what is no medial axis: " + problem);
+  }
+  AxisGraph graph;
+  const AxisParts parts(all.get(), context);
+  LineWalker walker(parts, options.homotopy_angle, graph);
+  walker.walk(context);
+  add_sheets(parts, walker.line_of_edge(), options.homotopy_angle, graph);
+  if (patches == nullptr) return graph;
+  graph.patches = patches->patches();
+  PatchPairs(parts, *patches, graph).add();
+  return graph;
+}
+
+}  // namespace
+
+AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options, const Context& context) {
+  return graph_of(axis, nullptr, options, context);
+}
+
+AxisGraph axis_graph(const Complex& axis, const MeshView& mesh, const AxisGraphOptions& options,
+                     const Context& context) {
+  check_angle("patch_angle", options.patch_angle);
+  const SurfacePatches patches(mesh, options.patch_angle, context);
+  return graph_of(axis, &patches, options, context);
+}
+
+}  // namespace blum

@@ -1,0 +1,100 @@
+#include "blum/axis/decimate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/incidence.hpp"
+#include "blum/complex/medial_columns.hpp"
+#include "blum/core/exact_text.hpp"
+#include "blum/axis/sheet_decimator.hpp"
+
+namespace blum {
+namespace {
+
+/// What goes first: vertices that move sheets by these parts of the tolerance.
+constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 0.8};
+
+/// The edges that bound sheets: those that are listed, and those where sheets of two numbers meet.
+std::vector<std::array<std::uint32_t, 2>> borders_of(const Complex& axis, const Context& context) {
+  std::vector<std::array<std::uint32_t, 2>> borders = axis.edges;
+  const Incidence incidence(axis.view(), context);
+  std::vector<bool> is_listed(incidence.edges().size(), false);
+  for (const std::uint32_t e : incidence.edge_of_listed()) is_listed[e] = true;
+  const auto sheets = axis.triangle_columns.get<std::int32_t>(medial_columns::sheet);
+  for (std::size_t e = 0; e < is_listed.size(); ++e) {
+    const auto triangles = incidence.triangles_of_edge()[e];
+    if (is_listed[e] || triangles.empty()) continue;
+    const bool is_inner = triangles.size() == 2 && sheets[triangles[0]] == sheets[triangles[1]];
+    if (!is_inner) borders.push_back(incidence.edges()[e]);
+  }
+  return borders;
+}
+
+DecimatorInput input_of(const Complex& axis, const Context& context) {
+  const MedialView view(axis);
+  DecimatorInput input{.triangles = axis.triangles,
+                       .triangle_angle = {view.triangle_angle.begin(), view.triangle_angle.end()},
+                       .borders = borders_of(axis, context)};
+  input.points.reserve(axis.positions.size());
+  for (std::size_t v = 0; v < axis.positions.size(); ++v) input.points.push_back({axis.positions[v], view.radius[v]});
+  // Sheets that meet without a seam have a kind of border of their own.
+  input.border_kind.assign(input.borders.size(), -1);
+  for (std::size_t e = 0; e < axis.edges.size(); ++e) input.border_kind[e] = static_cast<int>(view.edge_role(e));
+  return input;
+}
+
+/// Rims and seams have the largest angle of the triangles that are left at them.
+void give_borders_angles(Complex& axis) {
+  const auto of_triangle = axis.triangle_columns.get<float>(medial_columns::separation_angle);
+  std::vector<std::pair<std::array<std::uint32_t, 2>, float>> sides;
+  sides.reserve(3 * axis.triangles.size());
+  for (std::size_t t = 0; t < axis.triangles.size(); ++t) {
+    const auto& [a, b, c] = axis.triangles[t];
+    for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+      sides.push_back({{std::min(p, q), std::max(p, q)}, of_triangle[t]});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  const auto angles = axis.edge_columns.edit<float>(medial_columns::separation_angle);
+  for (std::size_t e = 0; e < axis.edges.size(); ++e) {
+    const std::array<std::uint32_t, 2> edge{std::min(axis.edges[e][0], axis.edges[e][1]),
+                                            std::max(axis.edges[e][0], axis.edges[e][1])};
+    // The last of an edge's sides has the largest angle.
+    const auto after = std::upper_bound(sides.begin(), sides.end(), edge,
+                                        [](const auto& value, const auto& side) { return value < side.first; });
+    if (after != sides.begin() && std::prev(after)->first == edge) angles[e] = std::prev(after)->second;
+  }
+}
+
+Complex rest_of(const Complex& axis, const SheetDecimator& decimator) {
+  Complex out = decimator.cells().rest_of(axis);
+  const auto angles = out.triangle_columns.edit<float>(medial_columns::separation_angle);
+  std::size_t k = 0;
+  for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
+    if (decimator.cells().has_triangle(t)) angles[k++] = decimator.triangle_angle()[t];
+  }
+  give_borders_angles(out);
+  return out;
+}
+
+}  // namespace
+
+DecimatedAxis decimate(const Complex& axis, double tolerance, const Context& context) {
+  if (!(tolerance >= 0 && std::isfinite(tolerance))) {
+    throw InvalidOption("tolerance is " + exact_text(tolerance) + ", but must be at least 0");
+  }
+  if (const std::string problem = problem_of_medial(axis); !problem.empty()) {
+    throw InvalidOption("triangles cannot be taken from what is no medial axis: " + problem);
+  }
+  if (tolerance == 0) return {axis, 0, axis.positions.size()};
+  SheetDecimator decimator(input_of(axis, context), tolerance, context);
+  decimator.run(levels);
+  return {rest_of(axis, decimator), decimator.moved(), axis.positions.size()};
+}
+
+}  // namespace blum

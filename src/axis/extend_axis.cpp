@@ -1,0 +1,401 @@
+#include "blum/axis/extend_axis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/incidence.hpp"
+#include "blum/complex/medial_columns.hpp"
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/core/union_find.hpp"
+#include "axis/rim_reach.hpp"
+#include "axis/rims.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t rims_per_range = 64;
+/// New vertices that are closer to each other than this part of the radius are one.
+constexpr double one_point = 1e-3;
+
+/// What becomes of a corner of a rim.
+struct Continued {
+  RimStart start;
+  bool stays = false;               ///< at the border, or on another sheet
+  std::optional<RimTarget> target;  ///< none where it stays, or nothing is met
+};
+
+/// The triangles in front of a rim edge; their points are numbered as fill_strip() does.
+struct Strip {
+  std::vector<Vec3d> line;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  bool is_pinched = false;   ///< both ends of the rim lead to one point
+  bool is_left_out = false;  ///< for its shape, or as it would leave the solid
+};
+
+double area_of(const std::vector<Vec3d>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  double area = 0;
+  for (const auto& [a, b, c] : triangles) {
+    area += length(cross(positions[b] - positions[a], positions[c] - positions[a])) / 2;
+  }
+  return area;
+}
+
+/// The boundaries of all bodies in one mesh.
+TriangleMesh boundary_of(const Solid& solid) {
+  TriangleMesh all;
+  for (const SolidBody& body : solid.bodies()) {
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), body.mesh.vertices.begin(), body.mesh.vertices.end());
+    for (const auto& [a, b, c] : body.mesh.triangles) all.triangles.push_back({first + a, first + b, first + c});
+  }
+  return all;
+}
+
+class AxisExtender {
+ public:
+  AxisExtender(const Complex& axis, const Solid& solid, const ExtendOptions& options, const Context& context)
+      : axis_(axis),
+        view_(axis),
+        solid_(solid),
+        options_(options),
+        context_(context),
+        rims_(find_rims(axis, context)),
+        continued_(rims_.corners.size()),
+        strips_(rims_.edges.size()) {}
+
+  ExtendedAxis run() {
+    begin_result();
+    if (!rims_.edges.empty()) find_strips();
+    std::vector<std::uint32_t> stands_for = number_new_vertices();
+    for (std::size_t e = 0; e < strips_.size(); ++e) add_strip(e, stands_for);
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] Vec3d at(std::uint32_t v) const { return axis_.positions[v]; }
+
+  /// Copies what stays: vertices, triangles, and the edges of no triangle.
+  void begin_result() {
+    Complex& out = out_.surface;
+    out.positions = axis_.positions;
+    out.triangles = axis_.triangles;
+    const Incidence incidence(axis_.view(), context_);
+    for (std::size_t e = 0; e < axis_.edges.size(); ++e) {
+      if (incidence.triangles_of_edge()[incidence.edge_of_listed()[e]].empty()) out.edges.push_back(axis_.edges[e]);
+    }
+    for (const double r : view_.radius) thickness_.push_back(2 * r);
+    sheet_.assign(view_.sheet.begin(), view_.sheet.end());
+  }
+
+  // --- Where rims lead to.
+
+  void find_starts() {
+    const std::vector<double> stays_below = radii_at_borders();
+    for (std::size_t c = 0; c < rims_.corners.size(); ++c) {
+      const RimCorner& corner = rims_.corners[c];
+      const double own = view_.radius[corner.vertex];
+      continued_[c].start = {at(corner.vertex),
+                             corner.outwards,
+                             corner.normal,
+                             own,
+                             options_.max_length * own,
+                             {corner.vertex, corner.vertex}};
+      continued_[c].stays = corner.is_on_sheet || own <= stays_below[c];
+    }
+  }
+
+  /// Of each corner: the radius up to which it is at the border already.
+  [[nodiscard]] std::vector<double> radii_at_borders() const {
+    std::vector<double> of_sheet(sheet_count(axis_), 0);
+    for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
+      double& largest = of_sheet[static_cast<std::size_t>(view_.sheet[t])];
+      for (const std::uint32_t v : axis_.triangles[t]) largest = std::max(largest, view_.radius[v]);
+    }
+    std::vector<double> of_corner(rims_.corners.size(), 0);
+    for (const RimEdge& edge : rims_.edges) {
+      const double own = options_.border_radius * of_sheet[static_cast<std::size_t>(view_.sheet[edge.triangle])];
+      for (const std::uint32_t corner : edge.corners) of_corner[corner] = std::max(of_corner[corner], own);
+    }
+    return of_corner;
+  }
+
+  /// First all rims go on as far as they can; then each ends at what it meets of the others. So walls end at each other
+  /// whose sheets both end before they meet.
+  void find_strips() {
+    find_starts();
+    const SearchMesh surface(boundary_of(solid_), context_);
+    const SearchMesh sheets({axis_.positions, axis_.triangles}, context_);
+    extend({&surface, &sheets, nullptr}, false);
+    const TriangleMesh strips = strips_as_mesh();
+    const std::optional<SearchMesh> met =
+        strips.triangles.empty() ? std::nullopt : std::optional<SearchMesh>(std::in_place, strips, context_);
+    extend({&surface, &sheets, met ? &*met : nullptr}, true);
+  }
+
+  void extend(const RimObstacles& obstacles, bool is_final) {
+    const RimReach reach(obstacles, !is_final);
+    parallel_for(context_, continued_.size(), rims_per_range, "rims", [&](const WorkRange& range) {
+      for (std::size_t c = range.begin; c < range.end; ++c) {
+        if (!continued_[c].stays) continued_[c].target = reach.find(continued_[c].start);
+      }
+    });
+    parallel_for(context_, strips_.size(), rims_per_range, "strips", [&](const WorkRange& range) {
+      for (std::size_t e = range.begin; e < range.end; ++e) strips_[e] = strip_of(rims_.edges[e], reach, is_final);
+    });
+  }
+
+  /// Its first vertices are those of the axis.
+  [[nodiscard]] TriangleMesh strips_as_mesh() const {
+    TriangleMesh all{axis_.positions};
+    for (std::size_t e = 0; e < strips_.size(); ++e) {
+      const auto first = static_cast<std::uint32_t>(all.vertices.size());
+      const auto& ends = rims_.edges[e].vertices;
+      all.vertices.insert(all.vertices.end(), strips_[e].line.begin(), strips_[e].line.end());
+      for (Triangle triangle : strips_[e].triangles) {
+        for (std::uint32_t& v : triangle) v = v < 2 ? ends[v] : first + v - 2;
+        all.triangles.push_back(triangle);
+      }
+    }
+    return all;
+  }
+
+  // --- Triangles in front of rims.
+
+  [[nodiscard]] Strip strip_of(const RimEdge& edge, const RimReach& reach, bool is_final) const {
+    const std::array ends{&continued_[edge.corners[0]], &continued_[edge.corners[1]]};
+    Strip strip;
+    if (!ends[0]->target && !ends[1]->target) return strip;
+    const double own = std::min(view_.radius[edge.vertices[0]], view_.radius[edge.vertices[1]]);
+    if (ends[0]->target) strip.line.push_back(ends[0]->target->at);
+    if (ends[0]->target && ends[1]->target) {
+      std::array<RimReach::Stop, 2> stops{{{ends[0]->start, *ends[0]->target}, {ends[1]->start, *ends[1]->target}}};
+      for (RimReach::Stop& stop : stops) stop.start.own = edge.vertices;
+      const std::vector<Vec3d> between = reach.between(stops[0], stops[1], options_.tolerance * own);
+      for (const Vec3d& p : between) {
+        const double gap = std::min(length(p - strip.line.back()), length(p - ends[1]->target->at));
+        if (gap > one_point * own) strip.line.push_back(p);
+      }
+    }
+    if (ends[1]->target) strip.line.push_back(ends[1]->target->at);
+    if (ends[0]->target && ends[1]->target && strip.line.size() == 2 &&
+        length(strip.line[1] - strip.line[0]) <= one_point * own) {
+      strip.is_pinched = true;
+      strip.line.pop_back();
+    }
+    fill(edge, is_final, strip);
+    return strip;
+  }
+
+  /// Where the line has no proper triangles, its ends alone may have.
+  void fill(const RimEdge& edge, bool is_final, Strip& strip) const {
+    const auto is_inside = [&](const Vec3d& p) { return solid_.inside(p); };
+    const std::array rim{at(edge.vertices[0]), at(edge.vertices[1])};
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      const StripOutline outline{rim, strip.line, edge.normal};
+      const auto triangles = fill_strip(outline);
+      if (triangles && (!is_final || is_strip_inside(outline, *triangles, is_inside))) {
+        strip.triangles = *triangles;
+        return;
+      }
+      keep_ends(edge, strip);
+      if (strip.line.empty()) break;
+    }
+    leave_out(strip);
+  }
+
+  /// Drops the points between the targets of the rim's ends.
+  void keep_ends(const RimEdge& edge, Strip& strip) const {
+    strip.line.clear();
+    for (const std::uint32_t c : edge.corners) {
+      if (continued_[c].target) strip.line.push_back(continued_[c].target->at);
+    }
+    if (strip.is_pinched) strip.line.pop_back();
+  }
+
+  static void leave_out(Strip& strip) {
+    strip.triangles.clear();
+    strip.line.clear();
+    strip.is_left_out = true;
+  }
+
+  // --- The result.
+
+  /// Numbers the targets of corners as new vertices; those of pinched strips are one. Around a loop one strip stays
+  /// away, as the others would close a hole with it.
+  std::vector<std::uint32_t> number_new_vertices() {
+    detail::UnionFind corners(rims_.corners.size());
+    detail::UnionFind vertices(axis_.positions.size());
+    for (std::size_t e = 0; e < strips_.size(); ++e) {
+      const RimEdge& edge = rims_.edges[e];
+      if (!strips_[e].is_pinched || strips_[e].is_left_out) continue;
+      if (vertices.join(edge.vertices[0], edge.vertices[1])) {
+        corners.join(edge.corners[0], edge.corners[1]);
+      } else {
+        leave_out(strips_[e]);
+      }
+    }
+    std::vector<bool> is_used(rims_.corners.size(), false);
+    for (std::size_t e = 0; e < strips_.size(); ++e) {
+      if (strips_[e].triangles.empty()) continue;
+      for (const std::uint32_t c : rims_.edges[e].corners) {
+        if (continued_[c].target) is_used[corners.find(c)] = true;
+      }
+    }
+    std::vector<std::uint32_t> stands_for(rims_.corners.size());
+    for (std::uint32_t c = 0; c < stands_for.size(); ++c) {
+      const std::uint32_t v = rims_.corners[c].vertex;
+      const std::uint32_t first = corners.find(c);
+      if (!continued_[c].target) {
+        stands_for[c] = v;
+      } else if (first != c) {
+        stands_for[c] = stands_for[first];
+      } else if (is_used[c]) {
+        stands_for[c] = add_vertex(continued_[c].target->at, 2 * view_.radius[v]);
+      }
+    }
+    return stands_for;
+  }
+
+  std::uint32_t add_vertex(const Vec3d& position, double thickness) {
+    out_.surface.positions.push_back(position);
+    thickness_.push_back(thickness);
+    return static_cast<std::uint32_t>(out_.surface.positions.size() - 1);
+  }
+
+  void add_strip(std::size_t e, const std::vector<std::uint32_t>& stands_for) {
+    const RimEdge& edge = rims_.edges[e];
+    Strip& strip = strips_[e];
+    if (strip.triangles.empty()) return;
+    const std::array ends{stands_for[edge.corners[0]], stands_for[edge.corners[1]]};
+    const auto moved = std::count_if(edge.corners.begin(), edge.corners.end(),
+                                     [&](std::uint32_t c) { return continued_[c].target.has_value(); });
+    const bool is_plain = std::cmp_equal(strip.line.size(), moved);
+    // What two strips have in common at their border would close a hole.
+    if (is_plain && !strip.is_pinched && !border_.insert(std::minmax(ends[0], ends[1])).second) {
+      leave_out(strip);
+      return;
+    }
+    std::vector<std::uint32_t> numbers{edge.vertices[0], edge.vertices[1]};
+    for (std::size_t p = 0; p < strip.line.size(); ++p) {
+      if (p == 0 && continued_[edge.corners[0]].target) {
+        numbers.push_back(ends[0]);
+      } else if (p + 1 == strip.line.size() && continued_[edge.corners[1]].target) {
+        numbers.push_back(ends[1]);
+      } else {
+        numbers.push_back(add_vertex(strip.line[p], 2 * view_.radius[nearer_end(edge, strip.line[p])]));
+      }
+    }
+    for (const auto& [a, b, c] : strip.triangles) {
+      out_.surface.triangles.push_back({numbers[a], numbers[b], numbers[c]});
+      sheet_.push_back(view_.sheet[edge.triangle]);
+    }
+  }
+
+  [[nodiscard]] std::uint32_t nearer_end(const RimEdge& edge, const Vec3d& p) const {
+    const auto& [a, b] = edge.vertices;
+    return squared_length(p - at(a)) <= squared_length(p - at(b)) ? a : b;
+  }
+
+  void finish() {
+    Complex& out = out_.surface;
+    const std::size_t old_vertices = axis_.positions.size();
+    const std::size_t old_triangles = axis_.triangles.size();
+    out.vertex_columns = Columns(out.positions.size());
+    out.edge_columns = Columns(out.edges.size());
+    out.triangle_columns = Columns(out.triangles.size());
+    out.vertex_columns.add({std::string(extended_columns::thickness), 1, std::move(thickness_)});
+    const auto is_new_vertex = out.vertex_columns.add<std::int32_t>(std::string(extended_columns::extended));
+    for (std::size_t v = old_vertices; v < is_new_vertex.size(); ++v) is_new_vertex[v] = 1;
+    out.triangle_columns.add({std::string(extended_columns::sheet), 1, std::move(sheet_)});
+    const auto is_new_triangle = out.triangle_columns.add<std::int32_t>(std::string(extended_columns::extended));
+    for (std::size_t t = old_triangles; t < is_new_triangle.size(); ++t) is_new_triangle[t] = 1;
+    count();
+  }
+
+  void count() {
+    ExtendReport& report = out_.report;
+    for (std::size_t e = 0; e < strips_.size(); ++e) {
+      const RimEdge& edge = rims_.edges[e];
+      const bool is_at_border = continued_[edge.corners[0]].stays && continued_[edge.corners[1]].stays;
+      report.rim_length += edge.length;
+      if (strips_[e].triangles.empty() && !is_at_border) report.open_length += edge.length;
+      if (strips_[e].is_left_out) ++report.left_out;
+    }
+    report.rim_vertices = continued_.size();
+    for (const Continued& own : continued_) {
+      ++(own.stays                           ? report.at_border
+         : !own.target                       ? report.not_reached
+         : own.target->end == RimEnd::border ? report.reached_border
+                                             : report.reached_sheet);
+    }
+    report.vertices = out_.surface.positions.size() - axis_.positions.size();
+    report.triangles = out_.surface.triangles.size() - axis_.triangles.size();
+    report.axis_area = area_of(axis_.positions, axis_.triangles);
+    report.area = area_of(out_.surface.positions, out_.surface.triangles);
+  }
+
+  const Complex& axis_;
+  MedialView view_;
+  const Solid& solid_;
+  const ExtendOptions& options_;
+  const Context& context_;
+  Rims rims_;
+  std::vector<Continued> continued_;  ///< of each corner
+  std::vector<Strip> strips_;         ///< of each rim edge
+  std::set<std::pair<std::uint32_t, std::uint32_t>> border_;
+  std::vector<double> thickness_;
+  std::vector<std::int32_t> sheet_;
+  ExtendedAxis out_;
+};
+
+void check_positive(std::string_view name, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw InvalidOption(std::string(name) + " is " + exact_text(value) + ", but must be above 0");
+}
+
+void check(const Complex& axis, const Solid& solid, const ExtendOptions& options) {
+  check_positive("max_length", options.max_length);
+  check_positive("tolerance", options.tolerance);
+  if (!(options.border_radius >= 0)) {
+    throw InvalidOption("border_radius is " + exact_text(options.border_radius) + ", but must be at least 0");
+  }
+  if (solid.rule() == SolidRule::voxels) {
+    throw InvalidOption(
+        "axes of images are not extended: their surface is that of the voxels; make the axis of "
+        "smooth_surface()");
+  }
+  if (!axis.positions.empty() && axis.vertex_columns.find(medial_columns::radius) == nullptr) {
+    throw InvalidOption(missing_medial_column("vertices", medial_columns::radius));
+  }
+  if (!axis.triangles.empty() && axis.triangle_columns.find(medial_columns::sheet) == nullptr) {
+    throw InvalidOption(missing_medial_column("triangles", medial_columns::sheet));
+  }
+}
+
+}  // namespace
+
+ExtendedAxis extend_axis(const Complex& axis, const Solid& solid, const ExtendOptions& options,
+                         const Context& context) {
+  check(axis, solid, options);
+  const CompleteAxis all(axis);
+  if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
+    throw InvalidOption("what is no medial axis is not extended: " + problem);
+  }
+  return AxisExtender(all.get(), solid, options, context).run();
+}
+
+ExtendedAxis extend_axis(const Complex& axis, const MeshView& mesh, const ExtendOptions& options,
+                         const Context& context) {
+  return extend_axis(axis, Solid::of(mesh, context), options, context);
+}
+
+}  // namespace blum

@@ -1,0 +1,144 @@
+#include "axis/surface_patches.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "blum/core/error.hpp"
+#include "blum/core/sort_unique.hpp"
+#include "blum/core/union_find.hpp"
+
+namespace blum {
+namespace {
+
+/// So that a prism of twelve sides, whose edges bend by 30 degrees but for rounding, is one patch at 30.
+constexpr double rounding = 1e-6;  // degrees
+
+/// Whether a triangle runs along an edge from its smaller vertex to the larger one.
+bool runs_along(const Triangle& triangle, const Segment& edge) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (triangle[k] == edge[0] && triangle[(k + 1) % 3] == edge[1]) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+SurfacePatches::SurfacePatches(const MeshView& mesh, double angle, const Context& context)
+    : SurfacePatches((validate(mesh), mesh), SiteTable(mesh, context), angle, context) {}
+
+SurfacePatches::SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context)
+    : mesh_(mesh), sites_(std::move(sites)) {
+  find_normals();
+  find_rows();
+  join_faces(angle, context);
+  add_up();
+}
+
+void SurfacePatches::find_normals() {
+  for (const auto& [a, b, c] : mesh_.triangles) {
+    const Vec3d& at = mesh_.vertices[a];
+    normals_.push_back(cross(mesh_.vertices[b] - at, mesh_.vertices[c] - at));
+  }
+}
+
+void SurfacePatches::find_rows() {
+  const auto fill = [&](Rows& rows, std::size_t count, const auto& places_of) {
+    rows.first.assign(count + 1, 0);
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      places_of(t, [&](std::size_t place) { ++rows.first[place + 1]; });
+    }
+    std::partial_sum(rows.first.begin(), rows.first.end(), rows.first.begin());
+    rows.triangles.resize(rows.first.back());
+    std::vector<std::size_t> next(rows.first.begin(), rows.first.end() - 1);
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      places_of(t, [&](std::size_t place) { rows.triangles[next[place]++] = t; });
+    }
+  };
+  fill(at_edges_, sites_.edge_count(), [&](std::uint32_t t, const auto& take) {
+    for (const EdgeId edge : sites_.triangle_edges()[t]) {
+      if (edge != EdgeId::none()) take(edge.value);
+    }
+  });
+  fill(at_vertices_, sites_.vertex_count(), [&](std::uint32_t t, const auto& take) {
+    for (const std::uint32_t v : mesh_.triangles[t]) take(v);
+  });
+}
+
+bool SurfacePatches::is_smooth(std::uint32_t edge, double least_cosine) const {
+  const std::size_t begin = at_edges_.first[edge];
+  if (at_edges_.first[edge + 1] - begin != 2) return false;
+  const std::uint32_t a = at_edges_.triangles[begin];
+  const std::uint32_t b = at_edges_.triangles[begin + 1];
+  const double scale = length(normals_[a]) * length(normals_[b]);
+  if (!(scale > 0)) return false;
+  const Segment& ends = sites_.edges()[edge];
+  const bool agree = runs_along(mesh_.triangles[a], ends) != runs_along(mesh_.triangles[b], ends);
+  return (agree ? 1 : -1) * dot(normals_[a], normals_[b]) >= least_cosine * scale;
+}
+
+void SurfacePatches::join_faces(double angle, const Context& context) {
+  const double least_cosine = std::cos(std::min(180.0, angle + rounding) * std::numbers::pi / 180);
+  detail::UnionFind faces(mesh_.triangles.size());
+  for (std::uint32_t e = 0; e < sites_.edge_count(); ++e) {
+    if (e % 65536 == 0) throw_if_cancelled(context);
+    const std::size_t begin = at_edges_.first[e];
+    if (is_smooth(e, least_cosine)) faces.join(at_edges_.triangles[begin], at_edges_.triangles[begin + 1]);
+  }
+  patch_of_.assign(mesh_.triangles.size(), none);
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (!(squared_length(normals_[t]) > 0)) continue;
+    const std::uint32_t first = faces.find(t);
+    if (patch_of_[first] == none) {
+      patch_of_[first] = static_cast<std::uint32_t>(patches_.size());
+      patches_.emplace_back();
+    }
+    patch_of_[t] = patch_of_[first];
+  }
+}
+
+void SurfacePatches::add_up() {
+  for (std::size_t t = 0; t < patch_of_.size(); ++t) {
+    if (patch_of_[t] == none) continue;
+    AxisPatch& patch = patches_[patch_of_[t]];
+    const auto& [a, b, c] = mesh_.triangles[t];
+    const double area = 0.5 * length(normals_[t]);
+    ++patch.faces;
+    patch.area += area;
+    patch.centroid += area / 3 * (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]);
+    patch.normal += 0.5 * normals_[t];
+  }
+  for (AxisPatch& patch : patches_) {
+    patch.centroid = patch.centroid / patch.area;
+    const double size = length(patch.normal);
+    // What is left of a closed surface is rounding.
+    patch.normal = size > 1e-9 * patch.area ? patch.normal / size : Vec3d{};
+  }
+}
+
+std::vector<std::uint32_t> SurfacePatches::at(SiteId site) const {
+  if (site.value >= sites_.size()) {
+    throw InvalidOption("the axis names the site " + std::to_string(site.value) + ", but the mesh has " +
+                        std::to_string(sites_.size()) +
+                        ": it is not the mesh that the axis was made of, or was welded "
+                        "otherwise");
+  }
+  const Site on = sites_.site(site);
+  std::vector<std::uint32_t> out;
+  if (on.kind == SiteKind::face) {
+    if (patch_of_[on.index] != none) out.push_back(patch_of_[on.index]);
+    return out;
+  }
+  const Rows& rows = on.kind == SiteKind::edge ? at_edges_ : at_vertices_;
+  for (std::size_t k = rows.first[on.index]; k < rows.first[std::size_t{on.index} + 1]; ++k) {
+    if (patch_of_[rows.triangles[k]] != none) out.push_back(patch_of_[rows.triangles[k]]);
+  }
+  detail::sort_unique(out);
+  return out;
+}
+
+}  // namespace blum

@@ -1,0 +1,272 @@
+#include "medial_axis/cells/attached_voxels.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "blum/core/bits.hpp"
+#include "medial_axis/cells/voxel_border.hpp"
+
+namespace blum {
+namespace {
+
+constexpr unsigned middle = place_of_voxel;
+
+using Place = std::array<std::int64_t, 3>;
+
+/// Whether one cell of a voxel is a face of another, by their places.
+constexpr bool is_face(unsigned face, unsigned cell) {
+  const auto f = along_axes(face);
+  const auto c = along_axes(cell);
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (c[a] != 1 && c[a] != f[a]) return false;
+  }
+  return face != cell;
+}
+constexpr int dimension_at(unsigned place) {
+  int dimension = 0;
+  for (const unsigned x : along_axes(place)) dimension += x == 1 ? 1 : 0;
+  return dimension;
+}
+
+struct BorderTables {
+  std::array<std::uint32_t, 27> touching{};  ///< faces and cofaces of each cell of the border
+  std::uint32_t even = 0;                    ///< cells of even dimension
+};
+constexpr BorderTables make_tables() {
+  BorderTables tables;
+  for (unsigned p = 0; p < 27; ++p) {
+    if (dimension_at(p) % 2 == 0) tables.even |= 1U << p;
+    for (unsigned q = 0; q < 27; ++q) {
+      if (q == middle) continue;
+      if (p != middle && (is_face(p, q) || is_face(q, p))) tables.touching[p] |= 1U << q;
+    }
+  }
+  return tables;
+}
+constexpr BorderTables tables = make_tables();
+
+/// Whether a part of the border of a voxel, with all its faces, is contractible: connected, of Euler number 1.
+bool is_contractible(std::uint32_t cells) {
+  if (cells == 0) return false;
+  if (bit_count(cells & tables.even) != bit_count(cells & ~tables.even) + 1) return false;
+  std::uint32_t reached = cells & (0U - cells);
+  for (std::uint32_t next = reached; next != 0;) {
+    std::uint32_t touched = 0;
+    for (std::uint32_t rest = next; rest != 0; rest &= rest - 1) {
+      touched |= tables.touching[static_cast<std::size_t>(std::countr_zero(rest))];
+    }
+    next = touched & cells & ~reached;
+    reached |= next;
+  }
+  return reached == cells;
+}
+
+}  // namespace
+
+AttachedVoxels::AttachedVoxels(const CellComplex& model, const VoxelSet& voxels, const Importance& importance)
+    : model_(model), structure_(model.structure()) {
+  if (structure_.extra() == nullptr) {
+    plain_ = voxels;
+    attached_ = VoxelSet(voxels.size());
+    return;
+  }
+  find_plain(voxels);
+  find_attached();
+  find_staying();
+  find_borders(importance);
+}
+
+void AttachedVoxels::find_plain(const VoxelSet& voxels) {
+  plain_ = voxels;
+  for (const Cell cell : structure_.extra()->replaced()) {
+    if (dimension_of(cell) != 3) continue;
+    const Place at = structure_.lattice().place(node_of(cell));
+    plain_.erase(at[0], at[1], at[2]);
+  }
+}
+
+/// Those around a cell of the lattice that has an extra face or coface.
+void AttachedVoxels::find_attached() {
+  attached_ = VoxelSet(plain_.size());
+  const ExtraIncidence& extra = *structure_.extra();
+  const auto is_there = [&](Cell cell) { return model_.contains(cell); };
+  for (const Cell mixed : extra.mixed()) {
+    const auto faces = extra.extra_faces_of(mixed);
+    const auto cofaces = extra.extra_cofaces_of(mixed);
+    if (std::none_of(faces.begin(), faces.end(), is_there) && std::none_of(cofaces.begin(), cofaces.end(), is_there)) {
+      continue;
+    }
+    attach_around(mixed);
+  }
+}
+
+template <class Visit>
+void AttachedVoxels::for_each_voxel_around(Cell cell, const Visit& visit) const {
+  structure_.lattice().for_each_cube_around(cell, [&](const Place& at) {
+    if (plain_.contains(at[0], at[1], at[2])) visit(at);
+  });
+}
+
+void AttachedVoxels::attach_around(Cell cell) {
+  for_each_voxel_around(cell, [&](const Place& at) { attached_.insert(at[0], at[1], at[2]); });
+}
+
+template <class Visit>
+void AttachedVoxels::for_each_attached(const Visit& visit) const {
+  for (std::int64_t k = 0; k < plain_.size()[2]; ++k) {
+    for (std::int64_t j = 0; j < plain_.size()[1]; ++j) {
+      const auto row = attached_.row(j, k);
+      for (std::size_t w = 0; w < row.size(); ++w) {
+        for (std::uint64_t rest = row[w]; rest != 0; rest &= rest - 1) {
+          visit(Place{static_cast<std::int64_t>(64 * w) + std::countr_zero(rest), j, k});
+        }
+      }
+    }
+  }
+}
+
+/// The cells of a voxel: itself, then its border.
+void AttachedVoxels::find_closure(const Place& voxel, std::vector<Cell>& cells) const {
+  cells.assign(1, cell_at(structure_.lattice().node(voxel[0], voxel[1], voxel[2]), 7));
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    structure_.for_each_face(cells[n], [&](Cell face) {
+      if (model_.contains(face) && std::find(cells.begin(), cells.end(), face) == cells.end()) cells.push_back(face);
+    });
+  }
+}
+
+/// Adds the cells of the lattice around an extra one, which may be gone, that no voxel has.
+void AttachedVoxels::find_without_voxel(Cell polyhedron, std::vector<Cell>& found) {
+  structure_.for_each_face(polyhedron, [&](Cell polygon) {
+    const auto look_at = [&](Cell cell) {
+      if (structure_.is_extra(cell) || !model_.contains(cell)) return;
+      bool has_voxel = false;
+      for_each_voxel_around(cell, [&](const Place&) { has_voxel = true; });
+      if (!has_voxel && plain_staying_.insert(cell).second) found.push_back(cell);
+    };
+    look_at(polygon);
+    structure_.for_each_face(polygon, [&](Cell edge) {
+      look_at(edge);
+      structure_.for_each_face(edge, look_at);
+    });
+  });
+}
+
+void AttachedVoxels::find_staying() {
+  const std::size_t count = structure_.extra_count();
+  const Cell first = structure_.first_extra();
+  voxels_of_.resize(count);
+  std::vector<Cell> line;
+  for_each_attached([&](const Place& voxel) {
+    find_closure(voxel, line);
+    for (const Cell cell : line) {
+      if (structure_.is_extra(cell)) voxels_of_[cell - first].push_back(plain_.index(voxel));
+    }
+  });
+  stays_.assign(count, 0);
+  line.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (voxels_of_[k].empty() && model_.contains(first + static_cast<Cell>(k))) {
+      stays_[k] = 1;
+      line.push_back(first + static_cast<Cell>(k));
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (structure_.extra()->cell(first + static_cast<Cell>(k)).dimension == 3) {
+      find_without_voxel(first + static_cast<Cell>(k), line);
+    }
+  }
+  while (!line.empty()) {
+    const Cell cell = line.back();
+    line.pop_back();
+    structure_.for_each_face(cell, [&](Cell face) {
+      if (!model_.contains(face)) return;
+      bool is_new = false;
+      if (structure_.is_extra(face)) {
+        is_new = stays_[face - first] == 0;
+        stays_[face - first] = 1;
+      } else {
+        is_new = plain_staying_.insert(face).second;
+      }
+      if (is_new) line.push_back(face);
+    });
+  }
+  for (const Cell cell : plain_staying_) attach_around(cell);
+  for_each_attached([&](const Place& voxel) { list_.push_back({plain_.index(voxel), {}}); });
+}
+
+bool AttachedVoxels::stays(Cell cell) const {
+  if (structure_.is_extra(cell)) return stays_[cell - structure_.first_extra()] != 0;
+  return plain_staying_.contains(cell);
+}
+
+void AttachedVoxels::find_borders(const Importance& importance) {
+  const CellLattice& lattice = structure_.lattice();
+  const auto place_in = [&](const Place& voxel, Cell cell) {
+    const Place node = lattice.place(node_of(cell));
+    unsigned place = 0;
+    for (std::size_t a = 3; a-- > 0;) {
+      const bool is_spanned = (axes_of(cell) >> a & 1U) != 0;
+      place = 3 * place + (is_spanned ? 1 : static_cast<unsigned>(2 * (node[a] - voxel[a])));
+    }
+    return place;
+  };
+  std::vector<Cell> line;
+  for (Attached& own : list_) {
+    const Place voxel = plain_.place(own.voxel);
+    find_closure(voxel, line);
+    for (std::size_t n = 1; n < line.size(); ++n) {
+      const Cell cell = line[n];
+      const bool is_extra = structure_.is_extra(cell);
+      const unsigned place = place_in(voxel, is_extra ? structure_.extra()->cell(cell).place.value_or(0) : cell);
+      BorderCell& border = own.border[place];
+      border = {cell, is_extra ? 0 : sharers_of_place[place], stays(cell), importance.of(cell) > 0};
+      if (!is_extra) continue;
+      for (const std::uint32_t other : voxels_of_[cell - structure_.first_extra()]) {
+        if (other == own.voxel) continue;
+        const Place there = plain_.place(other);
+        const std::int64_t neighbour =
+            there[0] - voxel[0] + 1 + 3 * (there[1] - voxel[1] + 1) + 9 * (there[2] - voxel[2] + 1);
+        border.sharers |= 1U << static_cast<unsigned>(neighbour);
+      }
+    }
+  }
+}
+
+const AttachedVoxels::Attached& AttachedVoxels::at(std::uint32_t voxel) const {
+  return *std::lower_bound(list_.begin(), list_.end(), voxel,
+                           [](const Attached& a, std::uint32_t value) { return a.voxel < value; });
+}
+
+bool AttachedVoxels::may_go(std::uint32_t voxel, Neighbourhood around) const {
+  const Attached& own = at(voxel);
+  std::uint32_t shared = 0;
+  for (unsigned place = 0; place < 27; ++place) {
+    if (place == middle) continue;
+    const BorderCell& border = own.border[place];
+    if (border.stays || (border.sharers & around) != 0) {
+      shared |= 1U << place;
+    } else if (border.is_important) {
+      return false;
+    }
+  }
+  return is_contractible(shared);
+}
+
+CellComplex AttachedVoxels::rest(const VoxelSet& kept, const Context& context) const {
+  CellComplex out(kept, structure_, context);
+  for (const Attached& own : list_) {
+    const Place at = plain_.place(own.voxel);
+    if (!kept.contains(at[0], at[1], at[2])) continue;
+    for (unsigned place = 0; place < 27; ++place) {
+      if (place != middle && structure_.is_extra(own.border[place].cell)) out.insert_closure(own.border[place].cell);
+    }
+  }
+  for (const Cell cell : plain_staying_) out.insert_closure(cell);
+  for (std::size_t k = 0; k < stays_.size(); ++k) {
+    if (stays_[k] != 0) out.insert_closure(structure_.first_extra() + static_cast<Cell>(k));
+  }
+  return out;
+}
+
+}  // namespace blum

@@ -1,0 +1,74 @@
+#include "medial_axis/cells/cell_complex.hpp"
+
+#include "blum/core/parallel.hpp"
+
+namespace blum {
+namespace {
+
+/// The cells at a lattice node, from the eight voxels around it: bit x + 2 y + 4 z of `voxels` is the voxel at
+/// (i - 1 + x, j - 1 + y, k - 1 + z). A cell is there where a voxel around it is.
+std::uint8_t cells_at(unsigned voxels) {
+  std::uint8_t cells = 0;
+  for (CellAxes axes = 0; axes < 8; ++axes) {
+    // Along the axes that the cell spans, only the voxels ahead of the node touch it.
+    for (unsigned v = 0; v < 8; ++v) {
+      if ((voxels >> v & 1U) != 0 && (v & axes) == axes) cells |= static_cast<std::uint8_t>(1U << axes);
+    }
+  }
+  return cells;
+}
+
+std::array<std::uint8_t, 256> make_cell_table() {
+  std::array<std::uint8_t, 256> table{};
+  for (unsigned v = 0; v < 256; ++v) table[v] = cells_at(v);
+  return table;
+}
+
+}  // namespace
+
+CellComplex::CellComplex(const VoxelSet& voxels, const Context& context) : CellComplex(voxels, nullptr, context) {}
+
+CellComplex::CellComplex(const VoxelSet& voxels, std::shared_ptr<const ExtraIncidence> extra, const Context& context)
+    : CellComplex(voxels, CellStructure(CellLattice(voxels.size()), std::move(extra)), context) {
+  std::fill(extra_.begin(), extra_.end(), std::uint8_t{1});
+}
+
+CellComplex::CellComplex(const VoxelSet& voxels, CellStructure structure, const Context& context)
+    : structure_(std::move(structure)), cells_(structure_.lattice().node_count()), extra_(structure_.extra_count(), 0) {
+  static const std::array<std::uint8_t, 256> table = make_cell_table();
+  const CellLattice& lattice = structure_.lattice();
+  const auto& size = lattice.size();
+  parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
+    for (auto k = static_cast<std::int64_t>(range.begin); k < static_cast<std::int64_t>(range.end); ++k) {
+      for (std::int64_t j = 0; j < size[1]; ++j) {
+        unsigned around = 0;
+        for (std::int64_t i = 0; i < size[0]; ++i) {
+          around = around >> 1U & 0x55U;  // what lay ahead lies behind now
+          for (unsigned v = 0; v < 4; ++v) {
+            const auto y = static_cast<std::int64_t>(v & 1U);
+            const auto z = static_cast<std::int64_t>(v >> 1U);
+            if (voxels.contains(i, j - 1 + y, k - 1 + z)) around |= 2U << (2 * v);
+          }
+          cells_[lattice.node(i, j, k)] = table[around];
+        }
+      }
+    }
+  });
+  if (structure_.extra() == nullptr) return;
+  for (const Cell cell : structure_.extra()->replaced()) {
+    cells_[node_of(cell)] &= static_cast<std::uint8_t>(~(1U << axes_of(cell)));
+  }
+}
+
+void CellComplex::insert_closure(Cell cell) {
+  if (structure_.is_extra(cell)) {
+    extra_[cell - structure_.first_extra()] = 1;
+  } else {
+    cells_[node_of(cell)] |= static_cast<std::uint8_t>(1U << axes_of(cell));
+  }
+  structure_.for_each_face(cell, [&](Cell face) {
+    if (structure_.extra() == nullptr || !structure_.extra()->is_replaced(face)) insert_closure(face);
+  });
+}
+
+}  // namespace blum

@@ -1,0 +1,52 @@
+// Blum: how much each cell of a solid looks like a piece of its medial axis. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/bits.hpp"
+#include "medial_axis/cells/cell_complex.hpp"
+
+namespace blum {
+
+/// Degrees for some cells, and 0 for the others. One byte per node, and 4 more per cell that has a value or is extra.
+class Importance {
+ public:
+  struct Entry {
+    Cell cell;
+    float degrees;
+  };
+
+  Importance() = default;
+  /// Gives each cell the largest value of its entries and of the entries of cells that it is a face of.
+  Importance(const CellStructure& structure, std::span<const Entry> entries);
+  Importance(const CellLattice& lattice, std::span<const Entry> entries)
+      : Importance(CellStructure(lattice, nullptr), entries) {}
+
+  [[nodiscard]] float of(Cell cell) const {
+    if (words_.empty()) return 0;
+    if (cell >= first_extra_) return extra_.empty() ? 0 : extra_[cell - first_extra_];
+    return (words_[cell >> 6U] >> (cell & 63U) & 1U) == 0 ? 0 : values_[rank(cell)];
+  }
+  /// Bit a: whether the cell that spans `a` from a node has a value.
+  [[nodiscard]] std::uint8_t cells_at(std::size_t node) const {
+    return static_cast<std::uint8_t>(words_[node >> 3U] >> (8 * (node & 7U)));
+  }
+  [[nodiscard]] std::size_t count() const { return values_.size(); }
+
+ private:
+  /// The number of cells with a value before this one.
+  [[nodiscard]] std::size_t rank(Cell cell) const {
+    const std::uint64_t below = words_[cell >> 6U] & ((std::uint64_t{1} << (cell & 63U)) - 1);
+    return first_[cell >> 6U] + bit_count(below);
+  }
+
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> first_;  ///< values before each word
+  std::vector<float> values_;
+  Cell first_extra_ = 0;
+  std::vector<float> extra_;
+};
+
+}  // namespace blum

@@ -1,0 +1,189 @@
+#include "medial_axis/cells/voxelize.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/field/distance_transform.hpp"
+#include "blum/field/field.hpp"
+#include "blum/grid/selected_voxels.hpp"
+#include "blum/grid/voxel_topology.hpp"
+#include "blum/solid/body_cells.hpp"
+#include "medial_axis/cells/take_deeper.hpp"
+
+namespace blum {
+namespace {
+
+/// Layers of voxels around a mesh: what is taken in beyond it lies within one diagonal, and one layer stays free.
+constexpr int margin = 3;
+
+/// How far, in voxels, the grid is moved off the middle of a body: planes of symmetry and their diagonals would pass
+/// through voxel centres, where rounding would tell to which side a voxel belongs, and so make ragged sheets.
+constexpr Vec3d off_middle{0.11, 0.27, 0.37};
+
+using Place = std::array<std::int64_t, 3>;
+
+GridSpec voxels_around(const Box3& box, double spacing, double shift) {
+  GridSpec grid;
+  grid.spacing = {spacing, spacing, spacing};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double steps = std::ceil(box.size()[a] / spacing);
+    if (!(steps < 1e6)) throw InvalidOption("a voxel side of " + exact_text(spacing) + " is too small for the mesh");
+    const auto layers = margin + static_cast<int>(std::ceil(std::abs(shift)));
+    grid.size[a] = static_cast<std::int64_t>(steps) + 2 * layers;
+    const double off = off_middle[a] + shift;
+    grid.origin[a] = box.center()[a] - spacing * (0.5 * static_cast<double>(grid.size[a] - 1) - off);
+  }
+  return grid;
+}
+
+/// Depths that are above zero for voxels of a set, and only for these: where a surface passes within rounding of a
+/// centre, the field may see it on the other side than the model.
+void agree_with(const VoxelSet& inside, Buffer<float>& depth, const Context& context) {
+  const Place& size = inside.size();
+  parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
+    for (auto k = static_cast<std::int64_t>(range.begin); k < static_cast<std::int64_t>(range.end); ++k) {
+      for (std::int64_t j = 0; j < size[1]; ++j) {
+        const auto row = inside.row(j, k);
+        float* own = depth.data() + (k * size[1] + j) * size[0];
+        for (std::int64_t i = 0; i < size[0]; ++i) {
+          const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
+          own[i] = is_in ? std::max(own[i], std::numeric_limits<float>::min()) : std::min(own[i], 0.0F);
+        }
+      }
+    }
+  });
+}
+
+/// Distances become depths: positive inside.
+VoxelSolid solid_of(Field field) {
+  VoxelSolid solid;
+  solid.grid = field.grid;
+  solid.voxels = VoxelSet(field.grid.size);
+  solid.depth = std::move(field.distance);
+  solid.site = std::move(field.site);
+  for (float& d : solid.depth) d = -d;
+  return solid;
+}
+
+/// The smallest box that holds all voxels of a set: its lower corner, and beyond its upper one.
+struct Extent {
+  Place lower{std::numeric_limits<std::int64_t>::max(), 0, 0};
+  Place upper{0, 0, 0};
+};
+
+Extent extent_of(const VoxelSet& voxels) {
+  constexpr auto far = std::numeric_limits<std::int64_t>::max();
+  Extent out{{far, far, far}, {0, 0, 0}};
+  const Place& size = voxels.size();
+  const auto include = [&](const Place& at) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      out.lower[a] = std::min(out.lower[a], at[a]);
+      out.upper[a] = std::max(out.upper[a], at[a] + 1);
+    }
+  };
+  for (std::int64_t k = 0; k < size[2]; ++k) {
+    for (std::int64_t j = 0; j < size[1]; ++j) {
+      const auto row = voxels.row(j, k);
+      std::int64_t first = -1;
+      std::int64_t last = -1;
+      for (std::size_t w = 0; w < row.size(); ++w) {
+        if (row[w] == 0) continue;
+        const auto base = static_cast<std::int64_t>(64 * w);
+        if (first < 0) first = base + std::countr_zero(row[w]);
+        last = base + 63 - std::countl_zero(row[w]);
+      }
+      if (first < 0) continue;
+      include({first, j, k});
+      include({last, j, k});
+    }
+  }
+  return out;
+}
+
+/// 1 for the voxels of a set, 0 for the others, in a box with a layer more on each side.
+VoxelImage cut_out(const VoxelSet& voxels, const Extent& extent, const GridSpec& grid) {
+  VoxelImage image;
+  image.grid = grid;
+  image.grid.origin = grid.position(extent.lower[0] - 1, extent.lower[1] - 1, extent.lower[2] - 1);
+  for (std::size_t a = 0; a < 3; ++a) image.grid.size[a] = extent.upper[a] - extent.lower[a] + 2;
+  std::vector<std::uint8_t> values(image.grid.node_count(), 0);
+  for (std::int64_t k = extent.lower[2]; k < extent.upper[2]; ++k) {
+    for (std::int64_t j = extent.lower[1]; j < extent.upper[1]; ++j) {
+      std::size_t to = image.grid.index(1, j - extent.lower[1] + 1, k - extent.lower[2] + 1);
+      for (std::int64_t i = extent.lower[0]; i < extent.upper[0]; ++i, ++to) values[to] = voxels.contains(i, j, k);
+    }
+  }
+  image.values = std::move(values);
+  return image;
+}
+
+BodyReport report_of(const VoxelSolid& solid, const Context& context) {
+  BodyReport report;
+  report.betti = betti_numbers(solid.voxels, context);
+  report.topology_matches = true;
+  report.spacing = std::min({solid.grid.spacing.x, solid.grid.spacing.y, solid.grid.spacing.z});
+  report.voxels = solid.voxels.count();
+  return report;
+}
+
+/// What a model has beside its voxels.
+void take_extra(BodyCells cells, Voxelized& voxelized) {
+  voxelized.report.topology_matches = cells.failures.empty();
+  voxelized.report.extra_cells = cells.extra.size();
+  voxelized.report.failures = std::move(cells.failures);
+  voxelized.solid.extra = std::make_shared<const ExtraIncidence>(std::move(cells));
+}
+
+}  // namespace
+
+Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift) {
+  Voxelized out;
+  FieldOptions options;
+  options.sign = SignMode::normals;
+  out.solid = solid_of(distance_field(body.mesh, voxels_around(bounds(body.mesh), spacing, shift), options, context));
+  BodyCells cells = body_cells(body.mesh, out.solid.grid, {}, context);
+  out.solid.voxels = std::move(cells.inside);
+  agree_with(out.solid.voxels, out.solid.depth, context);
+  BodyReport& report = out.report;
+  report.betti = body.betti;
+  report.spacing = spacing;
+  report.voxels = out.solid.voxels.count();
+  take_extra(std::move(cells), out);
+  return out;
+}
+
+void split_further(Voxelized& voxelized, const SolidBody& body, std::span<const Box3> finer, const Context& context) {
+  take_extra(body_cells(body.mesh, voxelized.solid.grid, finer, context), voxelized);
+}
+
+Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context, double shift) {
+  Voxelized out;
+  FieldOptions options;
+  options.sign = SignMode::winding;
+  out.solid = solid_of(distance_field(mesh, voxels_around(bounds(mesh), spacing, shift), options, context));
+  take_deeper_than(out.solid.depth.span(), 0, out.solid.voxels, context);
+  out.report = report_of(out.solid, context);
+  return out;
+}
+
+Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<std::int64_t, 3>& first,
+                         const Context& context) {
+  Voxelized out;
+  const Extent extent = extent_of(all);
+  for (std::size_t a = 0; a < 3; ++a) first[a] = extent.lower[a] - 1;
+  const VoxelImage cut = cut_out(all, extent, grid);
+  VoxelSet voxels = selected_voxels(cut, {}, context);
+  out.solid = solid_of(distance_transform(cut, {}, context));
+  out.solid.is_exact = true;
+  out.solid.voxels = std::move(voxels);
+  out.report = report_of(out.solid, context);
+  return out;
+}
+
+}  // namespace blum

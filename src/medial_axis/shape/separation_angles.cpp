@@ -1,0 +1,506 @@
+#include "medial_axis/shape/separation_angles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "medial_axis/surface/equidistant_point.hpp"
+#include "medial_axis/cells/spread_voxels.hpp"
+#include "medial_axis/cells/take_deeper.hpp"
+#include "medial_axis/surface/thin_ball.hpp"
+
+namespace blum {
+namespace {
+
+/// How far, in voxels, a footprint may move when its point moves by less than one.
+constexpr double reach_around_axis = 1.5;
+/// How far beyond the closest distance a footprint may be to count, in voxels, at a point that all were fitted to.
+constexpr double fitted_tolerance = 0.1;
+constexpr double fitted_reach = 0.5;  ///< of a point from the middle of its cell, in voxels along each axis
+/// The same for wires between the voxels: balls in these are found less surely.
+constexpr double wire_reach = 0.7;
+constexpr int bisector_steps = 4;
+constexpr double opposite_step = 0.3;    ///< voxels
+constexpr double opposite_enough = 175;  ///< degrees: no need to look for a footprint that is further apart
+
+/// Where a floor of noise lets footprints that are close together count at clear angles: nowhere in thick parts.
+class ThickParts {
+ public:
+  ThickParts(const GovernorField& governors, const NoiseFloor& floor, const Context& context) {
+    if (floor.thin_within == 0) return;
+    const VoxelSolid& solid = governors.solid();
+    VoxelSet deep(solid.voxels.size());
+    take_deeper_than(solid.depth.span(), floor.voxels * governors.longest_voxel(), deep, context);
+    at_ = spread(deep, floor.thin_within, context);
+    all_around_ = spread(deep, floor.thin_within - 1, context);
+  }
+
+  [[nodiscard]] bool contain(const std::array<std::int64_t, 3>& voxel) const {
+    return at_.contains(voxel[0], voxel[1], voxel[2]);
+  }
+  /// A voxel and all its neighbours.
+  [[nodiscard]] bool contain_all_around(const std::array<std::int64_t, 3>& voxel) const {
+    return all_around_.contains(voxel[0], voxel[1], voxel[2]);
+  }
+
+ private:
+  VoxelSet at_;
+  VoxelSet all_around_;
+};
+
+/// The governors of the voxels around the nodes of a layer, row after row, each found once per layer and only where it
+/// is asked for.
+class GovernorRows {
+ public:
+  GovernorRows(const GovernorField& governors, const NoiseFloor& floor, const ThickParts& thick, std::int64_t k)
+      : governors_(governors),
+        floor_(floor),
+        thick_(thick),
+        k_(k),
+        chord_(2 * std::sin(0.5 * floor.angle / degrees_per_radian)) {
+    const auto length = static_cast<std::size_t>(governors.solid().grid.size[0]);
+    for (Row& row : rows_) row = {std::vector<Governor>(length), std::vector<std::uint8_t>(length, 0), {}};
+    const SiteId any = governors.solid().site[0];
+    has_rough_ = governors.surface().rough_footprint(any).has_value();
+    for (Row& row : rows_) row.rough.resize(has_rough_ ? length : 0);
+  }
+
+  /// To the nodes of row j, which must rise.
+  void go_to(std::int64_t j) {
+    if (j == j_ + 1) {
+      std::swap(rows_[0], rows_[1]);
+      std::swap(rows_[2], rows_[3]);
+    }
+    for (std::size_t r = 0; r < 4; ++r) {
+      if (j != j_ + 1 || (r & 1U) == 1) std::fill(rows_[r].known.begin(), rows_[r].known.end(), 0);
+    }
+    j_ = j;
+  }
+
+  /// Whether what the voxels around a node are closest to certainly counts as one wall.
+  [[nodiscard]] bool has_one_wall(std::int64_t i) {
+    const VoxelSolid& solid = governors_.solid();
+    const auto [x0, y0, z0] = place(i, 7);
+    const std::size_t last = solid.grid.index(x0, y0, z0);
+    if (has_rough_) return has_one_rough_wall(i, static_cast<double>(solid.depth[last]));
+    for (std::size_t v = 0; v < 7; ++v) {
+      const auto [x, y, z] = place(i, v);
+      if (solid.site[solid.grid.index(x, y, z)] != solid.site[last]) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] GovernorsAround around(std::int64_t i) {
+    GovernorsAround out;
+    for (std::size_t v = 0; v < 8; ++v) {
+      const auto [x, y, z] = place(i, v);
+      Row& row = rows_[v >> 1U];
+      const auto at = static_cast<std::size_t>(x);
+      if ((row.known[at] & 1U) == 0) row.governors[at] = governors_.at(x, y, z);
+      row.known[at] |= 1U;
+      out[v] = row.governors[at];
+    }
+    return out;
+  }
+
+ private:
+  struct Row {
+    std::vector<Governor> governors;
+    std::vector<std::uint8_t> known;  ///< bit 0: of governors; bit 1: of rough footprints
+    std::vector<Vec3d> rough;
+  };
+
+  [[nodiscard]] const Vec3d& rough(std::int64_t i, std::size_t v) {
+    const auto [x, y, z] = place(i, v);
+    Row& row = rows_[v >> 1U];
+    const auto at = static_cast<std::size_t>(x);
+    if ((row.known[at] & 2U) == 0) {
+      const VoxelSolid& solid = governors_.solid();
+      row.rough[at] = *governors_.surface().rough_footprint(solid.site[solid.grid.index(x, y, z)]);
+      row.known[at] |= 2U;
+    }
+    return row.rough[at];
+  }
+
+  /// @param depth  of one of the voxels.
+  [[nodiscard]] bool has_one_rough_wall(std::int64_t i, double depth) {
+    // Footprints lie up to half a voxel from where they are thought to be, the node up to one from the voxel.
+    const double voxel = governors_.longest_voxel();
+    if (!thick_.contain_all_around(place(i, 7))) return false;
+    const double limit = std::max((floor_.voxels - 1) * voxel, chord_ * (depth - voxel) - voxel);
+    const Vec3d& middle = rough(i, 7);
+    for (std::size_t v = 0; v < 7; ++v) {
+      if (squared_length(rough(i, v) - middle) > limit * limit) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::array<std::int64_t, 3> place(std::int64_t i, std::size_t v) const {
+    return {i - 1 + static_cast<std::int64_t>(v & 1U), j_ - 1 + static_cast<std::int64_t>(v >> 1U & 1U),
+            k_ - 1 + static_cast<std::int64_t>(v >> 2U)};
+  }
+
+  const GovernorField& governors_;
+  const NoiseFloor& floor_;
+  const ThickParts& thick_;
+  std::int64_t k_;
+  std::int64_t j_ = -2;
+  double chord_;  ///< between two footprints at the angle of the floor, per distance
+  bool has_rough_ = false;
+  std::array<Row, 4> rows_;  ///< y + 2 z
+};
+
+class Measure {
+ public:
+  Measure(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor, const Context& context)
+      : thick_(governors, floor, context),
+        governors_(governors),
+        surface_(governors.surface()),
+        complex_(complex),
+        floor_(floor),
+        voxel_(governors.voxel()),
+        step_(governors.longest_voxel()) {}
+
+  using Around = GovernorsAround;
+
+  /// Calls use(node, around) for the nodes of a layer that have cells, and voxels around them whose closest points lie
+  /// in different directions.
+  template <class Use>
+  void for_each_uneven_node(std::int64_t k, const Use& use) const {
+    const CellLattice& lattice = complex_.lattice();
+    const auto& size = lattice.size();
+    GovernorRows rows(governors_, floor_, thick_, k);
+    for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
+      rows.go_to(j);
+      for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
+        const std::size_t node = lattice.node(i, j, k);
+        if (complex_.bytes()[node] == 0 || rows.has_one_wall(i)) continue;
+        const Around around = rows.around(i);
+        if (is_uneven(around)) use(node, around);
+      }
+    }
+  }
+
+  /// The angle on the bisector between two voxels that share a square; 0 where both follow the same wall.
+  [[nodiscard]] double between(const Governor& a, const Governor& b) const {
+    if (a.foot.element == b.foot.element) return 0;
+    // Between two voxels beyond the surface the solid may still pass: a thin part.
+    if (!a.is_inside && !b.is_inside && dot(a.direction, b.direction) > 0) return 0;
+    double low = 0;  // where a's wall is the closer one
+    double high = 1;
+    double t = 0.5;
+    Vec3d x;
+    Footprint p = a.foot;
+    Footprint q = b.foot;
+    for (int step = 0; step < bisector_steps; ++step) {
+      x = a.centre + (b.centre - a.centre) * t;
+      p = surface_.follow(a.foot, x, HUGE_VAL);
+      q = surface_.follow(b.foot, x, HUGE_VAL);
+      const double difference = depth_of(x, a, p) - depth_of(x, b, q);
+      if (std::abs(difference) < 1e-3 * voxel_) break;
+      (difference < 0 ? low : high) = t;
+      // Where both distances change linearly, their slopes are those along the two directions.
+      const double slope = slope_along(a, b, x, a, p) - slope_along(a, b, x, b, q);
+      const double next = slope > 0 ? t - difference / slope : -1;
+      t = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    if (!is_inside(a, x) || !is_inside(b, x)) return 0;
+    return above_floor(x, p.point, q.point);
+  }
+
+  /// The angle that an extra polygon stands for: on the bisector between the ends of its interval.
+  [[nodiscard]] double between(const ExtraCell& polygon) const {
+    std::array<Governor, 2> ends;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const ExtraCell::End& end = polygon.ends[k];
+      ends[k] = end.triangle ? governor_at(end) : governor_inside(end.point);
+    }
+    return between(ends[0], ends[1]);
+  }
+  /// The angle in the middle of a part that is so thin that no line between nodes meets it.
+  [[nodiscard]] double in_wire(const ExtraCell& cell) const {
+    const NearestPoint nearest = surface_.nearest(cell.witness, {});
+    if (!surface_.is_inside(cell.witness, nearest)) return 0;
+    const std::optional<ThinBall> ball = ball_around(surface_, nearest, cell.witness, step_);
+    return ball ? above_floor(ball->centre, ball->nearest.point, ball->other.point) : 0;
+  }
+
+  /// The largest angle between any two voxels of a cell, as the voxels' own directions tell it.
+  [[nodiscard]] static double coarse(const Around& around, CellAxes axes) {
+    double least = 1;
+    for (unsigned v = 0; v < 8; ++v) {
+      if ((v & axes) != axes) continue;
+      for (unsigned w = v + 1; w < 8; ++w) {
+        if ((w & axes) == axes) least = std::min(least, dot(around[v].direction, around[w].direction));
+      }
+    }
+    return std::acos(std::clamp(least, -1.0, 1.0)) * degrees_per_radian;
+  }
+
+  /// The angle at a point as far from all footprints around an edge or vertex, within half a voxel of its middle.
+  [[nodiscard]] double fitted(const Around& around, CellAxes axes) const {
+    std::array<Vec3d, 8> feet;
+    std::array<const Governor*, 8> governors{};
+    std::size_t count = 0;
+    std::size_t inside = 0;
+    Vec3d middle;
+    for (unsigned v = 0; v < 8; ++v) {
+      if ((v & axes) != axes) continue;
+      inside += around[v].is_inside ? 1 : 0;
+      governors[count] = &around[v];
+      feet[count++] = around[v].foot.point;
+      middle += around[v].centre;
+    }
+    // Squares tell what there is to tell about thin parts, but not about wires that pass between all voxels.
+    if (inside != 0 && inside != count) return 0;
+    middle *= 1.0 / static_cast<double>(count);
+    const EquidistantPoints points({feet.data(), count}, middle);
+    double largest = 0;
+    for (const int rank : {3, 2}) {
+      const std::optional<Vec3d> x = points.of_rank(rank);
+      if (!x || !is_near(*x, middle, inside == 0 ? wire_reach : fitted_reach)) continue;
+      largest = std::max(largest, angle_of({governors.data(), count}, *x));
+    }
+    if (largest > 0 || inside != 0) return largest;
+    // A wire may be too thin for the footprints to tell its middle.
+    const NearestPoint nearest = surface_.nearest(middle, governors[0]->foot);
+    if (nearest.distance > step_ || surface_.is_inside(middle, nearest)) return 0;
+    const std::optional<ThinBall> ball = thin_ball_behind(surface_, nearest, middle, step_);
+    if (!ball || !is_near(ball->centre, middle, wire_reach)) return 0;
+    return above_floor(ball->centre, ball->nearest.point, ball->other.point);
+  }
+
+ private:
+  [[nodiscard]] bool is_uneven(const Around& around) const {
+    Vec3d sum;
+    bool is_same = true;
+    for (const Governor& g : around) {
+      sum += g.direction;
+      is_same = is_same && g.foot.element == around[0].foot.element;
+    }
+    if (is_same) return false;
+    const double size = length(sum);
+    const double narrow = std::cos(0.5 * floor_.angle / degrees_per_radian);
+    if (size < 8 * narrow) return true;  // opposite walls, whose sum points nowhere
+    for (const Governor& g : around) {
+      if (dot(g.direction, sum) < narrow * size) return true;
+    }
+    return false;
+  }
+
+  /// How far a point is from the footprint that follows it from a governor's; negative beyond the wall.
+  [[nodiscard]] static double depth_of(const Vec3d& x, const Governor& g, const Footprint& foot) {
+    return std::copysign(length(x - foot.point), dot(foot.point - x, g.direction));
+  }
+  /// What that changes by where x goes all the way from a to b.
+  [[nodiscard]] static double slope_along(const Governor& a, const Governor& b, const Vec3d& x, const Governor& g,
+                                          const Footprint& foot) {
+    const double depth = depth_of(x, g, foot);
+    return depth != 0 ? dot(b.centre - a.centre, x - foot.point) / depth : 0;
+  }
+
+  /// Whether a point near a voxel is on the inner side of the wall that the voxel is closest to.
+  [[nodiscard]] static bool is_inside(const Governor& g, const Vec3d& x) {
+    return dot(x - g.foot.point, g.direction) < 0;
+  }
+
+  /// Of a point of the surface.
+  [[nodiscard]] Governor governor_at(const ExtraCell::End& end) const {
+    Governor g;
+    g.centre = end.point;
+    g.foot = {end.point, *end.triangle, 7};
+    g.is_inside = true;
+    g.direction = surface_.outwards(*end.triangle);
+    return g;
+  }
+  [[nodiscard]] Governor governor_inside(const Vec3d& x) const {
+    Governor g;
+    const NearestPoint nearest = surface_.nearest(x, {});
+    g.centre = x;
+    g.foot = {nearest.point, nearest.element, 7};
+    g.is_inside = true;
+    if (nearest.distance > 0) g.direction = (nearest.point - x) / nearest.distance;
+    return g;
+  }
+
+  [[nodiscard]] double above_floor(const Vec3d& x, const Vec3d& p, const Vec3d& q) const {
+    const double angle = angle_at(x, p, q);
+    if (angle < floor_.angle) return 0;
+    const double apart = length(p - q);
+    if (apart < floor_.lambda) return 0;
+    if (apart >= floor_.voxels * step_) return angle;
+    return angle < floor_.clear_angle || !is_thin_around(x) ? 0 : angle;
+  }
+
+  [[nodiscard]] bool is_thin_around(const Vec3d& x) const {
+    if (floor_.thin_within == 0) return true;
+    const GridSpec& grid = governors_.solid().grid;
+    const Vec3d at = grid.direction.transposed_times(x - grid.origin);
+    std::array<std::int64_t, 3> voxel{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      voxel[a] = std::clamp(std::int64_t{std::lround(at[a] / grid.spacing[a])}, std::int64_t{0}, grid.size[a] - 1);
+    }
+    return !thick_.contain(voxel);
+  }
+
+  [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& middle, double reach) const {
+    const GridSpec& grid = governors_.solid().grid;
+    const Vec3d moved = grid.direction.transposed_times(x - middle);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (std::abs(moved[axis]) > reach * grid.spacing[axis]) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] double angle_of(std::span<const Governor* const> governors, const Vec3d& x) const {
+    std::array<Footprint, 8> feet;
+    std::array<double, 8> distance{};
+    double closest = std::numeric_limits<double>::infinity();
+    std::size_t behind = 0;
+    for (std::size_t g = 0; g < governors.size(); ++g) {
+      behind += is_inside(*governors[g], x) ? 1 : 0;
+      feet[g] = surface_.follow(governors[g]->foot, x, reach_around_axis * voxel_);
+      distance[g] = length(x - feet[g].point);
+      closest = std::min(closest, distance[g]);
+    }
+    if (behind < (governors[0]->is_inside ? 1 : governors.size())) return 0;
+    const double limit = closest + fitted_tolerance * voxel_;
+    double largest = 0;
+    double least_cosine = std::cos(floor_.angle / degrees_per_radian);
+    std::size_t widest = 0;
+    for (std::size_t a = 0; a < governors.size(); ++a) {
+      for (std::size_t b = a + 1; b < governors.size() && distance[a] <= limit; ++b) {
+        if (distance[b] > limit) continue;
+        const double cosine_scaled = dot(feet[a].point - x, feet[b].point - x);
+        if (cosine_scaled > least_cosine * distance[a] * distance[b]) continue;  // before the angle, which costs more
+        const double angle = above_floor(x, feet[a].point, feet[b].point);
+        if (angle <= largest) continue;
+        largest = angle;
+        least_cosine = std::cos(angle / degrees_per_radian);
+        widest = a;
+      }
+    }
+    if (largest == 0 || largest > opposite_enough) return largest;
+    const Vec3d opposite = opposite_of(x, feet[widest]);
+    return length(x - opposite) > limit ? largest : std::max(largest, above_floor(x, feet[widest].point, opposite));
+  }
+
+  /// A footprint on the other side: what is closest a little further away from the first one. The voxels around an axis
+  /// see only some of the directions that there are.
+  [[nodiscard]] Vec3d opposite_of(const Vec3d& x, const Footprint& foot) const {
+    const Vec3d away = x - foot.point;
+    const double distance = length(away);
+    if (!(distance > 0)) return foot.point;
+    const Vec3d beyond = x + away * (std::min(opposite_step * voxel_, 0.5 * distance) / distance);
+    const NearestPoint there = surface_.nearest(beyond, foot);
+    return surface_.follow({there.point, there.element, 7}, x, reach_around_axis * voxel_).point;
+  }
+
+  ThickParts thick_;
+  const GovernorField& governors_;
+  const Surface& surface_;
+  const CellComplex& complex_;
+  const NoiseFloor& floor_;
+  double voxel_;
+  double step_;  ///< of the grid's steps along a surface
+};
+
+using Entries = std::vector<Importance::Entry>;
+
+/// Of extra polygons, and of extra edges that are no side of any.
+Entries angles_of_extra(const Measure& measure, const CellStructure& structure, const Context& context) {
+  std::vector<float> angles(structure.extra_count(), 0);
+  const Cell first = structure.first_extra();
+  parallel_for(context, angles.size(), 256, "separation angles", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const Cell name = first + static_cast<Cell>(k);
+      const ExtraCell& cell = structure.extra()->cell(name);
+      if (cell.dimension == 2) angles[k] = static_cast<float>(measure.between(cell));
+      if (cell.dimension == 1 && structure.extra()->cofaces_of(name).empty()) {
+        angles[k] = static_cast<float>(measure.in_wire(cell));
+      }
+    }
+  });
+  Entries entries;
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    if (angles[k] > 0) entries.push_back({first + static_cast<Cell>(k), angles[k]});
+  }
+  return entries;
+}
+
+/// One list of all layers' entries.
+Entries joined(const std::vector<Entries>& layers) {
+  Entries all;
+  for (const Entries& layer : layers) all.insert(all.end(), layer.begin(), layer.end());
+  return all;
+}
+
+/// The largest value of the squares and their faces next to a node. No cell of the complex lies on the lattice's
+/// border.
+double largest_around(const Importance& squares, const CellLattice& lattice, std::size_t node) {
+  float largest = 0;
+  for (std::size_t z = 0; z < 3; ++z) {
+    for (std::size_t y = 0; y < 3; ++y) {
+      const std::size_t row =
+          node + z * lattice.stride(2) + y * lattice.stride(1) - lattice.stride(2) - lattice.stride(1);
+      for (std::size_t n = row - 1; n <= row + 1; ++n) {
+        // Vertices have at least what the squares around them have.
+        largest = std::max(largest, squares.of(cell_at(n, 0)));
+      }
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+Importance separation_angles(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor,
+                             const Context& context) {
+  const Measure measure(governors, complex, floor, context);
+  const CellLattice& lattice = complex.lattice();
+  const auto layers = static_cast<std::size_t>(lattice.size()[2]);
+  std::vector<Entries> found(layers);
+  std::vector<std::vector<std::uint32_t>> uneven(layers);
+  const auto for_each_layer = [&](std::string_view phase, const auto& use) {
+    parallel_for(context, layers, 1, phase, [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        if (k > 0 && k + 1 < layers) use(k);
+      }
+    });
+  };
+  for_each_layer("separation angles of squares", [&](std::size_t k) {
+    measure.for_each_uneven_node(static_cast<std::int64_t>(k), [&](std::size_t node, const GovernorsAround& around) {
+      uneven[k].push_back(static_cast<std::uint32_t>(node));
+      for (const CellAxes axes : {3U, 5U, 6U}) {
+        if (!complex.contains(cell_at(node, axes))) continue;
+        const double angle = measure.between(around[axes], around[7]);
+        if (angle > 0) found[k].push_back({cell_at(node, axes), static_cast<float>(angle)});
+      }
+    });
+  });
+  found.push_back(angles_of_extra(measure, complex.structure(), context));
+  const Importance squares(complex.structure(), joined(found));
+  constexpr double nearly_opposite = 170;  // degrees, on axes of round things
+  constexpr double wide = 100;             // degrees between two of few voxels, where others may be opposite
+  for_each_layer("separation angles of edges", [&](std::size_t k) {
+    for (const std::uint32_t node : uneven[k]) {
+      const double known = largest_around(squares, lattice, node);
+      const double least = std::max(std::min(known + floor.clearly_more, nearly_opposite), floor.angle);
+      if (known >= least) continue;
+      const GovernorsAround around = governors.around(lattice.place(node));
+      for (const CellAxes axes : {0U, 1U, 2U, 4U}) {
+        if (!complex.contains(cell_at(node, axes)) || Measure::coarse(around, axes) < std::min(least, wide)) continue;
+        const double angle = measure.fitted(around, axes);
+        if (angle >= least) found[k].push_back({cell_at(node, axes), static_cast<float>(angle)});
+      }
+    }
+  });
+  return {complex.structure(), joined(found)};
+}
+
+}  // namespace blum

@@ -1,0 +1,588 @@
+#include "medial_axis/shape/shape_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "medial_axis/shape/fill_polygon.hpp"
+#include "medial_axis/shape/near_extra.hpp"
+#include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t cells_per_range = 512;
+
+/// The shape of a cell that is more than its corners tell: places from `own` on are those of its own vertices.
+struct Shape {
+  std::vector<std::uint32_t> items;
+  std::vector<AxisVertex> own;
+  bool leaves = false;      ///< the solid, somewhere
+  bool needs_more = false;  ///< with more effort, it may not
+};
+
+AxisVertex vertex_at(const Stop& stop) {
+  return vertex_of_one_wall(stop.at, stop.nearest);
+}
+
+class Shaper {
+ public:
+  static constexpr std::uint32_t first_own = 0xf0000000U;
+
+  /// @param needs_more  null: with full effort; else with little, see SolidPaths.
+  Shaper(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const NearExtra& near,
+         bool* needs_more)
+      : piece_(piece),
+        corners_(corners),
+        governors_(witnesses.governors()),
+        witnesses_(witnesses),
+        near_(near),
+        needs_more_(needs_more),
+        paths_(governors_.surface(), needs_more) {}
+
+  /// The chain of an edge that would leave the solid, or that has a twin; nullopt where it is a segment.
+  [[nodiscard]] std::optional<Shape> bent(std::uint32_t c) {
+    const auto ends = corners_.of_cells()[c];
+    const Stop a = stop_at(ends[0]);
+    const Stop b = stop_at(ends[1]);
+    const bool has_twin = near_.has_twin(c);
+    std::optional<std::vector<Stop>> between;
+    if (near_.is_near(ends[0]) || near_.is_near(ends[1])) {
+      prepare(ends, piece_.vertices);
+      between = through_component(c, has_twin);
+    }
+    if (between && between->empty() && !has_twin) return std::nullopt;
+    if (!between && !has_twin) {
+      if (paths_.is_straight(a, b) && !has_given_up()) return std::nullopt;
+      between = paths_.pushed(a, b);
+    }
+    if (!between) between = through_middle(c, a, b);
+    if (has_twin && (!between || between->empty())) between = {middle_of(a, b)};
+    Shape shape;
+    shape.leaves = !between || has_given_up();
+    if (!between) between.emplace();
+    shape.items.push_back(ends[0]);
+    add_own(shape, *between);
+    shape.items.push_back(ends[1]);
+    return shape;
+  }
+
+  /// The triangles of a polygon; nullopt where those of its corners alone, as triangles_of() has them, will do.
+  /// @param outline  its border, in a circle.
+  [[nodiscard]] std::optional<Shape> filled(std::uint32_t c, const std::vector<std::uint32_t>& outline,
+                                            std::span<const AxisVertex> vertices) {
+    if (touches_extra(c)) {
+      prepare(outline, vertices);
+      return fan(c, outline, vertices);
+    }
+    const auto stop = [&](std::uint32_t v) { return stop_of(vertices[v]); };
+    const bool is_near_extra =
+        std::any_of(outline.begin(), outline.end(), [&](std::uint32_t v) { return near_.is_near(v); });
+    if (outline.size() == 4) {
+      const auto halves = triangles_of(outline, vertices);
+      const auto& [p, q, r] = halves[0];
+      const auto is_open = [&](const auto& t) { return paths_.is_open(stop(t[0]), stop(t[1]), stop(t[2])); };
+      if (paths_.is_straight(stop(p), stop(r)) && (!is_near_extra || (is_open(halves[0]) && is_open(halves[1])))) {
+        return std::nullopt;
+      }
+    }
+    // The polygon on the other side of a bent edge would cut off the same corners of it.
+    if (outline.size() == corners_.of_cells()[c].size()) {
+      FillBudget budget;
+      PolygonFiller filler(paths_, stop, {}, budget);
+      if (filler.fill(outline, {}) && (filler.is_all_open() || !is_near_extra)) return Shape{filler.triangles(), {}};
+    }
+    return fan(c, outline, vertices);
+  }
+
+ private:
+  /// Whether more effort might have found a way that was looked for.
+  [[nodiscard]] bool has_given_up() const { return needs_more_ != nullptr && *needs_more_; }
+
+  /// Prepares for questions about the components of vertices, and what is between them.
+  void prepare(std::span<const std::uint32_t> places, std::span<const AxisVertex> vertices) {
+    Box3 box;
+    for (const std::uint32_t place : places) {
+      box.extend(vertices[place].position);
+      const auto cells = corners_.vertex_cells();
+      if (place < cells.size()) box.extend(box_of_vertex(governors_, piece_.structure, cells[place]));
+    }
+    paths_.prepare(box);
+  }
+
+  /// Whether a polygon is extra, or has such a corner: then others may have the same corners.
+  [[nodiscard]] bool touches_extra(std::uint32_t c) const {
+    if (piece_.structure.is_extra(piece_.cells[c].cell)) return true;
+    const auto corners = corners_.of_cells()[c];
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](std::uint32_t v) { return piece_.structure.is_extra(corners_.vertex_cells()[v]); });
+  }
+
+  [[nodiscard]] Stop middle_of(const Stop& a, const Stop& b) const {
+    return paths_.inside_near(0.5 * (a.at + b.at), a);
+  }
+
+  [[nodiscard]] Stop stop_at(std::uint32_t place) const { return stop_of(piece_.vertices[place]); }
+
+  static void append(const std::vector<std::uint32_t>& triangles, std::vector<std::uint32_t>& items) {
+    items.insert(items.end(), triangles.begin(), triangles.end());
+  }
+
+  static void add_own(Shape& shape, std::span<const Stop> stops) {
+    for (const Stop& stop : stops) {
+      shape.items.push_back(first_own + static_cast<std::uint32_t>(shape.own.size()));
+      shape.own.push_back(vertex_at(stop));
+    }
+  }
+
+  /// A path from end to end of an edge over a point of the component that it stands for.
+  [[nodiscard]] std::optional<std::vector<Stop>> through_middle(std::uint32_t c, const Stop& a, const Stop& b) const {
+    const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
+    if (!middle) return std::nullopt;
+    const auto ends = corners_.of_cells()[c];
+    std::optional<std::vector<Stop>> path = paths_.path(a, *middle, landmarks(ends[0]));
+    const std::optional<std::vector<Stop>> rest = paths_.path(*middle, b, landmarks(ends[1]));
+    if (!path || !rest) return std::nullopt;
+    path->push_back(*middle);
+    path->insert(path->end(), rest->begin(), rest->end());
+    return path;
+  }
+  /// The stops between the ends of an edge on a way that can be pulled, in the solid, over the one from component to
+  /// component that the edge stands for: of a straight one, none. nullopt where no way was found.
+  /// @param stops_there  whether a stop in the component of the edge stays in any case.
+  [[nodiscard]] std::optional<std::vector<Stop>> through_component(std::uint32_t c, bool stops_there) const {
+    const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
+    if (!middle) return std::nullopt;
+    const auto ends = corners_.of_cells()[c];
+    auto path = from_component(*middle, ends[0]);
+    const auto rest = from_component(*middle, ends[1]);
+    if (!path || !rest) return std::nullopt;
+    std::reverse(path->begin(), path->end());
+    const std::size_t at_middle = path->size() - 1;
+    path->insert(path->end(), rest->begin() + 1, rest->end());
+    if (!stops_there || at_middle == 0 || at_middle + 1 == path->size())
+      path = paths_.pulled_over_open(std::move(*path));
+    if (path->size() < 2) return std::vector<Stop>{};
+    return std::vector<Stop>(path->begin() + 1, path->end() - 1);
+  }
+
+  /// A way from a point of the component of an edge or polygon to a vertex of it, both included, over a point of the
+  /// vertex's component; pulled tight.
+  [[nodiscard]] std::optional<std::vector<Stop>> from_component(const Stop& start, std::uint32_t vertex) const {
+    const Stop end = stop_at(vertex);
+    std::vector<Stop> way{start};
+    if (const std::optional<Stop>& home = near_.is_near(vertex) ? near_.home(vertex) : std::nullopt) {
+      if (!add_way(way, *home, vertex)) return std::nullopt;
+    }
+    if (!add_way(way, end, vertex)) return std::nullopt;
+    return paths_.pulled_over_open(std::move(way));
+  }
+
+  /// Adds the stops to another one. @return  whether a way was found.
+  [[nodiscard]] bool add_way(std::vector<Stop>& way, const Stop& to, std::uint32_t vertex) const {
+    if (way.back().at == to.at) return true;
+    if (!paths_.is_straight(way.back(), to)) {
+      const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
+      const bool is_in_box = holds(box, way.back().at) && holds(box, to.at);
+      const SolidPaths there = is_in_box ? paths_.in(box) : paths_;
+      const std::optional<std::vector<Stop>> between = there.path(way.back(), to, landmarks(vertex));
+      if (!between) return false;
+      way.insert(way.end(), between->begin(), between->end());
+    }
+    way.push_back(to);
+    return true;
+  }
+
+  [[nodiscard]] std::vector<Stop> landmarks(std::uint32_t vertex) const {
+    return witnesses_.landmarks_of(corners_.vertex_cells()[vertex]);
+  }
+
+  /// A point of the component that a cell stands for.
+  [[nodiscard]] std::optional<Stop> home_of(Cell cell) const { return witnesses_.home_of(cell); }
+
+  /// Triangles around a vertex in the middle, the best of some.
+  [[nodiscard]] Shape fan(std::uint32_t c, const std::vector<std::uint32_t>& outline,
+                          std::span<const AxisVertex> vertices) const {
+    std::vector<Stop> corners;
+    Vec3d sum;
+    bool leaves = false;
+    for (const std::uint32_t v : outline) {
+      corners.push_back(stop_of(vertices[v]));
+      sum += corners.back().at;
+    }
+    std::vector<Stop> middles;
+    if (const auto home = home_of(piece_.cells[c].cell)) {
+      if (const auto chains = chains_from(*home, c, outline, corners))
+        return wheel(c, outline, corners, *home, *chains);
+      leaves = has_given_up();
+      middles.push_back(*home);
+    }
+    const Vec3d mean = sum / static_cast<double>(outline.size());
+    if (const auto at = paths_.stop_at(mean, {corners[0].nearest.point, corners[0].nearest.element, 7})) {
+      middles.push_back(*at);
+    }
+    std::size_t best = 0;
+    std::size_t most = 0;
+    const auto is_good = [&] { return most == corners.size(); };
+    const auto look_from = [&](std::size_t m) {
+      const auto straight = static_cast<std::size_t>(std::count_if(
+          corners.begin(), corners.end(), [&](const Stop& corner) { return paths_.is_straight(middles[m], corner); }));
+      if (straight > most) {
+        most = straight;
+        best = m;
+      }
+    };
+    for (std::size_t m = 0; m < middles.size() && !is_good(); ++m) look_from(m);
+    if (!is_good()) {
+      const std::size_t first = middles.size();
+      const std::vector<Stop> others = around(c);
+      middles.insert(middles.end(), others.begin(), others.end());
+      constexpr std::size_t most_tries = 8;
+      for (std::size_t m = first; m < std::min(middles.size(), first + most_tries) && !is_good(); ++m) look_from(m);
+    }
+    if (middles.empty()) middles.push_back(paths_.inside_near(mean, corners[0]));
+    const Chains chains = any_chains(c, middles[best], corners, leaves);
+    Shape shape = wheel(c, outline, corners, middles[best], chains);
+    shape.leaves = shape.leaves || leaves;
+    return shape;
+  }
+
+  /// The stops between a middle and places of an outline, by place.
+  using Chains = std::vector<std::pair<std::size_t, std::vector<Stop>>>;
+
+  /// Those to the corners of a polygon, and to what is between them, from a point of its component, through the
+  /// components of the corners; nullopt where one to a corner was not found.
+  /// @param stops  at the outline.
+  [[nodiscard]] std::optional<Chains> chains_from(const Stop& home, std::uint32_t c,
+                                                  const std::vector<std::uint32_t>& outline,
+                                                  std::span<const Stop> stops) const {
+    const auto corners = corners_.of_cells()[c];
+    const auto is_corner = [&](std::uint32_t place) {
+      return std::find(corners.begin(), corners.end(), place) != corners.end();
+    };
+    const std::size_t size = outline.size();
+    Chains chains;
+    for (std::size_t k = 0; k < size; ++k) {
+      std::optional<std::vector<Stop>> way;
+      if (is_corner(outline[k])) {
+        way = from_component(home, outline[k]);
+        if (!way) return std::nullopt;
+      } else {
+        std::size_t before = k;
+        std::size_t after = k;
+        while (!is_corner(outline[before])) before = before == 0 ? size - 1 : before - 1;
+        while (!is_corner(outline[after])) after = after + 1 == size ? 0 : after + 1;
+        for (const std::size_t end : {before, after}) {
+          if (!way) way = within_component(home, stops[k], outline[end]);
+        }
+        if (!way) continue;
+      }
+      const auto last = way->size() > 1 ? way->end() - 1 : way->end();
+      chains.emplace_back(k, std::vector<Stop>(way->begin() + 1, last));
+    }
+    return chains;
+  }
+
+  /// A way between two points of the component of a vertex in the box that it lies in.
+  [[nodiscard]] std::optional<std::vector<Stop>> within_component(const Stop& from, const Stop& to,
+                                                                  std::uint32_t vertex) const {
+    const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
+    if (!holds(box, from.at) || !holds(box, to.at)) return std::nullopt;
+    std::vector<Stop> way{from};
+    if (!add_way(way, to, vertex)) return std::nullopt;
+    return paths_.pulled_over_open(std::move(way));
+  }
+
+  /// Those to places of an outline that a middle can be joined to, whatever the solid has between them.
+  /// @param leaves  set where one of them leaves the solid.
+  [[nodiscard]] Chains any_chains(std::uint32_t c, const Stop& middle, std::span<const Stop> corners,
+                                  bool& leaves) const {
+    Chains chains;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (auto between = paths_.pushed(middle, corners[k])) chains.emplace_back(k, std::move(*between));
+    }
+    if (chains.size() < 2) {
+      const std::vector<Stop> landmarks = around(c);
+      chains.clear();
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        auto between = paths_.path(middle, corners[k], landmarks);
+        leaves = leaves || !between;
+        chains.emplace_back(k, between ? std::move(*between) : std::vector<Stop>{});
+      }
+    }
+    return chains;
+  }
+
+  /// Triangles around a middle, between chains to the corners that it is joined to.
+  [[nodiscard]] Shape wheel(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
+                            const Stop& middle, const Chains& chains) const {
+    Shape shape;
+    shape.own.push_back(vertex_at(middle));
+    std::vector<std::vector<std::uint32_t>> spokes;
+    for (const auto& [corner, between] : chains) {
+      std::vector<std::uint32_t>& spoke = spokes.emplace_back(1, first_own);
+      for (const Stop& stop : between) {
+        spoke.push_back(first_own + static_cast<std::uint32_t>(shape.own.size()));
+        shape.own.push_back(vertex_at(stop));
+      }
+    }
+    const auto stop = [&](std::uint32_t v) {
+      if (v >= first_own) return stop_of(shape.own[v - first_own]);
+      return corners[static_cast<std::size_t>(std::find(outline.begin(), outline.end(), v) - outline.begin())];
+    };
+    const auto add = [&](const Stop& at) {
+      shape.own.push_back(vertex_at(at));
+      return first_own + static_cast<std::uint32_t>(shape.own.size() - 1);
+    };
+    FillBudget budget;
+    FillBudget second_budget{24, 4};
+    // A sector from one spoke along the border to the next. Its sides belong to others, too.
+    for (std::size_t n = 0; n < spokes.size(); ++n) {
+      const std::size_t next = (n + 1) % spokes.size();
+      std::vector<std::uint32_t> border;
+      for (std::size_t k = chains[n].first;; k = (k + 1) % outline.size()) {
+        border.push_back(outline[k]);
+        if (k == chains[next].first) break;
+      }
+      std::vector<std::uint32_t> sector = spokes[n];
+      sector.insert(sector.end(), border.begin(), border.end());
+      sector.insert(sector.end(), spokes[next].rbegin(), spokes[next].rend() - 1);
+      std::vector<std::vector<std::uint32_t>> sides{spokes[n], spokes[next], border};
+      sides[0].push_back(border.front());
+      sides[1].push_back(border.back());
+      // Beyond these boxes, triangles may be on the other side of a void: it is second choice.
+      const SolidPaths there = paths_.in(box_around(c, outline, chains[n].first, chains[next].first));
+      const std::size_t own = shape.own.size();
+      PolygonFiller filler(there, stop, add, budget);
+      const bool stays = filler.fill(sector, sides);
+      if (stays && filler.is_all_open()) {
+        append(filler.triangles(), shape.items);
+        continue;
+      }
+      const std::vector<AxisVertex> first(shape.own.begin() + static_cast<std::ptrdiff_t>(own), shape.own.end());
+      shape.own.resize(own);
+      PolygonFiller anywhere(paths_, stop, add, second_budget);
+      if (anywhere.fill(sector, sides) && (anywhere.is_all_open() || !stays)) {
+        append(anywhere.triangles(), shape.items);
+        continue;
+      }
+      shape.own.resize(own);
+      shape.own.insert(shape.own.end(), first.begin(), first.end());
+      append(filler.triangles(), shape.items);
+      shape.leaves = shape.leaves || !stays;
+    }
+    return shape;
+  }
+
+  /// A box around those of the vertices at a part of the outline of a polygon, and at the edges that it begins and ends
+  /// on.
+  [[nodiscard]] Box3 box_around(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::size_t first,
+                                std::size_t last) const {
+    const auto corners = corners_.of_cells()[c];
+    const auto is_corner = [&](std::size_t k) {
+      return std::find(corners.begin(), corners.end(), outline[k]) != corners.end();
+    };
+    const std::size_t size = outline.size();
+    while (!is_corner(first)) first = first == 0 ? size - 1 : first - 1;
+    while (!is_corner(last)) last = (last + 1) % size;
+    Box3 box;
+    for (std::size_t k = first;; k = (k + 1) % size) {
+      if (is_corner(k)) {
+        box.extend(box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[outline[k]]));
+        box.extend(piece_.vertices[outline[k]].position);
+      }
+      if (k == last) return box;
+    }
+  }
+
+  /// The landmarks of all corners of a polygon.
+  [[nodiscard]] std::vector<Stop> around(std::uint32_t c) const {
+    std::vector<Stop> all;
+    for (const std::uint32_t corner : corners_.of_cells()[c]) {
+      const std::vector<Stop> own = landmarks(corner);
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    return all;
+  }
+
+  const AxisPiece& piece_;
+  const AxisCorners& corners_;
+  const GovernorField& governors_;
+  const Witnesses& witnesses_;
+  const NearExtra& near_;
+  bool* needs_more_;
+  SolidPaths paths_;
+};
+
+/// Shapes of cells, where they are more than their corners.
+using Shapes = std::vector<std::pair<std::uint32_t, Shape>>;
+
+/// Makes the shapes of the cells of a dimension.
+/// @param make  of an edge or polygon, with little effort; or, where the second argument is null, with full.
+class ShapeMaker {
+ public:
+  using Make = std::function<std::optional<Shape>(std::uint32_t, bool*)>;
+
+  ShapeMaker(const AxisPiece& piece, const Context& context) : piece_(piece), context_(context) {}
+
+  /// By rising cell: with full effort where little does not do. Not where parts leave the solid in many places: there
+  /// the model is to be finer.
+  [[nodiscard]] Shapes of(int dimension, const Make& make) const {
+    constexpr std::ptrdiff_t most_leaving = 16;
+    Shapes shapes = quick(dimension, make);
+    const auto leaves = [](const auto& entry) { return entry.second.leaves; };
+    std::vector<std::size_t> poor;
+    if (std::count_if(shapes.begin(), shapes.end(), leaves) <= most_leaving) {
+      for (std::size_t k = 0; k < shapes.size(); ++k) {
+        if (shapes[k].second.needs_more) poor.push_back(k);
+      }
+    }
+    parallel_for(context_, poor.size(), 1, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        auto& [cell, shape] = shapes[poor[k]];
+        shape = make(cell, nullptr).value_or(Shape{});
+      }
+    });
+    std::erase_if(shapes, [](const auto& entry) { return entry.second.items.empty(); });
+    return shapes;
+  }
+
+ private:
+  [[nodiscard]] Shapes quick(int dimension, const Make& make) const {
+    std::vector<Shapes> found(piece_.cells.size() / cells_per_range + 1);
+    const char* phase = dimension == 1 ? "edges" : "triangles";
+    parallel_for(context_, piece_.cells.size(), cells_per_range, phase, [&](const WorkRange& range) {
+      for (std::size_t c = range.begin; c < range.end; ++c) {
+        if (piece_.cells[c].dimension != dimension) continue;
+        bool needs_more = false;
+        std::optional<Shape> shape = make(static_cast<std::uint32_t>(c), &needs_more);
+        if (!shape && needs_more) shape.emplace();
+        if (!shape) continue;
+        shape->needs_more = needs_more;
+        found[range.begin / cells_per_range].emplace_back(static_cast<std::uint32_t>(c), std::move(*shape));
+      }
+    });
+    Shapes all;
+    for (Shapes& part : found) {
+      for (auto& entry : part) all.push_back(std::move(entry));
+    }
+    return all;
+  }
+
+  const AxisPiece& piece_;
+  const Context& context_;
+};
+
+/// Makes the vertices of shapes those of the piece.
+void take_vertices(AxisPiece& piece, Shapes& shapes) {
+  for (auto& [cell, shape] : shapes) {
+    const auto first = static_cast<std::uint32_t>(piece.vertices.size());
+    for (std::uint32_t& item : shape.items) {
+      if (item >= Shaper::first_own) item = first + (item - Shaper::first_own);
+    }
+    piece.vertices.insert(piece.vertices.end(), shape.own.begin(), shape.own.end());
+  }
+}
+
+/// The shape of each cell, or its corners.
+class Outlines {
+ public:
+  Outlines(const AxisCorners& corners, const Shapes& bent) : corners_(corners), bent_(bent) {}
+
+  [[nodiscard]] const Shape* bent(std::uint32_t edge) const {
+    const auto at = std::lower_bound(bent_.begin(), bent_.end(), edge,
+                                     [](const auto& entry, std::uint32_t value) { return entry.first < value; });
+    return at != bent_.end() && at->first == edge ? &at->second : nullptr;
+  }
+  /// The border of a polygon, in a circle.
+  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t polygon) const {
+    const auto corners = corners_.of_cells()[polygon];
+    std::vector<std::uint32_t> outline;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Shape* shape = bent(corners_.sides()[polygon][k]);
+      if (shape == nullptr) {
+        outline.push_back(corners[k]);
+      } else if (shape->items.front() == corners[k]) {
+        outline.insert(outline.end(), shape->items.begin(), shape->items.end() - 1);
+      } else {
+        outline.insert(outline.end(), shape->items.rbegin(), shape->items.rend() - 1);
+      }
+    }
+    return outline;
+  }
+
+ private:
+  const AxisCorners& corners_;
+  const Shapes& bent_;
+};
+
+/// Boxes of the vertices of the cells whose shapes leave the solid, each once; less than their sides, so that boxes
+/// beside them have no inner points of them.
+std::vector<Box3> boxes_where_left(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors,
+                                   const std::array<const Shapes*, 2>& shapes) {
+  constexpr double less = 0.05;
+  std::vector<std::uint32_t> vertices;
+  for (const Shapes* some : shapes) {
+    for (const auto& [cell, shape] : *some) {
+      if (!shape.leaves) continue;
+      const auto own = corners.of_cells()[cell];
+      vertices.insert(vertices.end(), own.begin(), own.end());
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<Box3> boxes;
+  for (const std::uint32_t v : vertices) {
+    const Box3 box = box_of_vertex(governors, piece.structure, corners.vertex_cells()[v]);
+    boxes.push_back({box.lower + box.size() * less, box.upper - box.size() * less});
+  }
+  return boxes;
+}
+
+}  // namespace
+
+void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context) {
+  const GovernorField& governors = witnesses.governors();
+  Shapes bent;
+  Shapes filled;
+  const Outlines outlines(corners, bent);
+  if (governors.solid().extra != nullptr) {
+    const NearExtra near(piece, corners, witnesses, context);
+    const ShapeMaker maker(piece, context);
+    const auto shaper = [&](bool* needs_more) { return Shaper(piece, corners, witnesses, near, needs_more); };
+    bent = maker.of(1, [&](std::uint32_t c, bool* needs_more) { return shaper(needs_more).bent(c); });
+    take_vertices(piece, bent);
+    filled = maker.of(2, [&](std::uint32_t c, bool* needs_more) {
+      return shaper(needs_more).filled(c, outlines.of(c), piece.vertices);
+    });
+    take_vertices(piece, filled);
+  }
+  piece.leaving = boxes_where_left(piece, corners, governors, {&bent, &filled});
+  std::vector<std::size_t> first{0};
+  std::vector<std::uint32_t> items;
+  auto next = filled.begin();
+  for (std::uint32_t c = 0; c < piece.cells.size(); ++c) {
+    const Shape* shape = piece.cells[c].dimension == 1 ? outlines.bent(c) : nullptr;
+    if (next != filled.end() && next->first == c) shape = &(next++)->second;
+    const auto own = corners.of_cells()[c];
+    if (shape != nullptr) {
+      items.insert(items.end(), shape->items.begin(), shape->items.end());
+    } else if (piece.cells[c].dimension == 2) {
+      for (const auto& t : triangles_of(own, piece.vertices)) items.insert(items.end(), t.begin(), t.end());
+    } else {
+      items.insert(items.end(), own.begin(), own.end());
+    }
+    first.push_back(items.size());
+  }
+  piece.shapes = IndexRows(std::move(first), std::move(items));
+  piece.sides = corners.sides();
+}
+
+}  // namespace blum

@@ -1,0 +1,59 @@
+// Blum: points of a solid that its cells stand for. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "medial_axis/cells/cell_complex.hpp"
+#include "medial_axis/surface/governors.hpp"
+#include "medial_axis/surface/solid_paths.hpp"
+
+namespace blum {
+
+/// Calls use(place) for the voxels around a cell of the lattice that are inside.
+template <class Use>
+void for_each_voxel_inside(const GovernorField& governors, const CellLattice& lattice, Cell cell, const Use& use) {
+  lattice.for_each_cube_around(cell, [&](const std::array<std::int64_t, 3>& at) {
+    if (governors.solid().voxels.contains(at[0], at[1], at[2])) use(at);
+  });
+}
+
+/// What is known of the components of the solid that the cells of a model stand for: points in them. Those of extra
+/// cells are kept once they are looked up, as each is asked for by all cells around. May be asked from many threads.
+class Witnesses {
+ public:
+  /// Cost: 56 bytes for each extra cell.
+  Witnesses(const GovernorField& governors, const CellStructure& structure);
+
+  /// A point of the component of a cell, as deep as one known; nullopt where none is known that is not on the surface.
+  [[nodiscard]] std::optional<Stop> home_of(Cell cell) const;
+  /// The deepest voxel around a cell of the lattice.
+  [[nodiscard]] std::optional<Stop> deepest_voxel(Cell cell) const;
+  /// All points known of the component of a vertex, the deepest first.
+  [[nodiscard]] std::vector<Stop> landmarks_of(Cell vertex) const;
+
+  [[nodiscard]] const GovernorField& governors() const { return governors_; }
+  [[nodiscard]] const CellStructure& structure() const { return structure_; }
+
+ private:
+  enum class State : std::uint8_t { unknown, being_written, known };
+  /// The closest point to the witness of an extra cell, if that is inside.
+  struct Known {
+    std::atomic<State> state{State::unknown};
+    std::optional<NearestPoint> nearest;
+  };
+
+  [[nodiscard]] std::optional<Stop> witness_of(Cell extra) const;
+  template <class Use>
+  void for_each_witness(Cell cell, const Use& use) const;
+
+  const GovernorField& governors_;
+  const CellStructure& structure_;
+  SolidPaths paths_;
+  mutable std::vector<Known> known_;
+};
+
+}  // namespace blum

@@ -1,0 +1,75 @@
+// Blum: what the voxels of a solid are closest to. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "medial_axis/surface/surface.hpp"
+#include "medial_axis/cells/voxel_solid.hpp"
+
+namespace blum {
+
+inline constexpr double degrees_per_radian = 180 / std::numbers::pi;
+
+/// What a voxel is closest to.
+struct Governor {
+  Vec3d centre;
+  Footprint foot;
+  Vec3d direction;  ///< outwards, of unit length; zero on the surface
+  bool is_inside = false;
+};
+
+/// The angle at x between two points, in degrees.
+inline double angle_at(const Vec3d& x, const Vec3d& p, const Vec3d& q) {
+  const Vec3d a = p - x;
+  const Vec3d b = q - x;
+  return std::atan2(length(cross(a, b)), dot(a, b)) * degrees_per_radian;
+}
+
+/// The voxels around a lattice node: bit 0 of the index tells the side along x, bit 1 along y, bit 2 along z.
+using GovernorsAround = std::array<Governor, 8>;
+
+class GovernorField {
+ public:
+  GovernorField(const VoxelSolid& solid, const Surface& surface) : solid_(solid), surface_(surface) {}
+
+  [[nodiscard]] Governor at(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    Governor g;
+    const std::size_t voxel = solid_.grid.index(i, j, k);
+    g.centre = solid_.grid.position(i, j, k);
+    g.is_inside = solid_.depth[voxel] > 0;
+    g.foot = surface_.footprint(solid_.site[voxel], g.centre, g.is_inside);
+    const Vec3d out = g.is_inside ? g.foot.point - g.centre : g.centre - g.foot.point;
+    const double size = length(out);
+    if (size > 0) g.direction = out / size;
+    return g;
+  }
+  [[nodiscard]] GovernorsAround around(const std::array<std::int64_t, 3>& node) const {
+    GovernorsAround out;
+    for (std::int64_t v = 0; v < 8; ++v) {
+      out[static_cast<std::size_t>(v)] = at(node[0] - 1 + (v & 1), node[1] - 1 + (v >> 1 & 1), node[2] - 1 + (v >> 2));
+    }
+    return out;
+  }
+
+  [[nodiscard]] const VoxelSolid& solid() const { return solid_; }
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// The longest side of a voxel, mesh units.
+  [[nodiscard]] double longest_voxel() const {
+    const Vec3d& h = solid_.grid.spacing;
+    return std::max({h.x, h.y, h.z});
+  }
+  /// The smallest side of a voxel, mesh units.
+  [[nodiscard]] double voxel() const {
+    const Vec3d& h = solid_.grid.spacing;
+    return std::min({h.x, h.y, h.z});
+  }
+
+ private:
+  const VoxelSolid& solid_;
+  const Surface& surface_;
+};
+
+}  // namespace blum

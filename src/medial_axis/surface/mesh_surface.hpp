@@ -1,0 +1,60 @@
+// Blum: a triangle mesh as the surface of a solid. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/pseudonormals.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "medial_axis/surface/surface.hpp"
+
+namespace blum {
+
+/// Elements are triangles. The mesh and the table must outlive it.
+class MeshSurface final : public Surface {
+ public:
+  /// @param bounds_solid  whether the mesh is a closed surface that faces outwards; else no point is known to be
+  /// inside.
+  MeshSurface(const MeshView& mesh, const SiteTable& sites, bool bounds_solid, const Context& context);
+
+  [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
+  [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
+  [[nodiscard]] NearestPoint nearest(const Vec3d& query, const Footprint& near) const override;
+  [[nodiscard]] bool is_inside(const Vec3d& query, const NearestPoint& nearest) const override {
+    return bounds_solid_ && nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
+  }
+  [[nodiscard]] std::optional<SurfacePart> part_in(const Box3& box) const override;
+  [[nodiscard]] std::optional<double> first_crossing(const Vec3d& from, const Vec3d& to,
+                                                     const SurfacePart* part) const override;
+  [[nodiscard]] bool crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfacePart* part) const override;
+  [[nodiscard]] std::optional<std::vector<SurfacePoint>> way_over(std::uint32_t from, std::uint32_t to,
+                                                                  const Box3& within) const override;
+  [[nodiscard]] std::vector<SurfacePoint> points_in(const Box3& box) const override;
+  [[nodiscard]] std::span<const Vec3d> voids() const override { return voids_; }
+  [[nodiscard]] Vec3d outwards(std::uint32_t element) const override;
+  [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
+
+ private:
+  template <class Visit>
+  void for_each_triangle_at(std::uint32_t a, std::uint32_t b, const Visit& visit) const;
+  template <class Visit>
+  void for_each_neighbour(std::uint32_t triangle, const Visit& visit) const;
+  [[nodiscard]] Footprint closest_on(std::uint32_t triangle, const Vec3d& query) const;
+
+  MeshView mesh_;
+  const SiteTable& sites_;
+  bool bounds_solid_;
+  Bvh bvh_;
+  double size_ = 0;  ///< diagonal of the bounds
+  Pseudonormals normals_;
+  std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_
+  std::vector<std::uint32_t> triangles_;  ///< around each vertex
+  std::vector<Vec3d> voids_;
+};
+
+}  // namespace blum
