@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "blum/axis/collapse_axis.hpp"
 #include "blum/core/random.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/axis/collapse_axis.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "blum/io/medial_io.hpp"
 #include "blum/axis/axis_graph.hpp"
+#include "blum/io/medial_io.hpp"
 #include "summary.hpp"
 
 namespace CLI {

@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "axis_graph_file.hpp"
+#include "blum/axis/axis_graph.hpp"
+#include "blum/axis/collapse_axis.hpp"
+#include "blum/axis/decimate.hpp"
 #include "blum/io/certified_axis.hpp"
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/axis_forms.hpp"
-#include "blum/axis/axis_graph.hpp"
-#include "blum/axis/collapse_axis.hpp"
-#include "blum/axis/decimate.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "medial_report.hpp"

@@ -9,14 +9,22 @@
 #include <tuple>
 #include <utility>
 
+#include "axis/axis_parts.hpp"
+#include "axis/surface_patches.hpp"
+#include "blum/axis/check_angle.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/sort_unique.hpp"
-#include "axis/axis_parts.hpp"
-#include "blum/axis/check_angle.hpp"
-#include "axis/surface_patches.hpp"
 
 namespace blum {
 namespace {
+
+using detail::add_quantiles;
+using detail::add_sheets;
+using detail::AxisParts;
+using detail::check_angle;
+using detail::EdgePart;
+using detail::LinearPart;
+using detail::SurfacePatches;
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 

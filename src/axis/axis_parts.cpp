@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// The least value up to which a share of the weight lies, by halving; parts that no longer matter are left out.
@@ -145,4 +145,4 @@ std::pair<bool, JunctionKind> AxisParts::junction(std::uint32_t vertex) const {
   return {true, a.seams == 1 && a.curves == 0 ? JunctionKind::seam_end : JunctionKind::junction};
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -1,21 +1,21 @@
 // Blum: what the edges and vertices of a medial axis are by their triangles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
-#include <algorithm>
-#include <array>
 
+#include "blum/axis/axis_graph.hpp"
 #include "blum/complex/complex.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/union_find.hpp"
-#include "blum/axis/axis_graph.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A number that is linear over an edge or a triangle.
 struct LinearPart {
@@ -93,4 +93,4 @@ class AxisParts {
 void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge,
                 std::optional<double> homotopy_angle, AxisGraph& graph);
 
-}  // namespace blum
+}  // namespace blum::detail

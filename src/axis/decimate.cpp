@@ -8,13 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "blum/axis/sheet_decimator.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
-#include "blum/axis/sheet_decimator.hpp"
 
 namespace blum {
 namespace {
+
+using detail::DecimatorInput;
+using detail::SheetDecimator;
 
 /// What goes first: vertices that move sheets by these parts of the tolerance.
 constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 0.8};

@@ -10,16 +10,30 @@
 #include <utility>
 #include <vector>
 
+#include "axis/rim_reach.hpp"
+#include "axis/rims.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/union_find.hpp"
-#include "axis/rim_reach.hpp"
-#include "axis/rims.hpp"
 
 namespace blum {
 namespace {
+
+using detail::fill_strip;
+using detail::find_rims;
+using detail::is_strip_inside;
+using detail::RimCorner;
+using detail::RimEdge;
+using detail::RimEnd;
+using detail::RimObstacles;
+using detail::RimReach;
+using detail::Rims;
+using detail::RimStart;
+using detail::RimTarget;
+using detail::SearchMesh;
+using detail::StripOutline;
 
 constexpr std::size_t rims_per_range = 64;
 /// New vertices that are closer to each other than this part of the radius are one.

@@ -6,7 +6,7 @@
 
 #include "blum/core/inline_list.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// The cosine that a triangle may turn by at most: 75 degrees.
@@ -152,4 +152,4 @@ std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const Axis
   return out.by < bound.by ? out : bound;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -8,7 +8,7 @@
 
 #include "blum/core/vec3.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A point of an axis with its radius.
 struct AxisPoint {
@@ -40,4 +40,4 @@ struct Deviation {
 /// The same of a point of a chain, which goes: the segment between its neighbours is left.
 [[nodiscard]] Deviation deviation(const AxisPoint& point, const AxisPoint& a, const AxisPoint& b);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -2,21 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <span>
-#include <utility>
-#include <vector>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
+#include "blum/complex/complex.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/union_find.hpp"
-#include "blum/complex/complex.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// Two triangles that share an edge with no other.
@@ -263,4 +263,4 @@ void label_sheets(Complex& axis, const Incidence& incidence) {
   find_vertex_roles(axis);
 }
 
-}  // namespace blum
+}  // namespace blum::detail

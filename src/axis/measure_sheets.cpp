@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "blum/core/sort_unique.hpp"
 #include "axis/axis_parts.hpp"
+#include "blum/core/sort_unique.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr double wall_angle = 150;  ///< degrees: walls that see each other at this or more face each other
@@ -149,4 +149,4 @@ void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_o
   SheetMeasurer(parts, seam_of_edge, homotopy_angle, graph).measure();
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -13,7 +13,7 @@
 
 #include "blum/complex/medial_columns.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// What has at least this part of the largest area is a good part. Parts of symmetrical sheets are as large, or twice
@@ -172,4 +172,4 @@ void order_sheets_as(Complex& axis, std::span<const std::int32_t> before) {
   renumber(axis, sheets);
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -6,7 +6,7 @@
 
 #include "axis/surface_patches.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// Degrees by which edges in flat and in smooth parts bend at most.
@@ -19,24 +19,24 @@ constexpr double least_part = 0.00437;
 constexpr double apart = 0.0937;
 
 /// The smallest face of the input in each patch.
-std::vector<std::uint32_t> first_faces(const SurfacePatches& patches, const SolidBody& body) {
+std::vector<std::uint32_t> first_faces(const SurfacePatches& patches, const PatchedMesh& part) {
   std::vector<std::uint32_t> first(patches.patches().size(), PatchNumbers::none);
-  for (std::uint32_t t = 0; t < body.triangle_of.size(); ++t) {
+  for (std::uint32_t t = 0; t < part.triangle_of.size(); ++t) {
     const std::uint32_t patch = patches.of_face(t);
-    if (patch != SurfacePatches::none) first[patch] = std::min(first[patch], body.triangle_of[t]);
+    if (patch != SurfacePatches::none) first[patch] = std::min(first[patch], part.triangle_of[t]);
   }
   return first;
 }
 
-/// The number of each triangle of a body: even for flat parts, odd for smooth ones.
-std::vector<std::uint32_t> numbers_of_faces(const SolidBody& body, const SiteTable& own, const Context& context) {
-  const SurfacePatches flats(body.mesh, own, flat, context);
-  const SurfacePatches rest(body.mesh, own, smooth, context);
-  const std::vector<std::uint32_t> first_of_flat = first_faces(flats, body);
-  const std::vector<std::uint32_t> first_of_rest = first_faces(rest, body);
+/// The number of each triangle of a part: even for flat parts, odd for smooth ones.
+std::vector<std::uint32_t> numbers_of_faces(const PatchedMesh& part, const SiteTable& own, const Context& context) {
+  const SurfacePatches flats(part.mesh, own, flat, context);
+  const SurfacePatches rest(part.mesh, own, smooth, context);
+  const std::vector<std::uint32_t> first_of_flat = first_faces(flats, part);
+  const std::vector<std::uint32_t> first_of_rest = first_faces(rest, part);
   double area = 0;
   for (const AxisPatch& patch : rest.patches()) area += patch.area;
-  std::vector<std::uint32_t> numbers(body.mesh.triangles.size(), PatchNumbers::none);
+  std::vector<std::uint32_t> numbers(part.mesh.triangles.size(), PatchNumbers::none);
   for (std::uint32_t t = 0; t < numbers.size(); ++t) {
     const std::uint32_t patch = flats.of_face(t);
     if (patch == SurfacePatches::none) continue;
@@ -58,8 +58,8 @@ double distance_from(const std::vector<Vec3d>& others, const Vec3d& point) {
 
 }  // namespace
 
-void PatchNumbers::add(const SolidBody& body, const SiteTable& own, const SiteTable& input, const Context& context) {
-  const std::vector<std::uint32_t> of_face = numbers_of_faces(body, own, context);
+void PatchNumbers::add(const PatchedMesh& part, const SiteTable& own, const Context& context) {
+  const std::vector<std::uint32_t> of_face = numbers_of_faces(part, own, context);
   std::vector<std::uint32_t> of_own(own.size(), none);
   std::vector<bool> is_shared(own.size(), false);
   const auto offer = [&](SiteId site, std::uint32_t number) {
@@ -70,7 +70,7 @@ void PatchNumbers::add(const SolidBody& body, const SiteTable& own, const SiteTa
   };
   for (std::uint32_t t = 0; t < of_face.size(); ++t) {
     offer(own.id({SiteKind::face, t}), of_face[t]);
-    for (const std::uint32_t v : body.mesh.triangles[t]) offer(own.id({SiteKind::vertex, v}), of_face[t]);
+    for (const std::uint32_t v : part.mesh.triangles[t]) offer(own.id({SiteKind::vertex, v}), of_face[t]);
     for (const EdgeId e : own.triangle_edges()[t]) {
       if (e != EdgeId::none()) offer(own.id({SiteKind::edge, e.value}), of_face[t]);
     }
@@ -78,14 +78,14 @@ void PatchNumbers::add(const SolidBody& body, const SiteTable& own, const SiteTa
   for (std::uint32_t site = 0; site < of_own.size(); ++site) {
     // What no triangle has may have no triangle to stand for it.
     if (of_own[site] == none) continue;
-    const std::size_t to = body.input_site(SiteId(site), own, input).value;
+    const std::size_t to = part.input_site(SiteId(site)).value;
     number_of_[to] = std::min(number_of_[to], of_own[site]);
     if (is_shared[site]) is_shared_[to] = true;
   }
-  for (std::uint32_t v = 0; v < body.vertex_of.size(); ++v) {
+  for (std::uint32_t v = 0; v < part.vertex_of.size(); ++v) {
     const bool is_used = of_own[v] != none;
-    if (is_used && body.vertex_of[v] != SolidBody::no_vertex) {
-      vertices_.emplace_back(body.vertex_of[v], body.mesh.vertices[v]);
+    if (is_used && part.vertex_of[v] != PatchedMesh::no_vertex) {
+      vertices_.emplace_back(part.vertex_of[v], part.mesh.vertices[v]);
     }
   }
 }
@@ -101,4 +101,4 @@ void PatchNumbers::choose_anchors() {
   vertices_ = {};
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -9,14 +9,18 @@
 #include <utility>
 #include <vector>
 
-#include "blum/complex/incidence.hpp"
-#include "blum/complex/medial_columns.hpp"
 #include "blum/axis/check_angle.hpp"
 #include "blum/axis/label_sheets.hpp"
 #include "blum/axis/order_sheets.hpp"
+#include "blum/complex/incidence.hpp"
+#include "blum/complex/medial_columns.hpp"
 
 namespace blum {
 namespace {
+
+using detail::check_angle;
+using detail::label_sheets;
+using detail::order_sheets_as;
 
 constexpr std::uint32_t none = 0xffffffffU;
 constexpr std::size_t steps_between_looks = std::size_t{1} << 16U;

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr double tangent_of_cone = 2.1445;  // of 65 degrees
@@ -276,4 +276,4 @@ std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) con
   return target ? std::optional(Stop{*start, *target}) : std::nullopt;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -12,7 +12,7 @@
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A triangle mesh to look up points in. It owns what it needs.
 class SearchMesh {
@@ -92,4 +92,4 @@ class RimReach {
   bool allows_open_;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -1,16 +1,16 @@
 #include "axis/rims.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <span>
-#include <cmath>
 
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/union_find.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr double least_cosine = 0.174;  // of 80 degrees
@@ -242,4 +242,4 @@ Rims find_rims(const Complex& axis, const Context& context) {
   return RimFinder(axis, context).find();
 }
 
-}  // namespace blum
+}  // namespace blum::detail

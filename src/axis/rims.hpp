@@ -4,15 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 #include <span>
+#include <vector>
 
 #include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
-#include "blum/core/vec3.hpp"
 #include "blum/core/function_ref.hpp"
+#include "blum/core/vec3.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A rim edge and the points in front of it.
 struct StripOutline {
@@ -57,4 +57,4 @@ struct Rims {
 /// @param axis  with radii; it has no problem (problem_of_medial). @throws Cancelled.
 [[nodiscard]] Rims find_rims(const Complex& axis, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -6,7 +6,7 @@
 
 #include "blum/core/parallel.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr std::size_t most_in_batch = 256;
@@ -250,4 +250,4 @@ void SheetDecimator::pass_angle_on(const Fan& fan) {
   });
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blum {
+namespace blum::detail {
 
 ShrinkingComplex::ShrinkingComplex(const ComplexView& complex)
     : edges_(complex.edges.begin(), complex.edges.end()),
@@ -150,4 +150,4 @@ Complex ShrinkingComplex::rest_of(const Complex& whole) const {
   return out;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

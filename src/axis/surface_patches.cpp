@@ -12,7 +12,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// So that a prism of twelve sides, whose edges bend by 30 degrees but for rounding, is one patch at 30.
@@ -141,4 +141,4 @@ std::vector<std::uint32_t> SurfacePatches::at(SiteId site) const {
   return out;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

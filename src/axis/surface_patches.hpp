@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "blum/axis/axis_graph.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
-#include "blum/axis/axis_graph.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The patches of a mesh (see AxisPatch), numbered by their first face.
 class SurfacePatches {
@@ -48,4 +48,4 @@ class SurfacePatches {
   std::vector<AxisPatch> patches_;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

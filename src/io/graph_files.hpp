@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "blum/io/medial_io.hpp"
 #include "blum/axis/axis_graph.hpp"
+#include "blum/io/medial_io.hpp"
 #include "io/graph_ml.hpp"
 
 namespace blum::graph_files {

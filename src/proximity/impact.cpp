@@ -6,7 +6,6 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "proximity/exact/exact_impact.hpp"
-#include "proximity/exact/exact_separation.hpp"
 #include "proximity/impact_filter.hpp"
 
 namespace blum {

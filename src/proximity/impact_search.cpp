@@ -1,7 +1,9 @@
 #include "proximity/impact_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -9,8 +11,128 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
-#include "proximity/directions.hpp"
+#include "blum/core/sort_unique.hpp"
+#include "blum/geometry/weld.hpp"
+#include "blum/proximity/impact.hpp"
 #include "proximity/impact_filter.hpp"
+
+namespace blum {
+
+namespace {
+
+/// For each vertex that the mesh names the smallest one of these that is in the same place at both ends; empty where
+/// all are by themselves.
+std::vector<std::uint32_t> places(const MeshView& mesh, std::span<const Vec3d> end) {
+  const std::vector<std::uint32_t> first = weld_clusters(mesh.vertices);
+  std::vector<bool> is_shared(first.size(), false);  // of the first vertex in a place at the start
+  for (std::uint32_t v = 0; v < first.size(); ++v) {
+    if (first[v] != v) is_shared[first[v]] = true;
+  }
+  std::vector<std::uint32_t> together;
+  for_each_named_vertex(mesh, [&](std::uint32_t v) {
+    if (is_shared[first[v]]) together.push_back(v);
+  });
+  if (together.empty()) return {};
+  detail::sort_unique(together);
+  const std::vector<std::uint32_t> last = weld_clusters(end);
+  const auto key = [&](std::uint32_t v) { return std::pair(first[v], last[v]); };
+  std::sort(together.begin(), together.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+  std::vector<std::uint32_t> out(first.size());
+  for (std::uint32_t v = 0; v < out.size(); ++v) out[v] = v;
+  for (std::size_t k = 1; k < together.size(); ++k) {
+    if (key(together[k]) == key(together[k - 1])) out[together[k]] = out[together[k - 1]];
+  }
+  return out;
+}
+
+}  // namespace
+
+MovingFeatures::MovingFeatures(const MeshView& mesh, std::span<const Vec3d> end, const Context& context)
+    : mesh_(mesh), end_(end), place_(places(mesh, end)) {
+  throw_if_cancelled(context);
+  for_each_named_vertex(mesh, [&](std::uint32_t v) { vertices_.push_back(place(v)); });
+  detail::sort_unique(vertices_);
+  const auto add_edge = [&](std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t from = place(a);
+    const std::uint32_t to = place(b);
+    if (from != to) edges_.push_back({std::min(from, to), std::max(from, to)});
+  };
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) add_edge(t[k], t[(k + 1) % 3]);
+  }
+  for (const Segment& s : mesh.segments) add_edge(s[0], s[1]);
+  detail::sort_unique(edges_);
+}
+
+}  // namespace blum
+
+namespace blum::detail {
+namespace {
+
+constexpr std::size_t direction_count = 10;
+
+/// How far a point is along each direction: six diagonals of faces of a cube, then its four own.
+using Heights = std::array<double, direction_count>;
+
+Heights heights_of(const Vec3d& p) {
+  return {p.x + p.y, p.x - p.y,       p.x + p.z,       p.x - p.z,       p.y + p.z,
+          p.y - p.z, p.x + p.y + p.z, p.x + p.y - p.z, p.x - p.y + p.z, p.x - p.y - p.z};
+}
+
+/// More than what the difference of two heights is rounded by: each is a sum of at most three numbers.
+double rounding_of(const std::array<Vec3d, 4>& points) {
+  double most = 0;
+  for (const Vec3d& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return 0x1p-48 * most;
+}
+
+/// Along each direction, how far the first points are above the rest, and below; negative where they are not.
+struct Gaps {
+  Heights above;
+  Heights below;
+};
+
+Gaps gaps_of(const std::array<Vec3d, 4>& points, std::size_t first_count) {
+  Heights least_first = heights_of(points[0]);
+  Heights most_first = least_first;
+  Heights least_rest = heights_of(points[3]);
+  Heights most_rest = least_rest;
+  const auto widen = [](const Vec3d& p, Heights& least, Heights& most) {
+    const Heights heights = heights_of(p);
+    for (std::size_t k = 0; k < direction_count; ++k) {
+      least[k] = std::min(least[k], heights[k]);
+      most[k] = std::max(most[k], heights[k]);
+    }
+  };
+  for (std::size_t v = 1; v < first_count; ++v) widen(points[v], least_first, most_first);
+  for (std::size_t v = first_count; v < 3; ++v) widen(points[v], least_rest, most_rest);
+  Gaps gaps;
+  for (std::size_t k = 0; k < direction_count; ++k) {
+    gaps.above[k] = least_first[k] - most_rest[k];
+    gaps.below[k] = least_rest[k] - most_first[k];
+  }
+  return gaps;
+}
+
+/// Whether for certain some of ten directions tells the first points from the rest: along it, the first are on one side
+/// of the rest, by more than a distance, at both ends of the motion, and so all the time. The three axes are not among
+/// the directions: boxes have looked along them.
+/// @param first_count  1 for a vertex and a face, 2 for two edges.  @param distance  mesh units, >= 0.
+bool are_apart(const FourMovingPoints& points, std::size_t first_count, double distance) {
+  const Gaps start = gaps_of(points.start, first_count);
+  const Gaps end = gaps_of(points.end, first_count);
+  constexpr std::size_t of_faces = 6;  // directions of length sqrt(2); the others are sqrt(3) long
+  double widest = -1;
+  for (std::size_t k = 0; k < direction_count; ++k) {
+    const double gap = std::max(std::min(start.above[k], end.above[k]), std::min(start.below[k], end.below[k]));
+    widest = std::max(widest, gap - distance * (k < of_faces ? 1.4143 : 1.7321));
+  }
+  return widest > rounding_of(points.start) + rounding_of(points.end) + 0x1p-50 * distance;
+}
+
+}  // namespace
+}  // namespace blum::detail
 
 namespace blum {
 namespace {

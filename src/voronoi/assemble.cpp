@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -11,12 +14,188 @@
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/parallel.hpp"
-#include "voronoi/crossings.hpp"
-#include "voronoi/settle.hpp"
-#include "voronoi/wall_point.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/orient3d.hpp"
+#include "voronoi/label_geometry.hpp"
 
 namespace blum::voronoi {
 namespace {
+
+/// What is closest to a point: of all points of labels that are as close, but for 1e-9 of the size, the two that are
+/// seen furthest apart; the same one twice where there is one.
+struct WallPoint {
+  double radius = 0;                ///< exact distance from the closest label
+  std::array<Vec3d, 2> footprints;  ///< relative to the centre of the labels
+  std::array<LabelIndex, 2> labels{};
+  double separation_angle = 0;  ///< between them, degrees
+};
+
+/// The angle at a point between two others, degrees.
+double separation_angle(const Vec3d& at, const Vec3d& first, const Vec3d& second) {
+  const Vec3d a = first - at;
+  const Vec3d b = second - at;
+  return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
+}
+
+/// @param among  labels that hold all that may be closest.  @param q  relative to the centre of the labels.
+/// Cost: linear in the labels, quadratic in those that are closest.
+WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> among, const Vec3d& q) {
+  struct Near {
+    LabelIndex label = outside;
+    Vec3d point;
+    double distance = 0;
+  };
+  std::vector<Near> all;
+  double least = std::numeric_limits<double>::infinity();
+  for (const LabelIndex label : among) {
+    const double reach = least + 1e-9 * geometry.size();
+    if (geometry[label].squared_distance(q) > reach * reach) continue;  // no more than its distance
+    const Vec3d point = geometry.closest_point(label, q);
+    all.push_back({label, point, length(point - q)});
+    least = std::min(least, all.back().distance);
+  }
+  const double most = least + 1e-9 * geometry.size();
+  std::erase_if(all, [&](const Near& near) { return near.distance > most; });
+  std::sort(all.begin(), all.end(), [](const Near& a, const Near& b) { return a.distance < b.distance; });
+  WallPoint out;
+  if (all.empty()) return out;
+  out.radius = least;
+  out.footprints = {all[0].point, all[0].point};
+  out.labels = {all[0].label, all[0].label};
+  if (least <= 1e-9 * geometry.size()) return out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t k = i + 1; k < all.size(); ++k) {
+      const double angle = separation_angle(q, all[i].point, all[k].point);
+      if (angle <= out.separation_angle) continue;
+      out.separation_angle = angle;
+      out.footprints = {all[i].point, all[k].point};
+      out.labels = {all[i].label, all[k].label};
+    }
+  }
+  return out;
+}
+
+/// A box that points must stay in; flat along an axis where both coordinates are equal.
+struct PlacedBox {
+  Vec3d low, high;
+};
+
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+/// The solution of a x = b for a symmetric positive definite matrix, by Gaussian elimination.
+Vec3d solve(Matrix a, Vec3d b) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = k + 1; i < 3; ++i) {
+      const double factor = a[i][k] / a[k][k];
+      for (std::size_t j = k; j < 3; ++j) a[i][j] -= factor * a[k][j];
+      b[i] -= factor * b[k];
+    }
+  }
+  for (std::size_t k = 3; k-- > 0;) {
+    for (std::size_t j = k + 1; j < 3; ++j) b[k] -= a[k][j] * b[j];
+    b[k] /= a[k][k];
+  }
+  return b;
+}
+
+struct Distance {
+  double value = 0;
+  Vec3d slope;
+};
+
+Distance distance_from(const PlacedLabel& label, const Vec3d& q) {
+  if (label.kind == SiteKind::face) return {label.height(q), label.direction};
+  const Vec3d away = q - label.foot(q);
+  const double value = length(away);
+  return {value, value > 0 ? away / value : Vec3d{}};
+}
+
+/// A point near another one that is equally far from all of some labels, or on the surface of all of them, by
+/// Gauss-Newton steps of least length. nullopt where there is none in the box that is near.
+/// @param labels      one of each site, two or more; one does on the surface.
+/// @param on_surface  whether the distance is 0.
+/// @param start, box  relative to the centre of the labels.
+std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const LabelIndex> labels, bool on_surface,
+                            const Vec3d& start, const PlacedBox& box) {
+  const double reach = length(box.high - box.low);
+  const double enough = 1e-12 * geometry.size();
+  Vec3d q = start;
+  std::vector<Distance> distances(labels.size());
+  constexpr int most_steps = 24;
+  for (int step = 0; step < most_steps; ++step) {
+    double mean = 0;
+    Vec3d mean_slope;
+    for (std::size_t k = 0; k < labels.size(); ++k) {
+      distances[k] = distance_from(geometry[labels[k]], q);
+      mean += distances[k].value / static_cast<double>(labels.size());
+      mean_slope += distances[k].slope / static_cast<double>(labels.size());
+    }
+    if (on_surface) {
+      mean = 0;
+      mean_slope = {};
+    }
+    Matrix normal{};
+    Vec3d right;
+    double largest = 0;
+    for (const Distance& distance : distances) {
+      Vec3d row = distance.slope - mean_slope;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (box.low[axis] == box.high[axis]) row[axis] = 0;
+      }
+      const double residual = distance.value - mean;
+      largest = std::max(largest, std::abs(residual));
+      right -= row * residual;
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) normal[i][j] += row[i] * row[j];
+      }
+    }
+    if (largest <= enough) {
+      // Outside of the box from the nearest point in it on: to and fro it comes to a point of both, where there is one.
+      const Vec3d inside = max(box.low, min(box.high, q));
+      if (inside == q) return q;
+      q = inside;
+      continue;
+    }
+    // A little of the identity keeps steps short along directions that nothing is known of.
+    const double trace = normal[0][0] + normal[1][1] + normal[2][2];
+    for (std::size_t i = 0; i < 3; ++i) normal[i][i] += 1e-10 * trace + 1e-300;
+    const Vec3d move = solve(normal, right);
+    if (!is_finite(move) || length(move) > 2 * reach) return std::nullopt;
+    q += move;
+    if (length(q - start) > 2 * reach) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+bool are_apart(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low_a, high_a] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
+    const auto [low_b, high_b] = std::minmax({b[0][axis], b[1][axis], b[2][axis]});
+    if (high_a < low_b || high_b < low_a) return true;
+  }
+  return false;
+}
+
+/// Whether a segment meets a triangle and does not lie in its plane: by exact signs.
+bool crosses(const std::array<Vec3d, 2>& segment, const std::array<Vec3d, 3>& triangle) {
+  const auto& [p, q] = segment;
+  const auto& [a, b, c] = triangle;
+  const int from = detail::orient3d(a, b, c, p);
+  const int to = detail::orient3d(a, b, c, q);
+  if (from * to > 0 || (from == 0 && to == 0)) return false;
+  const std::array sides{detail::orient3d(p, q, a, b), detail::orient3d(p, q, b, c), detail::orient3d(p, q, c, a)};
+  const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
+  return least >= 0 || most <= 0;
+}
+
+/// Whether a side of one triangle crosses the other one.
+bool cross_each_other(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
+  if (are_apart(a, b)) return false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (crosses({a[k], a[(k + 1) % 3]}, b) || crosses({b[k], b[(k + 1) % 3]}, a)) return true;
+  }
+  return false;
+}
 
 constexpr std::size_t grain = 64;
 constexpr std::uint32_t no_vertex = UINT32_MAX;

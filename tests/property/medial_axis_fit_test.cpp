@@ -10,9 +10,9 @@
 #include <stop_token>
 #include <vector>
 
+#include "blum/axis/decimate.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/core/random.hpp"
-#include "blum/axis/decimate.hpp"
 #include "support/known_axes.hpp"
 #include "support/medial_check.hpp"
 #include "support/medial_rows.hpp"

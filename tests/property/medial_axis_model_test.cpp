@@ -13,15 +13,28 @@
 #include "blum/solid/solid.hpp"
 #include "medial_axis/cells/attached_voxels.hpp"
 #include "medial_axis/cells/collapse.hpp"
-#include "medial_axis/surface/mesh_surface.hpp"
-#include "medial_axis/shape/separation_angles.hpp"
 #include "medial_axis/cells/thin_voxels.hpp"
 #include "medial_axis/cells/voxelize.hpp"
+#include "medial_axis/shape/separation_angles.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 #include "support/medial_check.hpp"
 #include "support/model_solids.hpp"
 
 namespace blum {
 namespace {
+
+using detail::AttachedVoxels;
+using detail::CellComplex;
+using detail::collapse;
+using detail::collapse_extra;
+using detail::CollapseOrder;
+using detail::GovernorField;
+using detail::Importance;
+using detail::MeshSurface;
+using detail::separation_angles;
+using detail::thin_voxels;
+using detail::voxelize_body;
+using detail::Voxelized;
 
 std::int64_t euler_of(const CellComplex& complex) {
   std::int64_t sum = 0;

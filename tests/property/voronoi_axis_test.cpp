@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "blum/axis/collapse_axis.hpp"
+#include "blum/axis/decimate.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/io/mesh_io.hpp"
-#include "blum/axis/collapse_axis.hpp"
-#include "blum/axis/decimate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"

@@ -7,7 +7,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// @param angle  degrees.  @throws InvalidOption where it is not 0 to 180.
 inline void check_angle(std::string_view name, double angle) {
@@ -15,4 +15,4 @@ inline void check_angle(std::string_view name, double angle) {
   throw InvalidOption(std::string(name) + " is " + exact_text(angle) + " degrees, but must be 0 to 180");
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -4,7 +4,7 @@
 #include "blum/complex/complex.hpp"
 #include "blum/complex/incidence.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Numbers the sheets of a medial axis whose vertices and triangles are there, adds its rims and seams to the edges,
 /// which hold its curves, and tells the role of each vertex. Sheets are numbered by their first triangle,
@@ -12,4 +12,4 @@ namespace blum {
 /// @param incidence  of the axis as it is given.
 void label_sheets(Complex& axis, const Incidence& incidence);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <span>
 
-#include "blum/complex/complex.hpp"
 #include "blum/axis/patch_numbers.hpp"
+#include "blum/complex/complex.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Numbers the sheets of a medial axis anew, after label_sheets(), so that the same sheet of the same part has the same
 /// number wherever the part lies and however fine the grid is:
@@ -24,4 +24,4 @@ void order_sheets(Complex& axis, const PatchNumbers& patches);
 /// @param before  of each triangle: its sheet before.
 void order_sheets_as(Complex& axis, std::span<const std::int32_t> before);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -2,16 +2,28 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/function_ref.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/solid/solid.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
 
-namespace blum {
+namespace blum::detail {
+
+/// A part of an input mesh, and where it comes from.
+struct PatchedMesh {
+  static constexpr std::uint32_t no_vertex = 0xffffffffU;
+
+  MeshView mesh;
+  std::span<const std::uint32_t> triangle_of;  ///< of each triangle: in the input
+  std::span<const std::uint32_t> vertex_of;    ///< of each vertex: in the input; no_vertex for one that is new
+  FunctionRef<SiteId(SiteId own)> input_site;  ///< the site of the input that one of the part stands for
+};
 
 /// Numbers of the patches of a mesh, and places in it to measure from. Both follow from the order of faces and vertices
 /// in the input and from its shape, and not from where it lies in space.
@@ -28,8 +40,8 @@ class PatchNumbers {
   /// @param input  the sites of the mesh that the bodies are of.
   explicit PatchNumbers(const SiteTable& input) : number_of_(input.size(), none), is_shared_(input.size(), false) {}
 
-  /// @param own  the sites of the body's mesh. @throws Cancelled. Cost: near-linear.
-  void add(const SolidBody& body, const SiteTable& own, const SiteTable& input, const Context& context);
+  /// @param own  the sites of the part's mesh. @throws Cancelled. Cost: near-linear.
+  void add(const PatchedMesh& part, const SiteTable& own, const Context& context);
   /// To be called when all bodies are there.
   void choose_anchors();
 
@@ -51,4 +63,4 @@ class PatchNumbers {
   double reach_ = 0;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

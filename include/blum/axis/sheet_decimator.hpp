@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "blum/core/context.hpp"
 #include "axis/fan.hpp"
 #include "blum/axis/shrinking_complex.hpp"
+#include "blum/core/context.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Sheets, and what bounds them, as SheetDecimator takes them.
 struct DecimatorInput {
@@ -97,4 +97,4 @@ class SheetDecimator {
   std::vector<Look> looks_;  ///< of these
 };
 
-}  // namespace blum
+}  // namespace blum::detail

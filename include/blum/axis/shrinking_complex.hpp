@@ -9,7 +9,7 @@
 
 #include "blum/complex/complex.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// What is linked to the ends of an edge that is looked at, kept so that no new memory is needed each time: one per
 /// thread.
@@ -80,4 +80,4 @@ class ShrinkingComplex {
   std::vector<Gone> gone_;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "blum/axis/extend_axis.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/axis/extend_axis.hpp"
 
 namespace blum {
 

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
+#include "blum/axis/axis_graph.hpp"
 #include "blum/core/error.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/axis/axis_graph.hpp"
 
 namespace blum {
 

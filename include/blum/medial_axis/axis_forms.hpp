@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "blum/core/context.hpp"
 #include "blum/axis/decimate.hpp"
+#include "blum/core/context.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 
 namespace blum {

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "blum/axis/decimate.hpp"
 #include "blum/complex/complex.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/betti_numbers.hpp"
@@ -21,7 +22,6 @@
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
-#include "blum/axis/decimate.hpp"
 #include "blum/solid/cellular_model.hpp"
 #include "blum/solid/solid.hpp"
 

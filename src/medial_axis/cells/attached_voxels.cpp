@@ -6,7 +6,7 @@
 #include "blum/core/bits.hpp"
 #include "medial_axis/cells/voxel_border.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr unsigned middle = place_of_voxel;
@@ -269,4 +269,4 @@ CellComplex AttachedVoxels::rest(const VoxelSet& kept, const Context& context) c
   return out;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

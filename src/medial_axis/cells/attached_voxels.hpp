@@ -12,7 +12,7 @@
 #include "medial_axis/cells/cell_complex.hpp"
 #include "medial_axis/cells/importance.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The voxels of a model whose neighbours do not tell what they share with the rest: where walls pass between voxels,
 /// or extra cells are attached to them. Extra cells that are no faces of voxels stay while voxels go.
@@ -71,4 +71,4 @@ class AttachedVoxels {
   std::vector<std::vector<std::uint32_t>> voxels_of_;  ///< extra cells: voxels of list_ that have it
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -7,7 +7,7 @@
 
 #include "blum/core/gather.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr std::size_t removals_between_looks = std::size_t{1} << 16U;
@@ -231,4 +231,4 @@ CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double dep
   return order;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

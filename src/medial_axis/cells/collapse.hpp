@@ -8,7 +8,7 @@
 #include "medial_axis/cells/cell_complex.hpp"
 #include "medial_axis/cells/importance.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// An elementary collapse: a cell, and a face of it that no other cell had, leave together.
 struct Removal {
@@ -47,4 +47,4 @@ void collapse_extra(CellComplex& complex, const Importance& importance);
 [[nodiscard]] CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double depth_step,
                                      const Importance& importance, double most_level, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

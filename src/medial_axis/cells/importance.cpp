@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// Calls visit(cell) for a cell and all its faces, some of them more than once.
@@ -41,4 +41,4 @@ Importance::Importance(const CellStructure& structure, std::span<const Entry> en
   }
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -8,7 +8,7 @@
 #include "blum/core/bits.hpp"
 #include "medial_axis/cells/cell_complex.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Degrees for some cells, and 0 for the others. One byte per node, and 4 more per cell that has a value or is extra.
 class Importance {
@@ -49,4 +49,4 @@ class Importance {
   std::vector<float> extra_;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -6,7 +6,7 @@
 
 #include "blum/core/parallel.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 void take_deeper_than(std::span<const float> depth, double limit, VoxelSet& voxels, const Context& context) {
   const std::array<std::int64_t, 3> size = voxels.size();
@@ -24,4 +24,4 @@ void take_deeper_than(std::span<const float> depth, double limit, VoxelSet& voxe
   });
 }
 
-}  // namespace blum
+}  // namespace blum::detail

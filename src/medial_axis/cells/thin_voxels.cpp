@@ -12,7 +12,7 @@
 #include "medial_axis/cells/thinning_order.hpp"
 #include "medial_axis/cells/voxel_border.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 using Place = std::array<std::int64_t, 3>;
@@ -172,4 +172,4 @@ VoxelSet thin_voxels(const VoxelSolid& solid, const AttachedVoxels& attached, co
   return Thinner(solid, attached, lattice, importance, context).thin();
 }
 
-}  // namespace blum
+}  // namespace blum::detail

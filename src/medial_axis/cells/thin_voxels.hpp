@@ -7,7 +7,7 @@
 #include "medial_axis/cells/importance.hpp"
 #include "medial_axis/cells/voxel_solid.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// What is left of a solid's voxels when simple ones go, the shallowest first, each looked at once. A voxel stays where
 /// its removal would change the topology, or take away a cell that has importance. The closed voxels collapse to those
@@ -21,4 +21,4 @@ namespace blum {
 [[nodiscard]] VoxelSet thin_voxels(const VoxelSolid& solid, const AttachedVoxels& attached, const CellLattice& lattice,
                                    const Importance& importance, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

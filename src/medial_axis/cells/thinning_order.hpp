@@ -15,7 +15,7 @@
 #include "blum/grid/voxel_set.hpp"
 #include "blum/grid/voxel_topology.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Remembers which neighbourhoods are simple: few of all that there are turn up.
 class SimpleCache {
@@ -166,4 +166,4 @@ class DepthOrder {
   std::array<std::int64_t, 27> offset_{};
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -6,7 +6,7 @@
 
 #include "blum/grid/voxel_topology.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The border of a voxel has a place for each of its cells, x + 3 y + 9 z: along each axis 0 at the low side, 1 where
 /// the cell spans it, 2 at the high side. Neighbours have the same places.
@@ -42,4 +42,4 @@ inline constexpr std::array<Neighbourhood, 27> sharers_of_place = [] {
   return sharers;
 }();
 
-}  // namespace blum
+}  // namespace blum::detail

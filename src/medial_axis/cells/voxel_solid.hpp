@@ -7,9 +7,9 @@
 #include "blum/core/ids.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/voxel_set.hpp"
-#include "medial_axis/cells/extra_incidence.hpp"
+#include "medial_axis/cells/cell_complex.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The voxels of a solid, and for each voxel of the box the closest site of the surface. The outermost voxels of the
 /// box are not in the solid.
@@ -23,4 +23,4 @@ struct VoxelSolid {
   bool is_exact = false;  ///< whether the solid is the union of the closed voxels, as those of images are
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -16,7 +16,7 @@
 #include "blum/solid/body_cells.hpp"
 #include "medial_axis/cells/take_deeper.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// Layers of voxels around a mesh: what is taken in beyond it lies within one diagonal, and one layer stays free.
@@ -186,4 +186,4 @@ Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<s
   return out;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -11,7 +11,7 @@
 #include "blum/solid/solid.hpp"
 #include "medial_axis/cells/voxel_solid.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A solid as voxels, and how it came to be.
 struct Voxelized {
@@ -36,4 +36,4 @@ void split_further(Voxelized& voxelized, const SolidBody& body, std::span<const 
 [[nodiscard]] Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<std::int64_t, 3>& first,
                                        const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

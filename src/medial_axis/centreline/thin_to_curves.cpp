@@ -16,6 +16,12 @@
 namespace blum::centrelines {
 namespace {
 
+using detail::DepthOrder;
+using detail::Line;
+using detail::push;
+using detail::SimpleCache;
+using detail::Waiting;
+
 constexpr Neighbourhood middle = 1U << 13U;
 constexpr std::size_t steps_between_looks = std::size_t{1} << 16U;
 

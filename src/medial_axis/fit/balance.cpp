@@ -8,7 +8,7 @@
 #include "medial_axis/surface/governors.hpp"
 #include "medial_axis/surface/walls.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr int most_steps = 24;
@@ -149,4 +149,4 @@ std::optional<AxisVertex> balance(const Surface& surface, const Vec3d& start, st
   return std::nullopt;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

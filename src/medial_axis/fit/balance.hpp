@@ -10,7 +10,7 @@
 #include "medial_axis/shape/axis_vertex.hpp"
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// What balance() may do.
 struct BalanceLimits {
@@ -29,4 +29,4 @@ struct BalanceLimits {
                                                 std::span<const Footprint> feet, std::size_t walls,
                                                 const BalanceLimits& limits);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -6,10 +6,10 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/vec3.hpp"
-#include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/fit/kind.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Cosine of the angle by which two triangles of a sheet bend at their common side, -1 where one lies on the other; 1
 /// where they are flat, or one has no area.
@@ -41,4 +41,4 @@ namespace blum {
   return least;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "blum/complex/medial_columns.hpp"
 #include "blum/axis/shrinking_complex.hpp"
+#include "blum/complex/medial_columns.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 using Pair = std::array<std::uint32_t, 2>;
@@ -103,4 +103,4 @@ bool contract_points(Complex& axis, const Incidence& incidence) {
   return true;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -4,7 +4,7 @@
 #include "blum/complex/complex.hpp"
 #include "blum/complex/incidence.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Contracts edges whose ends are at the same place, one after the other, where that changes no homotopy type: where
 /// what is linked to both ends is linked to the edge (the link condition; Dey, Edelsbrunner, Guha, Nekhayev, "Topology
@@ -16,4 +16,4 @@ namespace blum {
 /// @return           whether there were such edges; the axis may differ only then.
 bool contract_points(Complex& axis, const Incidence& incidence);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -13,9 +13,8 @@
 #include "blum/core/union_find.hpp"
 #include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
-#include "medial_axis/fit/take_in_batches.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// Sheets of up to so many triangles are crumbs.
@@ -208,4 +207,4 @@ bool contract_short(AxisLists& lists, const Incidence& incidence, const Surface&
   return ShortEdges(lists, incidence, surface, voxel, lengths, context).run();
 }
 
-}  // namespace blum
+}  // namespace blum::detail

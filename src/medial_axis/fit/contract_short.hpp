@@ -6,7 +6,7 @@
 #include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Up to which length edges are contracted, in voxels.
 struct ShortLengths {
@@ -27,4 +27,4 @@ struct ShortLengths {
 bool contract_short(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
                     const ShortLengths& lengths, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -8,7 +8,7 @@
 #include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// What borders are fitted to.
 struct FitTarget {
@@ -28,4 +28,4 @@ struct FitTarget {
 /// @throws Cancelled. Cost: linear in the vertices that move, about 0.1 ms for each.
 double fit_axis(AxisLists& lists, const FitTarget& target, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -9,7 +9,7 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/core/union_find.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The end of an edge that is not this one.
 inline std::uint32_t other_end(const std::array<std::uint32_t, 2>& edge, std::uint32_t v) {
@@ -55,4 +55,4 @@ inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertic
   return kinds;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -7,7 +7,7 @@
 #include "medial_axis/shape/place_vertices.hpp"
 #include "medial_axis/surface/void_points.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface, int reach)
     : lists_(lists),
@@ -121,4 +121,4 @@ void ShrinkingLists::write() {
   keep(cells_, lists_);
 }
 
-}  // namespace blum
+}  // namespace blum::detail

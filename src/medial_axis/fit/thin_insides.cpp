@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "blum/axis/sheet_decimator.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/core/parallel.hpp"
 #include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/kind.hpp"
-#include "blum/axis/sheet_decimator.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// How far sheets may move, one level after the other: parts of the tolerance.
@@ -122,4 +122,4 @@ double thin_insides(AxisLists& lists, const Incidence& incidence, const FitTarge
   return InsideThinner(lists, incidence, target, context).run();
 }
 
-}  // namespace blum
+}  // namespace blum::detail

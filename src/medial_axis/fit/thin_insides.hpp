@@ -3,10 +3,10 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
-#include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/fit/fit_axis.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Takes vertices out of sheets, as decimate() does, but far from all that fitting may move: borders, seams and curves;
 /// vertices that know of one wall only, see little more than theta, or lie next to the surface; and where a sheet
@@ -16,4 +16,4 @@ namespace blum {
 /// @throws Cancelled. Cost: near-linear, about 2 us for each vertex.
 double thin_insides(AxisLists& lists, const Incidence& incidence, const FitTarget& target, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

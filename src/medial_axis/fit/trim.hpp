@@ -7,7 +7,20 @@
 #include "blum/core/context.hpp"
 #include "medial_axis/shape/axis_lists.hpp"
 
-namespace blum {
+namespace blum::detail {
+
+/// What take_crumbs() takes away.
+struct CrumbLimits {
+  double area = 0;    ///< square mesh units: sheets up to this size,
+  double beside = 0;  ///< mesh units: whose points are this close to the triangles of other sheets around them
+};
+
+/// Takes away small sheets that lie on the sheets that they are attached to, as contractions in thin walls leave them:
+/// collapses each from its free borders, or leaves it whole where that would leave something of it. The homotopy type
+/// stays, and what is left is as it was.
+/// @param incidence  of the lists.
+/// @return  whether there were any.  @throws Cancelled. Cost: linear in the lists, near-linear in what is taken.
+bool take_crumbs(AxisLists& lists, const Incidence& incidence, const CrumbLimits& limits, const Context& context);
 
 /// What trim() takes away.
 struct TrimLimits {
@@ -28,4 +41,4 @@ struct TrimLimits {
 bool trim(AxisLists& lists, const Incidence& incidence, const std::vector<double>& angles, const TrimLimits& limits,
           const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -13,9 +13,8 @@
 #include "blum/core/sort_unique.hpp"
 #include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
-#include "medial_axis/fit/take_in_batches.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 using Triangle3 = std::array<std::uint32_t, 3>;
@@ -260,4 +259,4 @@ bool unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface
   return Unfolder(lists, incidence, surface, limits, context).run();
 }
 
-}  // namespace blum
+}  // namespace blum::detail

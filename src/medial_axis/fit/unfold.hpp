@@ -8,7 +8,7 @@
 #include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Where unfold() looks.
 struct UnfoldLimits {
@@ -23,4 +23,4 @@ struct UnfoldLimits {
 bool unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
             const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

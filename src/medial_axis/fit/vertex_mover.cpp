@@ -2,12 +2,135 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "blum/core/sort_unique.hpp"
 #include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/surface/equidistant_point.hpp"
+#include "medial_axis/surface/governors.hpp"
 #include "medial_axis/surface/void_points.hpp"
 
-namespace blum {
+namespace blum::detail {
+namespace {
+
+/// How far beside a point feet are looked for, in voxels and at most this share of its depth.
+constexpr std::array beside{4.0, 2.0, 1.0, 0.5, 0.3};
+constexpr double most_of_depth = 0.4;
+/// Feet further than the closest one by more than this, in voxels, are none of a round thing.
+constexpr double equally_far = 0.02;
+/// What is round is seen in so many directions, no two of which are closer than this share of theta, and within these
+/// angles in degrees.
+constexpr std::size_t least_directions = 5;
+constexpr double share_of_theta = 0.25;
+constexpr double least_apart = 5;
+constexpr double most_apart = 30;
+
+/// The sides and the corners of a cube.
+std::array<Vec3d, 14> directions() {
+  std::array<Vec3d, 14> out;
+  for (std::size_t k = 0; k < 6; ++k) out[k][k / 2] = k % 2 == 0 ? 1 : -1;
+  constexpr double part = std::numbers::inv_sqrt3;
+  for (std::size_t k = 0; k < 8; ++k) {
+    out[6 + k] = {(k & 1) != 0 ? part : -part, (k & 2) != 0 ? part : -part, (k & 4) != 0 ? part : -part};
+  }
+  return out;
+}
+
+std::vector<Footprint> feet_beside(const Surface& surface, const Vec3d& x, double step) {
+  static const std::array<Vec3d, 14> ways = directions();
+  std::vector<Footprint> feet;
+  for (const Vec3d& way : ways) {
+    const NearestPoint at = surface.nearest(x + way * step, {});
+    feet.push_back({at.point, at.element, 7});
+  }
+  return feet;
+}
+
+/// Feet no further from a point than a limit, one of each direction.
+std::vector<Footprint> all_around(const Vec3d& x, const std::vector<Footprint>& feet, double limit,
+                                  double same_direction) {
+  std::vector<Footprint> kept;
+  std::vector<Vec3d> ways;
+  for (const Footprint& foot : feet) {
+    const Vec3d way = foot.point - x;
+    const double size = length(way);
+    if (!(size > 0) || size > limit) continue;
+    const auto is_known = [&](const Vec3d& other) { return dot(other, way) > same_direction * size; };
+    if (std::any_of(ways.begin(), ways.end(), is_known)) continue;
+    ways.push_back(way / size);
+    kept.push_back(foot);
+  }
+  return kept;
+}
+
+/// Two unit vectors across a direction and each other.
+std::array<Vec3d, 2> directions_across(const Vec3d& direction) {
+  const bool is_along_x = std::abs(direction.x) > 0.6;
+  const Vec3d u = cross(direction, is_along_x ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0});
+  const Vec3d v = cross(direction, u);
+  return {u / length(u), v / length(v)};
+}
+
+/// Whether the surface may be all around, by what is seen from about the middle: a quick look that spares most of the
+/// work where nothing is round.
+bool may_be_round(const Surface& surface, const Vec3d& start, const NearestPoint& nearest, const RoundLimits& limits,
+                  double same_direction) {
+  constexpr double most_of_way = 0.9;   // to the depth: what is round has its other side beyond that
+  constexpr double to_the_side = 0.05;  // of the radius: walls are seen in the same direction from there
+  if (!(nearest.distance > 0)) return false;
+  const Vec3d inwards = (start - nearest.point) / nearest.distance;
+  const Vec3d beyond = start + inwards * std::min(1.25 * limits.reach, most_of_way * nearest.distance);
+  Vec3d other = surface.nearest(beyond, {}).point;
+  if (!(angle_at(start, nearest.point, start + (other - beyond)) > limits.theta)) return false;
+  // Inwards to where both sides are equally far: in the middle, were all this round.
+  Vec3d middle = start;
+  for (int n = 0; n < 2; ++n) {
+    const Vec3d from_other = start - other;
+    const double slope = nearest.distance - dot(inwards, from_other);
+    const double way = 0.5 * (squared_length(from_other) - nearest.distance * nearest.distance) / slope;
+    if (!(way >= 0) || way > limits.reach) return false;
+    middle = start + inwards * way;
+    other = surface.nearest(middle + inwards * (to_the_side * nearest.distance), {}).point;
+  }
+  const double radius = length(middle - nearest.point);
+  const auto [u, v] = directions_across(inwards);
+  std::vector<Footprint> feet;
+  for (const Vec3d& way : {inwards, -inwards, u, -u, v, -v}) {
+    feet.push_back({surface.nearest(middle + way * (to_the_side * radius), {}).point, 0, 7});
+  }
+  return all_around(middle, feet, HUGE_VAL, same_direction).size() >= 4;
+}
+
+}  // namespace
+
+std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& start, const RoundLimits& limits) {
+  const auto& [voxel, reach, theta] = limits;
+  const double apart = std::clamp(share_of_theta * theta, least_apart, most_apart);
+  const double same_direction = std::cos(apart / degrees_per_radian);
+  Vec3d x = start;
+  std::vector<Footprint> feet;
+  const NearestPoint nearest = surface.nearest(x, {});
+  if (!may_be_round(surface, x, nearest, limits, same_direction)) return std::nullopt;
+  double depth = nearest.distance;
+  for (const double voxels : beside) {
+    const double step = std::min(voxels * voxel, most_of_depth * depth);
+    if (!(step > 0)) return std::nullopt;
+    feet = feet_beside(surface, x, step);
+    // Beside the middle by less than a step, feet all around are no further than twice that.
+    if (all_around(x, feet, depth + 2 * step, same_direction).size() < least_directions) return std::nullopt;
+    std::vector<Vec3d> points;
+    for (const Footprint& foot : feet) points.push_back(foot.point);
+    const std::optional<Vec3d> middle = EquidistantPoints(points, x).of_rank(2);
+    if (!middle || squared_length(*middle - start) > reach * reach) return std::nullopt;
+    x = *middle;
+    depth = surface.nearest(x, {}).distance;
+  }
+  const double step = std::min(beside.back() * voxel, most_of_depth * depth);
+  feet = all_around(x, feet_beside(surface, x, step), std::hypot(depth + equally_far * voxel, step), same_direction);
+  if (feet.size() < least_directions) return std::nullopt;
+  return RoundCentre{x, std::move(feet)};
+}
 
 double VertexMover::make(std::vector<VertexMove> moves) {
   std::vector<std::uint32_t> changed;
@@ -94,4 +217,4 @@ bool VertexMover::moves_over_void(std::uint32_t e, const std::vector<VertexMove>
   });
 }
 
-}  // namespace blum
+}  // namespace blum::detail

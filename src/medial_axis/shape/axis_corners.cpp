@@ -5,7 +5,7 @@
 
 #include "blum/core/parallel.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr std::size_t cells_per_range = 4096;
@@ -98,4 +98,4 @@ std::array<std::array<std::uint32_t, 3>, 2> triangles_of(std::span<const std::ui
   return {{{corner(0), corner(1), corner(2)}, {corner(0), corner(2), corner(3)}}};
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -12,7 +12,7 @@
 #include "blum/grid/ranked_cells.hpp"
 #include "medial_axis/shape/axis_piece.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Which cells of a piece lie in which: found by their names.
 class AxisCorners {
@@ -47,4 +47,4 @@ class AxisCorners {
 [[nodiscard]] std::array<std::array<std::uint32_t, 3>, 2> triangles_of(std::span<const std::uint32_t> corners,
                                                                        std::span<const AxisVertex> vertices);
 
-}  // namespace blum
+}  // namespace blum::detail

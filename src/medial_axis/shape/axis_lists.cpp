@@ -6,7 +6,7 @@
 
 #include "blum/complex/medial_columns.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// The numbers of a column: what `numbers_of` gives for each vertex, one behind the other.
@@ -118,4 +118,4 @@ Complex complex_of(AxisLists lists) {
   return complex;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

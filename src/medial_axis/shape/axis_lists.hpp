@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "blum/axis/shrinking_complex.hpp"
 #include "blum/complex/complex.hpp"
 #include "medial_axis/shape/axis_vertex.hpp"
-#include "blum/axis/shrinking_complex.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Vertices, edges and triangles that are added one by one.
 struct AxisLists {
@@ -41,4 +41,4 @@ void keep(const std::vector<bool>& has_vertex, const std::vector<bool>& has_tria
 /// A complex with the columns of a medial axis, one sheet, and edges that are curves: to be labelled by label_sheets().
 [[nodiscard]] Complex complex_of(AxisLists lists);
 
-}  // namespace blum
+}  // namespace blum::detail

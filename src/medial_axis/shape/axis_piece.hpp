@@ -9,13 +9,13 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/phase_timer.hpp"
+#include "medial_axis/cells/cell_complex.hpp"
 #include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/shape/axis_vertex.hpp"
-#include "medial_axis/cells/cell_complex.hpp"
-#include "medial_axis/surface/governors.hpp"
 #include "medial_axis/shape/separation_angles.hpp"
+#include "medial_axis/surface/governors.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A cell that a solid collapses to.
 struct AxisCell {
@@ -48,4 +48,4 @@ struct AxisPiece {
 /// @throws Cancelled.
 void append_at(const AxisPiece& piece, double theta, AxisLists& lists, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -9,7 +9,7 @@
 #include "medial_axis/surface/surface.hpp"
 #include "medial_axis/surface/thin_ball.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// All that is known of a vertex in one place; medial_columns says what the members are.
 struct AxisVertex {
@@ -41,4 +41,4 @@ inline AxisVertex vertex_of_ball(const ThinBall& ball) {
           {ball.nearest.element, ball.other.element}};
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -11,7 +11,7 @@
 #include "medial_axis/surface/thin_ball.hpp"
 #include "medial_axis/surface/walls.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr std::size_t nodes_per_range = 256;
@@ -283,4 +283,4 @@ std::vector<AxisVertex> place_vertices(const Witnesses& witnesses, std::span<con
   return vertices;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

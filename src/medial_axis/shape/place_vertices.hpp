@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
-#include "medial_axis/shape/axis_vertex.hpp"
 #include "medial_axis/cells/cell_complex.hpp"
+#include "medial_axis/shape/axis_vertex.hpp"
+#include "medial_axis/shape/witnesses.hpp"
 #include "medial_axis/surface/governors.hpp"
 #include "medial_axis/surface/solid_paths.hpp"
-#include "medial_axis/shape/witnesses.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The vertices of a complex: each of those of the lattice is moved from its lattice corner to a point within its
 /// voxel's reach that is as far from one wall as from another, and as far as the voxels around say from all of them; it
@@ -34,4 +34,4 @@ namespace blum {
 /// A vertex at the corner of the lattice itself, which must lie in the solid.
 [[nodiscard]] AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node);
 
-}  // namespace blum
+}  // namespace blum::detail

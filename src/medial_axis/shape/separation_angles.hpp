@@ -2,10 +2,14 @@
 #pragma once
 
 #include "blum/core/context.hpp"
-#include "medial_axis/surface/governors.hpp"
+#include "blum/grid/voxel_set.hpp"
 #include "medial_axis/cells/importance.hpp"
+#include "medial_axis/surface/governors.hpp"
 
-namespace blum {
+namespace blum::detail {
+
+/// The voxels of the box with one of a set at most so many steps away along each axis. @param within  voxels, 0 to 32.
+[[nodiscard]] VoxelSet spread(const VoxelSet& from, int within, const Context& context);
 
 /// What decides whether two footprints mean a piece of the medial axis, or the noise of a grid and of facets.
 struct NoiseFloor {
@@ -30,4 +34,4 @@ struct NoiseFloor {
 [[nodiscard]] Importance separation_angles(const GovernorField& governors, const CellComplex& complex,
                                            const NoiseFloor& floor, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

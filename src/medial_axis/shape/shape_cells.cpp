@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -9,14 +10,250 @@
 #include <utility>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/core/parallel.hpp"
-#include "medial_axis/shape/fill_polygon.hpp"
-#include "medial_axis/shape/near_extra.hpp"
+#include "medial_axis/shape/axis_corners.hpp"
+#include "medial_axis/shape/axis_piece.hpp"
 #include "medial_axis/shape/place_vertices.hpp"
+#include "medial_axis/shape/witnesses.hpp"
 #include "medial_axis/surface/solid_paths.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
+
+/// How many ways past the surface may be looked for while polygons are filled; counted down.
+struct FillBudget {
+  int detours = 60;  ///< paths that take the place of edges
+  int fans = 8;      ///< points that see all corners
+};
+
+/// Fills polygons of a few corners with triangles whose edges stay in a solid.
+class PolygonFiller {
+ public:
+  using Places = std::vector<std::uint32_t>;
+
+  /// @param stop_of  where a place is.
+  /// @param add      makes a vertex and tells its place; empty where there must be none.
+  /// @param budget   it must stay.
+  PolygonFiller(const SolidPaths& paths, std::function<Stop(std::uint32_t)> stop_of,
+                std::function<std::uint32_t(const Stop&)> add, FillBudget& budget)
+      : paths_(paths), stop_of_(std::move(stop_of)), add_(std::move(add)), budget_(budget) {}
+
+  /// Cuts off the shortest ears, of these first such that no part of the surface comes through, then such that stay in
+  /// the solid; where there are none, one along a path of new vertices.
+  /// @param sides  groups of places that other polygons have, too. No edge joins two of a group: another polygon that
+  ///               has both may join them as well.
+  /// @return  whether all edges stay in the solid. They are of the complex in any case.
+  bool fill(Places polygon, const std::vector<Places>& sides);
+
+  /// Whether none of the surface comes through the triangles: false also where that is not easy to see.
+  [[nodiscard]] bool is_all_open() const { return is_all_open_; }
+
+  /// Three places for each triangle, of all polygons.
+  [[nodiscard]] const Places& triangles() const { return triangles_; }
+
+ private:
+  struct Ear;
+  struct Detour;
+  [[nodiscard]] std::vector<Ear> ears_of(const Places& polygon, const std::vector<Places>& sides) const;
+  [[nodiscard]] bool is_joined(const Ear& ear) const;
+  [[nodiscard]] bool is_open(const Ear& ear) const;
+  bool fan_out(const Places& polygon, std::size_t least_open);
+  [[nodiscard]] std::optional<Detour> detour(const Places& polygon, std::span<const Ear> ears);
+
+  const SolidPaths& paths_;
+  std::function<Stop(std::uint32_t)> stop_of_;
+  std::function<std::uint32_t(const Stop&)> add_;
+  Places triangles_;
+  FillBudget& budget_;
+  bool is_all_open_ = true;
+};
+
+bool has(const PolygonFiller::Places& places, std::uint32_t place) {
+  return std::find(places.begin(), places.end(), place) != places.end();
+}
+
+/// A corner of a polygon and those next to it.
+struct PolygonFiller::Ear {
+  double squared_length = 0;  ///< of what joins the two next to the corner
+  std::size_t corner = 0;     ///< in the polygon
+  std::uint32_t before = 0, place = 0, after = 0;
+};
+
+/// A corner, and new places on a way between those next to it.
+struct PolygonFiller::Detour {
+  Ear over;
+  Places places;
+};
+
+std::vector<PolygonFiller::Ear> PolygonFiller::ears_of(const Places& polygon, const std::vector<Places>& sides) const {
+  const std::size_t size = polygon.size();
+  std::vector<Ear> ears;
+  for (std::size_t k = 0; k < size; ++k) {
+    Ear ear{0, k, polygon[k == 0 ? size - 1 : k - 1], polygon[k], polygon[k + 1 == size ? 0 : k + 1]};
+    const auto has_both = [&](const Places& side) { return has(side, ear.before) && has(side, ear.after); };
+    if (std::any_of(sides.begin(), sides.end(), has_both)) continue;
+    ear.squared_length = squared_length(stop_of_(ear.after).at - stop_of_(ear.before).at);
+    ears.push_back(ear);
+  }
+  std::sort(ears.begin(), ears.end(), [](const Ear& a, const Ear& b) {
+    return a.squared_length != b.squared_length ? a.squared_length < b.squared_length : a.corner < b.corner;
+  });
+  return ears;
+}
+
+bool PolygonFiller::is_joined(const Ear& ear) const {
+  return paths_.is_straight(stop_of_(ear.before), stop_of_(ear.after));
+}
+
+bool PolygonFiller::is_open(const Ear& ear) const {
+  return is_joined(ear) && paths_.is_open(stop_of_(ear.before), stop_of_(ear.place), stop_of_(ear.after));
+}
+
+/// A corner to cut off, and new places on a way between the two next to it, the shortest ears first. A way that runs
+/// over a corner of the polygon, or through the ball around it, leaves about the same one to fill.
+std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon, std::span<const Ear> ears) {
+  for (const Ear& ear : ears) {
+    if (!add_ || budget_.detours-- <= 0) return std::nullopt;
+    const auto path = paths_.path(stop_of_(ear.before), stop_of_(ear.after), {});
+    const auto is_corner = [&](const Stop& stop) {
+      return std::any_of(polygon.begin(), polygon.end(), [&](std::uint32_t place) {
+        return length(stop_of_(place).at - stop.at) < stop.nearest.distance;
+      });
+    };
+    if (!path || path->empty() || std::any_of(path->begin(), path->end(), is_corner)) continue;
+    Detour found{ear, {}};
+    for (const Stop& stop : *path) found.places.push_back(add_(stop));
+    return found;
+  }
+  return std::nullopt;
+}
+
+/// Triangles around a new vertex that all corners of a polygon can be joined to; those that the surface comes through
+/// are filled in the same way. @return  whether there is a place for it.
+/// @param least_open  how many of the triangles none of the surface may come through.
+bool PolygonFiller::fan_out(const Places& polygon, std::size_t least_open) {
+  if (!add_ || budget_.fans-- <= 0) return false;
+  std::vector<Stop> corners;
+  for (const std::uint32_t place : polygon) corners.push_back(stop_of_(place));
+  const std::optional<Hub> middle = paths_.seeing_all(corners, least_open);
+  if (!middle) return false;
+  const std::uint32_t hub = add_(middle->stop);
+  for (std::size_t k = 0; k < polygon.size(); ++k) fill({hub, polygon[k], polygon[(k + 1) % polygon.size()]}, {});
+  return true;
+}
+
+bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
+  bool stays = true;
+  while (polygon.size() > 3) {
+    const std::vector<Ear> ears = ears_of(polygon, sides);
+    auto ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_open(e); });
+    if (ear == ears.end() && fan_out(polygon, polygon.size() - 1)) return stays;
+    if (ear == ears.end()) is_all_open_ = false;
+    if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_joined(e); });
+    if (ear == ears.end() && !ears.empty()) {
+      if (const auto found = detour(polygon, ears)) {
+        const auto& [over, path] = *found;
+        Places cut_off{over.before, over.place, over.after};
+        cut_off.insert(cut_off.end(), path.rbegin(), path.rend());
+        // What is left over of the polygon has the path as well.
+        std::vector<Places> sides_there = sides;
+        Places& shared = sides_there.emplace_back(path);
+        shared.push_back(over.before);
+        shared.push_back(over.after);
+        stays = fill(std::move(cut_off), sides_there) && stays;
+        const auto at = polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(over.corner));
+        polygon.insert(at, path.begin(), path.end());
+        continue;
+      }
+      if (fan_out(polygon, 0)) return stays;
+      ear = ears.begin();
+      stays = false;
+    }
+    if (ear == ears.end()) {  // a vertex in the middle joins no two of them
+      if (!add_) return false;
+      Vec3d sum;
+      for (const std::uint32_t place : polygon) sum += stop_of_(place).at;
+      const std::uint32_t middle =
+          add_(paths_.inside_near(sum / static_cast<double>(polygon.size()), stop_of_(polygon[0])));
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        triangles_.insert(triangles_.end(), {middle, polygon[k], polygon[(k + 1) % polygon.size()]});
+      }
+      return false;
+    }
+    triangles_.insert(triangles_.end(), {ear->before, ear->place, ear->after});
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear->corner));
+  }
+  if (!paths_.is_open(stop_of_(polygon[0]), stop_of_(polygon[1]), stop_of_(polygon[2]))) {
+    if (fan_out(polygon, 2)) return stays;
+    is_all_open_ = false;
+  }
+  triangles_.insert(triangles_.end(), polygon.begin(), polygon.end());
+  return stays;
+}
+
+/// What is known of the corners of a piece that are extra cells, or next to such: there the solid may have holes
+/// narrower than a voxel, and a vertex may lie beyond one of them.
+class NearExtra {
+ public:
+  NearExtra(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context);
+
+  /// @param place  of a vertex; those beyond the corners count as near.
+  [[nodiscard]] bool is_near(std::uint32_t place) const { return place >= is_near_.size() || is_near_[place] != 0; }
+  /// A point of the component of a vertex that is near.
+  [[nodiscard]] const std::optional<Stop>& home(std::uint32_t place) const { return homes_[place]; }
+  /// Whether an edge has the same ends as one before it. Files name edges by their ends.
+  [[nodiscard]] bool has_twin(std::uint32_t edge) const;
+
+ private:
+  void find_twins(const AxisPiece& piece, const AxisCorners& corners);
+
+  std::vector<std::uint32_t> twins_;   ///< rising
+  std::vector<std::uint8_t> is_near_;  ///< of each vertex place
+  std::vector<std::optional<Stop>> homes_;
+};
+
+bool is_special(const CellStructure& structure, Cell cell) {
+  return structure.is_extra(cell) || structure.extra()->is_mixed(cell);
+}
+
+NearExtra::NearExtra(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses,
+                     const Context& context)
+    : is_near_(corners.vertex_cells().size(), 0), homes_(corners.vertex_cells().size()) {
+  constexpr std::size_t vertices_per_range = 512;
+  const CellStructure& structure = piece.structure;
+  if (structure.extra() == nullptr) return;
+  find_twins(piece, corners);
+  const auto cells = corners.vertex_cells();
+  parallel_for(context, cells.size(), vertices_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t v = range.begin; v < range.end; ++v) {
+      bool is_near = is_special(structure, cells[v]);
+      structure.for_each_coface(cells[v], [&](Cell edge) { is_near = is_near || is_special(structure, edge); });
+      is_near_[v] = is_near ? 1 : 0;
+      if (is_near) homes_[v] = witnesses.home_of(cells[v]);
+    }
+  });
+}
+
+bool NearExtra::has_twin(std::uint32_t edge) const {
+  return std::binary_search(twins_.begin(), twins_.end(), edge);
+}
+
+void NearExtra::find_twins(const AxisPiece& piece, const AxisCorners& corners) {
+  std::vector<std::array<std::uint32_t, 3>> edges;
+  for (std::uint32_t c = 0; c < piece.cells.size(); ++c) {
+    if (piece.cells[c].dimension != 1) continue;
+    const auto ends = corners.of_cells()[c];
+    const auto cells = corners.vertex_cells();
+    if (!is_special(piece.structure, cells[ends[0]]) || !is_special(piece.structure, cells[ends[1]])) continue;
+    edges.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), c});
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t e = 1; e < edges.size(); ++e) {
+    if (edges[e][0] == edges[e - 1][0] && edges[e][1] == edges[e - 1][1]) twins_.push_back(edges[e][2]);
+  }
+  std::sort(twins_.begin(), twins_.end());
+}
 
 constexpr std::size_t cells_per_range = 512;
 
@@ -585,4 +822,4 @@ void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& 
   piece.sides = corners.sides();
 }
 
-}  // namespace blum
+}  // namespace blum::detail

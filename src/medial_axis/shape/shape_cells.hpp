@@ -6,7 +6,7 @@
 #include "medial_axis/shape/axis_piece.hpp"
 #include "medial_axis/shape/witnesses.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Makes segments of edges and triangles of polygons, between the vertices that were placed. Of a polyhedron none of
 /// these leaves the solid where that can be helped: edges that would are led through points of the components that
@@ -14,4 +14,4 @@ namespace blum {
 /// of the cell.
 void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context);
 
-}  // namespace blum
+}  // namespace blum::detail

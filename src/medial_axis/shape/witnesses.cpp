@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 bool is_deeper(const Stop& a, const Stop& b) {
@@ -88,4 +88,4 @@ std::vector<Stop> Witnesses::landmarks_of(Cell vertex) const {
   return stops;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

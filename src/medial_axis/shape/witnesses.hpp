@@ -11,7 +11,7 @@
 #include "medial_axis/surface/governors.hpp"
 #include "medial_axis/surface/solid_paths.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// Calls use(place) for the voxels around a cell of the lattice that are inside.
 template <class Use>
@@ -56,4 +56,4 @@ class Witnesses {
   mutable std::vector<Known> known_;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

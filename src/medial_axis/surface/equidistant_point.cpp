@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// Of the strongest direction's square.
@@ -98,4 +98,4 @@ std::optional<Vec3d> EquidistantPoints::of_rank(int rank) const {
   return x;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

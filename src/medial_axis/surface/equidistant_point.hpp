@@ -7,7 +7,7 @@
 
 #include "blum/core/vec3.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The points near a start whose distances from given points differ least, moved only along the directions in which
 /// these say anything.
@@ -27,4 +27,4 @@ class EquidistantPoints {
   std::array<double, 3> strengths_;  ///< squares
 };
 
-}  // namespace blum
+}  // namespace blum::detail

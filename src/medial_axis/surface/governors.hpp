@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "medial_axis/surface/surface.hpp"
 #include "medial_axis/cells/voxel_solid.hpp"
+#include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 inline constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
@@ -72,4 +72,4 @@ class GovernorField {
   const Surface& surface_;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

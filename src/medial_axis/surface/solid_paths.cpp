@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 /// How many stops pushing may put between two, and how often parts are halved.
@@ -561,4 +561,4 @@ std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop&
   return path;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -12,7 +12,7 @@
 
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A point in a solid.
 struct Stop {
@@ -139,4 +139,4 @@ class SolidPaths {
   std::shared_ptr<const SurfacePart> part_ = nullptr;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

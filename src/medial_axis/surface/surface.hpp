@@ -10,7 +10,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/bvh.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A point of a surface and an element (a triangle; a voxel beyond the surface) that it lies on.
 struct Footprint {
@@ -104,4 +104,4 @@ class Surface {
   [[nodiscard]] virtual SiteId site_of(const Footprint& foot) const = 0;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -4,7 +4,7 @@
 
 #include "medial_axis/surface/governors.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr int most_steps = 24;
@@ -99,4 +99,4 @@ std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPo
   return ball;
 }
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -5,7 +5,7 @@
 
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A ball in the solid that touches the surface in two points, or in one.
 struct ThinBall {
@@ -28,4 +28,4 @@ struct ThinBall {
 [[nodiscard]] std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest,
                                                   const Vec3d& inside, double radius);
 
-}  // namespace blum
+}  // namespace blum::detail

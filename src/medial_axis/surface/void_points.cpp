@@ -9,7 +9,7 @@
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/orient3d.hpp"
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr std::size_t most_chords = 32;
@@ -110,4 +110,4 @@ bool moves_over_any(std::span<const Vec3d> points, const std::array<Vec3d, 3>& f
          holds_any(points, {from[2], to[0], to[1], to[2]});
 }
 
-}  // namespace blum
+}  // namespace blum::detail

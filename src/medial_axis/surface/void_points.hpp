@@ -8,7 +8,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// A point deep in each void of a body: the deepest of the middles of some chords. The closed surface of an axis around
 /// a void winds around this point. Its triangles may be moved across a corner of the void, as they cut corners anyway,
@@ -28,4 +28,4 @@ namespace blum {
 [[nodiscard]] bool moves_over_any(std::span<const Vec3d> points, const std::array<Vec3d, 3>& from,
                                   const std::array<Vec3d, 3>& to);
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-namespace blum {
+namespace blum::detail {
 namespace {
 
 constexpr std::int64_t branching = 2;  // blocks along each axis of the next larger one
@@ -248,4 +248,4 @@ NearestPoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) co
   return {world(point), length(best.query - point), SiteId(best.voxel), best.voxel};
 }
 
-}  // namespace blum
+}  // namespace blum::detail

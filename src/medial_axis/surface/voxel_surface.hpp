@@ -9,7 +9,7 @@
 #include "blum/grid/voxel_set.hpp"
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The border between the voxels of a set and the others. Elements, and sites, are the others: linear indices of the
 /// set's box, of closed voxels. Everything outside of the box is as if it were far away, so the set should stay off the
@@ -61,4 +61,4 @@ class VoxelSurface final : public Surface {
   std::vector<Level> levels_;  ///< index 0 is blocks of 2 voxels on a side; the last one has one block
 };
 
-}  // namespace blum
+}  // namespace blum::detail

@@ -8,7 +8,7 @@
 #include "blum/core/inline_list.hpp"
 #include "medial_axis/surface/surface.hpp"
 
-namespace blum {
+namespace blum::detail {
 
 /// The eight voxels around a corner see not all walls of round things: as many others may turn up.
 inline constexpr std::size_t most_walls = 16;
@@ -65,4 +65,4 @@ class Walls {
   std::size_t closest_ = 0;
 };
 
-}  // namespace blum
+}  // namespace blum::detail

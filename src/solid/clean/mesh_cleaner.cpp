@@ -1,12 +1,165 @@
 #include "solid/clean/mesh_cleaner.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/closest_point.hpp"
 
 namespace blum::detail {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// More corners are not compared pair by pair.
+constexpr std::size_t most_pairwise = 40;
+// Parts of the square of the extent. Areas in the plane are wrong by 2e-15 of it at most.
+constexpr double clear_area = 1e-12;  ///< of triangles that certainly turn to the left
+constexpr double clear_side = 1e-14;  ///< of points that certainly lie beside a line
+constexpr double steep_area = 1e-9;   ///< above, quotients of areas are right to 4e-6
+constexpr double quotient_error = 1e-5;
+constexpr double height_error = 1e-14;  ///< part of the extent
+
+/// Twice the area of the triangle from the origin, in the plane: points have their heights over it in z.
+double area(const Vec3d& a, const Vec3d& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+/// Both fans over a plane that suits the one from the apex, which is the origin.
+class Fans {
+ public:
+  Fans(std::span<const Vec3d> ring, const Vec3d& apex, bool closed) : closed_(closed), points_(ring.size()) {
+    Vec3d normal{};
+    const std::size_t sides = ring.size() - (closed ? 0 : 1);
+    for (std::size_t k = 0; k < sides; ++k) normal += cross(ring[k] - apex, ring[(k + 1) % ring.size()] - apex);
+    const double size = length(normal);
+    if (!(size > 0)) return;
+    normal *= 1 / size;
+    const Vec3d other = std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    Vec3d across = cross(normal, other);
+    across *= 1 / length(across);
+    const Vec3d along = cross(normal, across);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec3d from_apex = ring[k] - apex;
+      points_[k] = {dot(from_apex, across), dot(from_apex, along), dot(from_apex, normal)};
+      extent_ = std::max(extent_, std::abs(from_apex.x) + std::abs(from_apex.y) + std::abs(from_apex.z));
+      lowest_ = std::min(lowest_, points_[k].z);
+      highest_ = std::max(highest_, points_[k].z);
+    }
+    square_ = extent_ * extent_;
+  }
+
+  /// Whether both fans are graphs of functions over the inside of the polygon in the plane.
+  [[nodiscard]] bool are_graphs() const {
+    if (!(square_ > 0)) return false;
+    const std::size_t last = points_.size() - 1;
+    const double least = clear_area * square_;
+    std::size_t turns = 0;
+    for (std::size_t k = 0; k + (closed_ ? 0 : 1) <= last; ++k) {
+      const Vec3d& a = points_[k];
+      const Vec3d& b = points_[k == last ? 0 : k + 1];
+      if (!(area(a, b) > least)) return false;
+      if (a.y < 0 && b.y >= 0) ++turns;
+    }
+    for (std::size_t k = 1; k + 1 <= last; ++k) {
+      if (!(area(points_[k] - points_[0], points_[k + 1] - points_[0]) > least)) return false;
+      // Seen from a side, all corners lie within half a turn.
+      if (!closed_ && !(area(points_[0], points_[k]) > least)) return false;
+    }
+    return !closed_ || turns == 1;
+  }
+
+  /// What no two points over one place can be further apart.
+  [[nodiscard]] double slab() const { return (highest_ - lowest_) + height_error * extent_; }
+
+  /// The largest distance of the two over one place: both are linear between the places looked at here.
+  [[nodiscard]] double gap() const {
+    double most = closed_ ? gap_at_apex() : 0;
+    const std::size_t last = points_.size() - 1;
+    const std::size_t end = closed_ ? last + 1 : last;
+    for (std::size_t i = 1; i < end && most < infinity; ++i) {
+      for (std::size_t j = 2; j < last; ++j) {
+        if (i != j) most = std::max(most, gap_at_crossing(points_[i], points_[j]));
+      }
+    }
+    return std::min(slab(), most + quotient_error * (highest_ - lowest_) + height_error * extent_);
+  }
+
+ private:
+  [[nodiscard]] double gap_at_apex() const {
+    const Vec3d& w = points_[0];
+    const Vec3d apex = -w;
+    double most = infinity;
+    for (std::size_t k = 1; k + 1 < points_.size(); ++k) {
+      const Vec3d a = points_[k] - w;
+      const Vec3d b = points_[k + 1] - w;
+      const double of_b = area(a, apex);
+      const double of_a = area(apex, b);
+      if (of_a < -clear_side * square_ || of_b < -clear_side * square_) continue;
+      const double whole = area(a, b);
+      if (whole < steep_area * square_) return infinity;
+      const double found = std::abs(w.z + (of_a * a.z + of_b * b.z) / whole);
+      most = most == infinity ? found : std::max(most, found);
+    }
+    return most;
+  }
+
+  /// Of the edge from the apex to p and the one from the first corner to q; 0 where they do not cross.
+  [[nodiscard]] double gap_at_crossing(const Vec3d& p, const Vec3d& q) const {
+    const Vec3d& w = points_[0];
+    const double clear = clear_side * square_;
+    const double w_side = area(p, w);
+    const double q_side = area(p, q);
+    if ((w_side > clear && q_side > clear) || (w_side < -clear && q_side < -clear)) return 0;
+    const Vec3d way = q - w;
+    const double apex_side = area(way, -w);
+    const double p_side = area(way, p - w);
+    if ((apex_side > clear && p_side > clear) || (apex_side < -clear && p_side < -clear)) return 0;
+    const double turn = area(p, way);
+    if (std::abs(turn) < steep_area * square_) return infinity;
+    const double s = std::clamp(area(w, way) / turn, 0.0, 1.0);
+    const double t = std::clamp(-w_side / turn, 0.0, 1.0);
+    return std::abs(s * p.z - (w.z + t * way.z));
+  }
+
+  bool closed_;
+  std::vector<Vec3d> points_;
+  double extent_ = 0;
+  double square_ = 0;
+  double lowest_ = 0;
+  double highest_ = 0;
+};
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Of a vertex with more neighbours only the closest ones are tried.
+constexpr std::size_t many_neighbours = 24;
+constexpr std::size_t targets_of_many = 12;
+/// Steps that move the surface less than this part of the tolerance are as good as each other.
+constexpr double negligible = 0.002;
+/// What the worst shape of new triangles costs, where 1 is all of the tolerance.
+constexpr double cost_of_shape = 0.1;
+/// New triangles may be flatter than those before by this, where they are no needles.
+constexpr double flattening = 0.25;
+/// Triangles below the tolerance are needles where they are also this much longer than high.
+constexpr double slenderness = 10;
+/// The cosine of the angle that triangles turn by at most. Needles turn freely, but are not to lie on their neighbours.
+constexpr double least_cosine = 0.2;
+constexpr double least_cosine_of_needle = -0.5;
+/// Edges are turned where that makes triangles this much higher, so that it ends.
+constexpr double least_gain = 1.5;
+/// Flips come after collapses that are as good.
+constexpr double cost_of_flip = 0.1;
+constexpr double rounding = 1e-14;
+
+double cosine(const Vec3d& a, const Vec3d& b) {
+  const double sizes = std::sqrt(squared_length(a)) * std::sqrt(squared_length(b));
+  return sizes > 0 ? dot(a, b) / sizes : -1;
+}
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t looks_between_reports = 256;
@@ -26,6 +179,168 @@ std::vector<double> heights_of(const ShrinkingSurface& mesh) {
 }
 
 }  // namespace
+
+double fan_gap(std::span<const Vec3d> ring, const Vec3d& apex, bool closed, double enough) {
+  // A polygon of two corners, or of three with the apex on a side, is one triangle or none, whatever the apex.
+  if (ring.size() < 3) return 0;
+  const Fans fans(ring, apex, closed);
+  if (!fans.are_graphs()) return infinity;
+  if (ring.size() > most_pairwise || fans.slab() <= enough) return fans.slab();
+  return fans.gap();
+}
+
+bool CollapseSearch::is_needle(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+  const double height = least_height(a, b, c);
+  return height < tolerance_ && height * slenderness < longest_side(a, b, c);
+}
+
+void CollapseSearch::look_at_star(std::uint32_t v) {
+  mesh_.find_star(v, star_);
+  const std::size_t count = star_.ring.size();
+  around_.resize(count);
+  sides_.resize(count);
+  for (std::size_t k = 0; k < count; ++k) around_[k] = mesh_.point(star_.ring[k]) - mesh_.point(v);
+  deviation_ = 0;
+  least_height_ = infinity;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3d& a = around_[k];
+    const Vec3d& b = around_[(k + 1) % count];
+    sides_[k] = {cross(a, b), least_height({}, a, b), is_needle({}, a, b)};
+    deviation_ = std::max(deviation_, deviations_[star_.triangles[k]]);
+    least_height_ = std::min(least_height_, sides_[k].height);
+  }
+}
+
+void CollapseSearch::choose_targets() {
+  targets_.resize(around_.size());
+  std::iota(targets_.begin(), targets_.end(), std::size_t{0});
+  if (targets_.size() <= many_neighbours) return;
+  const auto is_closer = [&](std::size_t a, std::size_t b) {
+    const double first = squared_length(around_[a]);
+    const double second = squared_length(around_[b]);
+    return first != second ? first < second : star_.ring[a] < star_.ring[b];
+  };
+  std::partial_sort(targets_.begin(), targets_.begin() + targets_of_many, targets_.end(), is_closer);
+  targets_.resize(targets_of_many);
+}
+
+/// The vertex moves onto the chord from the target to another neighbour at first; what is on either side of the chord
+/// is then a fan of its own. @return  infinity where that shows no bound below a limit.
+double CollapseSearch::bound_along_crease(double limit) const {
+  const std::size_t count = rotated_.size();
+  const double enough = negligible * tolerance_;
+  double best = infinity;
+  std::vector<Vec3d> other_side;
+  for (std::size_t m = 1; m < count; ++m) {
+    const Vec3d foot = closest_point_on_segment({}, rotated_[0], rotated_[m]);
+    const double height = length(foot) + rounding * (length(rotated_[0]) + length(rotated_[m]));
+    if (!(height < limit)) continue;
+    const double one = fan_gap(std::span(rotated_).first(m + 1), foot, false, enough);
+    if (!(height + one < limit)) continue;
+    other_side.assign(1, rotated_[0]);
+    for (std::size_t k = count - 1; k >= m; --k) other_side.push_back(rotated_[k]);
+    const double both = height + std::max(one, fan_gap(other_side, foot, false, enough));
+    if (!(both < limit)) continue;
+    best = limit = both;
+  }
+  return best;
+}
+
+/// How far the surface moves at most; above the budget where no better bound is known.
+double CollapseSearch::bound(std::size_t onto, double budget) {
+  const std::size_t count = around_.size();
+  rotated_.resize(count);
+  for (std::size_t k = 0; k < count; ++k) rotated_[k] = around_[(onto + k) % count];
+  const double enough = negligible * tolerance_;
+  double best = length(rotated_[0]) * (1 + rounding);
+  if (best > enough) best = std::min(best, fan_gap(rotated_, {}, true, enough));
+  if (best <= enough) return best;
+  return std::min(best, bound_along_crease(std::min(best, budget)));
+}
+
+/// @param side  of the ring: the triangle there turns to a normal.
+bool CollapseSearch::folds(std::uint32_t v, std::size_t side, const Vec3d& normal) const {
+  if (!sides_[side].is_needle) return cosine(sides_[side].normal, normal) < least_cosine;
+  const EdgePair edge = mesh_.opposite_edge(star_.triangles[side], v);
+  const std::array<Vec3d, 3> beyond = mesh_.corners(edge.right);
+  const Vec3d outer = cross(beyond[1] - beyond[0], beyond[2] - beyond[0]);
+  const double found = cosine(outer, normal);
+  return found < least_cosine_of_needle && found < cosine(outer, sides_[side].normal);
+}
+
+CollapseSearch::Shape CollapseSearch::shape(std::uint32_t v, std::size_t onto) const {
+  const std::size_t count = around_.size();
+  const Vec3d& w = around_[onto];
+  Shape out{true, 1};
+  double least = infinity;
+  bool makes_needle = false;
+  for (std::size_t step = 1; step + 1 < count; ++step) {
+    const std::size_t side = (onto + step) % count;
+    const Vec3d& a = around_[side];
+    const Vec3d& b = around_[(side + 1) % count];
+    const Vec3d normal = cross(a - w, b - w);
+    const double longest = longest_side(w, a, b);
+    const double height = longest > 0 ? length(normal) / longest : 0;
+    if (!(height > 0) || folds(v, side, normal)) return {};
+    least = std::min(least, height);
+    makes_needle = makes_needle || is_needle(w, a, b);
+    out.quality = std::min(out.quality, height / longest * (2 / std::numbers::sqrt3));
+  }
+  out.is_allowed = least >= least_height_ || (!makes_needle && least >= flattening * least_height_);
+  return out;
+}
+
+std::span<const VertexCollapse> CollapseSearch::find(std::uint32_t v) {
+  found_.clear();
+  look_at_star(v);
+  const double budget = tolerance_ - deviation_;
+  if (star_.ring.size() < 3 || !(budget > 0)) return {};
+  choose_targets();
+  for (const std::size_t onto : targets_) {
+    const Shape made = shape(v, onto);
+    if (!made.is_allowed) continue;
+    const double step = bound(onto, budget);
+    const double deviation = (deviation_ + step) * (1 + rounding);
+    if (!(deviation <= tolerance_)) continue;
+    const double cost = deviation / tolerance_ + cost_of_shape * (1 - made.quality);
+    found_.push_back({cost, deviation, star_.ring[onto], onto});
+  }
+  std::sort(found_.begin(), found_.end(), [](const VertexCollapse& a, const VertexCollapse& b) {
+    return a.cost != b.cost ? a.cost < b.cost : a.target < b.target;
+  });
+  return found_;
+}
+
+EdgeFlip CollapseSearch::find_flip(std::uint32_t t) const {
+  EdgeFlip out;
+  const std::array<Vec3d, 3> p = mesh_.corners(t);
+  std::size_t apex = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    const auto opposite = [&](std::size_t of) { return squared_length(p[(of + 1) % 3] - p[(of + 2) % 3]); };
+    if (opposite(k) > opposite(apex)) apex = k;
+  }
+  out.edge = mesh_.opposite_edge(t, mesh_.triangle(t)[apex]);
+  const EdgePair& e = out.edge;
+  const Vec3d& origin = mesh_.point(e.apex_left);
+  const Vec3d a = mesh_.point(e.a) - origin;
+  const Vec3d b = mesh_.point(e.b) - origin;
+  const Vec3d d = mesh_.point(e.apex_right) - origin;
+  // Both old triangles are within this of the new ones: the apex moves onto the edge, which it cuts in two.
+  const double height = length(closest_point_on_segment({}, a, b)) + rounding * (length(a) + length(b));
+  out.deviation = (std::max(deviations_[e.left], deviations_[e.right]) + height) * (1 + rounding);
+  out.cost = out.deviation / tolerance_ + cost_of_flip;
+  if (!(out.deviation <= tolerance_) || e.apex_left == e.apex_right) return out;
+  const double before = std::min(least_height({}, a, b), least_height(b, a, d));
+  const double after = std::min(least_height({}, a, d), least_height(d, b, {}));
+  if (!(after >= least_gain * before && after > 0)) return out;
+  const Vec3d beyond = cross(a - b, d - b);
+  if (!is_needle(b, a, d) &&
+      (cosine(beyond, cross(a, d)) < least_cosine || cosine(beyond, cross(b - d, -d)) < least_cosine)) {
+    return out;
+  }
+  out.is_possible = !mesh_.has_edge(e.apex_left, e.apex_right);
+  return out;
+}
 
 MeshCleaner::MeshCleaner(const MeshView& mesh, double tolerance, const Context& context)
     : mesh_(mesh),

@@ -10,19 +10,23 @@
 #include <string>
 #include <vector>
 
+#include "axis/axis_parts.hpp"
+#include "blum/axis/axis_graph.hpp"
+#include "blum/axis/label_sheets.hpp"
+#include "blum/axis/prune_sheets.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/complex/incidence.hpp"
-#include "blum/axis/axis_graph.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
-#include "blum/axis/prune_sheets.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
-#include "blum/axis/label_sheets.hpp"
-#include "axis/axis_parts.hpp"
 #include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
+
+using detail::add_quantiles;
+using detail::label_sheets;
+using detail::LinearPart;
 
 using test::AxisRows;
 using Numbers = std::vector<std::uint32_t>;

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "blum/axis/label_sheets.hpp"
+#include "blum/axis/shrinking_complex.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/complex/homology.hpp"
 #include "blum/complex/incidence.hpp"
@@ -25,12 +27,14 @@
 #include "blum/field/closest_points.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/shape_catalog.hpp"
-#include "blum/axis/label_sheets.hpp"
-#include "blum/axis/shrinking_complex.hpp"
 #include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
+
+using detail::label_sheets;
+using detail::LinkScratch;
+using detail::ShrinkingComplex;
 
 using test::AxisRows;
 using test::VertexRow;

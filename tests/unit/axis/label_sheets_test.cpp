@@ -13,6 +13,8 @@
 namespace blum {
 namespace {
 
+using detail::label_sheets;
+
 using test::AxisRows;
 using test::EdgeRow;
 using test::TriangleRow;

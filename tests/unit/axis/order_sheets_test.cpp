@@ -18,12 +18,21 @@
 namespace blum {
 namespace {
 
+using detail::order_sheets;
+using detail::order_sheets_as;
+using detail::PatchNumbers;
+
 using test::AxisRows;
 
 PatchNumbers numbers_of(const TriangleMesh& mesh) {
   const Solid solid = Solid::of(mesh);
   PatchNumbers numbers(solid.sites());
-  for (const SolidBody& body : solid.bodies()) numbers.add(body, SiteTable(body.mesh), solid.sites(), {});
+  for (const SolidBody& body : solid.bodies()) {
+    const SiteTable own(body.mesh);
+    numbers.add({body.mesh, body.triangle_of, body.vertex_of,
+                 [&](SiteId site) { return body.input_site(site, own, solid.sites()); }},
+                own, {});
+  }
   numbers.choose_anchors();
   return numbers;
 }

@@ -6,16 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "blum/axis/label_sheets.hpp"
+#include "blum/axis/prune_sheets.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
-#include "blum/axis/prune_sheets.hpp"
 #include "blum/shapes/shape_catalog.hpp"
-#include "blum/axis/label_sheets.hpp"
 #include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
+
+using detail::label_sheets;
 
 using test::AxisRows;
 using test::EdgeRow;

@@ -15,6 +15,8 @@
 namespace blum {
 namespace {
 
+using detail::CellComplex;
+
 /// A cell by its middle, in half steps: odd along the axes that it spans.
 using Middle = std::array<std::int64_t, 3>;
 

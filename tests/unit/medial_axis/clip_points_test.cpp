@@ -1,5 +1,5 @@
 // Proves where edges of a mesh and a box meet, and which way leads into the solid from there without leaving the box.
-#include "medial_axis/surface/clip_points.hpp"
+#include "medial_axis/surface/mesh_surface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,9 @@
 
 namespace blum {
 namespace {
+
+using detail::add_clip_points;
+using detail::SurfacePoint;
 
 const Box3 unit_box{{0, 0, 0}, {1, 1, 1}};
 

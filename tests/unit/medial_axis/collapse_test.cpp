@@ -17,6 +17,12 @@
 namespace blum {
 namespace {
 
+using detail::CellComplex;
+using detail::collapse;
+using detail::CollapseOrder;
+using detail::Importance;
+using detail::Removal;
+
 std::vector<Cell> cells_of(const CellComplex& complex) {
   std::vector<Cell> cells;
   for (std::size_t node = 0; node < complex.bytes().size(); ++node) {

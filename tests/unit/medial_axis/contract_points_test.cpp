@@ -15,6 +15,8 @@
 namespace blum {
 namespace {
 
+using detail::contract_points;
+
 using test::AxisRows;
 using test::EdgeRow;
 using test::TriangleRow;

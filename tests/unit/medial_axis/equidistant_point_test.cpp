@@ -12,6 +12,8 @@
 namespace blum {
 namespace {
 
+using detail::EquidistantPoints;
+
 Vec3d direction(Random& random) {
   const Vec3d v = random.in_ball();
   return v / length(v);

@@ -13,8 +13,6 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/core/random.hpp"
 #include "blum/shapes/generators.hpp"
-#include "medial_axis/fit/merge_curves.hpp"
-#include "medial_axis/fit/round_centre.hpp"
 #include "medial_axis/fit/split_curves.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/vertex_mover.hpp"
@@ -23,6 +21,19 @@
 
 namespace blum {
 namespace {
+
+using detail::AxisLists;
+using detail::AxisVertex;
+using detail::merge_curves;
+using detail::MeshSurface;
+using detail::round_centre;
+using detail::RoundCentre;
+using detail::RoundLimits;
+using detail::split_curves;
+using detail::trim;
+using detail::TrimLimits;
+using detail::vertex_of_one_wall;
+using detail::VertexMover;
 
 struct Sample {
   explicit Sample(TriangleMesh given) : mesh(std::move(given)), sites(mesh), surface(mesh, sites, true, {}) {}

@@ -12,6 +12,8 @@
 namespace blum {
 namespace {
 
+using detail::Importance;
+
 /// Adds a cell, its faces, their faces and so on.
 void add_closure(const CellLattice& lattice, Cell cell, float degrees, std::map<Cell, float>& values) {
   float& value = values[cell];

@@ -16,6 +16,11 @@
 namespace blum {
 namespace {
 
+using detail::Footprint;
+using detail::MeshSurface;
+using detail::NearestPoint;
+using detail::SurfacePoint;
+
 /// A mesh with its sites and its surface.
 struct Sample {
   explicit Sample(TriangleMesh its_mesh) : mesh(std::move(its_mesh)), brute(mesh), surface(mesh, sites, true, {}) {}

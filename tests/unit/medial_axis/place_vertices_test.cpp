@@ -13,15 +13,32 @@
 #include "blum/grid/image_generators.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/shapes/generators.hpp"
+#include "medial_axis/cells/voxelize.hpp"
 #include "medial_axis/shape/axis_piece.hpp"
 #include "medial_axis/surface/mesh_surface.hpp"
 #include "medial_axis/surface/voxel_surface.hpp"
-#include "medial_axis/cells/voxelize.hpp"
 #include "support/mesh_places.hpp"
 #include "support/voxel_sets.hpp"
 
 namespace blum {
 namespace {
+
+using detail::angle_at;
+using detail::append_at;
+using detail::AxisCell;
+using detail::AxisLists;
+using detail::AxisPiece;
+using detail::AxisVertex;
+using detail::GovernorField;
+using detail::is_extra;
+using detail::make_axis_piece;
+using detail::MeshSurface;
+using detail::place_vertices;
+using detail::voxelize_body;
+using detail::voxelize_image;
+using detail::VoxelSolid;
+using detail::VoxelSurface;
+using detail::Witnesses;
 
 SolidBody first_body(const TriangleMesh& mesh) {
   const Solid solid = Solid::of(mesh);

@@ -16,6 +16,11 @@
 namespace blum {
 namespace {
 
+using detail::holds;
+using detail::MeshSurface;
+using detail::SolidPaths;
+using detail::Stop;
+
 /// A box from (-1, -1, -1) to (1, 1, 1) with a slit from above down to z = 0, across x = 0.
 TriangleMesh slit_block(double width) {
   const double w = 0.5 * width;

@@ -1,5 +1,5 @@
 // Proves that a set spreads to the voxels near its own, as plain counting finds them, for any number of threads.
-#include "medial_axis/cells/spread_voxels.hpp"
+#include "medial_axis/shape/separation_angles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 
 namespace blum {
 namespace {
+
+using detail::spread;
 
 using Place = std::array<std::int64_t, 3>;
 

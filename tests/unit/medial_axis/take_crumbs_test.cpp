@@ -9,10 +9,15 @@
 
 #include "blum/complex/homology.hpp"
 #include "blum/complex/incidence.hpp"
-#include "medial_axis/fit/take_crumbs.hpp"
+#include "medial_axis/fit/trim.hpp"
 
 namespace blum {
 namespace {
+
+using detail::AxisLists;
+using detail::AxisVertex;
+using detail::CrumbLimits;
+using detail::take_crumbs;
 
 constexpr std::uint32_t side = 8;
 constexpr CrumbLimits limits{4, 0.1};

@@ -19,6 +19,12 @@
 namespace blum {
 namespace {
 
+using detail::AttachedVoxels;
+using detail::CellComplex;
+using detail::Importance;
+using detail::thin_voxels;
+using detail::VoxelSolid;
+
 using Place = std::array<std::int64_t, 3>;
 
 struct Sample {

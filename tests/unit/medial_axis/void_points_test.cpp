@@ -15,6 +15,10 @@
 namespace blum {
 namespace {
 
+using detail::holds_any;
+using detail::MeshSurface;
+using detail::moves_over_any;
+
 /// A mesh inside out, moved and scaled.
 void add_void(TriangleMesh& mesh, const TriangleMesh& solid, double scale, const Vec3d& at) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());

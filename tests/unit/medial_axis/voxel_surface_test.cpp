@@ -19,6 +19,10 @@
 namespace blum {
 namespace {
 
+using detail::Footprint;
+using detail::NearestPoint;
+using detail::VoxelSurface;
+
 using Place = std::array<std::int64_t, 3>;
 
 /// A set, its grid and its surface.

@@ -21,6 +21,12 @@
 namespace blum {
 namespace {
 
+using detail::voxelize_body;
+using detail::voxelize_by_winding;
+using detail::voxelize_image;
+using detail::Voxelized;
+using detail::VoxelSolid;
+
 SolidBody body_of(const TriangleMesh& mesh) {
   const Solid solid = Solid::of(mesh);
   return solid.bodies().front();

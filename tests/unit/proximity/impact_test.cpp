@@ -13,7 +13,6 @@
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
 #include "proximity/exact/exact_impact.hpp"
-#include "proximity/exact/exact_separation.hpp"
 #include "proximity/impact_filter.hpp"
 #include "support/slow_impact.hpp"
 

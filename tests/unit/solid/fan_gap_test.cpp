@@ -1,6 +1,6 @@
 // Proves that the bound on how far a fan of triangles moves when its apex does is one: against distances of many points
 // of both fans from each other, which it is seldom much above where fans are flat.
-#include "solid/clean/fan_gap.hpp"
+#include "solid/clean/mesh_cleaner.hpp"
 
 #include <gtest/gtest.h>
 

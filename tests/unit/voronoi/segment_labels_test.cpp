@@ -1,6 +1,6 @@
 // Sites along segments: known ones, and on generated solids those that exact comparisons of all labels find at many
 // places, between the changes that were told.
-#include "voronoi/segment_labels.hpp"
+#include "voronoi/line_labels.hpp"
 
 #include <gtest/gtest.h>
 

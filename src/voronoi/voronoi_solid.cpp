@@ -1,4 +1,4 @@
-#include "voronoi/face_loops.hpp"
+#include "voronoi/voronoi_solid.hpp"
 
 #include <algorithm>
 #include <array>
