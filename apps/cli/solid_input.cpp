@@ -4,7 +4,6 @@
 
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
-#include "blum/solid/oriented_mesh.hpp"
 #include "input_facts.hpp"
 #include "options.hpp"
 #include "progress.hpp"
@@ -20,15 +19,15 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
   }
   const Unattended reading;
   if (input.kind == InputKind::mesh) {
-    input.mesh = read_mesh_of_any_name(path, {weld});
+    input.mesh = read_mesh_of_any_name(path, {weld, true});
     const MeshView mesh = input.mesh.mesh;
     of_file(path, [&] { validate(mesh); });
     const SiteTable sites(mesh);
     const Orientation facts = orientation(mesh, sites);
     input.json = mesh_json(path, input.mesh, sites, facts);
     input.text = mesh_text(path, input.mesh, sites, facts);
-    if (weld && *weld > 0) {
-      input.weld = weld_facts(path, *weld, mesh);
+    if (input.mesh.exact) {
+      input.weld = weld_facts(*input.mesh.exact, *weld, mesh);
       input.json["weld"] = weld_json(*input.weld);
     }
     return input;
@@ -56,13 +55,6 @@ Selections parse_selections(const std::vector<std::string>& labels, const std::o
   out.labels = parse_labels("--label", labels);
   if (threshold) out.threshold = parse_number("--threshold", *threshold);
   return out;
-}
-
-void orient(SolidInput& input, const Context& context) {
-  OrientedMesh oriented = oriented_mesh(input.mesh.mesh, context);
-  input.mesh.mesh = std::move(oriented.mesh);
-  input.reversed_triangles = oriented.reversed_triangles;
-  input.reversed_shells = oriented.reversed_shells;
 }
 
 std::vector<std::string> warnings_of(const SolidInput& input) {

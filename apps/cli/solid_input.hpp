@@ -22,7 +22,7 @@ struct SolidInput {
   MeshFile mesh;
   VoxelImage image;
   std::optional<WeldFacts> weld;                            ///< where vertices within a tolerance above 0 were joined
-  std::size_t reversed_triangles = 0, reversed_shells = 0;  ///< by orient()
+  std::size_t reversed_triangles = 0, reversed_shells = 0;  ///< in the solid
   Json json;
   std::string text;
 };
@@ -30,9 +30,6 @@ struct SolidInput {
 /// @param weld  for meshes.
 /// @throws FileError for fields and for what cannot be read; InvalidMesh, InvalidImage.
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
-
-/// Turns the triangles of a mesh away from the solid. @throws InvalidMesh as oriented_mesh() does.
-void orient(SolidInput& input, const Context& context);
 
 /// What there is to say of an input: how many vertices were joined, and triangles reversed.
 [[nodiscard]] std::vector<std::string> warnings_of(const SolidInput& input);

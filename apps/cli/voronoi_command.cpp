@@ -15,6 +15,7 @@
 #include "blum/io/mesh_io.hpp"
 #include "blum/io/voronoi_io.hpp"
 #include "blum/solid/clean_mesh.hpp"
+#include "blum/solid/solid.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
@@ -214,7 +215,6 @@ Request parse(const Arguments& a) {
     outputs.push_back(*r.axis.graph);
   }
   if (a.cleaned) {
-    if (!a.clean) throw UsageError("--cleaned is for what --clean makes: give a tolerance");
     check_extension("--cleaned", *a.cleaned, file_extensions(FileContent::mesh, FileAccess::both));
     outputs.emplace_back(*a.cleaned);
   } else if (a.clean && a.medial && a.output) {
@@ -246,21 +246,38 @@ std::string graph_text(const VoronoiGraph& graph) {
          ", " + plural(graph.junctions.size(), "junction", "junctions");
 }
 
-/// Puts the mesh that faces outwards, cleaned where that is asked for, in the place of the one that was read; writes
-/// the cleaned one.
-std::optional<CleanReport> prepare(const Arguments& a, const Request& r, SolidInput& input,
-                                   std::vector<std::string>& warnings, const Context& context) {
-  if (!r.clean) {
-    of_file(a.input, [&] { orient(input, context); });
-    return std::nullopt;
+/// The solid whose diagram is made.
+struct Prepared {
+  Solid solid;
+  std::optional<CleanReport> cleaning;
+};
+
+/// The solid of the mesh that was read, cleaned where that is asked for; its surface takes the mesh's place, and is
+/// written where it has numbers of its own.
+Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<std::string>& warnings,
+                 const Context& context) {
+  const auto make = [&]() -> Prepared {
+    const TriangleMesh& mesh = input.mesh.mesh;
+    if (!r.clean) return {Solid::of(mesh, context), std::nullopt};
+    CleanedMesh cleaned = clean_mesh(mesh, *r.clean, context);
+    add_left_out_warning(mesh, warnings);
+    return {std::move(cleaned.solid), cleaned.report};
+  };
+  Prepared out = of_file(a.input, make);
+  input.reversed_triangles = out.cleaning ? out.cleaning->reversed_triangles : out.solid.reversed_triangles();
+  input.reversed_shells = out.cleaning ? out.cleaning->reversed_shells : out.solid.reversed_shells();
+  if (out.solid.resolved()) {
+    if (a.medial && a.output && !a.cleaned) {
+      throw InvalidMesh("'" + a.input +
+                        "': the mesh crosses itself, and a medial axis is verified against the mesh that it is of: "
+                        "give --cleaned FILE for that without the crossings, too");
+    }
+    warnings.push_back(out.solid.reason());
+    if (!a.cleaned) warnings.emplace_back("triangles are those without the crossings: --cleaned FILE writes them");
   }
-  CleanedMesh cleaned = of_file(a.input, [&] { return clean_mesh(input.mesh.mesh, *r.clean, context); });
-  if (a.cleaned) write_mesh(*a.cleaned, cleaned.mesh);
-  add_left_out_warning(input.mesh.mesh, warnings);
-  input.mesh.mesh = std::move(cleaned.mesh);
-  input.reversed_triangles = cleaned.report.reversed_triangles;
-  input.reversed_shells = cleaned.report.reversed_shells;
-  return cleaned.report;
+  input.mesh.mesh = out.solid.surface().mesh;
+  if (a.cleaned) write_mesh(*a.cleaned, input.mesh.mesh);
+  return out;
 }
 
 void run(const Arguments& a) {
@@ -273,12 +290,13 @@ void run(const Arguments& a) {
   SolidInput input = read_mesh_input(path, r.weld);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   std::vector<std::string> left_out;
-  const std::optional<CleanReport> cleaning = prepare(a, r, input, left_out, context);
-  phases.push_back({cleaning ? "clean" : "orient", watch.lap()});
+  const Prepared prepared = prepare(a, r, input, left_out, context);
+  const std::optional<CleanReport>& cleaning = prepared.cleaning;
+  phases.push_back({cleaning ? "clean" : "solid", watch.lap()});
   std::vector<std::string> warnings = warnings_of(input);
   warnings.insert(warnings.end(), left_out.begin(), left_out.end());
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
-  VoronoiComplex made = of_file(path, [&] { return voronoi_complex(input.mesh.mesh, r.options, context); });
+  VoronoiComplex made = of_file(path, [&] { return voronoi_complex(prepared.solid, r.options, context); });
   const VoronoiReport& found = made.report;
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());

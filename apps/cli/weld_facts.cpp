@@ -22,10 +22,9 @@ SurfaceFacts surface_facts(const MeshView& mesh) {
   return {facts.components, facts.euler_characteristic};
 }
 
-WeldFacts weld_facts(const std::filesystem::path& path, double tolerance, const MeshView& welded) {
-  const MeshFile exact = read_mesh_of_any_name(path, {0.0});
-  const std::size_t vertices = exact.mesh.vertices.size();
-  return {tolerance, vertices, vertices - welded.vertices.size(), surface_facts(exact.mesh), surface_facts(welded)};
+WeldFacts weld_facts(const MeshView& exact, double tolerance, const MeshView& welded) {
+  const std::size_t vertices = exact.vertices.size();
+  return {tolerance, vertices, vertices - welded.vertices.size(), surface_facts(exact), surface_facts(welded)};
 }
 
 std::string weld_text(const WeldFacts& facts) {

@@ -26,8 +26,8 @@ struct WeldFacts {
   std::size_t lost = 0;      ///< of these
   SurfaceFacts before, after;
 };
-/// @param path  of the mesh, which is read again.
-[[nodiscard]] WeldFacts weld_facts(const std::filesystem::path& path, double tolerance, const MeshView& welded);
+/// @param exact  where equal vertices alone were joined.
+[[nodiscard]] WeldFacts weld_facts(const MeshView& exact, double tolerance, const MeshView& welded);
 
 /// In one sentence.
 [[nodiscard]] std::string weld_text(const WeldFacts& facts);

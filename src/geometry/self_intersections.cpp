@@ -242,26 +242,4 @@ bool SelfIntersectionSearch::finds_any(const MeshView& mesh, const Context& cont
   return found;
 }
 
-std::string problem_of_places(const MeshView& mesh) {
-  const std::vector<std::uint32_t> places = weld_clusters(mesh.vertices);
-  std::vector<std::optional<std::uint32_t>> vertex_at(mesh.vertices.size());
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) {
-      std::optional<std::uint32_t>& known = vertex_at[places[v]];
-      if (!known) known = v;
-      if (*known == v) continue;
-      return "the mesh touches itself: vertices " + std::to_string(*known) + " and " + std::to_string(v) +
-             " lie in one place; weld it first";
-    }
-  }
-  return {};
-}
-
-std::string problem_of_crossings(const MeshView& mesh, const Context& context) {
-  const SelfIntersections crossings = find_self_intersections(mesh, 1, context);
-  if (crossings.pairs.empty()) return {};
-  return "the mesh crosses or touches itself: triangles " + std::to_string(crossings.pairs[0].first.value) + " and " +
-         std::to_string(crossings.pairs[0].second.value) + ", for one; blum.Solid and resolve_crossings() mend that";
-}
-
 }  // namespace blum

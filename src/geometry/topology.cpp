@@ -270,34 +270,4 @@ Topology topology(const MeshView& mesh, const SiteTable& sites, const Context& c
   return result;
 }
 
-std::string problem_as_solid(const Topology& facts) {
-  const auto count = [](std::size_t n, const char* one, const char* several) {
-    return n == 1 ? std::string("one ") + one : std::to_string(n) + " " + several;
-  };
-  const std::string head = "the mesh bounds no solid: it ";
-  if (facts.triangles == 0) return head + "has no triangles";
-  if (facts.nonmanifold_edges > 0) {
-    return head + "is not manifold: " + count(facts.nonmanifold_edges, "edge has", "edges have") +
-           " more than two triangles";
-  }
-  if (facts.boundary_edges > 0) {
-    return head + "is not closed: " + count(facts.boundary_edges, "edge has", "edges have") +
-           " one triangle only; where vertices are doubled, or nearly, welding them closes it (`--weld`, with a "
-           "tolerance)";
-  }
-  if (!facts.oriented) {
-    return head + "is not oriented: at " + count(facts.inconsistent_edges, "edge", "edges") +
-           " both triangles run the same way (oriented_mesh() turns them)";
-  }
-  if (!facts.manifold) {
-    return head + "is not manifold: at " + count(facts.nonmanifold_vertices, "vertex", "vertices") +
-           " parts of it touch";
-  }
-  if (!facts.closed) return head + "is not closed";
-  if (!facts.faces_outwards) {
-    return head + "does not face outwards: shells of it, or of its voids, face the solid (oriented_mesh() turns them)";
-  }
-  return "";
-}
-
 }  // namespace blum

@@ -30,6 +30,7 @@ void apply_weld(MeshFile& file, const MeshReadOptions& options) {
   const bool wanted = options.weld.has_value() || file.info.format == MeshFormat("STL");
   if (!wanted) return;
   const std::size_t before = file.mesh.vertices.size();
+  if (options.keeps_exact && options.weld.value_or(0) > 0) file.exact = weld(file.mesh, 0);
   file.mesh = weld(file.mesh, options.weld.value_or(0.0));
   file.info.welded = true;
   file.info.merged_vertices = before - file.mesh.vertices.size();

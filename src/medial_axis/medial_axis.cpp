@@ -35,8 +35,6 @@
 namespace blum {
 namespace {
 
-using detail::add;
-using detail::add_triangle;
 using detail::append;
 using detail::append_at;
 using detail::AxisCell;

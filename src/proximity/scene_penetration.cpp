@@ -13,11 +13,8 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/geometry/bvh.hpp"
-#include "blum/geometry/resolve_crossings.hpp"
-#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/geometry/topology.hpp"
-#include "blum/geometry/weld.hpp"
+#include "blum/solid/winding_surface.hpp"
 #include "proximity/deepest_point.hpp"
 #include "proximity/overlap.hpp"
 
@@ -53,72 +50,17 @@ std::string name_of(ObjectId object) {
   return "object " + std::to_string(object.value);
 }
 
-/// From the middle of its box, so that it is not lost where the surface is far from the origin.
-double signed_volume(const TriangleMesh& surface) {
-  const Vec3d from = bounds(surface).center();
-  double sum = 0;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const Vec3d p = surface.vertices[a] - from;
-    sum += dot(p, cross(surface.vertices[b] - from, surface.vertices[c] - from));
-  }
-  return sum / 6;
-}
-
-/// How many edges of a surface have no two triangles on them in opposite directions.
-std::size_t open_edges(const MeshView& surface) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> sums;
-  for (const Triangle& t : surface.triangles) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k];
-      const std::uint32_t b = t[(k + 1) % 3];
-      sums[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
-    }
-  }
-  const auto is_open = [](const auto& edge) { return edge.second != 0; };
-  return static_cast<std::size_t>(std::count_if(sums.begin(), sums.end(), is_open));
-}
-
-/// @throws InvalidMesh where a surface is not closed, with what to do.
-void check_is_closed(const MeshView& surface, ObjectId id) {
-  const std::size_t open = open_edges(surface);
-  if (open == 0) return;
-  const std::string edges = count_text(open) + (open == 1 ? " edge" : " edges");
-  if (open_edges(weld(surface)) == 0) {
-    throw InvalidMesh(name_of(id) + " is not closed: at " + edges +
-                      " its triangles lie side by side, but share no vertices; weld it, which merges equal vertices");
-  }
-  throw InvalidMesh(name_of(id) + " is not closed, or its triangles do not all face the same way: at " + edges +
-                    " they do not meet in opposite directions; close its holes, turn triangles to face outwards "
-                    "(oriented_mesh() does), or weld its vertices within a tolerance");
-}
-
-/// Whether a surface winds once around all points of its solid, and not around others: nothing crosses or touches, and
-/// shells in each other face in turns.
-bool winds_once(const MeshView& surface, const Context& context) {
-  return orientation(surface, SiteTable(surface)).outward && !SelfIntersectionSearch().finds_any(surface, context);
-}
-
 /// Adds the surface of a solid; without what lies in it twice, so that what two surfaces wind around twice is in both.
 void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
-  TriangleMesh surface{object.positions(), object.mesh().triangles};
-  if (surface.triangles.empty()) throw InvalidMesh(name_of(id) + " has no triangles, so nothing can lie in it");
-  if (signed_volume(surface) < 0) {
-    throw InvalidMesh(name_of(id) + " faces inwards: its volume is negative; turn its triangles around");
+  TriangleMesh mesh{object.positions(), object.mesh().triangles};
+  if (is_self) check_faces_outwards(mesh, name_of(id));
+  SolidSurface surface =
+      is_self ? SolidSurface{std::move(mesh), {}, {}} : winding_surface(std::move(mesh), name_of(id), context);
+  if (surface.triangle_of.empty()) {
+    surface.triangle_of.resize(surface.mesh.triangles.size());
+    std::iota(surface.triangle_of.begin(), surface.triangle_of.end(), 0U);
   }
-  std::vector<std::uint32_t> triangle(surface.triangles.size());
-  for (std::uint32_t t = 0; t < triangle.size(); ++t) triangle[t] = t;
-  if (!is_self && !winds_once(surface, context)) {
-    ResolvedMesh resolved = resolve_crossings(surface, {}, context);
-    if (!resolved.is_resolved()) {
-      check_is_closed(surface, id);
-      throw InvalidMesh(name_of(id) +
-                        " crosses or touches itself, and what lies in it cannot be told: " + resolved.obstacle);
-    }
-    surface = std::move(resolved.mesh);
-    triangle = std::move(resolved.triangle_of);
-  }
-  out.add(surface, triangle);
+  out.add(surface.mesh, surface.triangle_of);
 }
 
 /// One connected part of what solids have in common.
@@ -337,8 +279,8 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
   timer.lap("surfaces");
   Overlap overlap = overlap_of(surfaces.mesh, context);
   if (!overlap.obstacle.empty()) {
-    check_is_closed(a.mesh(), first);
-    check_is_closed(b.mesh(), second);
+    check_is_closed(a.mesh(), name_of(first));
+    check_is_closed(b.mesh(), name_of(second));
     throw InvalidMesh("what " + (is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second)) +
                       " have in common cannot be told: " + overlap.obstacle);
   }

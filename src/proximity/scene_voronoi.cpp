@@ -264,8 +264,6 @@ bool VoronoiCells::fill_within(const Bvh& bvh, std::uint32_t cell, double distan
   return fits;
 }
 
-constexpr std::size_t grain = 256;
-
 /// Calls test(other) for the primitives that may be the closest one of a primitive, or within a distance, each once or
 /// a few times.
 template <class Test>

@@ -9,11 +9,10 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
-#include "blum/geometry/self_intersections.hpp"
-#include "blum/geometry/sites.hpp"
-#include "blum/geometry/topology.hpp"
+#include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 #include "blum/solid/oriented_mesh.hpp"
+#include "blum/solid/solid.hpp"
 #include "solid/clean/mesh_cleaner.hpp"
 #include "solid/clean/shrinking_surface.hpp"
 
@@ -67,6 +66,13 @@ std::size_t middle_corner(const std::array<Vec3d, 3>& p) {
   return 0;
 }
 
+bool has_flat_triangles(const MeshView& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (detail::has_no_area(triangle_corners(mesh, t))) return true;
+  }
+  return false;
+}
+
 /// Turns the longest sides of triangles without area. As a set of points the surface stays the same.
 /// @return  the triangles; how many sides were turned is added to `flips`.
 std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& flips) {
@@ -93,30 +99,13 @@ std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& 
   return given;
 }
 
-/// Whether a mesh bounds a solid as voronoi_complex() takes them; what is wrong where it does not.
-struct BoundaryCheck {
-  std::optional<BettiNumbers> betti;
-  std::string problem;
-};
-
-std::string problem_of_triangles(const MeshView& mesh, const Context& context) {
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!detail::has_no_area(triangle_corners(mesh, t))) continue;
-    return "triangle " + std::to_string(t) + " has no area, and no flip of an edge takes it out";
-  }
-  return problem_of_crossings(mesh, context);
-}
-
-BoundaryCheck check_boundary(const MeshView& mesh, const Context& context) {
-  BoundaryCheck out;
-  out.problem = problem_of_places(mesh);
-  if (out.problem.empty()) out.problem = problem_of_triangles(mesh, context);
-  if (!out.problem.empty()) return out;
-  const Topology facts = topology(mesh, SiteTable(mesh, context), context);
-  out.betti = facts.betti;
-  if (!out.betti) out.problem = problem_as_solid(facts);
-  if (!out.betti && out.problem.empty()) out.problem = "the mesh bounds no solid";
-  return out;
+/// @throws InvalidMesh where a solid is no polyhedron whose surface is a manifold apart from itself.
+void check(const Solid& solid) {
+  if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
+  std::string problem = problem_of_places(solid.surface().mesh);
+  if (!problem.empty() && solid.resolved()) problem = mesh_problem::touches_when_resolved;
+  if (problem.empty()) problem = solid.problem();
+  if (!problem.empty()) throw InvalidMesh(problem);
 }
 
 double smallest_height(const MeshView& mesh) {
@@ -129,71 +118,100 @@ double smallest_height(const MeshView& mesh) {
 }
 
 /// The triangles that are left, and the vertices that they name, in their order.
-void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, CleanedMesh& out) {
+void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, TriangleMesh& mesh,
+                 std::vector<std::uint32_t>& vertex_of) {
   std::vector<std::uint32_t> number(vertices.size(), 0);
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
     if (from.triangles_at(v).empty()) continue;
-    number[v] = static_cast<std::uint32_t>(out.vertex_of.size());
-    out.vertex_of.push_back(v);
-    out.mesh.vertices.push_back(vertices[v]);
+    number[v] = static_cast<std::uint32_t>(vertex_of.size());
+    vertex_of.push_back(v);
+    mesh.vertices.push_back(vertices[v]);
   }
   for (std::uint32_t t = 0; t < from.triangles().size(); ++t) {
     if (from.is_gone(t)) continue;
     const auto& [a, b, c] = from.triangle(t);
-    out.mesh.triangles.push_back({number[a], number[b], number[c]});
+    mesh.triangles.push_back({number[a], number[b], number[c]});
   }
 }
 
 void check_corners(const MeshView& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    if (a != b && b != c && c != a) continue;
-    throw InvalidMesh("triangle " + std::to_string(t) + " names a vertex twice; welding the mesh leaves such out");
+    if (a == b || b == c || c == a) throw InvalidMesh(mesh_problem::doubled_corner(t));
   }
+}
+
+/// @throws Error where the result is not what it must be.
+void check_result(const Solid& before, const Solid& after, double deviation, double tolerance) {
+  const bool is_sound = after.rule() == SolidRule::polyhedron && !after.resolved() && after.problem().empty() &&
+                        problem_of_places(after.surface().mesh).empty();
+  if (is_sound && after.betti() == before.betti() && deviation <= tolerance) return;
+  throw Error("cleaning a mesh: the result is not what it must be (" +
+              (is_sound ? "its solid has other Betti numbers" : after.problem()) +
+              "), which is a mistake of Blum's: please report it, and use the mesh as it is");
+}
+
+std::size_t count_named(const MeshView& mesh) {
+  std::vector<bool> is_named(mesh.vertices.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) is_named[v] = true;
+  }
+  return static_cast<std::size_t>(std::count(is_named.begin(), is_named.end(), true));
 }
 
 }  // namespace
 
+CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& context) {
+  const TriangleMesh& surface = solid.surface().mesh;
+  check(solid);
+  check_tolerance(surface, tolerance);
+  check_coordinates(surface);
+  CleanReport report;
+  report.reversed_triangles = solid.reversed_triangles();
+  report.reversed_shells = solid.reversed_shells();
+  report.triangles_before = surface.triangles.size();
+  report.vertices_before = count_named(surface);
+  report.smallest_height_before = smallest_height(surface);
+  report.betti_before = *solid.betti();
+
+  detail::MeshCleaner cleaner(surface, tolerance, context);
+  cleaner.run();
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> vertex_of;
+  take_result(cleaner.mesh(), surface.vertices, mesh, vertex_of);
+  if (!solid.surface().vertex_of.empty()) {
+    for (std::uint32_t& v : vertex_of) v = solid.surface().vertex_of[v];
+  }
+  report.vertices = mesh.vertices.size();
+  report.triangles = mesh.triangles.size();
+  report.collapses = cleaner.collapses();
+  report.flips = cleaner.flips();
+  report.deviation = cleaner.deviation();
+  report.smallest_height = smallest_height(mesh);
+  Solid cleaned = Solid::of(mesh, context);
+  check_result(solid, cleaned, report.deviation, tolerance);
+  report.betti = *cleaned.betti();
+  return {std::move(mesh), std::move(vertex_of), report, std::move(cleaned)};
+}
+
 CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context) {
   validate(mesh);
-  if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it bounds no solid");
+  if (mesh.triangles.empty()) throw InvalidMesh(std::string(mesh_problem::no_triangles));
   const MeshView all{mesh.vertices, mesh.triangles, {}, {}};
   check_tolerance(all, tolerance);
   check_coordinates(all);
   check_corners(all);
+  if (!has_flat_triangles(all)) return clean_mesh(Solid::of(all, context), tolerance, context);
+  // Sides of flat triangles are turned before anything crosses there.
   const OrientedMesh oriented = oriented_mesh(all, context);
-  const MeshView given = oriented.mesh;
-  CleanedMesh out;
-  CleanReport& report = out.report;
-  report.reversed_triangles = oriented.reversed_triangles;
-  report.reversed_shells = oriented.reversed_shells;
-  report.triangles_before = mesh.triangles.size();
-  report.smallest_height_before = smallest_height(given);
-  const std::vector<Triangle> triangles = without_flat_triangles(given, report.flips);
+  std::size_t flips = 0;
+  const std::vector<Triangle> triangles = without_flat_triangles(oriented.mesh, flips);
   const MeshView surface{mesh.vertices, triangles, {}, {}};
-  const BoundaryCheck before = check_boundary(surface, context);
-  if (!before.betti) throw InvalidMesh(before.problem);
-  report.betti_before = *before.betti;
-
-  detail::MeshCleaner cleaner(surface, tolerance, context);
-  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
-    report.vertices_before += cleaner.mesh().triangles_at(v).empty() ? 0U : 1U;
-  }
-  cleaner.run();
-  take_result(cleaner.mesh(), mesh.vertices, out);
-  report.vertices = out.mesh.vertices.size();
-  report.triangles = out.mesh.triangles.size();
-  report.collapses = cleaner.collapses();
-  report.flips += cleaner.flips();
-  report.deviation = cleaner.deviation();
-  report.smallest_height = smallest_height(out.mesh);
-  const BoundaryCheck after = check_boundary(out.mesh, context);
-  if (!after.betti || *after.betti != *before.betti || report.deviation > tolerance) {
-    throw Error("cleaning a mesh: the result is not what it must be (" +
-                (after.betti ? "its solid has other Betti numbers" : after.problem) +
-                "), which is a mistake of Blum's: please report it, and use the mesh as it is");
-  }
-  report.betti = *after.betti;
+  CleanedMesh out = clean_mesh(Solid::of(surface, context), tolerance, context);
+  out.report.reversed_triangles = oriented.reversed_triangles;
+  out.report.reversed_shells = oriented.reversed_shells;
+  out.report.smallest_height_before = smallest_height(all);
+  out.report.flips += flips;
   return out;
 }
 

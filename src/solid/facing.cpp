@@ -115,4 +115,14 @@ std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, co
   return Reverser(mesh, sites).agreeing(count);
 }
 
+double volume_around_middle(const MeshView& mesh) {
+  const Vec3d middle = bounds(mesh).center();
+  double volume = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d a = mesh.vertices[t[0]] - middle;
+    volume += dot(a, cross(mesh.vertices[t[1]] - middle, mesh.vertices[t[2]] - middle));
+  }
+  return volume;
+}
+
 }  // namespace blum::detail

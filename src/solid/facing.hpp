@@ -24,4 +24,8 @@ constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 [[nodiscard]] std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
                                                                       std::size_t& count);
 
+/// Six times the volume between the triangles of a mesh and the middle of its box: from there, so that it is not lost
+/// where the mesh lies far from the origin. Negative where it faces inwards.
+[[nodiscard]] double volume_around_middle(const MeshView& mesh);
+
 }  // namespace blum::detail

@@ -1,45 +1,36 @@
 #include "blum/solid/oriented_mesh.hpp"
 
-#include <algorithm>
 #include <cstddef>
-#include <optional>
-#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "solid/facing.hpp"
+#include "solid/polyhedron.hpp"
 
 namespace blum {
 namespace {
 
-/// Shells at odd depth bound voids of those around them, which are at even depth.
-void check_nesting(std::span<const Shell> shells) {
-  const bool is_nested = std::all_of(shells.begin(), shells.end(), [&](const Shell& shell) {
-    return shell.depth % 2 == 0 || (shell.parent >= 0 && shells[static_cast<std::size_t>(shell.parent)].depth % 2 == 0);
-  });
-  if (!is_nested)
-    throw InvalidMesh("the mesh bounds no solid: its shells do not lie in each other, they coincide or cross");
+[[noreturn]] void refuse(std::string_view problem) {
+  throw InvalidMesh(std::string(problem));
 }
 
 }  // namespace
 
 OrientedMesh oriented_mesh(const MeshView& mesh, const Context& context) {
   validate(mesh);
-  OrientedMesh out{copy_of(mesh), 0, 0};
-  const SiteTable sites(out.mesh, context);
-  Topology facts = topology(out.mesh, sites, context);
-  if (facts.closed && facts.inconsistent_edges > 0) {
-    auto agreeing = detail::agreeing_triangles(mesh, sites, out.reversed_triangles);
-    if (!agreeing) throw InvalidMesh("the mesh bounds no solid: it has one side only, so that it cannot be oriented");
-    out.mesh.triangles = std::move(*agreeing);
-    facts = topology(out.mesh, SiteTable(out.mesh, context), context);
-  }
-  if (mesh.triangles.empty() || !(facts.closed && facts.oriented && facts.manifold))
-    throw InvalidMesh(problem_as_solid(facts));
-  check_nesting(facts.shells);
+  const SiteTable sites(mesh, context);
+  detail::Facing facing = detail::face_one_way(mesh, sites, context);
+  const Topology& facts = facing.facts;
+  if (facing.is_one_sided) refuse(mesh_problem::one_sided);
+  if (mesh.triangles.empty() || !(facts.closed && facts.oriented && facts.manifold)) refuse(problem_as_solid(facts));
+  if (!detail::are_nested(facts.shells)) refuse(mesh_problem::not_nested);
+  OrientedMesh out{copy_of(mesh), facing.reversed_triangles, 0};
+  if (facing.triangles) out.mesh.triangles = std::move(*facing.triangles);
   if (facts.faces_outwards) return out;
   const std::vector<std::uint32_t> shells = detail::shell_of_triangles(out.mesh, sites);
   for (const Shell& shell : facts.shells) out.reversed_shells += shell.faces_outwards ? 0U : 1U;
@@ -47,9 +38,7 @@ OrientedMesh oriented_mesh(const MeshView& mesh, const Context& context) {
     if (shells[t] == detail::no_shell || facts.shells[shells[t]].faces_outwards) continue;
     std::swap(out.mesh.triangles[t][1], out.mesh.triangles[t][2]);
   }
-  if (!topology(out.mesh, SiteTable(out.mesh, context), context).faces_outwards) {
-    throw InvalidMesh("the mesh bounds no solid: a shell of it encloses no volume, so that it faces nowhere");
-  }
+  if (!topology(out.mesh, SiteTable(out.mesh, context), context).faces_outwards) refuse(mesh_problem::no_volume);
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "blum/core/sort_unique.hpp"
+#include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
 #include "solid/facing.hpp"
@@ -60,42 +62,37 @@ std::string counted(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-/// Why a mesh bounds no polyhedron as far as its edges tell, with all that is in the way; empty where it does.
-std::string obstacle(const Topology& t) {
-  std::string text;
-  const auto tell = [&](std::size_t n, const std::string& what, const char* one, const char* many) {
-    if (n > 0) text += (text.empty() ? "" : ", ") + what + " (" + counted(n, one, many) + ")";
-  };
-  tell(t.boundary_edges, "it is open", "boundary edge", "boundary edges");
-  tell(t.nonmanifold_edges, "it is not manifold", "edge", "edges");
-  tell(t.inconsistent_edges, "its triangles do not face one way", "edge", "edges");
-  tell(t.nonmanifold_vertices, "it is not manifold", "vertex", "vertices");
-  return text.empty() && !t.closed ? "its triangles enclose nothing" : text;
-}
+/// What is found of how triangles meet.
+struct Meeting {
+  std::string why;      ///< that the mesh bounds no polyhedron, for its reason; empty where it does
+  std::string problem;  ///< the same as a sentence of its own; there also where bodies touch each other
+  std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies
+};
 
-/// Whether triangles cross, or those of one body touch. @param touching  gets the pairs of bodies that do.
-std::string crossing(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle,
-                     std::vector<std::array<std::uint32_t, 2>>& touching, const Context& context) {
+Meeting meeting(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle, const Context& context) {
   const SelfIntersections found = find_self_intersections(mesh, 100000, context);
-  const char* more = found.complete ? "" : "more than ";
-  const auto pairs = [&](std::size_t n) { return " (" + (more + counted(n, "pair", "pairs")) + " of triangles)"; };
-  if (found.crossing > 0) return "it crosses itself" + pairs(found.crossing);
-  if (!found.complete) return "it touches itself" + pairs(found.touching);
+  Meeting out;
+  out.problem = problem_of_crossings(found);
+  if (found.crossing > 0) out.why = mesh_problem::crossing(found.crossing, found.complete);
+  if (out.why.empty() && !found.complete) out.why = mesh_problem::touching(found.touching, false);
+  if (!out.why.empty()) return out;
   std::size_t own = 0;
   for (const TrianglePair& pair : found.pairs) {
     const std::uint32_t one = body_of_triangle[pair.first.value];
     const std::uint32_t other = body_of_triangle[pair.second.value];
     own += one == other ? 1 : 0;
-    touching.push_back({std::min(one, other), std::max(one, other)});
+    out.touching.push_back({std::min(one, other), std::max(one, other)});
   }
-  if (own > 0) return "it touches itself" + pairs(own);
-  std::sort(touching.begin(), touching.end());
-  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
-  return "";
+  if (own > 0) out.why = mesh_problem::touching(own, true);
+  sort_unique(out.touching);
+  return out;
 }
 
-MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::string& why) {
+/// The mesh as it is, whatever it bounds. @param why  and `problem` say why it bounds no polyhedron.
+MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::string& why, std::string problem) {
   MeshSolid out;
+  out.problem = std::move(problem);
+  out.surface.mesh = blum::copy_of(mesh);
   out.is_closed = topology.closed && topology.oriented;
   out.rule = SolidRule::winding;
   out.reason = "the mesh bounds no polyhedron: " + why + "; the solid is where the winding number is above 1/2";
@@ -119,15 +116,21 @@ void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_
   }
 }
 
-/// The polyhedron that a mesh bounds as it is. @param why  gets the reason where it bounds none.
+/// Why a mesh bounds no polyhedron.
+struct Obstacle {
+  std::string why;      ///< for the reason of the solid: "the mesh bounds no polyhedron: ..."
+  std::string problem;  ///< for an error: with what to do
+};
+
+/// The polyhedron that a mesh bounds as it is. @param obstacle  is set where it bounds none.
 std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites, const Topology& topology,
-                                    std::string& why, const Context& context) {
-  why = obstacle(topology);
-  if (!why.empty()) return std::nullopt;
+                                    Obstacle& obstacle, const Context& context) {
+  obstacle = {mesh_problem::obstacles(topology), problem_as_solid(topology)};
+  if (!obstacle.why.empty()) return std::nullopt;
   const std::vector<std::uint32_t> shell = shell_of_triangles(mesh, sites);
   const std::optional<std::vector<std::uint32_t>> body = body_of_shells(topology.shells);
   if (!body) {
-    why = "its shells do not lie in each other, they cross or coincide";
+    obstacle = {std::string(mesh_problem::shells_cross), std::string(mesh_problem::not_nested)};
     return std::nullopt;
   }
   std::vector<std::vector<std::uint32_t>> triangles;
@@ -140,10 +143,17 @@ std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites
     triangles[b].push_back(t);
     is_reversed[t] = !topology.shells[shell[t]].faces_outwards;
   }
+  Meeting met = meeting(mesh, body_of_triangle, context);
+  obstacle = {met.why, met.problem};
+  if (!met.why.empty()) return std::nullopt;
   MeshSolid out;
-  why = crossing(mesh, body_of_triangle, out.touching, context);
-  if (!why.empty()) return std::nullopt;
+  out.problem = std::move(met.problem);
+  out.touching = std::move(met.touching);
   out.is_closed = true;
+  out.surface.mesh = blum::copy_of(mesh);
+  for (std::size_t t = 0; t < is_reversed.size(); ++t) {
+    if (is_reversed[t]) std::swap(out.surface.mesh.triangles[t][1], out.surface.mesh.triangles[t][2]);
+  }
   for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_reversed));
   add_shells(topology.shells, *body, out);
   out.reason = "the mesh is closed, manifold and does not cross itself";
@@ -168,50 +178,73 @@ std::string resolved_text(const CrossingCounts& counts) {
   return text + ": resolved exactly, the solid is where the winding number is 1 or more";
 }
 
-/// The polyhedron where a closed mesh that crosses itself winds once or more. @param why  gets the reason where its
-/// crossings are not resolved, after the one that is there.
-std::optional<MeshSolid> resolved_polyhedron(const MeshView& mesh, std::string& why, const Context& context) {
-  const ResolvedMesh resolved = resolve_crossings(mesh, {}, context);
-  std::string obstacle = resolved.obstacle;
+/// The polyhedron where a closed mesh that crosses itself winds once or more. @param obstacle  why it bounds none as it
+/// is; gets why its crossings are not resolved, where that is so.
+std::optional<MeshSolid> resolved_polyhedron(const MeshView& mesh, Obstacle& obstacle, const Context& context) {
+  ResolvedMesh resolved = resolve_crossings(mesh, {}, context);
+  Obstacle left{resolved.obstacle, {}};
   if (resolved.is_resolved()) {
     const SiteTable sites(resolved.mesh, context);
     std::optional<MeshSolid> out =
-        polyhedron(resolved.mesh, sites, topology(resolved.mesh, sites, context), obstacle, context);
+        polyhedron(resolved.mesh, sites, topology(resolved.mesh, sites, context), left, context);
     if (out) {
       for (SolidBody& body : out->bodies) {
         for (std::uint32_t& v : body.vertex_of) v = resolved.vertex_of[v];
         for (std::uint32_t& t : body.triangle_of) t = resolved.triangle_of[t];
       }
+      out->surface.vertex_of = std::move(resolved.vertex_of);
+      out->surface.triangle_of = std::move(resolved.triangle_of);
       out->resolved = resolved.counts;
       out->reason = resolved_text(resolved.counts);
       return out;
     }
   }
-  why += ", which is not resolved: " + obstacle;
+  obstacle.why += ", which is not resolved: " + left.why;
+  obstacle.problem += ", which is not resolved: " + left.why;
   return std::nullopt;
 }
 
 }  // namespace
 
+bool are_nested(std::span<const Shell> shells) {
+  return std::all_of(shells.begin(), shells.end(), [&](const Shell& shell) {
+    return shell.depth % 2 == 0 || (shell.parent >= 0 && shells[static_cast<std::size_t>(shell.parent)].depth % 2 == 0);
+  });
+}
+
+Facing face_one_way(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  Facing out;
+  out.given = topology(mesh, sites, context);
+  out.facts = out.given;
+  if (!out.given.closed || out.given.inconsistent_edges == 0) return out;
+  out.triangles = agreeing_triangles(mesh, sites, out.reversed_triangles);
+  out.is_one_sided = !out.triangles;
+  if (!out.triangles) return out;
+  const MeshView agreeing{mesh.vertices, *out.triangles, mesh.segments, mesh.points};
+  out.facts = topology(agreeing, SiteTable(agreeing, context), context);
+  return out;
+}
+
 MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context) {
-  if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it has no interior");
-  const Topology topology = blum::topology(mesh, sites, context);
-  if (topology.closed && topology.inconsistent_edges > 0) {
-    std::size_t count = 0;
-    if (const auto triangles = agreeing_triangles(mesh, sites, count)) {
-      const MeshView agreeing{mesh.vertices, *triangles};
-      MeshSolid out = split_into_bodies(agreeing, SiteTable(agreeing, context), context);
-      out.reversed_triangles = count;
-      out.reason += "; neighbouring triangles faced different ways and were reversed";
-      return out;
-    }
+  if (mesh.triangles.empty()) throw InvalidMesh(std::string(mesh_problem::no_interior));
+  Facing facing = face_one_way(mesh, sites, context);
+  MeshView own = mesh;
+  if (facing.triangles) own.triangles = *facing.triangles;
+  const SiteTable own_sites = facing.triangles ? SiteTable(own, context) : SiteTable();
+  const SiteTable& table = facing.triangles ? own_sites : sites;
+  Obstacle obstacle;
+  std::optional<MeshSolid> out = polyhedron(own, table, facing.facts, obstacle, context);
+  if (!out && facing.facts.boundary_edges == 0 && facing.facts.inconsistent_edges == 0) {
+    out = resolved_polyhedron(own, obstacle, context);
   }
-  std::string why;
-  if (auto out = polyhedron(mesh, sites, topology, why, context)) return std::move(*out);
-  if (topology.boundary_edges == 0 && topology.inconsistent_edges == 0) {
-    if (auto out = resolved_polyhedron(mesh, why, context)) return std::move(*out);
+  if (!out) {
+    if (facing.is_one_sided) obstacle.problem = mesh_problem::one_sided;
+    out = whole(own, facing.facts, obstacle.why, std::move(obstacle.problem));
   }
-  return whole(mesh, topology, why);
+  out->topology = std::move(facing.given);
+  out->reversed_triangles = facing.reversed_triangles;
+  if (facing.triangles) out->reason += "; neighbouring triangles faced different ways and were reversed";
+  return std::move(*out);
 }
 
 std::vector<std::uint32_t> groups_apart(std::size_t bodies, std::span<const std::array<std::uint32_t, 2>> touching) {

@@ -12,6 +12,7 @@
 
 #include "blum/core/random.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/orient3d.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -19,6 +20,7 @@
 #include "blum/grid/image_values.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
+#include "solid/facing.hpp"
 #include "solid/polyhedron.hpp"
 
 namespace blum::detail {
@@ -102,17 +104,6 @@ std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& d
 namespace blum {
 namespace {
 
-/// Six times the volume between the triangles of a mesh and the middle of its box.
-double volume_around_middle(const MeshView& mesh) {
-  const Vec3d middle = bounds(mesh).center();
-  double volume = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = mesh.vertices[t[0]] - middle;
-    volume += dot(a, cross(mesh.vertices[t[1]] - middle, mesh.vertices[t[2]] - middle));
-  }
-  return volume;
-}
-
 /// Whether a point lies in a closed voxel of a set.
 bool is_in_voxels(const VoxelSet& voxels, const GridSpec& grid, const Vec3d& p) {
   const Vec3d q = grid.direction.transposed_times(p - grid.origin);
@@ -166,7 +157,7 @@ Solid Solid::of(const MeshView& mesh, const Context& context) {
       for (std::size_t k = 0; k < 3; ++k) (*data->betti)[k] += body.betti[k];
     }
   } else {
-    data->faces_inwards = volume_around_middle(data->mesh.bodies.front().mesh) < 0;
+    data->faces_inwards = detail::volume_around_middle(data->mesh.bodies.front().mesh) < 0;
   }
   return Solid(std::move(data));
 }
@@ -178,6 +169,7 @@ Solid Solid::of(const VoxelImageView& image, const LabelSelection& selection, co
   if ((*data->betti)[0] == 0) throw InvalidImage(nothing_selected_text(image, selection));
   data->mesh.rule = SolidRule::voxels;
   data->mesh.reason = "the solid is the union of the selected voxels";
+  data->mesh.problem = mesh_problem::is_an_image;
   data->grid = image.grid;
   data->box = bounds(image.grid);
   return Solid(std::move(data));
@@ -189,11 +181,20 @@ SolidRule Solid::rule() const {
 const std::string& Solid::reason() const {
   return data_->mesh.reason;
 }
+const std::string& Solid::problem() const {
+  return data_->mesh.problem;
+}
 std::optional<BettiNumbers> Solid::betti() const {
   return data_->betti;
 }
 std::span<const SolidBody> Solid::bodies() const& {
   return data_->mesh.bodies;
+}
+const SolidSurface& Solid::surface() const& {
+  return data_->mesh.surface;
+}
+const Topology& Solid::topology() const& {
+  return data_->mesh.topology;
 }
 std::span<const SolidShell> Solid::shells() const& {
   return data_->mesh.shells;

@@ -28,7 +28,6 @@ void for_each_own_texel(const SurfaceAtlas& atlas, std::uint32_t triangle, Visit
 }
 
 constexpr std::size_t texels_per_range = 512;
-constexpr std::size_t triangles_per_range = 256;
 constexpr std::size_t default_texels = 1'000'000;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <span>
 
+#include "exact/dyadic.hpp"
 #include "voronoi/bounded_number.hpp"
-#include "voronoi/exact/dyadic.hpp"
 
 namespace blum::voronoi {
+
+using detail::Dyadic;
 namespace {
 
 /// A vector of numbers of any kind.

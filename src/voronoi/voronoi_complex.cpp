@@ -8,14 +8,15 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "blum/complex/homology.hpp"
 #include "blum/core/exact_text.hpp"
-#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/geometry/topology.hpp"
+#include "blum/solid/solid.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "voronoi/assemble.hpp"
 #include "voronoi/subdivision.hpp"
@@ -55,23 +56,31 @@ void check_distance(const MeshView& mesh) {
   }
 }
 
+[[noreturn]] void refuse(std::string_view problem) {
+  throw InvalidMesh(std::string(problem));
+}
+
 void throw_if_any(const std::string& problem) {
   if (!problem.empty()) throw InvalidMesh(problem);
 }
 
-/// What the solid is, with its Betti numbers. @throws InvalidMesh
-Topology checked_solid(const MeshView& mesh, const SiteTable& table, const Context& context) {
-  if (!mesh.segments.empty() || !mesh.points.empty()) {
-    throw InvalidMesh("the mesh has segments or points beside its triangles, which bound no solid: leave them out");
-  }
-  Topology facts = topology(mesh, table, context);
-  const std::string problem = problem_as_solid(facts);
-  if (!problem.empty() && !(facts.closed && facts.oriented && facts.manifold)) throw InvalidMesh(problem);
-  throw_if_any(problem_of_places(mesh));
-  check_distance(mesh);
-  throw_if_any(problem_of_crossings(mesh, context));
-  if (!facts.betti) throw InvalidMesh(problem.empty() ? "the mesh bounds no solid" : problem);
-  return facts;
+/// @throws InvalidMesh where a solid is no polyhedron, or its surface meets itself.
+void check(const Solid& solid) {
+  if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
+  const MeshView surface = solid.surface().mesh;
+  if (!surface.segments.empty() || !surface.points.empty()) refuse(mesh_problem::more_than_triangles);
+  check_distance(surface);
+  std::string places = problem_of_places(surface);
+  if (!places.empty() && solid.resolved()) places = mesh_problem::touches_when_resolved;
+  throw_if_any(places);
+  throw_if_any(solid.problem());
+}
+
+/// The volume inside, cubic mesh units.
+double volume_of(const Solid& solid) {
+  double sum = 0;
+  for (const SolidShell& shell : solid.shells()) sum += shell.depth % 2 == 0 ? shell.volume : -shell.volume;
+  return sum;
 }
 
 /// How often a cube is split at least, so that its side is that of the box over the resolution, and its diagonal at
@@ -159,13 +168,16 @@ BettiNumbers expected_betti(const VoronoiSolid& sited, const BettiNumbers& solid
   return out;
 }
 
-VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
+/// @param phases  what was done before.
+VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::vector<PhaseTime> phases,
+                       const Context& context) {
   VoronoiComplex out;
   VoronoiReport& report = out.report;
+  report.phases = std::move(phases);
   PhaseTimer timer(report.phases);
+  check(solid);
+  const MeshView mesh = solid.surface().mesh;
   const SiteTable table(mesh, context);
-  const Topology facts = checked_solid(mesh, table, context);
-  const BettiNumbers& solid = *facts.betti;
   timer.lap("checks");
   const VoronoiSolid sited(mesh, table, options.part, context);
   report.faces = sited.sites.face_count;
@@ -174,7 +186,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   timer.lap("sites");
   SubdivisionOptions how;
   how.least_depth = least_depth(options, sited.labels.box());
-  check_count(options, how.least_depth, sited.labels.box(), facts.signed_volume);
+  check_count(options, how.least_depth, sited.labels.box(), volume_of(solid));
   how.most_depth = std::max(options.depth, how.least_depth);
   how.most_cubes = static_cast<std::size_t>(options.max_cubes);
   const auto divide = [&](int grid) {
@@ -204,24 +216,43 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   add_failing(made.lost, cells.tree, report);
   timer.lap("complex");
   report.found = homology(out.complex.view(), context);
-  report.expected = expected_betti(sited, solid);
+  report.expected = expected_betti(sited, *solid.betti());
   report.certified = report.failing.empty() && report.undecided_lines == 0 && report.contradictions == 0 &&
                      report.found == report.expected;
   timer.lap("homology");
   return out;
 }
 
-}  // namespace
-
-VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
-  check(options);
-  validate(mesh);
+template <class Work>
+VoronoiComplex with_memory(const Work& work) {
   try {
-    return compute(mesh, options, context);
+    return work();
   } catch (const std::bad_alloc&) {
     throw OutOfMemory(
         "a Voronoi complex of this mesh needs more memory than there is: allow fewer cubes (max_cubes, --max-cubes)");
   }
+}
+
+}  // namespace
+
+VoronoiComplex voronoi_complex(const Solid& solid, const VoronoiOptions& options, const Context& context) {
+  check(options);
+  return with_memory([&] { return compute(solid, options, {}, context); });
+}
+
+VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
+  check(options);
+  validate(mesh);
+  return with_memory([&] {
+    if (mesh.triangles.empty()) refuse(problem_as_solid({}));
+    std::vector<PhaseTime> phases;
+    PhaseTimer timer(phases);
+    check_distance(mesh);
+    const Solid solid = Solid::of(mesh, context);
+    if (solid.resolved()) throw InvalidMesh(mesh_problem::crosses_and_is_resolved(solid.reason()));
+    timer.lap("checks");
+    return compute(solid, options, std::move(phases), context);
+  });
 }
 
 }  // namespace blum

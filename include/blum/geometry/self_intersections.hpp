@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -78,10 +77,5 @@ class SelfIntersectionSearch {
   std::vector<std::uint32_t> order_;
   double looseness_ = -1;  ///< of the groups when they were made; negative where they are new
 };
-
-/// Whether a mesh meets itself where it should not, in one sentence with two vertices or triangles; empty where it does
-/// not: two vertices of triangles in one place, triangles that cross or touch. @throws Cancelled.
-[[nodiscard]] std::string problem_of_places(const MeshView& mesh);
-[[nodiscard]] std::string problem_of_crossings(const MeshView& mesh, const Context& context = {});
 
 }  // namespace blum

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -162,10 +161,5 @@ struct Description<Topology> {
 [[nodiscard]] Topology topology(const MeshView& mesh, const Context& context = {});
 /// The same with the mesh's table of sites at hand.
 [[nodiscard]] Topology topology(const MeshView& mesh, const SiteTable& sites, const Context& context = {});
-
-/// What keeps a mesh from bounding a solid, with how often and what may help, in one sentence; empty where it is
-/// closed, oriented, manifold and faces outwards. Whether it crosses itself is not told: find_self_intersections()
-/// does.
-[[nodiscard]] std::string problem_as_solid(const Topology& facts);
 
 }  // namespace blum

@@ -18,6 +18,8 @@ struct MeshReadOptions {
   /// Merge vertices after reading (see weld()): a tolerance in mesh units, 0 for exactly equal ones.
   /// Unset: exactly equal ones for STL, which has no shared vertices; none for the other formats.
   std::optional<double> weld = {};
+  /// Where `weld` is above 0: keep the mesh in which equal vertices alone are merged, too, as MeshFile::exact.
+  bool keeps_exact = false;
 };
 
 /// What a mesh file held, before Blum changed anything.
@@ -35,6 +37,7 @@ struct MeshFileInfo {
 struct MeshFile {
   TriangleMesh mesh = {};
   MeshFileInfo info = {};
+  std::optional<TriangleMesh> exact = {};  ///< where it was asked for (MeshReadOptions::keeps_exact)
 };
 
 /// Reads a mesh; the extension tells the format. Coordinates keep double precision; vertices keep their order, and stay

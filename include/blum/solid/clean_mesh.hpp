@@ -11,6 +11,7 @@
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/solid/solid.hpp"
 
 namespace blum {
 
@@ -59,9 +60,11 @@ struct Description<CleanReport> {
 
 /// A cleaned mesh.
 struct CleanedMesh {
-  TriangleMesh mesh;                     ///< its vertices are some of the input's, in their order
-  std::vector<std::uint32_t> vertex_of;  ///< of each vertex, in the input; rising
+  TriangleMesh
+      mesh;  ///< its vertices are some of the input's, in their order, behind them those where it crossed itself
+  std::vector<std::uint32_t> vertex_of;  ///< of each vertex, in the input; rising; or SolidBody::no_vertex
   CleanReport report;
+  Solid solid;  ///< that the mesh bounds, as it was found when the result was checked
 };
 
 /// A closed mesh without needles and vertices that it can do without, within a tolerance: what to do before
@@ -74,16 +77,21 @@ struct CleanedMesh {
 /// and than those which they replace, are left out. In the end the whole result is checked anew. Vertices never move
 /// to new places. Method, and why the bound holds: docs/theory/solid.md.
 ///
-/// @param mesh       closed, manifold, without crossings, not touching itself: what voronoi_complex() takes, but that
-///                   it may face any way, as oriented_mesh() says. Triangles without area may be in it where a flip of
-///                   their longest side takes them out. Its segments, points and vertices that no triangle names are
-///                   left out. Coordinates of magnitude 1e-45 to 1e45, or 0.
-/// @param tolerance  the result is nowhere further from the mesh than this, nor the mesh from it: mesh units; at least
-///                   1e-12 of the diagonal of the box around the mesh, and at most that diagonal.
+/// @param solid      a polyhedron whose bodies do not touch. Its surface is what is cleaned, and what the result is
+/// near
+///                   to; coordinates of magnitude 1e-45 to 1e45, or 0.
+/// @param tolerance  the result is nowhere further from the surface than this, nor the surface from it: mesh units; at
+///                   least 1e-12 of the diagonal of the box around it, and at most that diagonal.
 /// @return           the same for any number of threads.
-/// @throws InvalidMesh where the mesh does not bound such a solid; InvalidOption for tolerances out of range;
-/// Cancelled; Error where the result's check fails, which would be a mistake of Blum's.
+/// @throws InvalidMesh where the solid is none such; InvalidOption for tolerances out of range; Cancelled; Error where
+/// the result's check fails, which would be a mistake of Blum's.
 /// Cost: about 12 microseconds for each triangle on one core where most go, 3 where none do; 500 bytes.
+[[nodiscard]] CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& context = {});
+
+/// The same of the solid that a mesh bounds, found by Solid::of().
+/// @param mesh  closed; it may face any way, and cross itself where that is resolved. Triangles without area may be in
+///              it where a flip of their longest side takes them out. Its segments, points and vertices that no
+///              triangle names are left out.
 [[nodiscard]] CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context = {});
 
 }  // namespace blum

@@ -19,6 +19,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
@@ -68,8 +69,20 @@ struct SolidBody {
   [[nodiscard]] SiteId input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const;
 };
 
+/// The surface of a solid as one mesh.
+struct SolidSurface {
+  /// Of a polyhedron it faces away from it. Triangles are those of the input in their order, with the second and third
+  /// corner of some exchanged; where crossings were resolved, those that were made.
+  TriangleMesh mesh;
+  /// Where crossings were resolved: of each vertex, in the input, or SolidBody::no_vertex. Else empty: numbers stay.
+  std::vector<std::uint32_t> vertex_of;
+  /// Where crossings were resolved: of each triangle, that of the input which it is a part of. Else empty.
+  std::vector<std::uint32_t> triangle_of;
+};
+
 /// The solid that a mesh or an image stands for: which rule tells its inside, its bodies and their topology. It is
-/// found once and passed on: copies share what was found, and all of it may be asked from many threads at once.
+/// found once and passed on, and asked of nothing else: copies share what was found, and all of it may be asked from
+/// many threads at once.
 ///
 /// What of a grid's nodes lies inside, where no polyhedron is bounded (SolidRule::winding), depends on that grid and is
 /// not part of the solid: voxels_inside() tells it by the signs of fields.
@@ -94,11 +107,22 @@ class Solid {
   /// One sentence: why this rule.
   [[nodiscard]] const std::string& reason() const;
 
+  /// What keeps a mesh from bounding bodies that do not touch, in one sentence with what to do; empty where nothing
+  /// does. Not empty where rule() is SolidRule::winding, and where bodies touch each other in more than vertices or
+  /// edges that have their places in common.
+  [[nodiscard]] const std::string& problem() const;
+
   /// Components, tunnels and voids of the whole solid; nullopt for SolidRule::winding, where only voxels have numbers.
   [[nodiscard]] std::optional<BettiNumbers> betti() const;
   /// Polyhedra: each faces outwards. SolidRule::winding: one, of all triangles. Images: none.
   [[nodiscard]] std::span<const SolidBody> bodies() const&;
   std::span<const SolidBody> bodies() const&& = delete;  // they go away with the solid
+  /// Meshes: the surface of all bodies, or of what there is where none is bounded. Images: empty.
+  [[nodiscard]] const SolidSurface& surface() const&;
+  const SolidSurface& surface() const&& = delete;
+  /// Meshes: the facts of the input as it was given, before anything was reversed or resolved. Images: zeros.
+  [[nodiscard]] const Topology& topology() const&;
+  const Topology& topology() const&& = delete;
   /// Polyhedra: in the order of their smallest triangles. Else none.
   [[nodiscard]] std::span<const SolidShell> shells() const&;
   std::span<const SolidShell> shells() const&& = delete;

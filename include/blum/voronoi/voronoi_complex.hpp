@@ -17,6 +17,7 @@
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/solid/solid.hpp"
 
 namespace blum {
 
@@ -205,11 +206,19 @@ struct VoronoiComplex {
 ///
 /// Where the report says that it is not certified, parts are missing from the complex or may be wrong.
 ///
-/// @param mesh  closed, facing outwards (see oriented_mesh()), without crossings, not touching itself, without segments
-///              and points; coordinates of magnitude 1e-45 to 1e45, or 0, and at most 1e8 times its size from the
-///              origin. Triangles are taken as they are given: faces bent by rounding are several sites.
-/// @throws InvalidMesh where the mesh does not bound a solid; InvalidOption; Cancelled; OutOfMemory.
+/// @param solid  a polyhedron whose bodies do not touch (Solid::problem()). Sites are those of its surface().mesh, and
+///               coordinates there of magnitude 1e-45 to 1e45, or 0, and at most 1e8 times its size from the origin.
+///               Triangles are taken as they are: faces bent by rounding are several sites.
+/// @throws InvalidMesh where it is none; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: about 0.1 ms and 10 kB per cube on one core; thousands to tens of thousands of cubes for 1,000 triangles.
+[[nodiscard]] VoronoiComplex voronoi_complex(const Solid& solid, const VoronoiOptions& options = {},
+                                             const Context& context = {});
+
+/// The same of the solid that a mesh bounds, found by Solid::of(). Triangles that face the wrong way are taken the
+/// other way round, which changes no number of a site.
+/// @param mesh  without segments and points. Where it crosses itself the sites would not be its own, so that its solid
+///              is asked for.
+/// @throws InvalidMesh also for these.
 [[nodiscard]] VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options = {},
                                              const Context& context = {});
 

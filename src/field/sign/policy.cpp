@@ -6,18 +6,11 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/topology.hpp"
 
 namespace blum::sign {
 namespace {
-
-std::string describe_defects(const Orientation& facts) {
-  if (facts.boundary_edges + facts.nonmanifold_edges + facts.inconsistent_edges == 0) {
-    return "no triangle with three different corners";
-  }
-  return std::to_string(facts.boundary_edges) + " boundary edges, " + std::to_string(facts.nonmanifold_edges) +
-         " non-manifold edges and " + std::to_string(facts.inconsistent_edges) + " inconsistently oriented edges";
-}
 
 bool has_flat_triangles(const MeshView& mesh) {
   return std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
@@ -40,7 +33,7 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
   const Orientation facts = orientation(mesh, sites);
   if (!facts.closed || !facts.oriented) {
     throw InvalidMesh("signs by normals need a closed, consistently oriented mesh; this one has " +
-                      describe_defects(facts) + ": use winding, or weld or repair the mesh");
+                      mesh_problem::of_edges(facts) + ": use winding, or weld or repair the mesh");
   }
   if (!mesh.segments.empty() || !mesh.points.empty()) {
     throw InvalidMesh(
@@ -98,7 +91,7 @@ Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, c
   if (!mesh.segments.empty() || !mesh.points.empty()) {
     return by_winding(winding + "has free segments or points, which have no sides");
   }
-  if (!facts.closed || !facts.oriented) return by_winding(winding + "has " + describe_defects(facts));
+  if (!facts.closed || !facts.oriented) return by_winding(winding + "has " + mesh_problem::of_edges(facts));
   if (!facts.outward && facts.signed_volume < 0) {
     return by_winding(
         winding + "is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");

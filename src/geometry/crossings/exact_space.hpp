@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "blum/core/vec3.hpp"
-#include "geometry/crossings/exact_integer.hpp"
+#include "exact/exact_integer.hpp"
 
 namespace blum::detail {
 

@@ -18,7 +18,6 @@ namespace {
 
 using detail::DepthOrder;
 using detail::Line;
-using detail::push;
 using detail::SimpleCache;
 using detail::Waiting;
 

@@ -135,7 +135,6 @@ class Fans {
   double highest_ = 0;
 };
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of a vertex with more neighbours only the closest ones are tried.
 constexpr std::size_t many_neighbours = 24;
 constexpr std::size_t targets_of_many = 12;
@@ -161,7 +160,6 @@ double cosine(const Vec3d& a, const Vec3d& b) {
   return sizes > 0 ? dot(a, b) / sizes : -1;
 }
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t looks_between_reports = 256;
 constexpr std::size_t vertices_per_range = 256;
 /// Vertices with more triangles are looked at again only when this part of them has changed: one look at the middle of

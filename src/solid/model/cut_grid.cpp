@@ -17,7 +17,7 @@
 namespace blum::detail {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t surface_grain = 4096;
 constexpr std::uint32_t own_number = 0x80000000U;  ///< of pieces that a chunk of triangles makes, until it is appended
 constexpr std::uint64_t most_passes = std::uint64_t{1} << 29U;
 constexpr std::uint32_t no_piece = 0xffffffffU;
@@ -41,7 +41,7 @@ class TracedEdges {
     }
     first_.back() = static_cast<std::uint32_t>(sum);
     squares_.resize(sum);
-    parallel_for(context, edges.size(), grain, "edges", [&](const WorkRange& range) {
+    parallel_for(context, edges.size(), surface_grain, "edges", [&](const WorkRange& range) {
       for (std::size_t e = range.begin; e < range.end; ++e) trace(static_cast<std::uint32_t>(e));
     });
   }
@@ -322,13 +322,13 @@ TracedSurface trace_surface(const SurfaceMesh& mesh, const GridPlanes& planes, c
                             const Context& context) {
   TracedSurface out;
   out.cube_of_vertex.resize(mesh.vertices().size());
-  parallel_for(context, mesh.vertices().size(), grain, "", [&](const WorkRange& range) {
+  parallel_for(context, mesh.vertices().size(), surface_grain, "", [&](const WorkRange& range) {
     for (std::size_t v = range.begin; v < range.end; ++v) out.cube_of_vertex[v] = planes.cube(mesh.vertices()[v]);
   });
   const TracedEdges edges(mesh, planes, lattice, out.cube_of_vertex, context);
-  std::vector<Chunk> chunks((mesh.triangles().size() + grain - 1) / grain);
-  parallel_for(context, mesh.triangles().size(), grain, "triangles", [&](const WorkRange& range) {
-    Chunk& chunk = chunks[range.begin / grain];
+  std::vector<Chunk> chunks((mesh.triangles().size() + surface_grain - 1) / surface_grain);
+  parallel_for(context, mesh.triangles().size(), surface_grain, "triangles", [&](const WorkRange& range) {
+    Chunk& chunk = chunks[range.begin / surface_grain];
     TriangleTracer tracer(mesh, planes, lattice, out.cube_of_vertex, edges, chunk);
     for (std::size_t t = range.begin; t < range.end; ++t) tracer.trace(static_cast<std::uint32_t>(t));
   });

@@ -20,7 +20,7 @@
 #include "blum/geometry/topology.hpp"
 #include "blum/geometry/winding_number.hpp"
 #include "blum/shapes/generators.hpp"
-#include "geometry/crossings/exact_integer.hpp"
+#include "exact/exact_integer.hpp"
 #include "geometry/crossings/exact_space.hpp"
 #include "geometry/crossings/planar_mesh.hpp"
 #include "support/mesh_places.hpp"

@@ -1,4 +1,4 @@
-#include "geometry/crossings/exact_integer.hpp"
+#include "exact/exact_integer.hpp"
 
 #include <bit>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "proximity/exact/polynomial.hpp"
+#include "proximity/polynomial.hpp"
 
 #include <algorithm>
 #include <utility>

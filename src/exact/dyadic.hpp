@@ -1,14 +1,13 @@
 // Blum: numbers that doubles make by sums and products, exactly. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <boost/multiprecision/cpp_int.hpp>
-
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <utility>
 
-namespace blum::voronoi {
+#include "exact/integer.hpp"
+
+namespace blum::detail {
 
 /// An integer times a power of two.
 class Dyadic {
@@ -37,12 +36,6 @@ class Dyadic {
 
  private:
   static constexpr int digits = 53;
-  /// Up to 1024 bits, which is enough for most coordinates, it needs no memory of its own.
-  using Integer = boost::multiprecision::number<
-      boost::multiprecision::cpp_int_backend<1024, 0, boost::multiprecision::signed_magnitude,
-                                             boost::multiprecision::unchecked, std::allocator<unsigned long long>>,
-      boost::multiprecision::et_off>;
-
   /// integer * 2^power.
   static Integer times_power(Integer integer, int power) {
     constexpr int most = 62;
@@ -56,4 +49,4 @@ class Dyadic {
   int exponent_ = 0;
 };
 
-}  // namespace blum::voronoi
+}  // namespace blum::detail

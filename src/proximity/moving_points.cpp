@@ -1,4 +1,4 @@
-#include "proximity/exact/moving_points.hpp"
+#include "proximity/moving_points.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "blum/proximity/impact.hpp"
-#include "proximity/exact/polynomial.hpp"
+#include "proximity/polynomial.hpp"
 
 namespace blum::detail {
 

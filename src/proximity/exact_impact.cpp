@@ -1,4 +1,4 @@
-#include "proximity/exact/exact_impact.hpp"
+#include "proximity/exact_impact.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "proximity/exact/moving_points.hpp"
-#include "proximity/exact/real_roots.hpp"
+#include "proximity/moving_points.hpp"
+#include "proximity/real_roots.hpp"
 
 namespace blum::detail {
 namespace {

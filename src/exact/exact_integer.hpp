@@ -1,4 +1,4 @@
-// Blum: whole numbers of any size. SPDX-License-Identifier: Apache-2.0
+// Blum: whole numbers of any size, for layers that build with the compiler alone. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>

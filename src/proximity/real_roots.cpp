@@ -1,4 +1,4 @@
-#include "proximity/exact/real_roots.hpp"
+#include "proximity/real_roots.hpp"
 
 #include <algorithm>
 #include <array>

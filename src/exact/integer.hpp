@@ -1,7 +1,9 @@
-// Blum: integers of any size. SPDX-License-Identifier: Apache-2.0
+// Blum: integers of any size, by Boost: the fast ones. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
+
+#include <memory>
 
 namespace blum::detail {
 

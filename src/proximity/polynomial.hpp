@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "proximity/exact/integer.hpp"
+#include "exact/integer.hpp"
 
 namespace blum::detail {
 

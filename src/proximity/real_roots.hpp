@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "proximity/exact/polynomial.hpp"
+#include "proximity/polynomial.hpp"
 
 namespace blum::detail {
 
