@@ -30,8 +30,8 @@ LOWER = {
     "surface_map": {"core", "geometry", "grid", "field"},
     "axis": {"core", "geometry", "grid", "complex", "solid"},
     "medial_axis": {"core", "geometry", "grid", "complex", "solid", "field", "axis"},
-    "proximity": {"core", "geometry", "grid", "complex", "solid"},
-    "voronoi": {"core", "geometry", "grid", "complex", "solid"},
+    "proximity": {"core", "exact", "geometry", "grid", "complex", "solid"},
+    "voronoi": {"core", "exact", "geometry", "grid", "complex", "solid"},
     "certificate": {"core", "complex"},
 }
 LOWER["io"] = set(LOWER)

@@ -1,22 +1,418 @@
 #include "proximity/scene_penetration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <queue>
 #include <set>
 #include <span>
+#include <tuple>
 #include <utility>
+#include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/vec3.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_distance.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/geometry/weld.hpp"
 #include "blum/solid/winding_surface.hpp"
-#include "proximity/deepest_point.hpp"
 #include "proximity/overlap.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// A part of a surface, and another one that it lies in.
+struct DeepPatch {
+  std::vector<std::array<Vec3d, 3>> triangles;  ///< at least one
+  TriangleMesh surface;                         ///< with triangles
+};
+
+/// How deep the deepest point of patches is.
+struct DeepestPoint {
+  double distance = 0;
+  double bound = 0;  ///< no point of the patches is deeper than this, but for rounding
+  Vec3d point;
+  Vec3d closest;             ///< of the surface
+  std::size_t patch = 0;     ///< that the point is of
+  std::size_t triangle = 0;  ///< of the patch
+  std::uint32_t other = 0;   ///< triangle of the surface
+};
+
+/// The triangles of a surface that lie in one plane and hang together, and where that part ends.
+class Facets {
+ public:
+  /// @param rounding  how far apart points in one plane may be.
+  Facets(const MeshView& mesh, double rounding);
+
+  /// How a triangle lies to a facet, seen along the facet's normal.
+  struct Lie {
+    bool is_over = false;  ///< all of it is over the facet
+    double furthest = 0;   ///< of the corners from the facet's plane
+    bool is_crossed = false;
+    /// Where a side of the facet crosses it: distances of the corners from the plane through that side, along the
+    /// normal; some above 0, some below.
+    std::array<double, 3> sides{};
+  };
+
+  /// How many sides and triangles the facet of a triangle has.
+  [[nodiscard]] std::size_t size(std::uint32_t triangle) const {
+    const Facet& facet = facets_[facet_of_[triangle]];
+    return facet.border.size() + facet.triangles.size();
+  }
+  /// @param triangle  one of the facet's. Cost: O(size of the facet), 10 ns for each.
+  [[nodiscard]] Lie lie(const std::array<Vec3d, 3>& points, std::uint32_t triangle) const;
+
+ private:
+  using Point = std::array<double, 2>;
+  struct Facet {
+    Vec3d origin, u, v, normal;
+    std::vector<std::array<Point, 2>> border;
+    std::vector<std::array<Point, 3>> triangles;
+
+    [[nodiscard]] Point seen(const Vec3d& p) const { return {dot(p - origin, u), dot(p - origin, v)}; }
+  };
+
+  [[nodiscard]] bool holds(const Facet& facet, const Point& point) const;
+
+  double rounding_;
+  std::vector<std::uint32_t> facet_of_;  ///< of each triangle
+  std::vector<Facet> facets_;
+};
+
+constexpr std::uint32_t no_facet = 0xffffffffU;
+
+/// Positive left of the line from a to b, by the distance from it; 0 where a and b are one point.
+double left_of(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& p) {
+  const double x = b[0] - a[0];
+  const double y = b[1] - a[1];
+  const double size = std::hypot(x, y);
+  return size > 0 ? (x * (p[1] - a[1]) - y * (p[0] - a[0])) / size : 0;
+}
+
+/// The part of a segment, from 0 to 1, that lies more than a margin left of a line.
+void keep_left(double from, double to, double margin, double& begin, double& end) {
+  from -= margin;
+  to -= margin;
+  if (from <= 0 && to <= 0) {
+    end = -1;
+  } else if (from < 0) {
+    begin = std::max(begin, from / (from - to));
+  } else if (to < 0) {
+    end = std::min(end, from / (from - to));
+  }
+}
+
+Facets::Facets(const MeshView& mesh, double rounding)
+    : rounding_(rounding), facet_of_(mesh.triangles.size(), no_facet) {
+  std::vector<std::uint32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const auto by_edge = triangles_at_edges(mesh, all);
+  for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
+    if (facet_of_[seed] != no_facet) continue;
+    const auto number = static_cast<std::uint32_t>(facets_.size());
+    Facet& facet = facets_.emplace_back();
+    const std::array<Vec3d, 3> p = triangle_corners(mesh, seed);
+    const Vec3d area = cross(p[1] - p[0], p[2] - p[0]);
+    const Vec3d along = p[1] - p[0];
+    facet.origin = p[0];
+    const bool is_flat = !(length(area) > 0) || !(length(along) > 0);
+    if (!is_flat) {
+      facet.normal = area / length(area);
+      facet.u = along / length(along);
+      facet.v = cross(facet.normal, facet.u);
+    }
+    const auto is_in_plane = [&](std::uint32_t t) {
+      const std::array<Vec3d, 3> q = triangle_corners(mesh, t);
+      return !is_flat && dot(cross(q[1] - q[0], q[2] - q[0]), facet.normal) > 0 &&
+             std::all_of(q.begin(), q.end(),
+                         [&](const Vec3d& x) { return std::abs(dot(x - facet.origin, facet.normal)) <= rounding; });
+    };
+    std::vector<std::uint32_t> open{seed};
+    facet_of_[seed] = number;
+    while (!open.empty()) {
+      const std::uint32_t t = open.back();
+      open.pop_back();
+      const std::array<Vec3d, 3> q = triangle_corners(mesh, t);
+      facet.triangles.push_back({facet.seen(q[0]), facet.seen(q[1]), facet.seen(q[2])});
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& both = by_edge.at(std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]));
+        const std::uint32_t next = both.size() != 2 ? t : both[0] == t ? both[1] : both[0];
+        if (next != t && facet_of_[next] == number) continue;
+        if (next != t && facet_of_[next] == no_facet && is_in_plane(next)) {
+          facet_of_[next] = number;
+          open.push_back(next);
+        } else {
+          facet.border.push_back({facet.seen(q[k]), facet.seen(q[(k + 1) % 3])});
+        }
+      }
+    }
+  }
+}
+
+bool Facets::holds(const Facet& facet, const Point& point) const {
+  return std::any_of(facet.triangles.begin(), facet.triangles.end(), [&](const std::array<Point, 3>& t) {
+    return left_of(t[0], t[1], point) >= -rounding_ && left_of(t[1], t[2], point) >= -rounding_ &&
+           left_of(t[2], t[0], point) >= -rounding_;
+  });
+}
+
+Facets::Lie Facets::lie(const std::array<Vec3d, 3>& points, std::uint32_t triangle) const {
+  const Facet& facet = facets_[facet_of_[triangle]];
+  Lie out;
+  std::array<Point, 3> p{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    p[c] = facet.seen(points[c]);
+    out.furthest = std::max(out.furthest, std::abs(dot(points[c] - facet.origin, facet.normal)));
+  }
+  if (left_of(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
+  double best = 0;
+  for (const auto& [a, b] : facet.border) {
+    // What of this side of the facet lies within the triangle.
+    double begin = 0;
+    double end = 1;
+    for (std::size_t k = 0; k < 3 && begin < end; ++k) {
+      const Point& from = p[k];
+      const Point& to = p[(k + 1) % 3];
+      keep_left(left_of(from, to, a), left_of(from, to, b), rounding_, begin, end);
+    }
+    if (!(begin < end)) continue;
+    std::array<double, 3> sides{};
+    double low = 0;
+    double high = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double side = left_of(a, b, facet.seen(points[c]));
+      sides[c] = std::abs(side) <= rounding_ ? 0 : side;
+      low = std::max(low, -sides[c]);
+      high = std::max(high, sides[c]);
+    }
+    if (!(std::min(low, high) > best)) continue;
+    best = std::min(low, high);
+    out.is_crossed = true;
+    out.sides = sides;
+  }
+  const Point middle{(p[0][0] + p[1][0] + p[2][0]) / 3, (p[0][1] + p[1][1] + p[2][1]) / 3};
+  out.is_over = !out.is_crossed && holds(facet, middle);
+  return out;
+}
+
+/// Parts are cut no further after this many points were looked at: the bound then says how far that went.
+constexpr std::size_t most_points = 200000;
+/// Sides and triangles of facets that are looked at, in all.
+constexpr std::size_t most_of_facets = 100'000'000;
+
+/// A point of a patch, and what of the surface is closest to it.
+struct Sample {
+  Vec3d point;
+  double distance = 0;
+  std::uint32_t other = 0;
+};
+
+/// A part of a triangle of a patch.
+struct Part {
+  std::array<Sample, 3> corners;
+  std::size_t patch = 0;
+  std::size_t triangle = 0;
+  double bound = 0;
+  [[nodiscard]] friend bool operator<(const Part& a, const Part& b) {
+    return std::tuple(a.bound, b.patch, b.triangle) < std::tuple(b.bound, a.patch, a.triangle);
+  }
+};
+
+/// The surface that a patch lies in.
+struct Surface {
+  Surface(const TriangleMesh& of_patch, double rounding)
+      : mesh(of_patch), sites(of_patch), bvh(of_patch, sites), facets(of_patch, 16 * rounding) {}
+
+  MeshView mesh;
+  SiteTable sites;
+  Bvh bvh;
+  Facets facets;
+};
+
+class Search {
+ public:
+  Search(std::span<const DeepPatch> patches, double known, double tolerance, const Context& context)
+      : patches_(patches), known_(known), tolerance_(tolerance), context_(context) {
+    for (const DeepPatch& patch : patches) {
+      const Box3 box = bounds(patch.surface);
+      rounding_ = std::max(rounding_, 1e-14 * (length(box.lower) + length(box.upper)));
+      surfaces_.emplace_back(patch.surface, rounding_);
+    }
+  }
+
+  DeepestPoint run() {
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      for (std::size_t t = 0; t < patches_[p].triangles.size(); ++t) {
+        Part part;
+        part.patch = p;
+        part.triangle = t;
+        for (std::size_t c = 0; c < 3; ++c) part.corners[c] = sample(patches_[p].triangles[t][c], part);
+        push(part);
+      }
+    }
+    while (!parts_.empty() && !is_done(parts_.top().bound) && points_ < most_points) {
+      const Part part = parts_.top();
+      parts_.pop();
+      if (!cut_along_facets(part)) cut(part);
+    }
+    best_.bound = std::max({best_.distance, dropped_, parts_.empty() ? 0.0 : parts_.top().bound});
+    return best_;
+  }
+
+ private:
+  [[nodiscard]] bool is_done(double bound) const {
+    return bound <= std::max(best_.distance, known_) * (1 + tolerance_) + rounding_;
+  }
+
+  Sample sample(const Vec3d& point, const Part& part) {
+    const Surface& surface = surfaces_[part.patch];
+    const NearestSite found = *surface.bvh.nearest(point);
+    const Sample out{point, found.distance, surface.sites.triangle(found.site).value};
+    if (out.distance > best_.distance || points_ == 0) {
+      best_ = {out.distance, 0, point, found.point, part.patch, part.triangle, out.other};
+    }
+    constexpr std::size_t points_between_looks = 1024;
+    if (++points_ % points_between_looks == 0) throw_if_cancelled(context_);
+    return out;
+  }
+
+  /// The distance from the surface is nowhere larger than that from one of its triangles, which is largest at a corner;
+  /// nor than that of a corner, and the way from there. Where all of the part is over a facet, than from its plane.
+  [[nodiscard]] double bound(const Part& part) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Sample& from : part.corners) {
+      const std::array<Vec3d, 3> other = triangle_corners(surfaces_[part.patch].mesh, from.other);
+      double furthest = 0;
+      double longest = 0;
+      for (const Sample& to : part.corners) {
+        furthest = std::max(furthest, triangle_distance({to.point, to.point, to.point}, other).distance);
+        longest = std::max(longest, length(to.point - from.point));
+      }
+      least = std::min({least, furthest, from.distance + longest});
+    }
+    for (std::size_t k = 0; k < 3 && !is_done(least); ++k) {
+      const std::optional<Facets::Lie> lie = lie_to_facet(part, part.corners[k].other);
+      if (lie && lie->is_over) least = std::min(least, lie->furthest);
+    }
+    return least;
+  }
+
+  void push(Part part) {
+    part.bound = bound(part);
+    if (is_done(part.bound)) {
+      dropped_ = std::max(dropped_, part.bound);
+    } else {
+      parts_.push(part);
+    }
+  }
+
+  /// Cuts a part along a side of a facet of the surface: over a facet the distance from it is linear. Shallow contacts
+  /// of large faces have few such parts, but could be halved for long.
+  /// @return  whether there is such a side.
+  bool cut_along_facets(const Part& part) {
+    for (const Sample& corner : part.corners) {
+      const std::optional<Facets::Lie> lie = lie_to_facet(part, corner.other);
+      if (!lie || !lie->is_crossed) continue;
+      cut_along(part, lie->sides);
+      return true;
+    }
+    return false;
+  }
+
+  /// @return  nullopt once that has taken too long.
+  std::optional<Facets::Lie> lie_to_facet(const Part& part, std::uint32_t triangle) {
+    const Facets& facets = surfaces_[part.patch].facets;
+    looked_at_ += facets.size(triangle);
+    if (looked_at_ > most_of_facets) return std::nullopt;
+    return facets.lie(points_of(part), triangle);
+  }
+
+  static std::array<Vec3d, 3> points_of(const Part& part) {
+    return {part.corners[0].point, part.corners[1].point, part.corners[2].point};
+  }
+
+  /// @param sides  of the corners: some above 0, some below.
+  void cut_along(const Part& part, const std::array<double, 3>& sides) {
+    // The corners of both pieces, around the triangle: those of the cut belong to both.
+    std::vector<Sample> above;
+    std::vector<Sample> below;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const Sample& corner = part.corners[k];
+      if (sides[k] >= 0) above.push_back(corner);
+      if (sides[k] <= 0) below.push_back(corner);
+      if (!(sides[k] * sides[next] < 0)) continue;
+      const double t = sides[k] / (sides[k] - sides[next]);
+      const Sample between = sample(corner.point + (part.corners[next].point - corner.point) * t, part);
+      above.push_back(between);
+      below.push_back(between);
+    }
+    for (const std::vector<Sample>& piece : {above, below}) {
+      for (std::size_t k = 2; k < piece.size(); ++k) {
+        Part out = part;
+        out.corners = {piece[0], piece[k - 1], piece[k]};
+        push(out);
+      }
+    }
+  }
+
+  /// In halves, across the longest side.
+  void cut(const Part& part) {
+    std::size_t at = 0;
+    double longest = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double square = squared_length(part.corners[(k + 1) % 3].point - part.corners[k].point);
+      if (square > longest) {
+        longest = square;
+        at = k;
+      }
+    }
+    const Vec3d middle = (part.corners[at].point + part.corners[(at + 1) % 3].point) * 0.5;
+    const Sample between = sample(middle, part);
+    Part first = part;
+    Part second = part;
+    first.corners[(at + 1) % 3] = between;
+    second.corners[at] = between;
+    push(first);
+    push(second);
+  }
+
+  std::span<const DeepPatch> patches_;
+  std::vector<Surface> surfaces_;
+  double known_;
+  double tolerance_;
+  const Context& context_;
+  double rounding_ = 0;  ///< more than distances may be off
+  DeepestPoint best_;
+  double dropped_ = 0;  ///< largest bound of parts that are not looked at further
+  std::size_t points_ = 0;
+  std::size_t looked_at_ = 0;  ///< of facets
+  std::priority_queue<Part> parts_;
+};
+
+/// The point of patches that is furthest from the surface that its patch lies in, by branch and bound (Guthe and others
+/// 2005): the distance from a fixed triangle is convex, so over a part of a triangle it is largest at a corner, and the
+/// distance from a surface is no larger than that from any of its triangles.
+/// @param known      a depth that another point is known to have: patches that are nowhere deeper are not looked at
+///                   closely.
+/// @param tolerance  how much larger than the distance told the bound may be, as a part of it; unless 200,000 points
+/// are not enough for that: then the bound says how far they went. @throws Cancelled.
+DeepestPoint deepest_point(std::span<const DeepPatch> patches, double known, double tolerance, const Context& context) {
+  return Search(patches, known, tolerance, context).run();
+}
+
+}  // namespace
+}  // namespace blum::detail
 
 namespace blum {
 

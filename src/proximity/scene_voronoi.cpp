@@ -16,11 +16,98 @@
 #include "blum/core/context.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
 #include "proximity/heaps.hpp"
-#include "proximity/scene_primitives.hpp"
+#include "proximity/scene_pairs.hpp"
 
 namespace blum::detail {
 namespace {
+
+/// A primitive of a scene.
+struct Member {
+  ObjectId object;
+  std::uint32_t primitive = 0;
+};
+
+/// The primitives of the objects that are compared, in the order of objects and then of primitives.
+class ScenePrimitives {
+ public:
+  /// @param pairs    that are compared; must stay.
+  /// @param objects  how many there are in the scene.
+  ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t objects);
+
+  [[nodiscard]] std::size_t size() const { return members_.size(); }
+  [[nodiscard]] const Member& member(std::uint32_t row) const { return members_[row]; }
+  /// All of them where they are in the scene, as triangles: a segment is one with a corner twice, a point with one
+  /// thrice.
+  [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t row) const { return triangle_corners(mesh_, row); }
+  [[nodiscard]] Box3 box(std::uint32_t row) const;
+  /// Where a primitive of an object that is compared stands.
+  [[nodiscard]] std::uint32_t row(ObjectId object, std::uint32_t primitive) const {
+    return first_row_[object.value] + primitive;
+  }
+
+  /// Whether two are compared: their objects are, and they are not neighbours in one.
+  [[nodiscard]] bool are_compared(std::uint32_t a, std::uint32_t b) const;
+  /// The closest points, told for the first one.
+  [[nodiscard]] PrimitivePair compare(std::uint32_t a, std::uint32_t b) const;
+
+ private:
+  [[nodiscard]] const ObjectPair* pair(ObjectId a, ObjectId b) const { return pairs_[a.value * objects_ + b.value]; }
+
+  std::size_t objects_;
+  std::vector<const ObjectPair*> pairs_;  ///< of each two objects, either way; null where they are not compared
+  std::vector<Member> members_;
+  std::vector<std::uint32_t> first_row_;  ///< of each object
+  TriangleMesh mesh_;
+};
+
+ScenePrimitives::ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t objects)
+    : objects_(objects), pairs_(objects * objects, nullptr), first_row_(objects, 0) {
+  std::vector<const SceneObject*> scene(objects, nullptr);
+  for (const ObjectPair& pair : pairs) {
+    const std::size_t a = pair.first().value;
+    const std::size_t b = pair.second().value;
+    pairs_[a * objects + b] = pairs_[b * objects + a] = &pair;
+    scene[a] = &pair.a();
+    scene[b] = &pair.b();
+  }
+  for (std::uint32_t k = 0; k < objects; ++k) {
+    if (scene[k] == nullptr) continue;
+    first_row_[k] = static_cast<std::uint32_t>(members_.size());
+    const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
+    const std::vector<Vec3d> positions = scene[k]->positions();
+    mesh_.vertices.insert(mesh_.vertices.end(), positions.begin(), positions.end());
+    for (std::uint32_t p = 0; p < scene[k]->primitives(); ++p) {
+      const auto [a, b, c] = scene[k]->vertices(p);
+      mesh_.triangles.push_back({base + a, base + b, base + c});
+      members_.push_back({ObjectId(k), p});
+    }
+  }
+}
+
+Box3 ScenePrimitives::box(std::uint32_t row) const {
+  Box3 box;
+  for (const Vec3d& corner : corners(row)) box.extend(corner);
+  return box;
+}
+
+bool ScenePrimitives::are_compared(std::uint32_t a, std::uint32_t b) const {
+  const Member& first = members_[a];
+  const Member& second = members_[b];
+  const ObjectPair* objects = pair(first.object, second.object);
+  if (objects == nullptr) return false;
+  return !objects->is_self() || (a != b && !objects->are_neighbours(first.primitive, second.primitive));
+}
+
+PrimitivePair ScenePrimitives::compare(std::uint32_t a, std::uint32_t b) const {
+  const Member& first = members_[a];
+  const Member& second = members_[b];
+  const ObjectPair& objects = *pair(first.object, second.object);
+  if (a < b) return objects.compare(first.primitive, second.primitive);
+  return exchanged(objects.compare(second.primitive, first.primitive));
+}
 
 /// A primitive, and its distance from the middle of a cell.
 struct CellEntry {

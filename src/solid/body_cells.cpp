@@ -7,7 +7,6 @@
 #include "solid/model/model_cells.hpp"
 #include "solid/model/model_regions.hpp"
 #include "solid/model/refined_region.hpp"
-#include "solid/model/scaling.hpp"
 #include "solid/model/surface_mesh.hpp"
 
 namespace blum {

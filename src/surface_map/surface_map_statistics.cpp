@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "blum/core/scale.hpp"
-#include "surface_map/chart_part.hpp"
+#include "surface_map/chart.hpp"
 #include "surface_map/weighted_statistics.hpp"
 
 namespace blum {

@@ -7,7 +7,6 @@
 #include "blum/core/parallel.hpp"
 #include "blum/surface_map/surface_atlas.hpp"
 #include "surface_map/chart.hpp"
-#include "surface_map/chart_part.hpp"
 
 namespace blum {
 namespace {

@@ -14,10 +14,16 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
-#include "voronoi/edges_of_vertices.hpp"
+#include "voronoi/reflex_corners.hpp"
 #include "voronoi/site_labels.hpp"
 
 namespace blum::voronoi {
+
+/// A vector of length 1 in the direction of one that is not 0, of any length.
+[[nodiscard]] Vec3d unit(const Vec3d& v);
+
+/// The direction of (b - a) x (c - a), also of triangles that are nearly lines.
+[[nodiscard]] Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 /// The number of a label in SiteLabels::all(); triangles come first, with their own numbers.
 using LabelIndex = std::uint32_t;

@@ -10,7 +10,7 @@
 
 #include "voronoi/governors.hpp"
 #include "voronoi/square_cells.hpp"
-#include "voronoi/surface_chains.hpp"
+#include "voronoi/surface_in_cells.hpp"
 
 namespace blum::voronoi {
 namespace {

@@ -14,7 +14,7 @@
 namespace blum::voronoi {
 namespace {
 
-constexpr std::size_t grain = 16;
+constexpr std::size_t splitter_grain = 16;
 
 /// Whether a triangle may meet a box, sides included: by its own box and its plane.
 bool may_meet(const MeshView& mesh, const LabelGeometry& labels, std::uint32_t t, const Box3& box) {
@@ -538,7 +538,7 @@ void CellSplitter::split_squares(std::span<const CellId> squares, const Context&
   }
   split_edges(std::move(edges), context);
   std::vector<std::array<NewEdge, 4>> made(squares.size());
-  parallel_for(context, squares.size(), grain, {}, [&](const WorkRange& range) {
+  parallel_for(context, squares.size(), splitter_grain, {}, [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) made[k] = inner_edges(tree_.squares[squares[k]]);
   });
   auto next_edge = static_cast<CellId>(tree_.edges.size());
@@ -552,7 +552,7 @@ void CellSplitter::split_squares(std::span<const CellId> squares, const Context&
     for (NewEdge& edge : made[k]) store(next_edge++, edge);
     next_square += 4;
   }
-  parallel_for(context, squares.size(), grain, {}, [&](const WorkRange& range) {
+  parallel_for(context, squares.size(), splitter_grain, {}, [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) place_children(squares[k]);
   });
 }
@@ -663,7 +663,7 @@ void CellSplitter::split_cubes(std::span<const CellId> cubes, const Context& con
   squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
   split_squares(squares, context);
   std::vector<std::array<NewEdge, 6>> made(cubes.size());
-  parallel_for(context, cubes.size(), grain, {}, [&](const WorkRange& range) {
+  parallel_for(context, cubes.size(), splitter_grain, {}, [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) made[k] = inner_edges(tree_.cubes[cubes[k]]);
   });
   const auto first_edge = static_cast<CellId>(tree_.edges.size());
@@ -677,7 +677,7 @@ void CellSplitter::split_cubes(std::span<const CellId> cubes, const Context& con
     tree_.cubes[cubes[k]].children = first_cube + 8 * k;
     tree_.cubes[cubes[k]].state = CubeState::split;
   }
-  parallel_for(context, cubes.size(), grain, {}, [&](const WorkRange& range) {
+  parallel_for(context, cubes.size(), splitter_grain, {}, [&](const WorkRange& range) {
     for (auto k = static_cast<CellId>(range.begin); k < range.end; ++k) {
       GridCube& cube = tree_.cubes[cubes[k]];
       place_squares(cube, first_edge + 6 * k, first_square + 12 * k);

@@ -3,9 +3,62 @@
 #include <algorithm>
 #include <array>
 
+#include "blum/core/union_find.hpp"
 #include "blum/geometry/grid_predicates.hpp"
 
 namespace blum::voronoi {
+
+/// The surface runs along triangles from an event of the border or an edge of the mesh to the next.
+std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceInCells& surface,
+                                            const GridSquare& square) {
+  SurfaceChains out;
+  if (square.triangles.empty()) return out;
+  std::vector<std::array<std::uint32_t, 2>> nodes;  // triangle, node
+  std::vector<std::uint32_t> events;                // of the first nodes
+  for (const CellId id : square.edges) {
+    const GridEdge& edge = tree.edges[id];
+    for (std::uint32_t k = edge.first_event; k < edge.last_event; ++k) {
+      const std::optional<LabelIndex> triangle = tree.events[k].crossed();
+      if (!triangle) continue;
+      nodes.push_back({*triangle, static_cast<std::uint32_t>(events.size())});
+      events.push_back(k);
+    }
+  }
+  const auto count = static_cast<std::uint32_t>(events.size());
+  for (const std::uint32_t t : square.triangles) {
+    for (const EdgeId edge : surface.table().triangle_edges()[t]) {
+      if (!surface.pierces(edge.value, square)) continue;
+      nodes.push_back({t, count + edge.value});
+      out.edges.push_back(edge.value);
+    }
+  }
+  std::sort(out.edges.begin(), out.edges.end());
+  out.edges.erase(std::unique(out.edges.begin(), out.edges.end()), out.edges.end());
+  // Edges are numbered by their rank.
+  for (auto& [triangle, node] : nodes) {
+    if (node < count) continue;
+    const auto at = std::lower_bound(out.edges.begin(), out.edges.end(), node - count);
+    node = count + static_cast<std::uint32_t>(at - out.edges.begin());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  detail::UnionFind joined(count + out.edges.size());
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    if (nodes[k][0] == nodes[k - 1][0]) joined.join(nodes[k][1], nodes[k - 1][1]);
+  }
+  std::vector<std::vector<std::uint32_t>> ends(count + out.edges.size());
+  std::vector<std::uint32_t> chain_of(ends.size(), 0);
+  for (std::uint32_t k = 0; k < count; ++k) ends[joined.find(k)].push_back(events[k]);
+  for (std::uint32_t k = 0; k < ends.size(); ++k) {
+    if (joined.find(k) != k) continue;
+    if (ends[k].size() != 2) return std::nullopt;  // a closed curve, where there is none
+    chain_of[k] = static_cast<std::uint32_t>(out.ends.size());
+    out.ends.push_back({ends[k][0], ends[k][1]});
+  }
+  for (const auto& [triangle, node] : nodes) out.triangles.push_back({chain_of[joined.find(node)], triangle});
+  std::sort(out.triangles.begin(), out.triangles.end());
+  out.triangles.erase(std::unique(out.triangles.begin(), out.triangles.end()), out.triangles.end());
+  return out;
+}
 
 bool SurfaceInCells::pierces(std::uint32_t edge, const GridSquare& square) const {
   const Segment& ends = table_.edges()[edge];

@@ -13,7 +13,6 @@
 #include "blum/solid/solid.hpp"
 #include "medial_axis/cells/attached_voxels.hpp"
 #include "medial_axis/cells/collapse.hpp"
-#include "medial_axis/cells/thin_voxels.hpp"
 #include "medial_axis/cells/voxelize.hpp"
 #include "medial_axis/shape/separation_angles.hpp"
 #include "medial_axis/surface/mesh_surface.hpp"

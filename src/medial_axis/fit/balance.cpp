@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "medial_axis/surface/governors.hpp"
-#include "medial_axis/surface/walls.hpp"
 
 namespace blum::detail {
 namespace {

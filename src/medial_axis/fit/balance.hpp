@@ -7,7 +7,7 @@
 #include <span>
 
 #include "blum/core/vec3.hpp"
-#include "medial_axis/shape/axis_vertex.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/surface/surface.hpp"
 
 namespace blum::detail {

@@ -17,19 +17,14 @@
 #include "blum/core/parallel.hpp"
 #include "blum/core/vec3.hpp"
 #include "medial_axis/fit/balance.hpp"
-#include "medial_axis/fit/bend.hpp"
-#include "medial_axis/fit/contract_short.hpp"
 #include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/split_curves.hpp"
-#include "medial_axis/fit/thin_insides.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/unfold.hpp"
 #include "medial_axis/fit/vertex_mover.hpp"
 #include "medial_axis/shape/axis_lists.hpp"
-#include "medial_axis/shape/axis_vertex.hpp"
 #include "medial_axis/shape/place_vertices.hpp"
 #include "medial_axis/surface/governors.hpp"
-#include "medial_axis/surface/walls.hpp"
 
 namespace blum::detail {
 namespace {

@@ -10,6 +10,25 @@
 
 namespace blum::detail {
 
+/// Up to which length edges are contracted, in voxels.
+struct ShortLengths {
+  double others = 0.15;
+  double on_seams = 0.15;  ///< between two vertices of seams or curves
+  double on_rims = 0.15;   ///< between two vertices of rims
+  double of_crumbs = 0;    ///< of sheets of a few triangles
+  double at_corners = 0;   ///< from a vertex of a rim to where a seam ends: rims meet there, and cut no corner
+  double of_slivers = 0;   ///< the shortest sides of triangles between borders whose corners lie on a line
+};
+
+/// Contracts edges much shorter than a voxel where that keeps the homotopy type and edges in the solid: ribbons become
+/// curves, and two seams beside each other one.
+/// @param incidence  of the lists as they are.
+/// @param voxel      mesh units.
+/// @return           whether any edge was contracted.
+/// @throws Cancelled. Cost: near-linear.
+bool contract_short(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
+                    const ShortLengths& lengths, const Context& context);
+
 /// Where unfold() looks.
 struct UnfoldLimits {
   double voxel = 0;               ///< mesh units

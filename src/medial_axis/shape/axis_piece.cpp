@@ -15,7 +15,6 @@
 #include "blum/core/union_find.hpp"
 #include "medial_axis/cells/attached_voxels.hpp"
 #include "medial_axis/cells/collapse.hpp"
-#include "medial_axis/cells/thin_voxels.hpp"
 #include "medial_axis/shape/axis_corners.hpp"
 #include "medial_axis/shape/place_vertices.hpp"
 #include "medial_axis/shape/shape_cells.hpp"

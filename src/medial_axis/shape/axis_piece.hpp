@@ -11,7 +11,6 @@
 #include "blum/core/phase_timer.hpp"
 #include "medial_axis/cells/cell_complex.hpp"
 #include "medial_axis/shape/axis_lists.hpp"
-#include "medial_axis/shape/axis_vertex.hpp"
 #include "medial_axis/shape/separation_angles.hpp"
 #include "medial_axis/surface/governors.hpp"
 

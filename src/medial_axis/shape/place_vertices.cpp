@@ -8,8 +8,8 @@
 
 #include "blum/core/parallel.hpp"
 #include "medial_axis/surface/equidistant_point.hpp"
+#include "medial_axis/surface/governors.hpp"
 #include "medial_axis/surface/thin_ball.hpp"
-#include "medial_axis/surface/walls.hpp"
 
 namespace blum::detail {
 namespace {

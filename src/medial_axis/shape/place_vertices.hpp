@@ -8,7 +8,7 @@
 
 #include "blum/core/context.hpp"
 #include "medial_axis/cells/cell_complex.hpp"
-#include "medial_axis/shape/axis_vertex.hpp"
+#include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/shape/witnesses.hpp"
 #include "medial_axis/surface/governors.hpp"
 #include "medial_axis/surface/solid_paths.hpp"

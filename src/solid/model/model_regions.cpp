@@ -11,7 +11,7 @@
 #include "blum/core/parts.hpp"
 #include "blum/core/union_find.hpp"
 #include "solid/model/box_surface.hpp"
-#include "solid/model/scaling.hpp"
+#include "solid/model/surface_mesh.hpp"
 
 namespace blum::detail {
 namespace {

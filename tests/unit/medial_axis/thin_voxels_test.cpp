@@ -1,6 +1,6 @@
 // Proves that thinning keeps the topology and all that is important, and equals plain sequential thinning in the order
 // of depth, for any number of threads.
-#include "medial_axis/cells/thin_voxels.hpp"
+#include "medial_axis/cells/attached_voxels.hpp"
 
 #include <gtest/gtest.h>
 

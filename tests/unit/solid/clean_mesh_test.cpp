@@ -20,7 +20,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/shapes/generators.hpp"
-#include "solid/clean/step_check.hpp"
+#include "solid/clean/mesh_cleaner.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {

@@ -1,4 +1,4 @@
-#include "solid/model/scaling.hpp"
+#include "solid/model/surface_mesh.hpp"
 
 #include <algorithm>
 
