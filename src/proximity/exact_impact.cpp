@@ -39,12 +39,12 @@ using PolynomialVector = std::array<Polynomial, 3>;
 [[nodiscard]] Polynomial dot(const PolynomialVector& a, const MovingVector& b);
 
 /// A finite double as mantissa * 2^exponent, the mantissa odd or zero.
-struct Parts {
+struct WholeDouble {
   std::int64_t mantissa;
   int exponent;
 };
 
-Parts parts_of(double value) {
+WholeDouble parts_of(double value) {
   if (value == 0) return {0, std::numeric_limits<int>::max()};
   int exponent = 0;
   constexpr int digits = std::numeric_limits<double>::digits;
@@ -62,7 +62,7 @@ IntegerPoints integer_points(const FourMovingPoints& points, double distance) {
     }
   }
   const auto integer = [&](double x) {
-    const Parts parts = parts_of(x);
+    const WholeDouble parts = parts_of(x);
     return parts.mantissa == 0 ? Integer(0) : Integer(parts.mantissa) << static_cast<unsigned>(parts.exponent - least);
   };
   IntegerPoints out;

@@ -164,6 +164,7 @@ std::size_t count_named(const MeshView& mesh) {
 CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& context) {
   const TriangleMesh& surface = solid.surface().mesh;
   check(solid);
+  check_corners(surface);
   check_tolerance(surface, tolerance);
   check_coordinates(surface);
   CleanReport report;

@@ -9,7 +9,7 @@
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/orient3d.hpp"
 #include "voronoi/dual_cone.hpp"
-#include "voronoi/reflex_corners.hpp"
+#include "voronoi/edges_of_vertices.hpp"
 
 namespace blum {
 namespace {

@@ -12,7 +12,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
-#include "voronoi/reflex_corners.hpp"
+#include "voronoi/edges_of_vertices.hpp"
 
 namespace blum::voronoi {
 

@@ -330,6 +330,51 @@ TEST(Solid, OpenMeshesThatFaceInwardsAreToldSo) {
   EXPECT_TRUE(Solid::of(mesh).faces_inwards());
 }
 
+/// The surface is the input, with what faced the wrong way turned: numbers stay.
+TEST(Solid, TheSurfaceIsTheInputFacingOutwards) {
+  TriangleMesh mesh = test::box_with_void();
+  mesh.vertices.insert(mesh.vertices.begin(), {9, 9, 9});  // named by no triangle
+  for (Triangle& t : mesh.triangles) t = {t[0] + 1, t[1] + 1, t[2] + 1};
+  const TriangleMesh given = mesh;
+  std::swap(mesh.triangles[5][1], mesh.triangles[5][2]);
+  const Solid solid = Solid::of(mesh);
+  EXPECT_EQ(solid.surface().mesh.vertices, given.vertices);
+  EXPECT_EQ(solid.surface().mesh.triangles, given.triangles);
+  EXPECT_TRUE(solid.surface().vertex_of.empty() && solid.surface().triangle_of.empty());
+  EXPECT_EQ(solid.problem(), "");
+  EXPECT_FALSE(solid.topology().oriented);
+  EXPECT_EQ(solid.topology().triangles, given.triangles.size());
+  EXPECT_EQ(solid.surface().mesh.triangles, oriented_mesh(mesh).mesh.triangles);
+}
+
+TEST(Solid, TheSurfaceOfResolvedCrossingsTellsWhereItIsFrom) {
+  TriangleMesh mesh = make_box();
+  append(mesh, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
+  const Solid solid = Solid::of(mesh);
+  const SolidSurface& surface = solid.surface();
+  ASSERT_EQ(surface.vertex_of.size(), surface.mesh.vertices.size());
+  ASSERT_EQ(surface.triangle_of.size(), surface.mesh.triangles.size());
+  EXPECT_EQ(topology(surface.mesh).betti, solid.betti());
+  for (std::size_t v = 0; v < surface.vertex_of.size(); ++v) {
+    if (surface.vertex_of[v] != SolidBody::no_vertex) {
+      EXPECT_EQ(surface.mesh.vertices[v], mesh.vertices[surface.vertex_of[v]]);
+    }
+  }
+  EXPECT_EQ(solid.problem(), "");
+}
+
+/// Every way in which a mesh bounds no bodies apart from each other has its words.
+TEST(Solid, ProblemsAreToldWithWhatToDo) {
+  TriangleMesh open = make_box();
+  open.triangles.pop_back();
+  EXPECT_NE(Solid::of(open).problem().find("welding them closes it"), std::string::npos);
+  TriangleMesh touching = make_box();
+  append(touching, test::moved(make_box(), 1, {0.25, 0.25, 1}));
+  const Solid bodies = Solid::of(touching);
+  EXPECT_EQ(bodies.rule(), SolidRule::polyhedron);
+  EXPECT_NE(bodies.problem().find("crosses or touches itself: triangles"), std::string::npos);
+}
+
 TEST(Solid, CopiesShareWhatWasFound) {
   std::optional<Solid> first = Solid::of(make_box({}));
   const Solid second = *first;

@@ -481,16 +481,40 @@ TEST(VoronoiComplex, RefusesWhatIsNoSolid) {
   open.triangles.pop_back();
   EXPECT_THROW((void)voronoi_complex(open), InvalidMesh);
   EXPECT_THROW((void)voronoi_complex(TriangleMesh{}), InvalidMesh);
-  TriangleMesh inside_out = make_box();
-  reverse_triangles(inside_out);
-  EXPECT_THROW((void)voronoi_complex(inside_out), InvalidMesh);
   TriangleMesh crossing = make_box();
   append(crossing, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
-  EXPECT_THROW((void)voronoi_complex(crossing), InvalidMesh);
+  EXPECT_THROW((void)voronoi_complex(crossing), InvalidMesh);  // whose triangles would the sites be?
+  crossing.triangles.pop_back();
+  EXPECT_THROW((void)voronoi_complex(Solid::of(crossing)), InvalidMesh);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.resolution = 0}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.depth = 25}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.grids = 0}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.max_cubes = 1}), InvalidOption);
+}
+
+/// Triangles that face the wrong way are turned, which changes no site.
+TEST(VoronoiComplex, OfAMeshThatFacesInwards) {
+  TriangleMesh inside_out = test::box_with_void();
+  reverse_triangles(inside_out);
+  std::swap(inside_out.triangles[3][0], inside_out.triangles[3][1]);
+  const VoronoiComplex turned = voronoi_complex(inside_out);
+  const VoronoiComplex given = voronoi_complex(test::box_with_void());
+  EXPECT_TRUE(turned.report.certified);
+  EXPECT_EQ(turned.report.found, given.report.found);
+  EXPECT_EQ(turned.complex.triangle_columns, given.complex.triangle_columns);
+}
+
+/// Where a mesh crosses itself the diagram is that of the solid without the crossings.
+TEST(VoronoiComplex, OfASolidWhoseMeshCrossesItself) {
+  TriangleMesh crossing = make_box();
+  append(crossing, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
+  const Solid solid = Solid::of(crossing);
+  ASSERT_TRUE(solid.resolved());
+  const VoronoiComplex of_solid = voronoi_complex(solid);
+  const VoronoiComplex of_surface = voronoi_complex(solid.surface().mesh);
+  EXPECT_TRUE(of_solid.report.certified);
+  EXPECT_EQ(of_solid.complex.positions, of_surface.complex.positions);
+  EXPECT_EQ(of_solid.report.expected, of_surface.report.expected);
 }
 
 /// Bodies that share a place are one as points go, and two as triangles go.
