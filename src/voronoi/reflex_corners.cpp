@@ -7,6 +7,7 @@
 
 #include "blum/geometry/orient3d.hpp"
 #include "voronoi/dual_cone.hpp"
+#include "voronoi/edges_of_vertices.hpp"
 #include "voronoi/label_geometry.hpp"
 
 namespace blum::voronoi {

@@ -30,7 +30,6 @@ using detail::AxisLists;
 using detail::AxisPiece;
 using detail::AxisVertex;
 using detail::GovernorField;
-using detail::is_extra;
 using detail::make_axis_piece;
 using detail::MeshSurface;
 using detail::place_vertices;

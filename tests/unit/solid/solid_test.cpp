@@ -19,6 +19,7 @@
 #include "blum/geometry/winding_number.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
+#include "blum/solid/oriented_mesh.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {
@@ -332,7 +333,10 @@ TEST(Solid, OpenMeshesThatFaceInwardsAreToldSo) {
 
 /// The surface is the input, with what faced the wrong way turned: numbers stay.
 TEST(Solid, TheSurfaceIsTheInputFacingOutwards) {
-  TriangleMesh mesh = test::box_with_void();
+  TriangleMesh mesh = box_between({0, 0, 0}, {3, 3, 3});
+  TriangleMesh hole = box_between({1, 1, 1}, {2, 2, 2});
+  reverse_triangles(hole);
+  append(mesh, hole);
   mesh.vertices.insert(mesh.vertices.begin(), {9, 9, 9});  // named by no triangle
   for (Triangle& t : mesh.triangles) t = {t[0] + 1, t[1] + 1, t[2] + 1};
   const TriangleMesh given = mesh;
