@@ -1,7 +1,7 @@
 # Blum: the commands of everyday work. `make` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build python test check demo simulate format lint tidy bench docs asan tsan fuzz configurations install viewer clean
+.PHONY: help setup build python test check demo simulate format lint tidy bench docs coverage asan tsan fuzz configurations install viewer clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
@@ -66,6 +66,9 @@ viewer: ## Build the page of blum view, apps/viewer/dist/viewer.html, from its s
 docs: ## Build the API pages and check the documents' links: build/docs/html/index.html
 	@tools/setup.sh --docs
 	@tools/docs.sh
+
+coverage: ## Print the share of lines that tests run, by layer: make coverage, or with L="core complex" of these alone
+	@tools/coverage.sh $(L)
 
 asan: ## Run the tests under AddressSanitizer and UndefinedBehaviorSanitizer
 	@tools/sanitize.sh asan

@@ -8,8 +8,9 @@
 - A layer sees no other layer than CMake lets it link, and may see all of those that CMakeLists.txt names for it.
 - Large integers are in src/exact, whose headers sources of layers above it see.
 - Public headers name nothing but the standard library and Blum.
-- One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/geometry/*_kernels.cpp; compression is in src/io.
+- One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/geometry/bvh/*_kernels.cpp; compression is in src/io.
 - field/cpu and field/cuda do not see each other; CUDA is in src/field/cuda.
+- No call of debug_dump() is left behind: its header is for tests, and for a while in other files while they are debugged.
 """
 
 import pathlib
@@ -52,6 +53,8 @@ SHARED = {
     },
 }
 
+DEBUG_DUMP = "include/blum/core/debug_dump.hpp"
+
 STANDARD = re.compile(r"[a-z_]+")  # <vector>, <stop_token>: no dot, no slash
 SYSTEM = re.compile(r"(sys/\w+|unistd|fcntl|linux/\w+|sched|dlfcn)\.h")  # what the C++ standard library lacks; sources only
 STARTS_THREADS = {"thread", "future", "execution", "pthread.h", "omp.h"}
@@ -70,8 +73,8 @@ def third_party_rule(source: str, name: str) -> str | None:
         allowed = source == "src/core/parallel.cpp" or (source == "src/core/context.cpp" and name == "thread")
         return None if allowed else "only src/core/parallel.cpp starts threads"
     if name.startswith("hwy/"):
-        allowed = source.startswith("src/field/cpu/") or re.fullmatch(r"src/geometry/\w+_kernels\.cpp", source)
-        return None if allowed else "SIMD belongs in src/field/cpu and src/geometry/*_kernels.cpp"
+        allowed = source.startswith("src/field/cpu/") or re.fullmatch(r"src/geometry/bvh/\w+_kernels\.cpp", source)
+        return None if allowed else "SIMD belongs in src/field/cpu and src/geometry/bvh/*_kernels.cpp"
     if name == "cuda_runtime.h" or name.startswith(("cub/", "thrust/")):
         return None if source.startswith("src/field/cuda/") else "CUDA belongs in src/field/cuda"
     if name in ("zlib.h", "png.h", "tiny_gltf.h", "nlohmann/json.hpp"):
@@ -87,6 +90,8 @@ def blum_rule(source: pathlib.PurePosixPath, target: pathlib.PurePosixPath) -> s
     """Why `source` may not include the project's file `target`; None where it may."""
     top = source.parts[0]
     public = target.parts[0] == "include"
+    if str(target) == DEBUG_DUMP and top != "tests" and str(source) != "src/core/debug_dump.cpp":
+        return "debug_dump() is for debugging: take the call out (CONTRIBUTING.md, Debugging)"
     if top == "bench" and str(target) == "src/field/cpu/tile_kernel.hpp":
         return None  # to time one instruction set against another
     if top in ("apps", "examples", "python"):

@@ -3,7 +3,7 @@
 
 - No name in code that docs/glossary.md gives another one for.
 - No word that marks unfinished work, and no absolute path of some machine.
-- C++ and Python files have at most 600 lines; C++ headers open with what they are, their licence, and `#pragma once`.
+- C++ and Python files have at most 900 lines; C++ headers open with what they are, their licence, and `#pragma once`.
 - No tabs (but in makefiles), no spaces at line ends, a line feed at the end.
 """
 
@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 PROJECT = pathlib.Path(__file__).resolve().parent.parent
-LONGEST = 600
+LONGEST = 900
 CODE = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".ts"}
 TEXT = CODE | {".txt", ".md", ".json", ".cff", ".in", ".yml", ".yaml", ".toml", ""}
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK|[Nn]ot implemented|[Ss]tub|[Pp]laceholder)\b")

@@ -4,7 +4,7 @@
 import blum
 
 print("# File formats\n")
-for content in ("mesh", "image", "field", "complex"):
+for content in dict.fromkeys(row.content for row in blum.file_formats()):
     print(f"## {content.capitalize()}\n")
     print("| format | read | written | holds | opens in |\n|---|---|---|---|---|")
     for row in blum.file_formats(content):

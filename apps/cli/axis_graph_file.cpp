@@ -25,12 +25,13 @@ const AxisSheet* thinnest_wall(const AxisGraph& graph) {
 }  // namespace
 
 void add_graph_option(CLI::App& command, std::optional<std::string>& graph, const std::string& help) {
-  add_text_option(command, "--graph", graph, "FILE", (help + " (.json .graphml)").c_str());
+  add_text_option(command, "--graph", graph, "FILE",
+                  (help + " (" + extension_list(FileContent::graph, FileAccess::write) + ")").c_str());
 }
 
 std::optional<fs::path> parse_graph(const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
-  check_extension("--graph", *text, {".json", ".graphml"});
+  check_extension("--graph", *text, file_extensions(FileContent::graph, FileAccess::write));
   return fs::path(*text);
 }
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "blum/io/centreline_io.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/medial_axis/centreline.hpp"
-#include "centreline_files.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "files.hpp"
@@ -160,7 +160,7 @@ void add_lines(TextTable& table, const Centrelines& lines) {
 void run(const Arguments& a) {
   const fs::path input = a.image;
   const fs::path output = a.output;
-  check_extension("--output", output, centreline_extensions());
+  check_extension("--output", output, file_extensions(FileContent::centreline, FileAccess::write));
   const auto labels = labels_of(a.labels);
   LabelSelection::exclude_both(!a.labels.empty(), a.threshold.has_value(), "--");
   CentrelineOptions options = a.options.read();
@@ -192,7 +192,7 @@ void run(const Arguments& a) {
                      {"grid", to_json(image.grid)},
                      {"threshold", to_json(a.threshold ? std::optional(options.selection.threshold) : std::nullopt)},
                      {"spur", options.spur}});
-  write_centrelines(output, lines, head, context);
+  write_centrelines(output, lines, {BLUM_VERSION, head.dump(1)}, context);
   phases.push_back({"write", watch.lap()});
   progress.clear();
 

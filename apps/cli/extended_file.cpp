@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string_view>
 
-#include "blum/io/extended_io.hpp"
+#include "blum/io/formats.hpp"
 #include "common_options.hpp"
 #include "described.hpp"
 #include "files.hpp"
@@ -14,8 +14,7 @@ namespace blum::cli {
 namespace fs = std::filesystem;
 
 void add_extend_options(CLI::App& command, std::optional<std::string>& extend, std::optional<std::string>& length) {
-  std::string names;
-  for (const std::string& extension : extended_extensions()) names += (names.empty() ? "" : " ") + extension;
+  const std::string names = extension_list(FileContent::extended_axis, FileAccess::write);
   add_text_option(
       command, "--extend", extend, "FILE",
       ("Its sheets, continued to the surface, for meshes of shells (" + names + "); best at --theta 110").c_str());
@@ -25,7 +24,7 @@ void add_extend_options(CLI::App& command, std::optional<std::string>& extend, s
 
 std::optional<fs::path> parse_extend(const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
-  check_extension("--extend", *text, extended_extensions());
+  check_extension("--extend", *text, file_extensions(FileContent::extended_axis, FileAccess::write));
   return fs::path(*text);
 }
 

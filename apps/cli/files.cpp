@@ -75,7 +75,7 @@ InputKind input_kind(const fs::path& path) {
       return InputKind::image;
     case FileContent::field:
       return InputKind::field;
-    case FileContent::complex:
+    default:
       break;
   }
   throw FileError("'" + path.string() +

@@ -105,11 +105,9 @@ bool has_area(const MeshView& mesh) {
   return false;
 }
 
-/// Extensions of files that hold points, and no mesh. (A .vtp may hold polygons, whose area would be lost.)
-const std::vector<std::string> cloud_extensions{".npy", ".npz", ".csv", ".xyz", ".txt"};
-
 TriangleMesh read_surface(const fs::path& path, std::optional<double> weld) {
-  if (std::find(cloud_extensions.begin(), cloud_extensions.end(), file_extension(path)) == cloud_extensions.end()) {
+  const std::vector<std::string> clouds = cloud_extensions();
+  if (std::find(clouds.begin(), clouds.end(), file_extension(path)) == clouds.end()) {
     return read_mesh_of_any_name(path, {weld}).mesh;
   }
   TriangleMesh out;
@@ -211,7 +209,7 @@ void add_hausdorff_command(const CommandLine& line) {
   CLI::App* command = line.app.add_subcommand(
       "hausdorff", "How far two meshes are from each other at most: an interval that is certain, with means by area");
   const std::string help = extensions_help({FileContent::mesh}, FileAccess::read) + ", or points (" +
-                           join_words(cloud_extensions, "or") + ")";
+                           join_words(cloud_extensions(), "or") + ")";
   command->add_option("A", a->a, help)->required();
   command->add_option("B", a->b, help)->required();
   add_text_option(*command, "-o,--output", a->output, "FILE",

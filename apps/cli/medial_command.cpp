@@ -16,6 +16,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/field/smooth_surface.hpp"
 #include "blum/io/certified_axis.hpp"
+#include "blum/io/complex_io.hpp"
 #include "blum/io/draft.hpp"
 #include "blum/io/extended_io.hpp"
 #include "blum/io/graph_io.hpp"
@@ -114,7 +115,7 @@ Request parse(const Arguments& a) {
   r.nested = a.nested;
   r.smooth = a.smooth;
   r.has_resolution = a.options.has("resolution") || a.options.has("spacing");
-  if (r.nested && file_extension(r.output) != ".npz") {
+  if (r.nested && !may_hold_further(r.output)) {
     throw UsageError("--nested needs an output with the extension .npz: the other formats hold the axis of one angle");
   }
   if (r.nested && r.thetas.size() > 1) {

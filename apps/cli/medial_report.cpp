@@ -130,8 +130,7 @@ void add_certified(const FileMetadata& metadata, ShownAxis& out) {
 }  // namespace
 
 ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension == ".vtp" || extension == ".ply" || extension == ".npz") {
+  if (may_hold_columns(path)) {
     ComplexFile file = read_complex(path);
     const std::string content = text_of(file.metadata, "content");
     const bool has_sites = file.complex.triangle_columns.find("site_a") != nullptr &&

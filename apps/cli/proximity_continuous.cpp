@@ -136,7 +136,7 @@ void check_continuous_options(const ProximityArguments& a) {
   if (const auto names = a.penetration.given(); !names.empty()) {
     throw UsageError(names.front() + " is for --query penetration and signed alone");
   }
-  if (a.output) check_extension("--output", *a.output, collision_extensions());
+  if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
 void run_continuous_query(const ProximityArguments& a) {

@@ -45,7 +45,7 @@ void check(const ProximityArguments& a) {
   if (const auto names = a.culling.given(); is_penetration && !names.empty()) {
     throw UsageError(names.front() + " is not for --query penetration");
   }
-  if (a.output) check_extension("--output", *a.output, proximity_extensions());
+  if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
 }
 
 /// The objects of a scene, and what was asked of them.

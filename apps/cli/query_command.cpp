@@ -101,7 +101,7 @@ struct PointFile {
 /// OUT of one file; OUT-NAME of several, by their names.
 std::vector<PointFile> files_of(const Arguments& a) {
   const fs::path output = a.output;
-  check_extension("--output", output, written_point_extensions());
+  check_extension("--output", output, file_extensions(FileContent::points, FileAccess::write));
   std::vector<PointFile> files;
   for (const std::string& name : a.points) {
     PointFile& file = files.emplace_back();
@@ -238,13 +238,15 @@ void add_query_command(const CommandLine& line) {
       line.app.add_subcommand("query", "Exact signed distances of any points from a mesh, with the closest points");
   command->add_option("MESH", a->mesh, extensions_help({FileContent::mesh}, FileAccess::read))->required();
   command
-      ->add_option("POINTS", a->points, join_words(readable_point_extensions(), "or") + "; several give an output each")
+      ->add_option(
+          "POINTS", a->points,
+          join_words(file_extensions(FileContent::points, FileAccess::read), "or") + "; several give an output each")
       ->required();
   command
-      ->add_option(
-          "-o,--output", a->output,
-          ".npz .ply .vtp .csv: the points with columns distance, gradient, closest, site, triangle; of several "
-          "POINTS files OUT-NAME, by their names")
+      ->add_option("-o,--output", a->output,
+                   extension_list(FileContent::points, FileAccess::write) +
+                       ": the points with columns distance, gradient, closest, site, triangle; of several POINTS files "
+                       "OUT-NAME, by their names")
       ->required()
       ->type_name("FILE");
   a->options.add_to(*command);

@@ -54,11 +54,9 @@ struct Request {
 
 /// A field is likely to be given here by those who want its surface.
 void check_is_no_field(const fs::path& path) {
-  const std::string end = file_extension(path);
+  if (!FieldFormat::by_name(path)) return;
   std::error_code ignored;
-  const bool is_field =
-      end == ".nrrd" || end == ".vti" || (end == ".npz" && fs::exists(path, ignored) && !holds_complex(path));
-  if (!is_field) return;
+  if (ComplexFormat::by_name(path) && (!fs::exists(path, ignored) || holds_complex(path))) return;
   throw UsageError("AXIS '" + path.string() +
                    "' is no medial axis; of a field, `blum surface FIELD --level L -o MESH` makes a mesh");
 }
@@ -68,7 +66,7 @@ Request parse(const Arguments& a) {
   r.axis = a.axis;
   r.output = a.output;
   check_is_no_field(r.axis);
-  check_extension("AXIS", r.axis, {".vtp", ".ply", ".ma", ".npz"});
+  check_extension("AXIS", r.axis, extensions_with_radii());
   std::vector<std::string> known = file_extensions(FileContent::field, FileAccess::write);
   for (const std::string& end : file_extensions(FileContent::mesh, FileAccess::write)) known.push_back(end);
   check_extension("--output", r.output, known);
@@ -99,7 +97,10 @@ std::vector<Ball> balls_of(const MedialFile& file, double step) {
 
 MedialFile read_balls(const fs::path& path) {
   MedialFile file = read_axis(path);
-  if (!file.has_radii) throw FileError("'" + path.string() + "' holds no radii: take a .vtp, .ply, .ma or .npz file");
+  if (!file.has_radii) {
+    throw FileError("'" + path.string() + "' holds no radii: take a " + join_words(extensions_with_radii(), "or") +
+                    " file");
+  }
   if (file.complex.positions.empty()) throw FileError("'" + path.string() + "' holds no vertices, and so no balls");
   return file;
 }
@@ -187,7 +188,7 @@ void add_reconstruct_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command =
       line.app.add_subcommand("reconstruct", "The union of the balls of a medial axis, as a field or a mesh");
-  command->add_option("AXIS", a->axis, "Medial axis: .vtp, .ply, .ma or .npz")->required();
+  command->add_option("AXIS", a->axis, "Medial axis: " + join_words(extensions_with_radii(), "or"))->required();
   command
       ->add_option("-o,--output", a->output,
                    extensions_help({FileContent::field, FileContent::mesh}, FileAccess::write))

@@ -95,7 +95,7 @@ Complex points_for(const Arguments& a, const Request& asked, const MeshView& mes
 void run(const Arguments& a) {
   const fs::path input = a.mesh;
   const fs::path output = a.output;
-  check_extension("--output", output, written_point_extensions());
+  check_extension("--output", output, file_extensions(FileContent::points, FileAccess::write));
   refuse_others(a);
   const Request asked = read(a);
   const std::optional<double> weld = parse_weld(a.weld);
@@ -143,9 +143,9 @@ void add_sample_command(const CommandLine& line) {
   command->add_option("-n,--count", a->count, "How many points")->required()->type_name("N");
   command
       ->add_option("-o,--output", a->output,
-                   ".npz .ply .vtp .csv: the points with columns normal (nx, ny, nz in .ply) and triangle; with --near "
-                   "distance, gradient, "
-                   "closest, site and triangle")
+                   extension_list(FileContent::points, FileAccess::write) +
+                       ": the points with columns normal (nx, ny, nz in .ply) and triangle; with --near distance, "
+                       "gradient, closest, site and triangle")
       ->required()
       ->type_name("FILE");
   command->add_flag("--near", a->near, "Points near the surface, with exact signed distances");

@@ -89,7 +89,7 @@ Request read(const Arguments& a) {
   if (a.range) out.write.range = parse_range(*a.range);
   out.write.units = a.units;
   for (const std::string& output : a.outputs) {
-    check_extension("--output", output, surface_map_extensions());
+    check_extension("--output", output, file_extensions(FileContent::surface_map, FileAccess::write));
     out.outputs.emplace_back(output);
   }
   return out;

@@ -170,7 +170,10 @@ void add_verify_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = line.app.add_subcommand("verify", "Check medial axes against their solid, from the files alone");
   command->add_option("INPUT", a->input, "The mesh or image whose axis it is")->required();
-  command->add_option("AXIS", a->axes, "Medial axes: .vtp, .ply, .obj, .ma or .npz")->required();
+  command
+      ->add_option("AXIS", a->axes,
+                   "Medial axes: " + join_words(file_extensions(FileContent::complex, FileAccess::read), "or"))
+      ->required();
   add_label_option(*command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
   add_text_option(*command, "--threshold", a->threshold, "T",
                   "Image: the voxels of value T or more (default: as AXIS tells)");

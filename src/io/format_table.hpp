@@ -8,15 +8,35 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <tuple>
 #include <variant>
+#include <vector>
 
+#include "blum/io/centreline_io.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/field_io.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/image_io.hpp"
+#include "blum/io/medial_io.hpp"
 #include "blum/io/mesh_io.hpp"
-#include "io/byte_source.hpp"
+#include "io/bytes/byte_source.hpp"
+
+namespace blum {
+
+struct AxisGraph;
+struct VoronoiGraph;
+struct VoronoiSite;
+namespace surface_map_files {
+struct Request;
+}
+namespace tables {
+struct RowFile;
+}
+
+}  // namespace blum
 
 namespace blum::formats {
 
@@ -66,69 +86,171 @@ struct ComplexCode {
   Tells tells = {};
   bool holds_further = false;  ///< whether a file holds several complexes
   bool holds_columns = true;   ///< any of them
+  bool holds_radii = true;     ///< of medial axes
+};
+
+struct PointCode {
+  std::vector<Vec3d> (*read)(const fs::path& path);  ///< numbers need not be finite
+  /// Gets vertices alone, and metadata that tell the content. Null: not written.
+  void (*write)(const fs::path& path, const Complex& points, const FileMetadata& metadata, const Context& context);
+  bool is_cloud = false;  ///< whether its files hold points, and no mesh
+};
+
+/// Pairs, collisions: rows of columns.
+struct RowCode {
+  void (*write)(const fs::path& path, const tables::RowFile& file, const Context& context);
+};
+
+struct SurfaceMapCode {
+  void (*write)(const surface_map_files::Request& request);
+};
+
+/// The whole content of files.
+struct GraphCode {
+  std::string (*text_of_axis)(const AxisGraph& graph, const MedialMetadata& metadata);
+  std::string (*text_of_diagram)(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
+                                 const FileMetadata& metadata);
+};
+
+struct CentrelineCode {
+  void (*write)(const fs::path& path, const Centrelines& lines, const CentrelineFileInfo& info, const Context& context);
+};
+
+struct ExtendedAxisCode {
+  void (*write)(const fs::path& path, const Complex& surface, const FileMetadata& metadata, const Context& context);
 };
 
 extern const MeshCode mesh_obj, mesh_off, mesh_stl, mesh_ply, mesh_glb;
 extern const ImageCode image_nrrd, image_nifti, image_npy, image_vol;
 extern const FieldCode field_nrrd, field_npz, field_vti;
 extern const ComplexCode complex_vtp, complex_ply, complex_obj, complex_ma, complex_npz, complex_glb;
+extern const PointCode points_npy, points_npz, points_text, points_as_complex, points_of_mesh;
+extern const RowCode rows_npz, rows_csv, rows_json, rows_as_complex;
+extern const SurfaceMapCode surface_map_npz, surface_map_png, surface_map_glb, surface_map_as_complex;
+extern const GraphCode graph_json, graph_graphml;
+extern const CentrelineCode centreline_json, centreline_csv, centreline_swc, centreline_as_complex;
+extern const ExtendedAxisCode extended_as_complex, extended_stl;
+
+/// The code of a content's formats.
+template <FileContent content>
+using CodeOf = std::tuple_element_t<static_cast<std::size_t>(content),
+                                    std::tuple<MeshCode, ImageCode, FieldCode, ComplexCode, PointCode, RowCode, RowCode,
+                                               SurfaceMapCode, GraphCode, CentrelineCode, ExtendedAxisCode>>;
 
 struct Row {
+  FileContent content = FileContent::mesh;
   std::string_view name;  ///< these as in FileFormat, lists as words between blanks
   std::string_view extensions;
   std::string_view written;
   std::string_view holds;
   std::string_view opens_in;
-  std::variant<const MeshCode*, const ImageCode*, const FieldCode*, const ComplexCode*> code;  ///< as FileContent
+  std::variant<const MeshCode*, const ImageCode*, const FieldCode*, const ComplexCode*, const PointCode*,
+               const RowCode*, const SurfaceMapCode*, const GraphCode*, const CentrelineCode*, const ExtendedAxisCode*>
+      code;
 };
 
-inline constexpr std::array table{
-    Row{"OBJ", ".obj", ".obj", "triangles, polygons, segments, points; double precision", "Blender, MeshLab",
-        &mesh_obj},
-    Row{"OFF", ".off", ".off", "triangles, polygons; double precision", "MeshLab, CGAL", &mesh_off},
-    Row{"STL", ".stl", ".stl", "triangles without shared vertices; single precision", "CAD, slicers", &mesh_stl},
-    Row{"PLY", ".ply", ".ply", "triangles, polygons, segments; double precision", "MeshLab, Blender, ParaView",
-        &mesh_ply},
-    Row{"GLB", "", ".glb", "triangles, segments, points; single precision", "Blender, three.js, most viewers",
-        &mesh_glb},
+inline constexpr auto table = [] {
+  using enum FileContent;
+  return std::array{
+      Row{mesh, "OBJ", ".obj", ".obj", "triangles, polygons, segments, points; double precision", "Blender, MeshLab",
+          &mesh_obj},
+      Row{mesh, "OFF", ".off", ".off", "triangles, polygons; double precision", "MeshLab, CGAL", &mesh_off},
+      Row{mesh, "STL", ".stl", ".stl", "triangles without shared vertices; single precision", "CAD, slicers",
+          &mesh_stl},
+      Row{mesh, "PLY", ".ply", ".ply", "triangles, polygons, segments; double precision", "MeshLab, Blender, ParaView",
+          &mesh_ply},
+      Row{mesh, "GLB", "", ".glb", "triangles, segments, points; single precision", "Blender, three.js, most viewers",
+          &mesh_glb},
 
-    Row{"NRRD", ".nrrd .nhdr", ".nrrd", "scalars of any type, spacing, axes, space", "3D Slicer, ITK", &image_nrrd},
-    Row{"NIfTI", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", "", "scalars of any type, spacing, axes",
-        "3D Slicer, ITK, FSL", &image_nifti},
-    Row{"NPY", ".npy", ".npy", "scalars of any type, [z, y, x]; no spacing", "NumPy", &image_npy},
-    Row{"Vol", ".vol", "", "bytes; no spacing", "DGtal", &image_vol},
+      Row{image, "NRRD", ".nrrd .nhdr", ".nrrd", "scalars of any type, spacing, axes, space", "3D Slicer, ITK",
+          &image_nrrd},
+      Row{image, "NIfTI", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", "", "scalars of any type, spacing, axes",
+          "3D Slicer, ITK, FSL", &image_nifti},
+      Row{image, "NPY", ".npy", ".npy", "scalars of any type, [z, y, x]; no spacing", "NumPy", &image_npy},
+      Row{image, "Vol", ".vol", "", "bytes; no spacing", "DGtal", &image_vol},
 
-    Row{"NRRD", ".nrrd", ".nrrd", "distances; sites (and what is of order 2) in files beside it, NAME.site.nrrd",
-        "3D Slicer, ITK", &field_nrrd},
-    Row{"NPZ", ".npz", ".npz", "distances, sites, vertices of sites", "NumPy", &field_npz},
-    Row{"VTI", ".vti", ".vti", "distances, sites", "ParaView, VTK", &field_vti},
+      Row{field, "NRRD", ".nrrd", ".nrrd",
+          "distances; sites (and what is of order 2) in files beside it, NAME.site.nrrd", "3D Slicer, ITK",
+          &field_nrrd},
+      Row{field, "NPZ", ".npz", ".npz", "distances, sites, vertices of sites", "NumPy", &field_npz},
+      Row{field, "VTI", ".vti", ".vti", "distances, sites", "ParaView, VTK", &field_vti},
 
-    Row{"VTP", ".vtp", ".vtp", "all columns, metadata", "ParaView, VTK, 3D Slicer", &complex_vtp},
-    Row{"PLY", ".ply", ".ply", "all columns, metadata", "MeshLab, trimesh", &complex_ply},
-    Row{"OBJ", ".obj", ".obj", "positions, edges, triangles; no columns", "Blender, MeshLab", &complex_obj},
-    Row{"MA", ".ma", ".ma", "positions, radii, edges, triangles of medial axes", "Q-MAT", &complex_ma},
-    Row{"NPZ", ".npz", ".npz", "all columns, metadata, further complexes", "NumPy", &complex_npz},
-    Row{"GLB", "", ".glb", "positions, edges, triangles, columns of vertices, metadata; single precision",
-        "Blender, three.js, trimesh", &complex_glb},
-};
+      Row{complex, "VTP", ".vtp", ".vtp", "all columns, metadata", "ParaView, VTK, 3D Slicer", &complex_vtp},
+      Row{complex, "PLY", ".ply", ".ply", "all columns, metadata", "MeshLab, trimesh", &complex_ply},
+      Row{complex, "OBJ", ".obj", ".obj", "positions, edges, triangles; no columns", "Blender, MeshLab", &complex_obj},
+      Row{complex, "MA", ".ma", ".ma", "positions, radii, edges, triangles of medial axes", "Q-MAT", &complex_ma},
+      Row{complex, "NPZ", ".npz", ".npz", "all columns, metadata, further complexes", "NumPy", &complex_npz},
+      Row{complex, "GLB", "", ".glb", "positions, edges, triangles, columns of vertices, metadata; single precision",
+          "Blender, three.js, trimesh", &complex_glb},
+
+      Row{points, "NPY", ".npy", "", "an array [n, 3]", "NumPy", &points_npy},
+      Row{points, "NPZ", ".npz", ".npz", "positions, all columns, metadata", "NumPy", &points_npz},
+      Row{points, "PLY", ".ply", ".ply", "positions, all columns, metadata", "MeshLab, trimesh", &points_as_complex},
+      Row{points, "VTP", ".vtp", ".vtp", "positions, all columns, metadata", "ParaView, VTK", &points_as_complex},
+      Row{points, "CSV", ".csv .xyz .txt", ".csv", "a row of numbers for each point", "spreadsheets, pandas",
+          &points_text},
+      Row{points, "OBJ", ".obj", "", "the vertices of a mesh", "Blender, MeshLab", &points_of_mesh},
+      Row{points, "OFF", ".off", "", "the vertices of a mesh", "MeshLab, CGAL", &points_of_mesh},
+      Row{points, "STL", ".stl", "", "the vertices of a mesh", "CAD, slicers", &points_of_mesh},
+
+      Row{pairs, "NPZ", "", ".npz", "all columns, metadata", "NumPy", &rows_npz},
+      Row{pairs, "CSV", "", ".csv", "a row for each pair", "spreadsheets, pandas", &rows_csv},
+      Row{pairs, "JSON", "", ".json", "all columns, metadata", "any program", &rows_json},
+      Row{pairs, "VTP", "", ".vtp", "lines between closest points, all columns, metadata", "ParaView, VTK",
+          &rows_as_complex},
+
+      Row{collisions, "NPZ", "", ".npz", "all columns, metadata", "NumPy", &rows_npz},
+      Row{collisions, "CSV", "", ".csv", "a row for each collision", "spreadsheets, pandas", &rows_csv},
+      Row{collisions, "JSON", "", ".json", "all columns, metadata", "any program", &rows_json},
+      Row{collisions, "VTP", "", ".vtp", "the features where they meet, metadata", "ParaView, VTK", &rows_as_complex},
+
+      Row{surface_map, "NPZ", ".npz", ".npz", "mesh, texture of distances, vectors, sites, metadata", "NumPy",
+          &surface_map_npz},
+      Row{surface_map, "PNG", "", ".png", "the texture in colours, with a bar of them", "any program",
+          &surface_map_png},
+      Row{surface_map, "GLB", "", ".glb", "the mesh with the texture in colours", "Blender, three.js, most viewers",
+          &surface_map_glb},
+      Row{surface_map, "PLY", "", ".ply", "the mesh with columns, metadata", "MeshLab, trimesh",
+          &surface_map_as_complex},
+      Row{surface_map, "VTP", "", ".vtp", "the mesh with columns, metadata", "ParaView, VTK", &surface_map_as_complex},
+
+      Row{graph, "JSON", "", ".json", "all of it, metadata", "any program", &graph_json},
+      Row{graph, "GraphML", "", ".graphml", "nodes and edges with attributes, metadata", "networkx, Gephi, igraph, yEd",
+          &graph_graphml},
+
+      Row{centreline, "JSON", "", ".json", "nodes and branches with their points", "any program", &centreline_json},
+      Row{centreline, "CSV", "", ".csv", "a row for each branch", "spreadsheets, pandas", &centreline_csv},
+      Row{centreline, "SWC", "", ".swc", "trees of points with radii; loops are cut", "Vaa3D, neuTube",
+          &centreline_swc},
+      Row{centreline, "VTP", "", ".vtp", "polylines with radii", "ParaView, VTK, 3D Slicer", &centreline_as_complex},
+      Row{centreline, "PLY", "", ".ply", "polylines with radii", "MeshLab, trimesh", &centreline_as_complex},
+      Row{centreline, "NPZ", "", ".npz", "polylines with radii", "NumPy", &centreline_as_complex},
+
+      Row{extended_axis, "VTP", "", ".vtp", "all columns, metadata", "ParaView, VTK, 3D Slicer", &extended_as_complex},
+      Row{extended_axis, "PLY", "", ".ply", "all columns, metadata", "MeshLab, trimesh", &extended_as_complex},
+      Row{extended_axis, "OBJ", "", ".obj", "positions, edges, triangles", "Blender, MeshLab", &extended_as_complex},
+      Row{extended_axis, "NPZ", "", ".npz", "all columns, metadata", "NumPy", &extended_as_complex},
+      Row{extended_axis, "STL", "", ".stl", "triangles; single precision", "CAD, slicers", &extended_stl},
+  };
+}();
 
 /// What the bytes of a row's files tell.
-[[nodiscard]] inline const Tells& tells_of(std::size_t row) {
-  return std::visit([](const auto* code) -> const Tells& { return code->tells; }, table[row].code);
+[[nodiscard]] inline Tells tells_of(std::size_t row) {
+  return std::visit(
+      []<class Code>(const Code* code) {
+        if constexpr (requires { code->tells; }) {
+          return code->tells;
+        } else {
+          return Tells{};
+        }
+      },
+      table[row].code);
 }
 
 /// The functions of a format.
-[[nodiscard]] inline const MeshCode& code_of(MeshFormat format) {
-  return *std::get<const MeshCode*>(table[format.row()].code);
-}
-[[nodiscard]] inline const ImageCode& code_of(ImageFormat format) {
-  return *std::get<const ImageCode*>(table[format.row()].code);
-}
-[[nodiscard]] inline const FieldCode& code_of(FieldFormat format) {
-  return *std::get<const FieldCode*>(table[format.row()].code);
-}
-[[nodiscard]] inline const ComplexCode& code_of(ComplexFormat format) {
-  return *std::get<const ComplexCode*>(table[format.row()].code);
+template <FileContent content>
+[[nodiscard]] const auto& code_of(FormatOf<content> format) {
+  return *std::get<const CodeOf<content>*>(table[format.row()].code);
 }
 
 }  // namespace blum::formats

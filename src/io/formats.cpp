@@ -2,12 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <system_error>
 
 #include "blum/core/error.hpp"
+#include "blum/io/file_content.hpp"
+#include "blum/io/image_io.hpp"
+#include "io/bytes/byte_source.hpp"
+#include "io/field/field_files.hpp"
 #include "io/format_table.hpp"
-#include "io/text_scan.hpp"
+#include "io/text/text_cursor.hpp"
 
 namespace blum {
 namespace {
@@ -71,8 +81,8 @@ const std::vector<FileFormat>& file_formats() {
   static const std::vector<FileFormat> all = [] {
     std::vector<FileFormat> out;
     for (const formats::Row& row : formats::table) {
-      out.push_back({static_cast<FileContent>(row.code.index()), std::string(row.name), words_of(row.extensions),
-                     words_of(row.written), std::string(row.holds), std::string(row.opens_in)});
+      out.push_back({row.content, std::string(row.name), words_of(row.extensions), words_of(row.written),
+                     std::string(row.holds), std::string(row.opens_in)});
     }
     return out;
   }();
@@ -95,10 +105,15 @@ std::optional<FormatOf<content>> FormatOf<content>::by_head(std::string_view hea
 }
 
 template <FileContent content>
-FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileAccess access) {
+FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileAccess access, std::string_view what) {
   if (const auto row = find_extension(content, file_extension(path), access)) return FormatOf(*row);
-  constexpr std::array<std::string_view, 4> plural{"meshes", "images", "fields", "complexes, medial axes among them,"};
-  throw InvalidOption("'" + path.string() + "': " + std::string(plural[static_cast<std::size_t>(content)]) + " are " +
+  constexpr std::array<std::string_view, 11> plural{
+      "meshes", "images",      "fields",       "complexes, medial axes among them,",
+      "points", "close pairs", "collisions",   "surface maps",
+      "graphs", "centrelines", "extended axes"};
+  static_assert(plural.size() == Description<FileContent>::values.size());
+  if (what.empty()) what = plural[static_cast<std::size_t>(content)];
+  throw InvalidOption("'" + path.string() + "': " + std::string(what) + " are " +
                       (access == FileAccess::read    ? "read from "
                        : access == FileAccess::write ? "written to "
                                                      : "written to and read from ") +
@@ -109,6 +124,13 @@ template class FormatOf<FileContent::mesh>;
 template class FormatOf<FileContent::image>;
 template class FormatOf<FileContent::field>;
 template class FormatOf<FileContent::complex>;
+template class FormatOf<FileContent::points>;
+template class FormatOf<FileContent::pairs>;
+template class FormatOf<FileContent::collisions>;
+template class FormatOf<FileContent::surface_map>;
+template class FormatOf<FileContent::graph>;
+template class FormatOf<FileContent::centreline>;
+template class FormatOf<FileContent::extended_axis>;
 
 std::string file_extension(const std::filesystem::path& path) {
   std::string last = volume_io::lower_case(path.extension().string());
@@ -135,6 +157,129 @@ std::string extension_list(FileContent content, FileAccess access, std::string_v
     out += extension;
   }
   return out;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t head_size = 8192;
+
+std::string read_head(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw FileError("'" + path.string() + "' is a folder, not a file");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError("'" + path.string() + "' cannot be opened: " + std::strerror(errno));
+  std::string head(head_size, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return head;
+}
+
+/// Whether a NRRD header says that the values are floating-point numbers.
+bool holds_floats(std::string_view head) {
+  std::istringstream lines{std::string(head.substr(0, head.find("\n\n")))};
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("type:")) continue;
+    std::istringstream rest(line.substr(5));
+    std::string type;
+    rest >> type;
+    return type == "float" || type == "double";
+  }
+  return false;
+}
+
+std::optional<ImageFormat> image_format(const fs::path& path, std::string_view head) {
+  const auto format = ImageFormat::by_name(path);
+  return format ? format : ImageFormat::by_head(head);
+}
+
+/// Whether a file of this format, where there is one, holds its content: some formats hold others, too.
+template <class Format>
+bool holds(const std::optional<Format>& format, const fs::path& path, std::string_view head) {
+  if (!format) return false;
+  const auto holds_this = formats::tells_of(format->row()).holds_this;
+  return holds_this == nullptr || holds_this(head, path);
+}
+
+}  // namespace
+
+FileContent content_of(const fs::path& path) {
+  const std::string head = read_head(path);
+  if (MeshFormat::by_name(path)) return FileContent::mesh;
+  if (holds(ComplexFormat::by_name(path), path, head)) return FileContent::complex;
+  if (holds(FieldFormat::by_name(path), path, head)) return FileContent::field;
+  if (ImageFormat::by_name(path)) return FileContent::image;
+  if (holds(FieldFormat::by_head(head), path, head)) return FileContent::field;
+  if (ImageFormat::by_head(head)) return FileContent::image;
+  if (MeshFormat::by_head(head)) return FileContent::mesh;
+  std::string known;
+  for (const auto& [content, what] :
+       {std::pair{FileContent::mesh, "meshes are "}, std::pair{FileContent::image, "images "},
+        std::pair{FileContent::field, "fields "},
+        std::pair{FileContent::complex, "medial axes and other complexes "}}) {
+    known += (known.empty() ? "; " : ", ") + std::string(what) + extension_list(content, FileAccess::read);
+  }
+  throw FileError("'" + path.string() + "' is of no known kind" + known);
+}
+
+bool holds_complex(const fs::path& path) {
+  return holds(ComplexFormat::by_name(path), path, read_head(path));
+}
+
+bool may_hold_field(const fs::path& path) {
+  const FileContent content = content_of(path);
+  if (content == FileContent::field) return true;
+  return content == FileContent::image && file_extension(path) == ".nrrd" && holds_floats(read_head(path));
+}
+
+MeshFile read_mesh_of_any_name(const fs::path& path, const MeshReadOptions& options) {
+  if (MeshFormat::by_name(path)) return read_mesh_file(path, options);
+  const auto format = MeshFormat::by_head(read_head(path));
+  if (!format) return read_mesh_file(path, options);  // for its message
+  return read_mesh_file(read_whole_file(path).span(), *format, options, path.string());
+}
+
+VoxelImage read_image_of_any_name(const fs::path& path) {
+  if (ImageFormat::by_name(path)) return read_image(path);
+  const auto format = ImageFormat::by_head(read_head(path));
+  if (!format) return read_image(path);
+  return read_image(read_whole_file(path).span(), *format, path.string());
+}
+
+std::string_view image_format_name(const fs::path& path) {
+  const std::optional<ImageFormat> format = image_format(path, read_head(path));
+  return format ? std::string_view(format->name()) : "unknown";
+}
+
+std::vector<fs::path> files_of_field(const fs::path& path, bool with_sites, int order) {
+  using volume_io::BesideArray;
+  std::vector<fs::path> files{path};
+  if (file_extension(path) != ".nrrd") return files;
+  for (const BesideArray array : volume_io::beside_arrays) {
+    const bool is_there = (array != BesideArray::distance2 || order == 2) &&
+                          (array != BesideArray::site || with_sites) &&
+                          (array != BesideArray::site2 || (with_sites && order == 2));
+    if (is_there) files.push_back(volume_io::beside_path(path, array));
+  }
+  return files;
+}
+
+std::optional<fs::path> sites_of_replaced_field(const fs::path& path) {
+  using volume_io::BesideArray;
+  if (file_extension(path) != ".nrrd" || !volume_io::has_own_beside(path, BesideArray::site)) return std::nullopt;
+  return volume_io::beside_path(path, BesideArray::site);
+}
+
+std::vector<fs::path> second_of_replaced_field(const fs::path& path) {
+  using volume_io::BesideArray;
+  std::vector<fs::path> files;
+  if (file_extension(path) != ".nrrd") return files;
+  for (const BesideArray array : {BesideArray::distance2, BesideArray::site2}) {
+    if (volume_io::has_own_beside(path, array)) files.push_back(volume_io::beside_path(path, array));
+  }
+  return files;
 }
 
 }  // namespace blum

@@ -1,6 +1,6 @@
 #include "support/emulated_backend.hpp"
 
-#include "field/cuda/load_module.hpp"
+#include "field/cuda/module_engine.hpp"
 #include "support/emulated_platform.hpp"
 
 namespace blum::test {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "blum/io/formats.hpp"
 #include "blum/io/surface_map_io.hpp"
 #include "surface_map_sample.hpp"
 
@@ -15,7 +16,7 @@ int main(int argc, char** argv) {
   }
   try {
     const test::BoxMap box(3);
-    for (const std::string& end : surface_map_extensions()) {
+    for (const std::string& end : file_extensions(FileContent::surface_map, FileAccess::write)) {
       write_surface_map(std::filesystem::path(argv[1]) / ("map" + end), box.mesh, box.map, {{"source", "a box"}},
                         {.units = "mm"});
     }

@@ -81,7 +81,4 @@ void write_collisions(const std::filesystem::path& path, const SceneCollisions& 
                       std::span<const MeshMotion> objects, const FileMetadata& metadata = {},
                       const Context& context = {});
 
-/// The extensions that write_collisions() knows.
-[[nodiscard]] const std::vector<std::string>& collision_extensions();
-
 }  // namespace blum

@@ -88,6 +88,11 @@ void write_complex(const std::filesystem::path& path, const Complex& complex, co
 /// @throws FileError; FormatError naming the file and the reason, also where problem_of() finds one or the name of a
 /// column is not UTF-8; InvalidOption for another extension or a format that is not read; OutOfMemory.
 [[nodiscard]] ComplexFile read_complex(const std::filesystem::path& path);
+
+/// Whether files of a path's extension are read as complexes and hold any columns, or several complexes.
+[[nodiscard]] bool may_hold_columns(const std::filesystem::path& path);
+[[nodiscard]] bool may_hold_further(const std::filesystem::path& path);
+
 /// The same from memory; `name` stands for the file in messages.
 [[nodiscard]] ComplexFile read_complex(std::span<const std::byte> bytes, ComplexFormat format,
                                        const std::string& name = "complex");

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "blum/axis/extend_axis.hpp"
 #include "blum/core/context.hpp"
@@ -11,9 +9,6 @@
 #include "blum/io/medial_io.hpp"
 
 namespace blum {
-
-/// ".vtp" and so on: those that write_extended() takes.
-[[nodiscard]] const std::vector<std::string>& extended_extensions();
 
 /// Writes an extended axis; the format goes by the extension. .vtp, .ply and .npz hold all of it with its columns and
 /// what the metadata tell of the axis, besides `content` ("extended medial axis"), as write_complex() says, which

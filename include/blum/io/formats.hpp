@@ -16,14 +16,34 @@
 namespace blum {
 
 /// What a file holds. Medial axes are complexes.
-enum class FileContent : std::uint8_t { mesh, image, field, complex };
+enum class FileContent : std::uint8_t {
+  mesh,
+  image,
+  field,
+  complex,
+  points,         ///< with attributes
+  pairs,          ///< of primitives that are close
+  collisions,     ///< of features that move
+  surface_map,    ///< distances as a texture
+  graph,          ///< of a medial axis or a Voronoi diagram
+  centreline,     ///< graphs of curves with radii
+  extended_axis,  ///< a medial axis that was continued to the surface
+};
 
 template <>
 struct Description<FileContent> {
   static constexpr std::string_view name = "FileContent";
-  static constexpr std::array values{NamedValue{FileContent::mesh, "mesh"}, NamedValue{FileContent::image, "image"},
+  static constexpr std::array values{NamedValue{FileContent::mesh, "mesh"},
+                                     NamedValue{FileContent::image, "image"},
                                      NamedValue{FileContent::field, "field"},
-                                     NamedValue{FileContent::complex, "complex"}};
+                                     NamedValue{FileContent::complex, "complex"},
+                                     NamedValue{FileContent::points, "points"},
+                                     NamedValue{FileContent::pairs, "pairs"},
+                                     NamedValue{FileContent::collisions, "collisions"},
+                                     NamedValue{FileContent::surface_map, "surface map"},
+                                     NamedValue{FileContent::graph, "graph"},
+                                     NamedValue{FileContent::centreline, "centreline"},
+                                     NamedValue{FileContent::extended_axis, "extended axis"}};
 };
 
 enum class FileAccess : std::uint8_t {
@@ -80,8 +100,10 @@ class FormatOf {
   /// The one that the first bytes of a file (8 KiB, or all) are those of; nullopt where they do not tell.
   [[nodiscard]] static std::optional<FormatOf> by_head(std::string_view head);
   /// The one that files of the extension of a path are read or written in.
+  /// @param what  what messages call the files' content, in the plural; empty: by its own name.
   /// @throws InvalidOption naming the path and the extensions that can be read or written.
-  [[nodiscard]] static FormatOf of(const std::filesystem::path& path, FileAccess access = FileAccess::read);
+  [[nodiscard]] static FormatOf of(const std::filesystem::path& path, FileAccess access = FileAccess::read,
+                                   std::string_view what = {});
 
  private:
   explicit FormatOf(std::size_t row) : row_(row) {}
@@ -92,11 +114,25 @@ using MeshFormat = FormatOf<FileContent::mesh>;
 using ImageFormat = FormatOf<FileContent::image>;
 using FieldFormat = FormatOf<FileContent::field>;
 using ComplexFormat = FormatOf<FileContent::complex>;
+using PointFormat = FormatOf<FileContent::points>;
+using PairFormat = FormatOf<FileContent::pairs>;
+using CollisionFormat = FormatOf<FileContent::collisions>;
+using SurfaceMapFormat = FormatOf<FileContent::surface_map>;
+using GraphFormat = FormatOf<FileContent::graph>;
+using CentrelineFormat = FormatOf<FileContent::centreline>;
+using ExtendedAxisFormat = FormatOf<FileContent::extended_axis>;
 
 extern template class FormatOf<FileContent::mesh>;
 extern template class FormatOf<FileContent::image>;
 extern template class FormatOf<FileContent::field>;
 extern template class FormatOf<FileContent::complex>;
+extern template class FormatOf<FileContent::points>;
+extern template class FormatOf<FileContent::pairs>;
+extern template class FormatOf<FileContent::collisions>;
+extern template class FormatOf<FileContent::surface_map>;
+extern template class FormatOf<FileContent::graph>;
+extern template class FormatOf<FileContent::centreline>;
+extern template class FormatOf<FileContent::extended_axis>;
 
 /// The last extension of a name in lower case, with its dot; ".nii.gz", ".hdr.gz" and ".img.gz" count as one.
 [[nodiscard]] std::string file_extension(const std::filesystem::path& path);

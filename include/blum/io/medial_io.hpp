@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
@@ -107,6 +108,9 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 /// @param least_theta  MedialAxis::least_theta(), degrees.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,
                   const MedialMetadata& metadata = {}, const Context& context = {});
+
+/// Those of the extensions which read_medial() reads whose files hold radii.
+[[nodiscard]] std::vector<std::string> extensions_with_radii();
 
 /// Reads a file that write_medial wrote, or one of the same form by another program (see read_complex), with any of the
 /// columns; further ones follow them. .vtp, .ply and .npz give back exactly what was written. Where a file does not say

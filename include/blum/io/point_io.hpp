@@ -15,10 +15,8 @@
 
 namespace blum {
 
-/// Extensions of the files that read_points() reads, lower case, with their dots.
-[[nodiscard]] const std::vector<std::string>& readable_point_extensions();
-/// Those of the files that write_points() writes.
-[[nodiscard]] const std::vector<std::string>& written_point_extensions();
+/// Those of the extensions which read_points() reads whose files hold points, and no mesh.
+[[nodiscard]] std::vector<std::string> cloud_extensions();
 
 /// Reads points, by the extension:
 ///

@@ -3,8 +3,6 @@
 
 #include <filesystem>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "blum/complex/columns.hpp"
 #include "blum/core/context.hpp"
@@ -35,8 +33,5 @@ namespace blum {
 void write_proximity_pairs(const std::filesystem::path& path, std::span<const PrimitivePair> pairs,
                            std::span<const MeshView> objects, const FileMetadata& metadata = {},
                            const Columns& more = {}, const Context& context = {});
-
-/// The extensions that write_proximity_pairs() knows.
-[[nodiscard]] const std::vector<std::string>& proximity_extensions();
 
 }  // namespace blum

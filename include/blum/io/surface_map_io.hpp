@@ -79,9 +79,6 @@ struct SurfaceMapFile {
 /// Whether a file is an .npz file with the arrays by which surface maps are told. False where it cannot be read.
 [[nodiscard]] bool holds_surface_map(const std::filesystem::path& path);
 
-/// The extensions that write_surface_map() knows.
-[[nodiscard]] const std::vector<std::string>& surface_map_extensions();
-
 /// The smallest and the largest finite distance of the texels that belong to triangles; nullopt where there is none.
 [[nodiscard]] std::optional<std::pair<double, double>> finite_range(const SurfaceMap& map);
 

@@ -1,6 +1,7 @@
 #include "field/cpu/engine.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "blum/core/parallel.hpp"
 #include "blum/core/phase_timer.hpp"
@@ -9,6 +10,85 @@
 
 namespace blum::cpu {
 namespace {
+
+constexpr std::size_t grain = 1 << 14;
+
+void copy_floats(const Buffer<float>& from, Buffer<float>& to) {
+  if (to.size() < from.size()) to = Buffer<float>(from.size());
+  std::copy(from.begin(), from.end(), to.begin());
+}
+
+void copy_set(const RecordSet& from, const Context& context, RecordSet& to) {
+  if (to.records.size() < from.records.size()) to.records = Buffer<Record>(from.records.size());
+  const std::size_t records = (from.count + cluster_size - 1) / cluster_size * cluster_size;
+  parallel_for(context, records, grain, "", [&](const WorkRange& range) {
+    std::copy_n(from.records.data() + range.begin, range.end - range.begin, to.records.data() + range.begin);
+  });
+  to.count = from.count;
+  to.cluster_boxes.count = from.cluster_boxes.count;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    copy_floats(from.cluster_boxes.lower[axis], to.cluster_boxes.lower[axis]);
+    copy_floats(from.cluster_boxes.upper[axis], to.cluster_boxes.upper[axis]);
+    copy_floats(from.cluster_cones.axis[axis], to.cluster_cones.axis[axis]);
+  }
+  copy_floats(from.cluster_boxes.reach, to.cluster_boxes.reach);
+  copy_floats(from.cluster_cones.cosine, to.cluster_cones.cosine);
+  copy_floats(from.cluster_cones.sine, to.cluster_cones.sine);
+}
+
+/// Beyond its reach a site is beaten by a surface point, but by one that may be excluded.
+void remove_reaches(SiteRecords& sites, const Context& context) {
+  for (std::size_t kind = 0; kind < kind_count; ++kind) {
+    RecordSet& set = sites.kinds[kind];
+    std::fill(set.cluster_boxes.reach.begin(), set.cluster_boxes.reach.end(), far_away);
+    if (kind != edge_kind && kind != face_kind) continue;
+    parallel_for(context, set.count, grain, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        Record& record = set.records[k];
+        if (kind == edge_kind) {
+          record.column[EdgeColumns::reach] = far_away;
+        } else {
+          record.column[FaceColumns::reach_above] = record.column[FaceColumns::reach_below] = far_away;
+        }
+      }
+    });
+  }
+}
+
+/// Whether an edge joins vertices of different labels.
+bool has_mixed_edges(const SiteTable& sites, const SecondLabels& labels) {
+  return std::any_of(sites.edges().begin(), sites.edges().end(),
+                     [&](const Segment& edge) { return labels.of_vertex(edge[0]) != labels.of_vertex(edge[1]); });
+}
+
+/// What bounds the domain of a site whatever is first: of what meets at it, that which has no labels but its own.
+Adjacency without_other_labels(const FirstSites& first, const SecondLabels& labels) {
+  Adjacency out;
+  const Adjacency& all = first.adjacency;
+  out.named_vertices = all.named_vertices;
+  out.first_neighbour.assign(1, 0);
+  for (std::uint32_t v = 0; v + 1 < all.first_neighbour.size(); ++v) {
+    for (std::size_t k = all.first_neighbour[v]; k < all.first_neighbour[v + 1]; ++k) {
+      const std::uint32_t neighbour = all.neighbours[k];
+      if (labels.of_vertex(neighbour) == labels.of_vertex(v)) out.neighbours.push_back(neighbour);
+    }
+    out.first_neighbour.push_back(static_cast<std::uint32_t>(out.neighbours.size()));
+  }
+  out.edge_faces.assign(all.edge_faces.size(), {no_index, no_index});
+  for (std::size_t e = 0; e < all.edge_faces.size(); ++e) {
+    const Segment& ends = first.sites.edges()[e];
+    std::size_t count = 0;
+    for (const std::uint32_t t : all.edge_faces[e]) {
+      if (t == no_index) continue;
+      const Triangle& corners = first.mesh.triangles[t];
+      const bool has_others = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+        return labels.of_vertex(v) != labels.of_vertex(ends[0]) && labels.of_vertex(v) != labels.of_vertex(ends[1]);
+      });
+      if (!has_others) out.edge_faces[e][count++] = t;
+    }
+  }
+  return out;
+}
 
 /// Fields above 16 MB are not expected to stay in the caches.
 constexpr std::size_t fewest_streamed_nodes = std::size_t{1} << 21;
@@ -54,6 +134,64 @@ struct Tiling {
 };
 
 }  // namespace
+
+void SecondSites::find_others(const FirstSites& first, const SecondLabels& labels) {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  for (const Segment& edge : first.sites.edges()) {
+    const std::uint32_t a = labels.of_vertex(edge[0]);
+    const std::uint32_t b = labels.of_vertex(edge[1]);
+    if (a == b) continue;
+    pairs.push_back({a, b});
+    pairs.push_back({b, a});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  first_other_.assign(first.mesh.vertices.size() + 1, 0);
+  others_.clear();
+  for (const auto& pair : pairs) {
+    ++first_other_[pair[0] + 1];
+    others_.push_back(pair[1]);
+  }
+  for (std::size_t label = 0; label + 1 < first_other_.size(); ++label) first_other_[label + 1] += first_other_[label];
+}
+
+void SecondSites::build(const FirstSites& first, const SecondLabels& labels, const Context& context) {
+  has_links_ = labels.is_by_vertex();
+  if (!has_links_ && has_mixed_edges(first.sites, labels)) {
+    const Adjacency own = without_other_labels(first, labels);
+    build_site_records(first.mesh, first.sites, own, first.positions, first.order, context, records_);
+  } else {
+    for (std::size_t kind = 0; kind < kind_count; ++kind) {
+      copy_set(first.records.kinds[kind], context, records_.kinds[kind]);
+    }
+  }
+  remove_reaches(records_, context);
+  build_cluster_forest(records_, context, forest_);
+
+  labels_.resize(first.sites.size());
+  parallel_for(context, labels_.size(), grain, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      labels_[k] = labels.of_site(first.sites, SiteId(static_cast<std::uint32_t>(k)));
+    }
+  });
+  if (has_links_) {
+    first_other_ = first.adjacency.first_neighbour;
+    others_ = first.adjacency.neighbours;
+    build_link_entries(first.mesh, first.sites, first.adjacency, context, links_);
+    build_link_segments(first.mesh, first.sites, first.positions, context, links_);
+  } else {
+    find_others(first, labels);
+  }
+}
+
+SecondJob SecondSites::job() const {
+  SecondJob out;
+  out.labels = labels_;
+  out.links = has_links_ ? &links_ : nullptr;
+  out.first_other = first_other_;
+  out.others = others_;
+  return out;
+}
 
 void Engine::set_mesh(const MeshView& mesh, const Context& context) {
   mesh_ = mesh;

@@ -1,8 +1,99 @@
+
+#include <dlfcn.h>
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "field/cuda/module_engine.hpp"
 
 #include "blum/core/error.hpp"
 
 namespace blum::cuda {
+namespace {
+
+/// The folder of the program or library that this function is in; empty where the system does not say.
+std::filesystem::path own_folder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0 || info.dli_fname == nullptr) return {};
+  const std::filesystem::path name = info.dli_fname;
+  // A program has the name that it was called by, which without a folder was looked up in PATH.
+  std::error_code error;
+  const std::filesystem::path file =
+      std::filesystem::canonical(name.has_parent_path() ? name : "/proc/self/exe", error);
+  return error ? std::filesystem::path{} : file.parent_path();
+}
+
+std::vector<std::string> places() {
+  if (const char* named = std::getenv("BLUM_CUDA_MODULE"); named != nullptr && *named != '\0') return {named};
+  std::vector<std::string> result;
+  if (const std::filesystem::path folder = own_folder(); !folder.empty()) {
+    // Programs lie in bin beside lib, and in Python's package one folder below the library.
+    for (const char* where : {".", "../lib", ".."}) {
+      result.push_back((folder / where / module_file).lexically_normal().string());
+    }
+  }
+  result.emplace_back(module_file);
+  return result;
+}
+
+/// Collects why there is no module.
+class Reasons {
+ public:
+  void missing(const std::string& place) { missing_ += (missing_.empty() ? "" : ", ") + place; }
+  void unusable(const std::string& why) { unusable_ += (unusable_.empty() ? "" : "; ") + why; }
+  [[nodiscard]] std::string text() const {
+    const std::string looked = missing_.empty() ? "" : "not there: " + missing_;
+    return "no CUDA module: name its file in BLUM_CUDA_MODULE, or build it, see docs/guide/devices.md (" + looked +
+           (looked.empty() || unusable_.empty() ? "" : "; ") + unusable_ + ")";
+  }
+
+ private:
+  std::string missing_, unusable_;
+};
+
+std::atomic<const Module*> replacement{nullptr};
+
+const Module& find_module() {
+  Reasons reasons;
+  for (const std::string& place : places()) {
+    std::error_code error;
+    const bool is_path = place.find('/') != std::string::npos;
+    if (is_path && !std::filesystem::exists(place, error)) {
+      reasons.missing(place);
+      continue;
+    }
+    // Stays loaded until the process ends, as the CUDA runtime in it must.
+    void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) {
+      const char* why = dlerror();
+      is_path ? reasons.unusable(why != nullptr ? why : place) : reasons.missing("where the system looks");
+      continue;
+    }
+    const auto function = reinterpret_cast<ModuleFunction>(dlsym(library, module_symbol));
+    if (function == nullptr) {
+      reasons.unusable(place + ": is no CUDA module of Blum");
+      continue;
+    }
+    const Module* module = function();
+    if (module != nullptr && module->version == module_version) return *module;
+    reasons.unusable(place + ": belongs to another version of Blum");
+  }
+  throw DeviceError(reasons.text());
+}
+
+}  // namespace
+
+const Module& load_module() {
+  if (const Module* module = replacement.load(); module != nullptr) return *module;
+  static const Module& module = find_module();
+  return module;
+}
+
+void replace_module(const Module* module) {
+  replacement.store(module);
+}
 
 Call call_of(const Context& context) {
   Call call;

@@ -2,9 +2,17 @@
 #pragma once
 
 #include "blum/core/context.hpp"
-#include "field/cuda/load_module.hpp"
+#include "field/cuda/module_interface.hpp"
 
 namespace blum::cuda {
+
+/// The module, loaded at the first call: the file that BLUM_CUDA_MODULE names, else libblum_cuda.so beside the library
+/// or program that Blum is part of, else where the system looks for libraries.
+/// @throws DeviceError saying where it was looked for and why it could not be loaded.
+[[nodiscard]] const Module& load_module();
+
+/// Puts another table in the module's place, for tests; nullptr restores it. What was made before keeps its own.
+void replace_module(const Module* module);
 
 [[nodiscard]] Call call_of(const Context& context);
 /// Throws what a status stands for. @throws Error.

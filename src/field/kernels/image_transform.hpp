@@ -12,10 +12,200 @@
 #include "blum/grid/voxel_test.hpp"
 #include "field/image_request.hpp"
 #include "field/kernels/image_columns.hpp"
-#include "field/kernels/image_rows.hpp"
 #include "field/kernels/image_shape.hpp"
 
 namespace blum::kernels {
+
+/// Makes the mask of an image, 32 words per warp. Reads the image once; writes 1/8 byte per voxel.
+template <class T, class Test>
+struct SelectVoxels {
+  static constexpr std::uint32_t threads = 256;
+  static constexpr std::uint32_t blocks_per_processor = 8;
+  static constexpr std::size_t words_per_block = threads;
+  struct Shared {};
+
+  const T* values;
+  Test test;
+  std::uint32_t size_x;
+  std::uint32_t words_per_row;
+  std::size_t words;
+  std::uint32_t* mask;
+
+  template <class Block>
+  BLUM_HD void operator()(const Block& block, Shared&, std::size_t index) const {
+    block.each_warp([&](const typename Block::Warp& warp) {
+      const std::size_t first = index * words_per_block + std::size_t{warp.index()} * warp_size;
+      typename Block::Warp::template Lanes<std::uint32_t> mine;
+      for (std::uint32_t k = 0; k < warp_size && first + k < words; ++k) {
+        const auto word = static_cast<std::uint32_t>(first + k);  // there are fewer than 2^31
+        const std::size_t row = word / words_per_row;
+        const std::uint32_t x = word % words_per_row * warp_size;
+        const std::uint32_t bits =
+            warp.ballot([&](std::uint32_t lane) { return x + lane < size_x && test(values[row * size_x + x + lane]); });
+        warp.each([&](std::uint32_t lane) {
+          if (lane == k) mine[lane] = bits;
+        });
+      }
+      warp.each([&](std::uint32_t lane) {
+        if (first + lane < words) mask[first + lane] = mine[lane];
+      });
+    });
+  }
+};
+
+struct SelectedOfWord {
+  const std::uint32_t* mask;
+  BLUM_HD std::uint64_t operator()(std::size_t word) const { return count_bits(mask[word]); }
+};
+struct AddCounts {
+  BLUM_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
+/// x pass: the nearest target of each voxel in its row, as a linear index; the left one of two. Targets are voxels of
+/// the other kind, or in an unsigned transform the selected ones. A warp per row.
+/// Reads 1/8 byte per voxel (1/4 in rows of more than 1024), writes 4.
+struct TransformRows {
+  static constexpr std::uint32_t threads = 256;
+  static constexpr std::uint32_t blocks_per_processor = 6;
+  static constexpr std::uint32_t warps = threads / warp_size;
+  struct Shared {};
+
+  ImageShape shape;
+  std::uint32_t* site;
+
+  template <class Block>
+  BLUM_HD void operator()(const Block& block, Shared&, std::size_t index) const {
+    block.each_warp([&](const typename Block::Warp& warp) {
+      const std::size_t row = index * warps + warp.index();
+      if (row >= shape.rows()) return;
+      transform(warp, shape.mask + row * shape.words_per_row, static_cast<std::uint32_t>(row) * shape.size[0]);
+    });
+  }
+
+ private:
+  // Further away than any voxel, in unsigned arithmetic, as rows are shorter than 2^31.
+  static constexpr std::uint32_t no_left = 0x80000000U;
+  static constexpr std::uint32_t no_right = 0xffffffffU;
+
+  /// A word of a row's voxels of one kind.
+  [[nodiscard]] BLUM_HD std::uint32_t bits(const std::uint32_t* words, std::uint32_t word, bool selected) const {
+    if (word >= shape.words_per_row) return 0;
+    if (selected) return words[word];
+    const std::uint32_t rest = shape.size[0] - word * warp_size;
+    return ~words[word] & (rest >= warp_size ? ~0U : (1U << rest) - 1);
+  }
+
+  /// The first voxel of a kind from a word on.
+  template <class Warp>
+  [[nodiscard]] BLUM_HD std::uint32_t find(const Warp& warp, const std::uint32_t* words, std::uint32_t word,
+                                           bool selected) const {
+    for (; word < shape.words_per_row; word += warp_size) {
+      const std::uint32_t found =
+          warp.ballot([&](std::uint32_t lane) { return bits(words, word + lane, selected) != 0; });
+      if (found == 0) continue;
+      const std::uint32_t at = word + lowest_bit(found);
+      return at * warp_size + lowest_bit(bits(words, at, selected));
+    }
+    return no_right;
+  }
+
+  /// What lies around the word that a warp is at, of one kind.
+  template <class Warp>
+  struct Kind {
+    typename Warp::template Lanes<std::uint32_t> word;  ///< of 32 words
+    std::uint32_t present = 0;                          ///< which of them hold any
+    std::uint32_t bits = 0;                             ///< of the word that the warp is at
+    std::uint32_t left = no_left;                       ///< last voxel before it
+    std::uint32_t right = no_right;                     ///< first voxel after it
+    std::uint32_t beyond = 0;                           ///< first voxel after the 32 words; before them: not yet known
+
+    BLUM_HD void go_to(const Warp& warp, std::uint32_t first, std::uint32_t k) {
+      bits = warp.broadcast(word, k);
+      const std::uint32_t later = present & ~((2U << k) - 1);
+      right = beyond;
+      if (later == 0) return;
+      const std::uint32_t at = lowest_bit(later);
+      right = (first + at) * warp_size + lowest_bit(warp.broadcast(word, at));
+    }
+    BLUM_HD void leave(std::uint32_t x) {
+      if (bits != 0) left = x + highest_bit(bits);
+    }
+  };
+
+  template <class Warp>
+  BLUM_HD void load(const Warp& warp, const std::uint32_t* words, std::uint32_t first, bool selected,
+                    Kind<Warp>& kind) const {
+    kind.present = warp.ballot([&](std::uint32_t lane) {
+      kind.word[lane] = bits(words, first + lane, selected);
+      return kind.word[lane] != 0;
+    });
+    const std::uint32_t after = first + warp_size;
+    if (kind.beyond < after * warp_size) kind.beyond = find(warp, words, after, selected);
+  }
+
+  template <class Warp>
+  BLUM_HD void transform(const Warp& warp, const std::uint32_t* words, std::uint32_t base) const {
+    Kind<Warp> selected;
+    Kind<Warp> other;
+    for (std::uint32_t first = 0; first < shape.words_per_row; first += warp_size) {
+      load(warp, words, first, true, selected);
+      if (shape.is_signed) load(warp, words, first, false, other);
+      const std::uint32_t count = smaller(warp_size, shape.words_per_row - first);
+      for (std::uint32_t k = 0; k < count; ++k) {
+        const std::uint32_t x0 = (first + k) * warp_size;
+        selected.go_to(warp, first, k);
+        if (shape.is_signed) other.go_to(warp, first, k);
+        warp.each([&](std::uint32_t lane) {
+          if (x0 + lane >= shape.size[0]) return;
+          const bool is_inside = shape.is_signed && ((selected.bits >> lane) & 1U) != 0;
+          const std::uint32_t x = is_inside ? nearest(other, x0, lane) : nearest(selected, x0, lane);
+          site[std::size_t{base} + x0 + lane] = x == no_voxel ? no_voxel : base + x;
+        });
+        selected.leave(x0);
+        if (shape.is_signed) other.leave(x0);
+      }
+    }
+  }
+
+  template <class Warp>
+  [[nodiscard]] BLUM_HD static std::uint32_t nearest(const Kind<Warp>& kind, std::uint32_t x0, std::uint32_t lane) {
+    const std::uint32_t up_to = kind.bits & (~0U >> (31 - lane));
+    const std::uint32_t from = kind.bits & (~0U << lane);
+    const std::uint32_t left = up_to != 0 ? x0 + highest_bit(up_to) : kind.left;
+    const std::uint32_t right = from != 0 ? x0 + lowest_bit(from) : kind.right;
+    const std::uint32_t to_left = x0 + lane - left;
+    const std::uint32_t to_right = right - (x0 + lane);
+    if (smaller(to_left, to_right) >= no_left) return no_voxel;
+    return to_right < to_left ? right : left;
+  }
+};
+
+/// Distances of the sites that the other passes found, and the band. Reads 4 bytes per voxel, writes 4 (8 beyond the
+/// band): less than to carry distances along, and the passes may use the memory of the distances until now.
+template <class Costs>
+struct WriteDistances {
+  ImageShape shape;
+  Costs costs;
+  float band;  ///< infinite where there is none
+  std::uint32_t* site;
+  float* distance;
+
+  BLUM_HD void operator()(std::size_t index) const {
+    const std::uint32_t from = site[index];
+    const Voxel at = shape.voxel(static_cast<std::uint32_t>(index));
+    float result = std::numeric_limits<float>::infinity();
+    if (from != no_voxel) {
+      const Voxel to = shape.voxel(from);
+      const auto in_plane = Costs::sum(costs.square(0, offset(at.x, to.x)), costs.square(1, offset(at.y, to.y)));
+      result = costs.distance(Costs::sum(in_plane, costs.square(2, offset(at.z, to.z))));
+    }
+    if (result > band) {
+      result = band;
+      site[index] = no_voxel;
+    }
+    distance[index] = shape.is_signed && shape.is_selected(at) ? -result : result;
+  }
+};
 
 /// How columns are cut into bands.
 struct BandTuning {

@@ -15,7 +15,7 @@
 
 #include "blum/field/field.hpp"
 #include "blum/shapes/generators.hpp"
-#include "field/kernels/boundary_edges.hpp"
+#include "field/kernels/boundary_signs.hpp"
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/emulated_device.hpp"
 #include "support/back_ends.hpp"

@@ -16,7 +16,7 @@
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
 #include "blum/shapes/generators.hpp"
-#include "geometry/shells.hpp"
+#include "geometry/topology/shells.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {

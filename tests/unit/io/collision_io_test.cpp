@@ -15,8 +15,9 @@
 #include "blum/core/error.hpp"
 #include "blum/io/collision_io.hpp"
 #include "blum/io/complex_io.hpp"
-#include "io/byte_source.hpp"
-#include "io/npz.hpp"
+#include "blum/io/formats.hpp"
+#include "io/archive/numpy.hpp"
+#include "io/bytes/byte_source.hpp"
 #include "unit/io/temporary_folder.hpp"
 
 namespace blum {
@@ -161,7 +162,7 @@ TEST_F(CollisionFiles, ACancelledFileLeavesTheOldOne) {
   stop.request_stop();
   Context context;
   context.cancel = stop.get_token();
-  for (const std::string& extension : collision_extensions()) {
+  for (const std::string& extension : file_extensions(FileContent::collisions, FileAccess::write)) {
     const std::filesystem::path path = folder_ / ("c" + extension);
     test::put_file(path, "old");
     EXPECT_THROW(write_collisions(path, found_, meshes_, {}, context), Cancelled);

@@ -13,6 +13,8 @@
 #include "blum/io/field_io.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/io/image_io.hpp"
+#include "blum/io/medial_io.hpp"
+#include "blum/io/point_io.hpp"
 #include "unit/io/temporary_folder.hpp"
 
 namespace blum {
@@ -137,6 +139,28 @@ TEST(Formats, HaveOneNameAndExtensionEach) {
   EXPECT_THROW((void)MeshFormat::of("a.glb", FileAccess::both), InvalidOption);
   EXPECT_THROW((void)MeshFormat::of("a.glb"), InvalidOption);
   EXPECT_EQ(file_extensions(FileContent::image, FileAccess::both), (std::vector<std::string>{".nrrd", ".npy"}));
+}
+
+TEST(Formats, OfRowsGraphsAndMapsAreWrittenByName) {
+  const auto written = [](FileContent content) { return extension_list(content, FileAccess::write); };
+  EXPECT_EQ(written(FileContent::points), ".npz .ply .vtp .csv");
+  EXPECT_EQ(written(FileContent::pairs), ".npz .csv .json .vtp");
+  EXPECT_EQ(written(FileContent::collisions), ".npz .csv .json .vtp");
+  EXPECT_EQ(written(FileContent::surface_map), ".npz .png .glb .ply .vtp");
+  EXPECT_EQ(written(FileContent::graph), ".json .graphml");
+  EXPECT_EQ(written(FileContent::centreline), ".json .csv .swc .vtp .ply .npz");
+  EXPECT_EQ(written(FileContent::extended_axis), ".vtp .ply .obj .npz .stl");
+  EXPECT_EQ(cloud_extensions(), (std::vector<std::string>{".npy", ".npz", ".csv", ".xyz", ".txt"}));
+  EXPECT_EQ(extensions_with_radii(), (std::vector<std::string>{".vtp", ".ply", ".ma", ".npz"}));
+  EXPECT_TRUE(may_hold_columns("a.PLY") && !may_hold_columns("a.obj") && !may_hold_columns("a.glb"));
+  EXPECT_TRUE(may_hold_further("a.npz") && !may_hold_further("a.vtp"));
+  try {
+    (void)GraphFormat::of("a.txt", FileAccess::write, "graphs of medial axes");
+    FAIL() << "of no known kind";
+  } catch (const InvalidOption& error) {
+    EXPECT_STREQ(error.what(),
+                 "'a.txt': graphs of medial axes are written to .json, .graphml files; use one of these extensions");
+  }
 }
 
 TEST(Formats, NamesOfSeveralExtensions) {

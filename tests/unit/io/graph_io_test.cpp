@@ -12,7 +12,7 @@
 #include "blum/io/graph_io.hpp"
 #include "blum/io/voronoi_io.hpp"
 #include "blum/shapes/generators.hpp"
-#include "io/vtk_xml.hpp"
+#include "io/text/vtk_xml.hpp"
 #include "unit/io/temporary_folder.hpp"
 
 namespace blum {

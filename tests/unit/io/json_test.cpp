@@ -1,6 +1,6 @@
 // Proves that metadata come back from JSON as they were, that what is no flat object of strings is refused, and that
 // neither nesting nor length of hostile text costs more than reading it.
-#include "io/json.hpp"
+#include "io/text/json.hpp"
 
 #include <gtest/gtest.h>
 

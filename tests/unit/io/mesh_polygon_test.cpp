@@ -10,7 +10,7 @@
 #include <numeric>
 #include <random>
 
-#include "io/mesh_builder.hpp"
+#include "io/mesh/mesh_builder.hpp"
 
 namespace blum {
 namespace {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "blum/core/error.hpp"
+#include "blum/io/formats.hpp"
 
 namespace blum {
 namespace {
@@ -59,7 +60,7 @@ TEST(PointFiles, ReadBackWhatIsWritten) {
   points.vertex_columns.add<std::int32_t>("site")[0] = -1;
   points.vertex_columns.add<double>("gradient", 3);
   points.vertex_columns.add<float>("pair", 2);
-  for (const std::string& extension : written_point_extensions()) {
+  for (const std::string& extension : file_extensions(FileContent::points, FileAccess::write)) {
     const fs::path path = folder / ("points" + extension);
     write_points(path, points, {{"tool", "test"}});
     EXPECT_EQ(read_points(path), points.positions) << extension;

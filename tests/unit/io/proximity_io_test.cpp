@@ -16,9 +16,10 @@
 #include "blum/core/error.hpp"
 #include "blum/geometry/primitives.hpp"
 #include "blum/io/complex_io.hpp"
+#include "blum/io/formats.hpp"
 #include "blum/io/proximity_io.hpp"
-#include "io/byte_source.hpp"
-#include "io/npz.hpp"
+#include "io/archive/numpy.hpp"
+#include "io/bytes/byte_source.hpp"
 #include "unit/io/temporary_folder.hpp"
 
 namespace blum {
@@ -143,7 +144,7 @@ TEST_F(ProximityFiles, FurtherColumnsThatAreNotOfThePairsAreRefused) {
 
 TEST_F(ProximityFiles, NoPairsAreAFileToo) {
   pairs_.clear();
-  for (const std::string& extension : proximity_extensions()) {
+  for (const std::string& extension : file_extensions(FileContent::pairs, FileAccess::write)) {
     EXPECT_GT(std::filesystem::file_size(written(("p" + extension).c_str())), 10U) << extension;
   }
 }
@@ -169,7 +170,7 @@ TEST_F(ProximityFiles, ACancelledFileLeavesTheOldOne) {
   stop.request_stop();
   Context context;
   context.cancel = stop.get_token();
-  for (const std::string& extension : proximity_extensions()) {
+  for (const std::string& extension : file_extensions(FileContent::pairs, FileAccess::write)) {
     const std::filesystem::path path = folder_ / ("p" + extension);
     test::put_file(path, "old");
     EXPECT_THROW(write_proximity_pairs(path, pairs_, meshes_, {}, {}, context), Cancelled);

@@ -1,6 +1,7 @@
 // Proves that the files of surface maps hold what the map holds: colours at any point of the surface, numbers of
 // texels, vertices and triangles, what is known besides; and that what is no map of the mesh is refused.
 #include "blum/io/surface_map_io.hpp"
+#include "blum/io/formats.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +11,8 @@
 
 #include "blum/io/complex_io.hpp"
 #include "blum/io/field_io.hpp"
-#include "io/json.hpp"
-#include "io/npz.hpp"
+#include "io/archive/numpy.hpp"
+#include "io/text/json.hpp"
 #include "support/surface_map_sample.hpp"
 #include "unit/io/glb_bytes.hpp"
 #include "unit/io/png_bytes.hpp"
@@ -258,7 +259,7 @@ TEST(SurfaceMapIo, ColoursOfMapsWithoutDistances) {
   std::fill(box.map.vertex_distance.begin(), box.map.vertex_distance.end(), HUGE_VAL);
   EXPECT_EQ(finite_range(box.map), std::nullopt);
   EXPECT_EQ(color_scale_of(box.map).highest(), 1);
-  for (const std::string& end : surface_map_extensions()) {
+  for (const std::string& end : file_extensions(FileContent::surface_map, FileAccess::write)) {
     EXPECT_NO_THROW(write_surface_map(folder / ("a" + end), box.mesh, box.map)) << end;
   }
   const BoxMap depths(-5);  // all inside
@@ -275,7 +276,7 @@ TEST(SurfaceMapIo, VerticesOfNoTriangleMayBeAnything) {
   }
   EXPECT_EQ(test::ReadGlb(test::file_content(folder / "a.glb")).attribute("_DISTANCE").size(), 24U);
   box.mesh.vertices.back() = {9, 9, 9};
-  for (const std::string& end : surface_map_extensions()) {
+  for (const std::string& end : file_extensions(FileContent::surface_map, FileAccess::write)) {
     EXPECT_NO_THROW(write_surface_map(folder / ("b" + end), box.mesh, box.map)) << end;
   }
 }
@@ -283,7 +284,7 @@ TEST(SurfaceMapIo, VerticesOfNoTriangleMayBeAnything) {
 TEST(SurfaceMapIo, TheSameBytesForAnyNumberOfThreads) {
   const TemporaryFolder folder;
   const BoxMap box(0.5);
-  for (const std::string& end : surface_map_extensions()) {
+  for (const std::string& end : file_extensions(FileContent::surface_map, FileAccess::write)) {
     for (const int threads : {1, 3}) {
       Context context;
       context.threads = threads;
@@ -295,7 +296,7 @@ TEST(SurfaceMapIo, TheSameBytesForAnyNumberOfThreads) {
 
 TEST(SurfaceMapIo, RefusesWhatIsNoMapOfTheMesh) {
   const TemporaryFolder folder;
-  for (const std::string& end : surface_map_extensions()) {
+  for (const std::string& end : file_extensions(FileContent::surface_map, FileAccess::write)) {
     const auto path = folder / ("a" + end);
     const auto refuses = [&]<class Error>(auto change, Error) {
       BoxMap box(3);

@@ -11,8 +11,8 @@
 #include "blum/io/surface_map_io.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/surface_map/thickness.hpp"
-#include "io/json.hpp"
-#include "io/npz.hpp"
+#include "io/archive/numpy.hpp"
+#include "io/text/json.hpp"
 #include "support/surface_map_sample.hpp"
 #include "unit/io/temporary_folder.hpp"
 

@@ -1,0 +1,176 @@
+#include "blum/geometry/moving_box_bvh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "blum/geometry/space_order.hpp"
+#include "geometry/bvh/box_tree.hpp"
+#include "geometry/bvh/moving_block.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t build_grain = 256;
+
+MovingBlock empty_block() {
+  MovingBlock block;
+  std::fill_n(&block.lower[0][0][0], 6 * lanes, std::numeric_limits<float>::infinity());
+  std::fill_n(&block.upper[0][0][0], 6 * lanes, -std::numeric_limits<float>::infinity());
+  return block;
+}
+
+void set(MovingBlock& block, std::size_t lane, const MovingBoxF& box) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      block.lower[side][axis][lane] = box.lower[side][axis];
+      block.upper[side][axis][lane] = box.upper[side][axis];
+    }
+  }
+}
+
+MovingBoxF box_at(const MovingBlock& block, std::size_t lane) {
+  MovingBoxF box;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.lower[side][axis] = block.lower[side][axis][lane];
+      box.upper[side][axis] = block.upper[side][axis][lane];
+    }
+  }
+  return box;
+}
+
+MovingBoxF around(const MovingBlock& block) {
+  MovingBoxF box;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.lower[side][axis] = *std::min_element(block.lower[side][axis], block.lower[side][axis] + lanes);
+      box.upper[side][axis] = *std::max_element(block.upper[side][axis], block.upper[side][axis] + lanes);
+    }
+  }
+  return box;
+}
+
+/// Maps coordinates to at most 1, in single precision and in their order. Those of boxes elsewhere may be as large as
+/// you like: they must not become infinite, as then they would be where empty boxes are.
+struct Frame {
+  Vec3d middle;
+  double scale = 1;
+
+  [[nodiscard]] float of(double x, std::size_t axis) const {
+    constexpr double most = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp((x - middle[axis]) * scale, -most, most));
+  }
+  [[nodiscard]] MovingBoxF of(const MovingBox& box) const {
+    MovingBoxF out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out.lower[0][axis] = of(box.start.lower[axis], axis);
+      out.upper[0][axis] = of(box.start.upper[axis], axis);
+      out.lower[1][axis] = of(box.end.lower[axis], axis);
+      out.upper[1][axis] = of(box.end.upper[axis], axis);
+    }
+    return out;
+  }
+};
+
+}  // namespace
+
+struct MovingBoxBvh::Data {
+  std::vector<MovingBox> boxes;      ///< by rank
+  std::vector<std::uint32_t> order;  ///< the index of each rank
+  Frame frame;
+  std::vector<MovingBlock> blocks;  ///< of the boxes by rank
+  BlockTree<MovingBlock> tree;      ///< its leaves are the blocks
+
+  void build(const Context& context) {
+    blocks.assign((boxes.size() + lanes - 1) / lanes, empty_block());
+    parallel_for(context, blocks.size(), build_grain, "", [&](const WorkRange& range) {
+      for (std::size_t rank = range.begin * lanes; rank < std::min(range.end * lanes, boxes.size()); ++rank) {
+        set(blocks[rank / lanes], rank % lanes, frame.of(boxes[rank]));
+      }
+    });
+    const std::vector<MovingBlock>* below = &blocks;
+    do {
+      std::vector<MovingBlock> above((below->size() + lanes - 1) / lanes, empty_block());
+      for (std::size_t k = 0; k < below->size(); ++k) set(above[k / lanes], k % lanes, around((*below)[k]));
+      below = &tree.levels.emplace_back(std::move(above));
+    } while (below->size() > 1);
+  }
+};
+
+MovingBoxBvh::MovingBoxBvh(std::span<const MovingBox> boxes, const Context& context) : data_(std::make_unique<Data>()) {
+  if (boxes.empty()) return;
+  Box3 all;
+  for (const MovingBox& box : boxes) {
+    all.extend(box.start);
+    all.extend(box.end);
+  }
+  const Vec3d half = all.upper * 0.5 - all.lower * 0.5;
+  const double largest = std::max({half.x, half.y, half.z});
+  int exponent = 0;
+  if (largest > 0) std::frexp(largest, &exponent);
+  data_->frame = {all.lower * 0.5 + all.upper * 0.5, std::ldexp(1.0, -std::clamp(exponent, -1000, 1000))};
+  const Frame& frame = data_->frame;
+  const auto middle = [&](std::size_t k) {
+    const MovingBox& box = boxes[k];
+    return ((box.start.lower - frame.middle) + (box.start.upper - frame.middle) + (box.end.lower - frame.middle) +
+            (box.end.upper - frame.middle)) *
+           frame.scale;
+  };
+  data_->order = space_order(boxes.size(), middle, context);
+  data_->boxes.reserve(boxes.size());
+  for (const std::uint32_t index : data_->order) data_->boxes.push_back(boxes[index]);
+  data_->build(context);
+}
+
+MovingBoxBvh::MovingBoxBvh(MovingBoxBvh&&) noexcept = default;
+MovingBoxBvh& MovingBoxBvh::operator=(MovingBoxBvh&&) noexcept = default;
+MovingBoxBvh::~MovingBoxBvh() = default;
+
+std::size_t MovingBoxBvh::size() const {
+  return data_->order.size();
+}
+
+std::size_t MovingBoxBvh::block_count() const {
+  return (size() + lanes - 1) / lanes;
+}
+
+void MovingBoxBvh::for_each_pair(std::size_t block, const MovingBoxBvh& other,
+                                 FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
+  if (other.size() == 0) return;
+  const std::size_t end = std::min((block + 1) * lanes, size());
+  for (std::size_t rank = block * lanes; rank < end; ++rank) {
+    const MovingBoxF box = other.data_->frame.of(data_->boxes[rank]);
+    for_each_touching(other.data_->tree, box, 0, [&](std::size_t there) {
+      for (unsigned bits = touching(other.data_->blocks[there], box); bits != 0; bits &= bits - 1) {
+        const std::size_t other_rank = there * lanes + static_cast<std::size_t>(std::countr_zero(bits));
+        visit(data_->order[rank], other.data_->order[other_rank]);
+      }
+      return true;
+    });
+  }
+}
+
+void MovingBoxBvh::for_each_self_pair(std::size_t block, FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
+  const MovingBlock& here = data_->blocks[block];
+  const MovingBoxF box = around(here);
+  for_each_touching(data_->tree, box, block, [&](std::size_t there) {
+    const MovingBlock& blocks = data_->blocks[there];
+    for (unsigned rows = touching(here, around(blocks)); rows != 0; rows &= rows - 1) {
+      const auto row = static_cast<std::size_t>(std::countr_zero(rows));
+      unsigned columns = touching(blocks, box_at(here, row));
+      if (there == block) columns &= ~0U << (row + 1);  // each pair once
+      for (; columns != 0; columns &= columns - 1) {
+        const auto column = static_cast<std::size_t>(std::countr_zero(columns));
+        visit(data_->order[block * lanes + row], data_->order[there * lanes + column]);
+      }
+    }
+    return true;
+  });
+}
+
+}  // namespace blum

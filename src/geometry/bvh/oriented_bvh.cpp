@@ -1,0 +1,517 @@
+#include "blum/geometry/oriented_bvh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/inline_list.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/geometry/primitives.hpp"
+#include "blum/geometry/space_order.hpp"
+#include "geometry/bvh/box_tree.hpp"
+#include "geometry/bvh/oriented_block.hpp"
+
+namespace blum {
+namespace {
+
+/// The same around boxes whose last axes are at right angles to the surface in them.
+/// @param bounds  the box along the coordinate axes around what is in them.
+[[nodiscard]] OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds);
+
+using Axes = std::array<Vec3d, 3>;
+
+/// What lies along three axes: intervals.
+class Extent {
+ public:
+  explicit Extent(const Axes& axes) : axes_(axes) {}
+
+  void add(const OrientedBox& box) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      double reach = 0;
+      for (std::size_t j = 0; j < 3; ++j) reach += std::abs(dot(axes_[k], box.axes[j])) * box.half[j];
+      const double at = dot(axes_[k], box.center);
+      low_[k] = std::min(low_[k], at - reach);
+      high_[k] = std::max(high_[k], at + reach);
+    }
+  }
+  void add(const FlatTriangleBlock& block) {
+    for (std::size_t k = 0; k < 3; ++k) extent_along(block, axes_[k], low_[k], high_[k]);
+  }
+  [[nodiscard]] OrientedBox box() const {
+    OrientedBox out;
+    out.axes = axes_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.half[k] = (high_[k] - low_[k]) * 0.5;
+      out.center += axes_[k] * ((low_[k] + high_[k]) * 0.5);
+    }
+    return out;
+  }
+
+ private:
+  Axes axes_;
+  std::array<double, 3> low_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  std::array<double, 3> high_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+};
+
+/// Shorter sums of normals have lost digits, as squares of theirs are too small.
+constexpr double least_normal = 1e-140;
+
+/// Two directions at right angles to a third one and to each other, the first one as close as can be to another one.
+std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
+  const Vec3d flat = along - normal * dot(normal, along);
+  const double size = squared_length(flat);
+  if (size > 1e-12 * squared_length(along)) {
+    Vec3d u = flat / std::sqrt(size);
+    u -= normal * dot(normal, u);  // once more: where little was left, so was what rounding left along the normal
+    u = u / length(u);
+    return {u, cross(normal, u)};
+  }
+  const Vec3d magnitude{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
+  const Vec3d other = magnitude.x <= magnitude.y && magnitude.x <= magnitude.z ? Vec3d{1, 0, 0}
+                      : magnitude.y <= magnitude.z                             ? Vec3d{0, 1, 0}
+                                                                               : Vec3d{0, 0, 1};
+  const Vec3d u = cross(normal, other);
+  const Vec3d unit = u / length(u);
+  return {unit, cross(normal, unit)};
+}
+
+/// The smaller one of two boxes: one along the coordinate axes, and the one along a plane.
+/// @param normal  of the plane, of any length.
+/// @param along   a direction in which what is to be in the box extends most.
+/// @param add_to  (extent) adds that.
+template <class AddTo>
+OrientedBox smaller_box(const Box3& bounds, const Vec3d& normal, const Vec3d& along, const AddTo& add_to) {
+  OrientedBox plain;
+  plain.center = bounds.center();
+  for (std::size_t k = 0; k < 3; ++k) plain.half[k] = (bounds.upper[k] - bounds.lower[k]) * 0.5;
+  const double size = length(normal);
+  if (!(size > least_normal)) return plain;
+  const Vec3d unit = normal / size;
+  const auto [u, v] = plane_axes(unit, along);
+  Extent turned({u, v, unit});
+  add_to(turned);
+  const OrientedBox box = turned.box();
+  return box.half_sum() <= plain.half_sum() ? box : plain;
+}
+
+/// A box around eight triangles that lies along their common plane as far as they have one: its last axis is at right
+/// angles to it. Of these boxes and those along the coordinate axes the smaller one.
+/// @param block   gets its normals.
+/// @param bounds  gets the box along the coordinate axes.
+OrientedBox box_around(FlatTriangleBlock& block, Box3& bounds) {
+  BlockShape shape;
+  set_normals(block, shape);
+  extent_along_axes(block, bounds);
+  // Triangles of a block are cut across their longest side into halves first.
+  return smaller_box(bounds, shape.normal, shape.along, [&](Extent& extent) { extent.add(block); });
+}
+
+OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds) {
+  Vec3d normal;
+  Vec3d along;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const OrientedBox& box = boxes[k];
+    const Vec3d own = box.axes[2] * (box.half[0] * box.half[1]);
+    normal += dot(normal, own) < 0 ? -own : own;
+    along += 2 * k < boxes.size() ? -box.center : box.center;
+  }
+  if (boxes.size() % 2 != 0) along += boxes.front().center;  // as many on either side
+  return smaller_box(bounds, normal, along, [&](Extent& extent) {
+    for (const OrientedBox& box : boxes) extent.add(box);
+  });
+}
+
+/// Parts of a tree that threads fill on their own: what is below one block of this level.
+constexpr std::size_t level_of_parts = 2;
+constexpr std::size_t leaves_per_part = lanes * lanes * lanes;
+/// How much closer pairs may be than their boxes seem, relative to the largest coordinate.
+constexpr double rounding = 1e-13;
+
+using NodeRef = OrientedBvh::Node;
+/// Nodes of two trees that are still to be compared.
+using NodePair = OrientedBvh::NodePair;
+
+struct IndexRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// At most seven siblings wait for each of at most eleven levels of either tree.
+using PendingPairs = InlineList<NodePair, 256>;
+
+/// The closest pair comes first; of equally close ones, as of overlapping ones, that which is further down.
+bool comes_later(const NodePair& a, const NodePair& b) {
+  if (a.squared_gap != b.squared_gap) return a.squared_gap > b.squared_gap;
+  return a.here.level + a.there.level > b.here.level + b.there.level;
+}
+
+/// The squared limit that squares of gaps are compared with.
+double squared_limit(double limit, double slack) {
+  if (!(limit >= 0)) return -1;
+  const double wide = limit + slack;
+  return std::min(wide * wide * (1 + 1e-14), std::numeric_limits<double>::max());
+}
+
+/// Puts the pair with the smallest gap on top of those pushed since `bottom`.
+void push_sorted(PendingPairs& pending, std::size_t bottom, const NodePair& pair) {
+  std::size_t place = pending.size();
+  pending.push_back(pair);
+  for (; place > bottom && pending[place - 1].squared_gap < pair.squared_gap; --place) {
+    pending[place] = pending[place - 1];
+  }
+  pending[place] = pair;
+}
+
+/// Boxes of nodes, along the surface and along the axes.
+struct NodeBoxes {
+  std::vector<OrientedBox> boxes;
+  std::vector<Box3> around;
+
+  void resize(std::size_t count) {
+    boxes.resize(count);
+    around.resize(count);
+  }
+  [[nodiscard]] std::size_t size() const { return boxes.size(); }
+};
+
+/// Blocks of a level, and the boxes around them.
+void fill_level(std::vector<OrientedBlock>& level, const NodeBoxes& below, const IndexRange& range, NodeBoxes& above) {
+  for (std::size_t k = range.begin; k < range.end; ++k) {
+    const std::size_t first = k * lanes;
+    const std::size_t children = std::min(lanes, below.size() - first);
+    const auto boxes = std::span<const OrientedBox>(below.boxes).subspan(first, children);
+    for (std::size_t lane = 0; lane < lanes; ++lane) level[k].set(lane, boxes[std::min(lane, children - 1)]);
+    Box3 around;
+    for (std::size_t i = first; i < first + children; ++i) around.extend(below.around[i]);
+    above.boxes[k] = box_around(boxes, around);
+    above.around[k] = around;
+  }
+}
+
+}  // namespace
+
+struct OrientedBvh::Data {
+  Box3 bounds;
+  std::size_t vertices = 0;
+  std::vector<std::uint32_t> order;                   ///< the primitive of each rank
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< of primitives by rank
+  std::vector<FlatTriangleBlock> leaves;              ///< of primitives by rank
+  BlockTree<OrientedBlock> tree;                      ///< its leaves are the blocks of primitives
+  std::vector<std::vector<std::uint32_t>> first;      ///< smallest primitive of each block, and of each block of `tree`
+  OrientedBox root;
+  std::vector<NodeBoxes> boxes;  ///< of the leaves and of each level; only fill() uses them
+
+  [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
+  [[nodiscard]] std::size_t count_below(std::int32_t level) const {
+    return level == 0 ? leaves.size() : tree.levels[static_cast<std::size_t>(level) - 1].size();
+  }
+  [[nodiscard]] NodeRef top() const { return {0, tree.top()}; }
+  /// The box of a node. Blocks of level k hold the boxes of nodes of level k - 1.
+  [[nodiscard]] OrientedBox box(const NodeRef& node) const {
+    if (node.level == tree.top()) return root;
+    return tree.levels[static_cast<std::size_t>(node.level) + 1][node.index / lanes].box(node.index % lanes);
+  }
+
+  /// The smallest primitive below a node.
+  [[nodiscard]] std::uint32_t first_of(const NodeRef& node) const {
+    return first[static_cast<std::size_t>(node.level) + 1][node.index];
+  }
+
+  void make_room();
+  void fill_first();
+  void fill(std::span<const Vec3d> positions, const Context& context);
+  void fill_leaves(std::span<const Vec3d> positions, const IndexRange& range);
+};
+
+/// What does not change with positions.
+void OrientedBvh::Data::fill_first() {
+  std::vector<std::uint32_t> own = order;
+  while (own.size() > 1 || first.size() < 2) {
+    std::vector<std::uint32_t> above((own.size() + lanes - 1) / lanes, 0xffffffffU);
+    for (std::size_t k = 0; k < own.size(); ++k) above[k / lanes] = std::min(above[k / lanes], own[k]);
+    own = above;
+    first.push_back(std::move(above));
+  }
+}
+
+void OrientedBvh::Data::make_room() {
+  boxes.emplace_back().resize(leaves.size());
+  do {
+    const std::size_t count = (boxes.back().size() + lanes - 1) / lanes;
+    tree.levels.emplace_back(count);
+    boxes.emplace_back().resize(count);
+  } while (boxes.back().size() > 1);
+}
+
+void OrientedBvh::Data::fill_leaves(std::span<const Vec3d> positions, const IndexRange& range) {
+  for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
+    const std::size_t count = lanes_of(leaf);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      // The last leaf repeats its last primitive.
+      const auto& v = corners[leaf * lanes + std::min(lane, count - 1)];
+      leaves[leaf].set(lane, {positions[v[0]], positions[v[1]], positions[v[2]]});
+    }
+    boxes[0].around[leaf] = {};
+    boxes[0].boxes[leaf] = box_around(leaves[leaf], boxes[0].around[leaf]);
+  }
+}
+
+/// Positions of all primitives, and all boxes: threads fill parts of the tree up to the level of parts, while these are
+/// in their caches; little is left above.
+void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& context) {
+  const std::size_t parts = (leaves.size() + leaves_per_part - 1) / leaves_per_part;
+  parallel_for(context, parts, 1, "", [&](const WorkRange& range) {
+    IndexRange part{range.begin * leaves_per_part, std::min(range.end * leaves_per_part, leaves.size())};
+    fill_leaves(positions, part);
+    for (std::size_t level = 0; level < std::min(level_of_parts + 1, tree.levels.size()); ++level) {
+      part = {part.begin / lanes, (part.end + lanes - 1) / lanes};
+      fill_level(tree.levels[level], boxes[level], part, boxes[level + 1]);
+    }
+  });
+  for (std::size_t level = level_of_parts + 1; level < tree.levels.size(); ++level) {
+    fill_level(tree.levels[level], boxes[level], {0, tree.levels[level].size()}, boxes[level + 1]);
+  }
+  root = boxes.back().boxes.front();
+  bounds = boxes.back().around.front();
+}
+
+OrientedBvh::OrientedBvh(const MeshView& mesh, const Context& context) : data_(std::make_unique<Data>()) {
+  Data& data = *data_;
+  const std::size_t count = primitive_count(mesh);
+  data.vertices = mesh.vertices.size();
+  const auto middle = [&](std::size_t primitive) {
+    Box3 box;
+    for (const std::uint32_t v : primitive_vertices(mesh, static_cast<std::uint32_t>(primitive)))
+      box.extend(mesh.vertices[v]);
+    return box.center();
+  };
+  data.order = space_order(count, middle, context);
+  data.corners.resize(count);
+  for (std::size_t rank = 0; rank < count; ++rank) data.corners[rank] = primitive_vertices(mesh, data.order[rank]);
+  data.leaves.resize((count + lanes - 1) / lanes);
+  data.fill_first();
+  data.make_room();
+  data.fill(mesh.vertices, context);
+}
+
+OrientedBvh::OrientedBvh(OrientedBvh&&) noexcept = default;
+OrientedBvh& OrientedBvh::operator=(OrientedBvh&&) noexcept = default;
+OrientedBvh::~OrientedBvh() = default;
+
+void OrientedBvh::refit(std::span<const Vec3d> vertices, const Context& context) {
+  if (vertices.size() != data_->vertices) {
+    throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data_->vertices) + " vertices is refitted to " +
+                      std::to_string(vertices.size()) + "; build a new one");
+  }
+  data_->fill(vertices, context);
+}
+
+std::size_t OrientedBvh::size() const {
+  return data_->order.size();
+}
+const Box3& OrientedBvh::bounds() const {
+  return data_->bounds;
+}
+std::size_t OrientedBvh::block_count() const {
+  return data_->leaves.size();
+}
+std::span<const std::uint32_t> OrientedBvh::order() const {
+  return data_->order;
+}
+std::span<const std::uint32_t> OrientedBvh::block(std::size_t block) const {
+  return std::span<const std::uint32_t>(data_->order).subspan(block * lanes, data_->lanes_of(block));
+}
+
+namespace {
+
+/// A traversal of two trees at once: of the nodes of a pair the larger one is replaced by its children.
+template <class Data>
+class PairSearch {
+ public:
+  PairSearch(const Data& here, const Data& there, const RigidTransform& place, double limit,
+             const OrientedBvh::Visit& visit)
+      : here_(here),
+        there_(there),
+        place_(place),
+        back_(place.inverse()),
+        is_placed_(!(place == RigidTransform{})),
+        slack_(rounding *
+               (here.bounds.largest_coordinate() + there.bounds.largest_coordinate() + length(place.translation))),
+        limit_(limit),
+        visit_(visit) {}
+
+  /// Both trees are one, and only blocks from this one on are looked at: each pair of primitives once.
+  void only_from(std::size_t block) {
+    first_there_ = block;
+    is_self_ = true;
+  }
+
+  void run(const NodeRef& here, const NodeRef& there) { run({0, here, there}); }
+  void run(const NodePair& first) {
+    pending_.push_back(first);
+    while (!pending_.empty()) {
+      const NodePair pair = pending_.pop_back();
+      const double most = squared_limit(limit_, slack_);
+      if (!(pair.squared_gap <= most)) continue;
+      if (pair.here.is_leaf() && pair.there.is_leaf()) {
+        compare_leaves(pair.here.index, pair.there.index);
+      } else {
+        descend(pair, most);
+      }
+    }
+  }
+
+  /// Goes from the closest pair of nodes left down to primitives, always to the closest children, some times over.
+  /// @return  what is left, closest first.
+  [[nodiscard]] std::vector<NodePair> dive(std::size_t times) {
+    std::vector<NodePair> heap{{0, here_.top(), there_.top()}};
+    const auto push = [&](const NodePair& pair) {
+      heap.push_back(pair);
+      std::push_heap(heap.begin(), heap.end(), comes_later);
+    };
+    for (std::size_t k = 0; k < times && !heap.empty(); ++k) {
+      std::pop_heap(heap.begin(), heap.end(), comes_later);
+      NodePair pair = heap.back();
+      heap.pop_back();
+      if (!(pair.squared_gap <= squared_limit(limit_, slack_))) return {};
+      bool is_open = true;
+      while (is_open && !(pair.here.is_leaf() && pair.there.is_leaf())) {
+        descend(pair, squared_limit(limit_, slack_));
+        is_open = !pending_.empty();
+        if (is_open) pair = pending_.pop_back();
+        while (!pending_.empty()) push(pending_.pop_back());
+      }
+      if (is_open) compare_leaves(pair.here.index, pair.there.index);
+    }
+    std::sort_heap(heap.begin(), heap.end(), comes_later);
+    std::reverse(heap.begin(), heap.end());
+    const double limit = squared_limit(limit_, slack_);
+    while (!heap.empty() && !(heap.back().squared_gap <= limit)) heap.pop_back();
+    return heap;
+  }
+
+ private:
+  [[nodiscard]] OrientedBox there_seen_from_here(const NodeRef& node) const {
+    const OrientedBox box = there_.box(node);
+    return is_placed_ ? placed(box, place_) : box;
+  }
+  [[nodiscard]] OrientedBox here_seen_from_there(const NodeRef& node) const {
+    const OrientedBox box = here_.box(node);
+    return is_placed_ ? placed(box, back_) : box;
+  }
+
+  void descend(const NodePair& pair, double most) {
+    bool is_here = pair.there.is_leaf();
+    if (!is_here && !pair.here.is_leaf()) {
+      is_here = here_.box(pair.here).half_sum() >= there_.box(pair.there).half_sum();
+    }
+    alignas(64) double gaps[lanes];
+    const NodeRef& parent = is_here ? pair.here : pair.there;
+    const Data& tree = is_here ? here_ : there_;
+    const auto level = static_cast<std::size_t>(parent.level);
+    const OrientedBox other = is_here ? there_seen_from_here(pair.there) : here_seen_from_there(pair.here);
+    squared_gaps(tree.tree.levels[level][parent.index], other, gaps);
+    const std::size_t first = parent.index * lanes;
+    const std::size_t count = std::min(lanes, tree.count_below(parent.level) - first);
+    const std::size_t bottom = pending_.size();
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (!(gaps[lane] <= most)) continue;
+      const NodeRef child{static_cast<std::uint32_t>(first + lane), parent.level - 1};
+      // A node of level k covers 8^(k + 1) blocks.
+      const bool is_early = !is_here && ((static_cast<std::size_t>(child.index) + 1)
+                                         << (3 * static_cast<unsigned>(child.level + 1))) <= first_there_;
+      if (is_early || (!is_here && there_.first_of(child) > last_there_)) continue;
+      push_sorted(pending_, bottom, {gaps[lane], is_here ? child : pair.here, is_here ? pair.there : child});
+    }
+  }
+
+  void compare_leaves(std::size_t here, std::size_t there) {
+    const std::size_t rows = there_.lanes_of(there);
+    const std::size_t columns = here_.lanes_of(here);
+    double most = squared_limit(limit_, slack_);
+    struct Candidate {
+      double squared_gap;
+      std::uint8_t row, column;
+    };
+    InlineList<Candidate, lanes * lanes> candidates;
+    for (std::size_t row = 0; row < rows; ++row) {
+      if (there_.order[there * lanes + row] > last_there_) continue;
+      FlatTriangle triangle = there_.leaves[there].triangle(row);
+      if (is_placed_) {
+        for (Vec3d& corner : triangle.corners) corner = place_(corner);
+        triangle.normal = place_.rotation * triangle.normal;
+      }
+      alignas(64) double gaps[lanes];
+      squared_gaps(here_.leaves[here], triangle, gaps);
+      for (std::size_t column = 0; column < columns; ++column) {
+        if (!(gaps[column] <= most) || (is_self_ && here == there && column <= row)) continue;
+        candidates.push_back({gaps[column], static_cast<std::uint8_t>(row), static_cast<std::uint8_t>(column)});
+      }
+    }
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Candidate& a, const Candidate& b) { return a.squared_gap < b.squared_gap; });
+    for (const Candidate& one : candidates) {
+      if (!(one.squared_gap <= most)) return;
+      const std::uint32_t first = here_.order[here * lanes + one.column];
+      const std::uint32_t second = there_.order[there * lanes + one.row];
+      if (second > last_there_) continue;
+      const OrientedBvh::Wanted wanted = visit_(first, second, std::max(std::sqrt(one.squared_gap) - slack_, 0.0));
+      last_there_ = std::min(last_there_, wanted.last_there);
+      if (wanted.limit < limit_) {
+        limit_ = wanted.limit;
+        most = squared_limit(limit_, slack_);
+      }
+    }
+  }
+
+  const Data& here_;
+  const Data& there_;
+  RigidTransform place_;
+  RigidTransform back_;
+  bool is_placed_;
+  double slack_;
+  double limit_;
+  std::uint32_t last_there_ = 0xffffffffU;
+  std::size_t first_there_ = 0;
+  bool is_self_ = false;
+  const OrientedBvh::Visit& visit_;
+  PendingPairs pending_;
+};
+
+}  // namespace
+
+void OrientedBvh::for_each_near_pair(const OrientedBvh& other, const RigidTransform& place, double limit,
+                                     Visit visit) const {
+  PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(data_->top(), other.data_->top());
+}
+
+std::vector<OrientedBvh::NodePair> OrientedBvh::dive_to_near_pairs(const OrientedBvh& other,
+                                                                   const RigidTransform& place, double limit,
+                                                                   std::size_t dives, Visit visit) const {
+  return PairSearch<Data>(*data_, *other.data_, place, limit, visit).dive(dives);
+}
+
+void OrientedBvh::for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place,
+                                     double limit, Visit visit) const {
+  PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(nodes);
+}
+
+void OrientedBvh::for_each_near_pair(std::size_t block, const OrientedBvh& other, const RigidTransform& place,
+                                     double limit, Visit visit) const {
+  const NodeRef leaf{static_cast<std::uint32_t>(block), -1};
+  PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(leaf, other.data_->top());
+}
+
+void OrientedBvh::for_each_near_self_pair(std::size_t block, double limit, Visit visit) const {
+  PairSearch<Data> search(*data_, *data_, {}, limit, visit);
+  search.only_from(block);
+  search.run({static_cast<std::uint32_t>(block), -1}, data_->top());
+}
+
+}  // namespace blum

@@ -1,0 +1,154 @@
+#include "blum/geometry/site_projection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "geometry/box_scale.hpp"
+#include "geometry/distance/site_feet.hpp"
+#include "geometry/distance/triangle_frame.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t grain = std::size_t{1} << 14;
+
+/// Whether a vector goes against a direction by more than a margin for certain.
+bool goes_against(const Vec3d& vector, const Vec3d& direction, double margin) {
+  const double along = dot(vector, direction);
+  return along < 0 && along * along > margin * margin * squared_length(direction);
+}
+
+struct Edge {
+  std::array<std::uint32_t, 2> ends{};
+  /// The further vertices of up to two triangles; an end stands for none.
+  std::array<std::uint32_t, 2> apex{};
+  std::uint32_t triangles = 0;
+};
+
+struct Foot {
+  Vec3d point;
+  double distance = 0;
+};
+
+}  // namespace
+
+struct SiteProjection::Data {
+  double scale = 1;              ///< coordinates here are those of the mesh times this, a power of two
+  double unscale = 1;            ///< 1 / scale
+  std::vector<Vec3d> positions;  ///< of all vertices
+  std::vector<Edge> edges;
+  std::vector<TriangleFrame> faces;  ///< seen with their vertices in rising order
+  /// Other ends of the edges at vertex v: neighbours[first[v] .. first[v + 1]).
+  std::vector<std::uint32_t> first, neighbours;
+
+  Data(const MeshView& mesh, const SiteTable& sites, const Context& context);
+  void add_edges(const MeshView& mesh, const SiteTable& sites);
+
+  /// These say whether the query is in the site's domain, and if so, put down its foot.
+  [[nodiscard]] bool find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const;
+  [[nodiscard]] bool find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const;
+  [[nodiscard]] bool find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const;
+};
+
+SiteProjection::Data::Data(const MeshView& mesh, const SiteTable& sites, const Context& context)
+    : scale(unit_scale(bounds(mesh))),
+      unscale(1 / scale),
+      positions(mesh.vertices.size()),
+      faces(mesh.triangles.size()) {
+  parallel_for(context, positions.size(), grain, "", [&](const WorkRange& range) {
+    for (std::size_t v = range.begin; v < range.end; ++v) positions[v] = mesh.vertices[v] * scale;
+  });
+  parallel_for(context, faces.size(), grain, "", [&](const WorkRange& range) {
+    for (std::size_t t = range.begin; t < range.end; ++t) {
+      Triangle corners = mesh.triangles[t];
+      std::sort(corners.begin(), corners.end());
+      faces[t] = make_triangle_frame({positions[corners[0]], positions[corners[1]], positions[corners[2]]});
+    }
+  });
+  add_edges(mesh, sites);
+}
+
+void SiteProjection::Data::add_edges(const MeshView& mesh, const SiteTable& sites) {
+  edges.reserve(sites.edge_count());
+  first.assign(positions.size() + 1, 0);
+  for (const Segment& ends : sites.edges()) {
+    edges.push_back({ends, ends, 0});
+    ++first[ends[0] + 1];
+    ++first[ends[1] + 1];
+  }
+  for (std::size_t v = 0; v < positions.size(); ++v) first[v + 1] += first[v];
+  neighbours.resize(first.back());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (const Segment& ends : sites.edges()) {
+    neighbours[next[ends[0]]++] = ends[1];
+    neighbours[next[ends[1]]++] = ends[0];
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const EdgeId edge = sites.triangle_edges()[t][k];
+      if (!edge.has_value()) continue;
+      Edge& of_triangle = edges[edge.value];
+      if (of_triangle.triangles < 2) of_triangle.apex[of_triangle.triangles] = mesh.triangles[t][(k + 2) % 3];
+      ++of_triangle.triangles;
+    }
+  }
+}
+
+bool SiteProjection::Data::find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const {
+  const Vec3d& p = positions[vertex];
+  const Vec3d from = q - p;
+  for (std::size_t k = first[vertex]; k < first[vertex + 1]; ++k) {
+    if (!goes_against(from, positions[neighbours[k]] - p, margin)) return false;
+  }
+  foot = {p, length(from)};
+  return true;
+}
+
+bool SiteProjection::Data::find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const {
+  const Edge& e = edges[edge];
+  if (e.triangles > 2) return false;
+  const Vec3d& a = positions[e.ends[0]];
+  const Vec3d& b = positions[e.ends[1]];
+  if (!goes_against(q - b, b - a, margin) || !goes_against(q - a, a - b, margin)) return false;
+  const Vec3d point = foot_on_edge(q, a, b).point;
+  const Vec3d from = q - point;
+  for (std::uint32_t k = 0; k < e.triangles; ++k) {
+    if (!goes_against(from, positions[e.apex[k]] - point, margin)) return false;
+  }
+  foot = {point, length(from)};
+  return true;
+}
+
+bool SiteProjection::Data::find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const {
+  const TriangleFrame& frame = faces[face];
+  if (frame.is_flat()) return false;
+  const FaceFoot of_plane(q, frame);
+  if (!of_plane.is_inside(frame, margin)) return false;
+  foot = {q - of_plane.rest, length(of_plane.rest)};
+  return true;
+}
+
+SiteProjection::SiteProjection(const MeshView& mesh, const SiteTable& sites, const Context& context)
+    : data_(std::make_unique<const Data>(mesh, sites, context)) {}
+SiteProjection::SiteProjection(SiteProjection&&) noexcept = default;
+SiteProjection& SiteProjection::operator=(SiteProjection&&) noexcept = default;
+SiteProjection::~SiteProjection() = default;
+
+bool SiteProjection::project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const {
+  const Data& data = *data_;
+  const Vec3d q = query * data.scale;
+  margin *= data.scale;
+  const std::size_t vertices = data.positions.size();
+  const std::size_t borders = vertices + data.edges.size();
+  Foot foot;
+  const bool is_found = site.value < vertices  ? data.find_on_vertex(site.value, q, margin, foot)
+                        : site.value < borders ? data.find_on_edge(site.value - vertices, q, margin, foot)
+                                               : data.find_on_face(site.value - borders, q, margin, foot);
+  if (is_found) found = {foot.point * data.unscale, foot.distance * data.unscale, site};
+  return is_found;
+}
+
+}  // namespace blum

@@ -1,0 +1,83 @@
+// Blum: clusters of triangles with the moments that winding numbers need. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "geometry/bvh/box_tree.hpp"
+#include "geometry/lanes.hpp"
+
+namespace blum {
+
+/// Eight triangles; those that fill up the last block are points.
+struct alignas(64) TriangleBlock {
+  double corner[3][3][lanes];  ///< [corner][axis][lane]
+};
+
+/// Eight clusters of triangles, each as a multipole at its centre. Empty lanes hold nothing, further away than any
+/// query, so that they are always taken. With s = x - centre and n the unit normal at x:
+struct alignas(64) MultipoleBlock {
+  double center[3][lanes];
+  double dipole[3][lanes];      ///< integral of n
+  double quadrupole[5][lanes];  ///< of n s, symmetric, without trace: xx, yy, xy, xz, yz; off-diagonals twice; times -3
+  double octupole[7][lanes];    ///< of n s s, symmetric, traceless: xxx, yyy, xyy, xxy, xxz, yyz, xyz; see evaluate()
+  double cubed[lanes];          ///< a bound on the integral of |s|^3
+  double radius[lanes];         ///< a bound on |s|
+};
+
+/// Sums over the clusters that a traversal has taken as a whole, lane by lane: solid angles and the bounds on their
+/// errors, in steradians.
+struct alignas(64) FarSum {
+  double solid_angle[lanes] = {};
+  double error[lanes] = {};
+};
+
+/// Which of eight clusters have to be opened: 1 or 0.
+struct alignas(64) OpenLanes {
+  double open[lanes];
+};
+
+/// Adds those of eight clusters whose error is at most `tolerance` (steradians); the others are to be opened.
+void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolerance, FarSum& sum, OpenLanes& others);
+
+/// Adds those of eight clusters that are seen from beyond beta times their radius, without error bounds.
+void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double beta, FarSum& sum, OpenLanes& others);
+
+/// Adds half solid angles up without calling atan2 for each: in every lane the product of complex numbers whose
+/// arguments are half the solid angles, and how often the sum of the arguments has left (-pi, pi].
+struct alignas(64) SolidAngleSum {
+  double re[lanes];
+  double im[lanes];
+  double turns[lanes];
+
+  SolidAngleSum();
+  /// The sum so far as a winding number.
+  [[nodiscard]] double winding_number() const;
+};
+
+/// Adds eight triangles (van Oosterom and Strackee 1983).
+void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum);
+
+/// The same, and adds up how badly the angles are conditioned: to `inverse`, lane by lane, the inverse of what an angle
+/// is computed from, relative to its terms. An angle is off by rounding times that.
+void add_watched_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
+                           double (&inverse)[lanes]);
+
+/// A complete tree with eight children per node: leaf i holds triangles 8 i ... 8 i + 7 of a spatial order; block i of
+/// level 0 holds the clusters of leaves 8 i ... 8 i + 7, and so on up to one block.
+struct WindingTree {
+  double scale = 1;  ///< coordinates are those of the mesh times this power of two, so that it is about 1 long
+  std::vector<TriangleBlock> leaves;
+  std::vector<std::vector<MultipoleBlock>> levels;
+  BoxTree boxes;  ///< of the same shape: level 0 holds boxes of leaves
+
+  [[nodiscard]] int top() const { return static_cast<int>(levels.size()) - 1; }
+};
+
+[[nodiscard]] WindingTree make_winding_tree(const MeshView& mesh, const Context& context);
+
+}  // namespace blum

@@ -1,0 +1,95 @@
+// Blum: ZIP archives, read and written. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "io/bytes/byte_source.hpp"
+#include "io/text/row_writer.hpp"
+
+namespace blum::volume_io {
+
+struct ZipEntry {
+  std::string name;
+  bool deflated = false;
+  std::uint32_t crc = 0;
+  std::uint64_t packed_size = 0;
+  std::uint64_t size = 0;
+  std::uint64_t header_offset = 0;
+};
+
+/// The content of one entry; its checksum is looked at by check_finished().
+class ZipEntryStream final : public ByteStream {
+ public:
+  ZipEntryStream(std::unique_ptr<ByteStream> inner, const ZipEntry& entry, std::string name)
+      : inner_(std::move(inner)), left_(entry.size), expected_crc_(entry.crc), name_(std::move(name)) {}
+  [[nodiscard]] std::size_t read_some(std::span<std::byte> out) override;
+  [[nodiscard]] std::uint64_t most_left() const override;
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  /// @throws FormatError unless all of the entry has been read and its checksum is right.
+  void check_finished() const;
+
+ private:
+  std::unique_ptr<ByteStream> inner_;
+  std::uint64_t left_ = 0;
+  std::uint32_t expected_crc_ = 0;
+  std::uint32_t crc_ = 0;
+  std::string name_;
+};
+
+/// Reads the directory of an archive (zip64 as well); entries are stored or deflated, not encrypted, in one file.
+class ZipReader {
+ public:
+  /// @throws FormatError. The source must outlive the reader and its streams.
+  explicit ZipReader(const ByteSource& source);
+  /// In the order of the directory.
+  [[nodiscard]] const std::vector<ZipEntry>& entries() const { return entries_; }
+  /// The entry of this name, or null.
+  [[nodiscard]] const ZipEntry* find(std::string_view name) const;
+  /// @throws FormatError.
+  [[nodiscard]] std::unique_ptr<ZipEntryStream> open(const ZipEntry& entry) const;
+
+ private:
+  const ByteSource& source_;
+  std::vector<ZipEntry> entries_;
+};
+
+/// Writes stored entries in one pass; sizes beyond 4 GB use the zip64 records (APPNOTE 4.3, 4.5.3).
+/// The checksum of an entry is found before its bytes are written, by all threads: the header of a stored entry must
+/// name it, and readers that stream cannot use one that comes after the data.
+class ZipWriter {
+ public:
+  ZipWriter(AtomicFile& file, FieldSink& sink, const Context& context) : file_(file), sink_(sink), context_(context) {}
+
+  /// Adds an entry whose content is `head` followed by `body`. The name must be ASCII.
+  void add(const std::string& name, std::span<const std::byte> head, std::span<const std::byte> body);
+  /// Writes the directory; to be called once, after the last entry.
+  void finish();
+
+ private:
+  struct Entry {
+    std::string name;
+    std::uint32_t crc = 0;
+    std::uint64_t size = 0;
+    std::uint64_t offset = 0;
+  };
+  void write(const std::string& bytes);
+
+  AtomicFile& file_;
+  FieldSink& sink_;
+  const Context& context_;
+  std::uint64_t position_ = 0;
+  std::vector<Entry> entries_;
+};
+
+/// CRC-32 of a long run of bytes, by all threads of the context.
+[[nodiscard]] std::uint32_t parallel_crc32(std::span<const std::byte> bytes, const Context& context);
+
+}  // namespace blum::volume_io

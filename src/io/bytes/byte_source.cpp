@@ -1,0 +1,243 @@
+#include "io/bytes/byte_source.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+
+namespace blum::volume_io {
+
+void ByteSource::check_range(std::uint64_t offset, std::size_t count) const {
+  if (offset > size() || count > size() - offset) {
+    throw FormatError(name_ + ": it ends at byte " + std::to_string(size()) + ", but " + std::to_string(count) +
+                      " bytes from byte " + std::to_string(offset) + " on are needed; the file is cut short");
+  }
+}
+
+FileSource::FileSource(const std::filesystem::path& path) : ByteSource(path.string()) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw FileError("cannot read '" + name() + "': " + (error ? error.message() : "there is no such file"));
+  }
+  if (!std::filesystem::is_regular_file(status)) throw FileError("cannot read '" + name() + "': it is not a file");
+  size_ = std::filesystem::file_size(path, error);
+  if (error) throw FileError("cannot read '" + name() + "': " + error.message());
+  stream_.open(path, std::ios::binary);
+  if (!stream_) throw FileError("cannot open '" + name() + "' for reading; check its permissions");
+}
+
+void FileSource::read(std::uint64_t offset, std::span<std::byte> out) const {
+  check_range(offset, out.size());
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(offset));
+  stream_.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
+  if (!stream_) throw FileError("cannot read '" + name() + "': the system gave fewer bytes than the file has");
+}
+
+void MemorySource::read(std::uint64_t offset, std::span<std::byte> out) const {
+  check_range(offset, out.size());
+  if (!out.empty()) std::memcpy(out.data(), bytes_.data() + offset, out.size());
+}
+
+void ByteStream::check_left(std::uint64_t count, const char* what) const {
+  if (count > most_left()) {
+    throw FormatError(name() + ": " + what + " should be " + std::to_string(count) + " bytes, but at most " +
+                      std::to_string(most_left()) + " are left; the file is cut short or its header is wrong");
+  }
+}
+
+void ByteStream::read(std::span<std::byte> out, const char* what) {
+  check_left(out.size(), what);
+  const std::size_t got = read_some(out);
+  if (got < out.size()) {
+    throw FormatError(name() + ": " + what + " should be " + std::to_string(out.size()) + " bytes, but there are " +
+                      std::to_string(got) + "; the file is cut short or its header is wrong");
+  }
+}
+
+void ByteStream::skip(std::uint64_t count, const char* what) {
+  check_left(count, what);
+  std::vector<std::byte> waste(static_cast<std::size_t>(std::min<std::uint64_t>(count, std::uint64_t{1} << 16U)));
+  while (count > 0) {
+    const std::size_t piece = static_cast<std::size_t>(std::min<std::uint64_t>(count, waste.size()));
+    read(std::span(waste).first(piece), what);
+    count -= piece;
+  }
+}
+
+void ByteStream::check_end() {
+  std::byte next{};
+  [[maybe_unused]] const std::size_t got = read_some(std::span(&next, 1));
+}
+
+std::size_t PlainStream::read_some(std::span<std::byte> out) {
+  const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(out.size(), end_ - at_));
+  source_.read(at_, out.first(count));
+  at_ += count;
+  return count;
+}
+
+}  // namespace blum::volume_io
+
+namespace blum {
+namespace {
+
+/// Closes the descriptor that it holds.
+struct Descriptor {
+  int number;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+[[noreturn]] void fail(const std::filesystem::path& path, int error) {
+  throw FileError("cannot read '" + path.string() + "': " + std::generic_category().message(error));
+}
+
+/// Reads up to `size` bytes; fewer only where the file ends.
+std::size_t read_up_to(int descriptor, std::byte* data, std::size_t size, const std::filesystem::path& path) {
+  std::size_t filled = 0;
+  while (filled < size) {
+    const ssize_t count = ::read(descriptor, data + filled, std::min(size - filled, std::size_t{1} << 30));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, errno);
+    if (count == 0) break;
+    filled += static_cast<std::size_t>(count);
+  }
+  return filled;
+}
+
+Buffer<std::byte> first_bytes(const Buffer<std::byte>& bytes, std::size_t size, std::size_t new_size) {
+  Buffer<std::byte> result(new_size);
+  std::copy_n(bytes.begin(), size, result.begin());
+  return result;
+}
+
+}  // namespace
+
+FileBytes read_whole_file(const std::filesystem::path& path) {
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (file.number < 0) fail(path, errno);
+  struct stat info{};
+  if (::fstat(file.number, &info) != 0) fail(path, errno);
+  if (S_ISDIR(info.st_mode)) fail(path, EISDIR);
+  if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) {  // may never end
+    throw FileError("cannot read '" + path.string() + "': it is a device, not a file");
+  }
+
+  // One byte more than the file should have shows in the first read whether it has ended; a pipe, or a file that grows
+  // meanwhile, goes on into a buffer of twice the size.
+  Buffer<std::byte> bytes(std::max<std::size_t>(static_cast<std::size_t>(info.st_size) + 1, 4096));
+  std::size_t size = read_up_to(file.number, bytes.data(), bytes.size(), path);
+  while (size == bytes.size()) {
+    bytes = first_bytes(bytes, size, 2 * size);
+    size += read_up_to(file.number, bytes.data() + size, bytes.size() - size, path);
+  }
+  return {std::move(bytes), size};
+}
+
+}  // namespace blum
+
+namespace blum::volume_io {
+namespace {
+
+constexpr std::size_t buffer_size = std::size_t{256} << 10;
+/// One byte of deflate data expands to at most 1032 bytes (a match of 258 bytes in two bits).
+constexpr std::uint64_t largest_ratio = 1032;
+
+int window_bits(Compression compression) {
+  switch (compression) {
+    case Compression::gzip:
+      return 15 + 16;
+    case Compression::zlib:
+      return 15;
+    case Compression::deflate:
+      break;
+  }
+  return -15;
+}
+
+}  // namespace
+
+struct InflateStream::State {
+  z_stream z{};
+  std::vector<std::byte> input = std::vector<std::byte>(buffer_size);
+  bool finished = false;
+};
+
+InflateStream::InflateStream(const ByteSource& source, std::uint64_t begin, std::uint64_t end, Compression compression)
+    : source_(source), at_(begin), end_(end), compression_(compression), state_(std::make_unique<State>()) {
+  if (inflateInit2(&state_->z, window_bits(compression)) != Z_OK) {
+    throw OutOfMemory(name() + ": not enough memory to decompress it");
+  }
+}
+
+InflateStream::~InflateStream() {
+  inflateEnd(&state_->z);
+}
+
+std::uint64_t InflateStream::most_left() const {
+  if (state_->finished) return 0;
+  // One byte more than what is left may still be held in bits that are decoded already, and a match half copied.
+  const std::uint64_t input = end_ - at_ + state_->z.avail_in + 8;
+  return input > std::numeric_limits<std::uint64_t>::max() / largest_ratio ? std::numeric_limits<std::uint64_t>::max()
+                                                                           : input * largest_ratio;
+}
+
+void InflateStream::refill() {
+  const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_size, end_ - at_));
+  source_.read(at_, std::span(state_->input).first(count));
+  at_ += count;
+  state_->z.next_in = reinterpret_cast<Bytef*>(state_->input.data());
+  state_->z.avail_in = static_cast<uInt>(count);
+}
+
+/// Gzip files may be several one after the other, with zeros behind; anything else behind them is not looked at.
+void InflateStream::end_of_member() {
+  z_stream& z = state_->z;
+  if (z.avail_in == 0 && at_ < end_) refill();
+  const bool more = compression_ == Compression::gzip && z.avail_in > 0 && z.next_in[0] == 0x1f;
+  if (more) {
+    inflateReset(&z);
+  } else {
+    state_->finished = true;
+  }
+}
+
+std::size_t InflateStream::read_some(std::span<std::byte> out) {
+  z_stream& z = state_->z;
+  std::size_t done = 0;
+  while (done < out.size() && !state_->finished) {
+    if (z.avail_in == 0 && at_ < end_) refill();
+    const std::size_t room = std::min(out.size() - done, std::size_t{1} << 30U);
+    z.next_out = reinterpret_cast<Bytef*>(out.data() + done);
+    z.avail_out = static_cast<uInt>(room);
+    const int status = inflate(&z, Z_NO_FLUSH);
+    done += room - z.avail_out;
+    if (status == Z_STREAM_END) {
+      end_of_member();
+    } else if (status == Z_BUF_ERROR && z.avail_in == 0 && at_ == end_) {
+      throw FormatError(name() + ": the compressed data end too early; the file is cut short");
+    } else if (status == Z_MEM_ERROR) {
+      throw OutOfMemory(name() + ": not enough memory to decompress it");
+    } else if (status != Z_OK && status != Z_BUF_ERROR) {
+      throw FormatError(name() + ": the compressed data are damaged (" + (z.msg != nullptr ? z.msg : "zlib error") +
+                        ")");
+    }
+  }
+  return done;
+}
+
+}  // namespace blum::volume_io

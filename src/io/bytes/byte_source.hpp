@@ -1,0 +1,138 @@
+// Blum: where the bytes of files come from. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "blum/core/buffer.hpp"
+
+namespace blum::volume_io {
+
+/// Bytes that can be read at any place. Not for use by several threads at once.
+class ByteSource {
+ public:
+  explicit ByteSource(std::string name) : name_(std::move(name)) {}
+  ByteSource(const ByteSource&) = delete;
+  ByteSource& operator=(const ByteSource&) = delete;
+  virtual ~ByteSource() = default;
+
+  [[nodiscard]] virtual std::uint64_t size() const = 0;
+  /// Reads out.size() bytes. @throws FormatError when they end before, FileError when the system fails.
+  virtual void read(std::uint64_t offset, std::span<std::byte> out) const = 0;
+  /// What messages call it: the file's name.
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ protected:
+  void check_range(std::uint64_t offset, std::size_t count) const;
+
+ private:
+  std::string name_;
+};
+
+class FileSource final : public ByteSource {
+ public:
+  /// @throws FileError unless it is a regular file that can be read.
+  explicit FileSource(const std::filesystem::path& path);
+  [[nodiscard]] std::uint64_t size() const override { return size_; }
+  void read(std::uint64_t offset, std::span<std::byte> out) const override;
+
+ private:
+  mutable std::ifstream stream_;
+  std::uint64_t size_ = 0;
+};
+
+class MemorySource final : public ByteSource {
+ public:
+  MemorySource(std::span<const std::byte> bytes, std::string name) : ByteSource(std::move(name)), bytes_(bytes) {}
+  [[nodiscard]] std::uint64_t size() const override { return bytes_.size(); }
+  void read(std::uint64_t offset, std::span<std::byte> out) const override;
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+/// Bytes read one after the other.
+class ByteStream {
+ public:
+  ByteStream() = default;
+  ByteStream(const ByteStream&) = delete;
+  ByteStream& operator=(const ByteStream&) = delete;
+  virtual ~ByteStream() = default;
+
+  /// Reads up to out.size() bytes; fewer only at the end. @throws FormatError for damaged data.
+  [[nodiscard]] virtual std::size_t read_some(std::span<std::byte> out) = 0;
+  /// No more bytes than this can follow: what a header promises is refused, before memory is taken for it, when it
+  /// is more.
+  [[nodiscard]] virtual std::uint64_t most_left() const = 0;
+  [[nodiscard]] virtual const std::string& name() const = 0;
+
+  /// Reads exactly out.size() bytes; `what` names them in messages. @throws FormatError when there are fewer.
+  void read(std::span<std::byte> out, const char* what);
+  void skip(std::uint64_t count, const char* what);
+  /// Looks past the last byte that is wanted, so that the checksum of compressed data is compared. More data than
+  /// wanted are no error: some writers pad. @throws FormatError when the data are damaged.
+  void check_end();
+  /// @throws FormatError unless `count` bytes may follow.
+  void check_left(std::uint64_t count, const char* what) const;
+};
+
+/// A run of plain bytes of a source, which must outlive it.
+class PlainStream final : public ByteStream {
+ public:
+  explicit PlainStream(const ByteSource& source) : PlainStream(source, 0, source.size()) {}
+  PlainStream(const ByteSource& source, std::uint64_t begin, std::uint64_t end)
+      : source_(source), at_(begin), end_(end) {}
+  [[nodiscard]] std::size_t read_some(std::span<std::byte> out) override;
+  [[nodiscard]] std::uint64_t most_left() const override { return end_ - at_; }
+  [[nodiscard]] const std::string& name() const override { return source_.name(); }
+
+ private:
+  const ByteSource& source_;
+  std::uint64_t at_ = 0;
+  std::uint64_t end_ = 0;
+};
+
+enum class Compression : std::uint8_t { gzip, zlib, deflate };
+
+/// What a compressed run of bytes of a source, which must outlive it, expands to. Gzip may have several members.
+class InflateStream final : public ByteStream {
+ public:
+  InflateStream(const ByteSource& source, std::uint64_t begin, std::uint64_t end, Compression compression);
+  ~InflateStream() override;
+  [[nodiscard]] std::size_t read_some(std::span<std::byte> out) override;
+  [[nodiscard]] std::uint64_t most_left() const override;
+  [[nodiscard]] const std::string& name() const override { return source_.name(); }
+
+ private:
+  struct State;
+  void refill();
+  void end_of_member();
+
+  const ByteSource& source_;
+  std::uint64_t at_ = 0;
+  std::uint64_t end_ = 0;
+  Compression compression_;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace blum::volume_io
+
+namespace blum {
+
+/// The content of a file.
+struct FileBytes {
+  Buffer<std::byte> storage = {};
+  std::size_t size = 0;  ///< the storage may be larger
+  [[nodiscard]] std::span<const std::byte> span() const { return storage.span().first(size); }
+};
+
+/// The bytes of a file, or of a pipe until it ends.
+/// @throws FileError when it cannot be read or is a directory; OutOfMemory.
+[[nodiscard]] FileBytes read_whole_file(const std::filesystem::path& path);
+
+}  // namespace blum

@@ -1,0 +1,132 @@
+// Blum: the texts of files of graphs (JSON, GraphML). SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "blum/axis/axis_graph.hpp"
+#include "blum/core/describe.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/io/file_metadata.hpp"
+#include "blum/io/medial_io.hpp"
+#include "blum/voronoi/voronoi_graph.hpp"
+#include "blum/voronoi/voronoi_sites.hpp"
+
+namespace blum::graph_files {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+struct ListOf : std::false_type {};
+template <class T>
+struct ListOf<std::vector<T>> : std::true_type {};
+template <class T, std::size_t count>
+struct ListOf<std::array<T, count>> : std::true_type {};
+
+/// Described structs by the names of their members, and what these consist of.
+template <class T>
+Json json_of(const T& value) {
+  if constexpr (DescribedStruct<T>) {
+    Json json = Json::object();
+    for_each_member<T>([&](const auto& member) { json[std::string(member.name)] = json_of(member.of(value)); });
+    return json;
+  } else if constexpr (DescribedEnum<T>) {
+    return to_string(value);
+  } else if constexpr (std::same_as<T, Vec3d>) {
+    return Json::array({value.x, value.y, value.z});
+  } else if constexpr (ListOf<T>::value) {
+    Json json = Json::array();
+    for (const auto& part : value) json.push_back(json_of(part));
+    return json;
+  } else if constexpr (requires { value.has_value(); }) {
+    return value ? json_of(*value) : Json(nullptr);
+  } else {
+    static_assert(std::is_arithmetic_v<T> || std::same_as<T, std::string>);
+    return value;
+  }
+}
+
+/// The whole content of a file, with numbers and lists of them in one line.
+[[nodiscard]] std::string text_of(const Json& json);
+
+/// A named value of a graph, a node or an edge.
+using Attribute = std::pair<std::string, std::variant<std::int64_t, double, bool, std::string>>;
+using Attributes = std::vector<Attribute>;
+
+/// The members of a struct that are numbers, words or truths, as attributes; of those within others with both names.
+template <DescribedStruct T>
+void add_members(const T& whole, Attributes& out, const std::string& prefix = {}) {
+  for_each_member<T>([&](const auto& member) {
+    const auto& value = member.of(whole);
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const std::string name = prefix + std::string(member.name);
+    if constexpr (DescribedStruct<Value>) {
+      add_members(value, out, name + "_");
+    } else if constexpr (DescribedEnum<Value>) {
+      out.emplace_back(name, std::string(to_string(value)));
+    } else if constexpr (std::same_as<Value, Vec3d>) {
+      for (std::size_t axis = 0; axis < 3; ++axis) out.emplace_back(name + "_" + "xyz"[axis], value[axis]);
+    } else if constexpr (std::same_as<Value, bool> || std::floating_point<Value>) {
+      out.emplace_back(name, value);
+    } else if constexpr (std::integral<Value>) {
+      out.emplace_back(name, static_cast<std::int64_t>(value));
+    }
+  });
+}
+
+/// Undirected; nodes are named by their element and a number.
+struct FlatGraph {
+  struct Node {
+    std::string name;
+    Attributes attributes;
+  };
+  struct Edge {
+    std::string from, to;
+    Attributes attributes;
+  };
+
+  std::vector<Node> nodes;
+  std::vector<Edge> edges;
+
+  static std::string numbered(const char* element, std::size_t number) { return element + std::to_string(number); }
+
+  /// A node with the members of what it stands for.
+  template <class T>
+  void add_node(const char* element, std::size_t number, const T& part) {
+    Attributes attributes{{"element", std::string(element)}};
+    add_members(part, attributes);
+    nodes.push_back({numbered(element, number), std::move(attributes)});
+  }
+  template <class T>
+  void add_nodes(const char* element, const std::vector<T>& parts) {
+    for (std::size_t k = 0; k < parts.size(); ++k) add_node(element, k, parts[k]);
+  }
+  void add_incidence(std::string from, std::string to) {
+    edges.push_back({std::move(from), std::move(to), {{"element", std::string("incidence")}}});
+  }
+};
+
+/// The whole content of a file. @param whole  the attributes of the graph.
+[[nodiscard]] std::string graphml_text(const char* id, const Attributes& whole, const FlatGraph& graph);
+
+/// What graphs tell of the axis that they are of; what is not known is left out.
+[[nodiscard]] Attributes told(const MedialMetadata& metadata);
+
+/// Each the whole content of a file.
+[[nodiscard]] std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata);
+[[nodiscard]] std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata);
+[[nodiscard]] std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
+                                    const FileMetadata& metadata);
+[[nodiscard]] std::string graphml_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
+                                       const FileMetadata& metadata);
+
+}  // namespace blum::graph_files

@@ -1,0 +1,98 @@
+// Blum: rows of named columns, and files of them (NPZ, CSV, JSON). SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "blum/complex/columns.hpp"
+#include "blum/complex/complex.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/io/file_metadata.hpp"
+
+namespace blum::tables {
+
+/// The values of a column: all of them, row after row, or a function that makes those of one row.
+template <class T>
+struct Cells {
+  std::span<const T> all = {};
+  std::function<void(std::size_t row, std::span<T> values)> make = {};  ///< where it is set, `all` is not looked at
+};
+
+/// A column: the same count of values, of one type, in each row.
+struct TableColumn {
+  std::string name;                  ///< of the array in .npz, of the list in .json
+  std::vector<std::uint64_t> shape;  ///< of a row: {} one value, {3} a vector, {2, 3} two of them
+  /// Indices (uint32) are int32 in .npz files, which hold no texts.
+  std::variant<Cells<double>, Cells<float>, Cells<std::int64_t>, Cells<std::int32_t>, Cells<std::uint32_t>,
+               Cells<std::string>>
+      cells;
+  /// Of the values of a row in .csv. None: the column's name, of several values NAME_0, NAME_1, ...
+  std::vector<std::string> names = {};
+
+  /// Values in a row.
+  [[nodiscard]] std::size_t width() const;
+};
+
+/// What is kept by reference must outlive the table.
+struct Table {
+  std::size_t rows = 0;
+  std::vector<TableColumn> columns;
+};
+
+/// A column whose values are there, row after row. They are kept by reference.
+template <class T>
+[[nodiscard]] TableColumn column_of(std::string name, std::vector<std::uint64_t> shape, std::span<const T> values,
+                                    std::vector<std::string> names = {}) {
+  return {std::move(name), std::move(shape), Cells<T>{values, {}}, std::move(names)};
+}
+[[nodiscard]] TableColumn column_of(std::string name, std::span<const Vec3d> vectors,
+                                    std::vector<std::string> names = {});
+[[nodiscard]] TableColumn column_of(const Column& column, std::vector<std::string> names = {});
+
+/// A column of T that make(row, values) fills row by row. Columns of files are made one after the other, so that one
+/// at a time is in memory.
+template <class T, class Make>
+[[nodiscard]] TableColumn made_column(std::string name, std::vector<std::uint64_t> shape, Make make,
+                                      std::vector<std::string> names = {}) {
+  return {std::move(name), std::move(shape), Cells<T>{{}, std::move(make)}, std::move(names)};
+}
+
+/// What files of rows are written from. Each is asked for by the formats that need it.
+struct RowFile {
+  std::function<std::vector<Table>()> arrays;  ///< a column for each fact
+  std::function<std::vector<Table>()> lists;   ///< the same, in the order of .json
+  std::function<Table()> rows;                 ///< of text
+  std::function<Complex()> shapes;             ///< what can be drawn of the rows, with columns
+  const FileMetadata& metadata;
+  std::span<const std::string_view> typed_keys = {};  ///< of metadata that are numbers, true or false in .json
+  bool has_dense_lists = false;                       ///< as JsonStyle::is_dense
+};
+
+/// How lists of .json files look.
+struct JsonStyle {
+  std::span<const std::string_view> typed = {};  ///< keys of metadata that are numbers, true or false
+  bool is_dense = false;                         ///< columns of one value a row take one line, not one for each row
+};
+
+/// The writers. A file appears under its name when it is complete; files of several tables hold the columns of one
+/// after those of the other. Numbers of text are the shortest that read back as the same, in .json `null` where they
+/// are not finite. @throws FileError, Cancelled.
+///
+/// An array for each column, and `metadata`, a JSON object, unless there are none.
+void write_npz(const std::filesystem::path& path, std::span<const Table> tables, const FileMetadata& metadata,
+               const Context& context);
+/// A row of names, then the rows. Metadata have no place there.
+void write_csv(const std::filesystem::path& path, const Table& table, const Context& context);
+/// An object: `metadata`, then a list for each column, of values or of lists of them.
+void write_json(const std::filesystem::path& path, std::span<const Table> tables, const FileMetadata& metadata,
+                const JsonStyle& style, const Context& context);
+
+}  // namespace blum::tables
