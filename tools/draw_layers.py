@@ -6,9 +6,9 @@
                                  that shows it, docs/architecture.md
 
 Layers and their folders come from the blum_add_layer() lines of CMakeLists.txt, arrows from the includes of src and
-include. A layer's level is one above the highest that it includes something of. A layer that all others include is the
-floor: its arrows are left out. Arrows have few widths, by the number of includes, so that the picture stays the same
-until layers come nearer to each other or further apart.
+include. A layer's level is one above the highest that it includes something of. A layer that all above the lowest level
+include is the floor: its arrows are left out. Arrows have few widths, by the number of includes, so that the picture
+stays the same until layers come nearer to each other or further apart.
 """
 
 import collections
@@ -77,7 +77,8 @@ class Drawing:
 
     def __init__(self, names: list[str], counts: collections.Counter):
         self.level = levels(names, counts)
-        self.floor = {name for name in names if all((other, name) in counts for other in names if other != name)}
+        above = [name for name in names if self.level[name] > 0]
+        self.floor = {name for name in names if all((other, name) in counts for other in above if other != name)}
         self.counts = {pair: number for pair, number in counts.items() if pair[1] not in self.floor}
         height = max(self.level.values()) + 1
         self.rows = [[name for name in names if self.level[name] == row] for row in range(height)]
@@ -284,7 +285,7 @@ def room(drawing: Drawing, name: str, folders: list[str]) -> list[str]:
     return [
         f'<rect x="{middle - width / 2:.1f}" y="{top:.1f}" width="{width:.1f}" height="{ROOM_HEIGHT}" rx="6" '
         f'fill="#f6f6f2" stroke="{color}" stroke-width="2"/>',
-        text_element(middle, first, 17, name, 'font-weight="bold"'),
+        text_element(middle, first, min(17, int((width - 8) / (0.62 * len(name)))), name, 'font-weight="bold"'),
         *(text_element(middle, first + 2 + 13 * (i + 1), 11, line, 'fill="#444"') for i, line in enumerate(below)),
     ]
 
