@@ -35,7 +35,7 @@ class BoundaryCone {
 };
 
 /// What rounding does to the terms of an angle, generously.
-constexpr double rounding = 1e-14;
+constexpr double rounding_of_cone = 1e-14;
 
 /// In the middle of the boundary, but not where a mesh may have anything that is aligned with it.
 Vec3d apex_of(std::span<const BoundaryChain::Edge> edges) {
@@ -75,7 +75,7 @@ std::optional<double> BoundaryCone::winding_number(const Vec3d& scaled_query) co
   alignas(64) double inverse[lanes] = {};
   for (const TriangleBlock& block : blocks_) add_watched_triangles(block, scaled_query, sum, inverse);
   const double badly = std::accumulate(inverse, inverse + lanes, 0.0);
-  if (!(rounding * badly < error)) return std::nullopt;  // also where a corner was met, which is not a number
+  if (!(rounding_of_cone * badly < error)) return std::nullopt;  // also where a corner was met, which is not a number
   return sum.winding_number();
 }
 
