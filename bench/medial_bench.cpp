@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "blum/certificate/axis_verifier.hpp"
 #include "blum/certificate/certificate.hpp"
+#include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "support/measure.hpp"
 #include "support/shapes.hpp"
@@ -46,6 +48,37 @@ void mesh_case(benchmark::State& state, const std::string& name, int resolution)
   report_phases(state, phases);
   state.counters["phase certificate"] = certificate_seconds;
   state.counters["certified"] = is_certified ? 1 : 0;
+  state.SetLabel(solid.note);
+}
+
+/// Six axes of one solid, certified by one verifier and by one each.
+void verifier_case(benchmark::State& state, const std::string& name) {
+  const Shape& solid = shape(name);
+  const MedialAxis axis = medial_axis(solid.mesh, {.resolution = 128});
+  std::vector<std::pair<Complex, CertificateOptions>> axes;
+  for (const double angle : {10.0, 20.0, 40.0, 60.0, 90.0, 120.0}) {
+    CertificateOptions options;
+    options.theta = angle;
+    options.lambda = 0;
+    options.spacing = axis.report().bodies.front().spacing;
+    DecimatedAxis lean = decimate(axis.fitted(angle), *options.spacing / 4);
+    options.deviation = lean.deviation;
+    axes.emplace_back(std::move(lean.axis), options);
+  }
+  std::size_t certified = 0;
+  const Times together = time_runs([&] {
+    const AxisVerifier verifier(solid.mesh);
+    certified = 0;
+    for (const auto& [complex, options] : axes) certified += verifier.certify(complex, options).holds() ? 1 : 0;
+  });
+  const Times one = time_runs([&] { (void)certify(axes[3].first, solid.mesh, axes[3].second); });
+  const Times apart = time_runs([&] {
+    for (const auto& [complex, options] : axes) (void)certify(complex, solid.mesh, options);
+  });
+  report(state, together, static_cast<double>(axes.size()));
+  state.counters["one_axis"] = one.cpu;
+  state.counters["six_verifiers"] = apart.cpu;
+  state.counters["certified"] = static_cast<double>(certified);
   state.SetLabel(solid.note);
 }
 
@@ -97,6 +130,9 @@ const bool registered = [] {
       add("medial/" + name + "/" + std::to_string(resolution),
           [=](benchmark::State& state) { mesh_case(state, name, resolution); });
     }
+  }
+  for (const std::string name : {"fandisk", "organic"}) {
+    add("medial-verifier/" + name, [=](benchmark::State& state) { verifier_case(state, name); });
   }
   for (const std::int64_t side : {64, 128, 256, 512, 640}) {
     add("medial-image/" + std::to_string(side), [=](benchmark::State& state) { image_case(state, side); });

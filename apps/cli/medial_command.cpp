@@ -286,8 +286,18 @@ MedialMetadata metadata_of(const Request& r, const SolidInput& input, const Labe
   return metadata;
 }
 
+/// A solid whose axes are asked for.
+struct AskedSolid {
+  const SolidInput& input;
+  const SolidVerifier& verifier;
+  const LabelSelection& selection;
+  std::optional<std::int64_t> label;
+  const fs::path& output;
+  Json smooth;  ///< how its surface was made smooth; null where it was not
+};
+
 /// Writes an axis to the last draft, reads it again and certifies it.
-Certificate write_and_certify(MedialRun& run, const Request& r, const SolidInput& input,
+Certificate write_and_certify(MedialRun& run, const Request& r, const SolidVerifier& verifier,
                               const LabelSelection& selection, const MedialAxis& axis, const Complex& complex,
                               const MedialMetadata& metadata, const Context& context) {
   Stopwatch watch;
@@ -303,7 +313,7 @@ Certificate write_and_certify(MedialRun& run, const Request& r, const SolidInput
     written.metadata.solid_rule = metadata.solid_rule;
     written.metadata.grid = metadata.grid;
   }
-  Certificate certificate = certificate_of(written, input, selection, context);
+  Certificate certificate = verifier.certificate_of(written, selection, context);
   run.phases.push_back({"certificate", watch.lap()});
   return certificate;
 }
@@ -316,11 +326,11 @@ std::vector<AxisForm> forms_of(const Request& r, const MedialAxisReport& report,
 }
 
 /// Writes and certifies an axis at one angle: the first of its forms that is certified, or else the last.
-void add_axis(MedialRun& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
-              const MedialAxis& axis, const Complex* pruned, double theta, const fs::path& name, Json& axes,
-              const Context& context) {
+void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxis& axis, const Complex* pruned,
+              double theta, const fs::path& name, Json& axes, const Context& context) {
+  const SolidInput& input = solid.input;
   const MedialAxisReport& report = axis.report();
-  MedialMetadata metadata = metadata_of(r, input, selection, report, theta);
+  MedialMetadata metadata = metadata_of(r, input, solid.selection, report, theta);
   run.drafts.emplace_back(name);
   const auto make = [&](const AxisForm& form) {
     Stopwatch watch;
@@ -332,7 +342,7 @@ void add_axis(MedialRun& run, const Request& r, const SolidInput& input, const L
     return lean;
   };
   const auto certify = [&](const DecimatedAxis& made) {
-    return write_and_certify(run, r, input, selection, axis, made.axis, metadata, context);
+    return write_and_certify(run, r, solid.verifier, solid.selection, axis, made.axis, metadata, context);
   };
   const CertifiedAxis made = first_certified(forms_of(r, report, pruned != nullptr), make, certify);
   const Certificate& certificate = made.certificate;
@@ -383,15 +393,6 @@ SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSele
   return out;
 }
 
-/// A solid whose axes are asked for.
-struct AskedSolid {
-  const SolidInput& input;
-  const LabelSelection& selection;
-  std::optional<std::int64_t> label;
-  const fs::path& output;
-  Json smooth;  ///< how its surface was made smooth; null where it was not
-};
-
 /// The axes of a solid on one grid. @return  whether its model passes.
 bool add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
               const Context& context) {
@@ -415,8 +416,7 @@ bool add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
     // From one angle to the next, so that what is left is nested.
     if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
     run.phases.push_back({"simplify", watch.lap()});
-    add_axis(run, r, solid.input, solid.selection, axis, r.prunes_sheets ? &whole : nullptr, theta, name, axes,
-             context);
+    add_axis(run, r, solid, axis, r.prunes_sheets ? &whole : nullptr, theta, name, axes, context);
   }
   json["axes"] = axes;
   run.solids.push_back(json);
@@ -457,7 +457,9 @@ void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const 
     const double longest = std::max({size.x, size.y, size.z});
     options.spacing = std::clamp(std::min({sides.x, sides.y, sides.z}), longest / options.max_resolution, longest / 8);
   }
-  add_on_best_grid(run, r, {r.smooth ? surface : given, selection, label, output, surface.json}, options, context);
+  const SolidInput& input = r.smooth ? surface : given;
+  const SolidVerifier verifier(input);
+  add_on_best_grid(run, r, {input, verifier, selection, label, output, surface.json}, options, context);
 }
 
 std::vector<fs::path> outputs_of(const Request& r) {

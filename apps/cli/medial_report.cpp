@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "blum/io/complex_io.hpp"
-#include "blum/io/verify_medial.hpp"
 #include "commands.hpp"
 #include "files.hpp"
 
@@ -152,13 +151,19 @@ ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
   return {read_axis(path), "medial axis", true, {}, ""};
 }
 
-Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,
-                           const Context& context) {
+SolidVerifier::SolidVerifier(const SolidInput& input) {
   if (input.kind == InputKind::image) {
-    return verify(file.complex, claims_of(file), input.image, selection, {}, context);
+    image_.emplace(input.image);
+  } else {
+    mesh_.emplace(input.mesh.mesh);
   }
+}
+
+Certificate SolidVerifier::certificate_of(const MedialFile& file, const LabelSelection& selection,
+                                          const Context& context) const {
+  if (image_) return image_->verify(file.complex, claims_of(file), selection, {}, context);
   try {
-    return verify(file.complex, claims_of(file), input.mesh.mesh, {}, available_memory(), context);
+    return mesh_->verify(file.complex, claims_of(file), {}, available_memory(), context);
   } catch (const UntoldVoxels& error) {
     throw InvalidMesh("the mesh bounds no polyhedron (" + error.reason() + ")" + untold_rule);
   }

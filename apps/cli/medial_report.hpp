@@ -7,6 +7,7 @@
 
 #include "blum/certificate/certificate.hpp"
 #include "blum/io/medial_io.hpp"
+#include "blum/io/verify_medial.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "solid_input.hpp"
 #include "summary.hpp"
@@ -30,11 +31,21 @@ struct ShownAxis {
 /// What walls there are.
 [[nodiscard]] std::string walls_text(const ShownAxis& shown);
 
-/// The certificate of an axis as a file holds it, against a solid.
-/// @param selection  of the voxels, for images.
-/// @throws FileError where the solid is known by voxels only, and the file does not say which.
-[[nodiscard]] Certificate certificate_of(const MedialFile& file, const SolidInput& input,
-                                         const LabelSelection& selection, const Context& context);
+/// Certifies axes as files hold them against one solid, which is read once.
+class SolidVerifier {
+ public:
+  /// @param input  must stay as it is while this lives. @throws InvalidMesh.
+  explicit SolidVerifier(const SolidInput& input);
+
+  /// @param selection  of the voxels, for images.
+  /// @throws InvalidMesh where the solid is known by voxels only, and the file does not say which.
+  [[nodiscard]] Certificate certificate_of(const MedialFile& file, const LabelSelection& selection,
+                                           const Context& context) const;
+
+ private:
+  std::optional<MeshAxisVerifier> mesh_;
+  std::optional<ImageAxisVerifier> image_;
+};
 
 /// What was looked at, and of bodies only how many there are, and how many are wrong.
 /// @param has_nested  whether the file holds axes of other angles, too, which nothing looks at.

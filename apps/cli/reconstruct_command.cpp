@@ -144,7 +144,7 @@ void run(const Arguments& a) {
     if (!warning.empty()) warnings.push_back(warning);
     const SolidInput input = load_solid(*r.input, selection.weld);
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
-    const Certificate certificate = certificate_of(file, input, voxels, context);
+    const Certificate certificate = SolidVerifier(input).certificate_of(file, voxels, context);
     json["input"] = input.json;
     json["distance"] = {{"solid_to_balls", certificate.balls.solid_to_balls},
                         {"mean_solid_to_balls", certificate.balls.mean_solid_to_balls},

@@ -70,7 +70,7 @@ class Verifier {
     const auto& [selection, warning] = solid_of_axis(given_, kind_, file.metadata, axis);
     const SolidInput& solid = load(selection.weld);
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
-    const Certificate certificate = certificate_of(file, solid, voxels, context_);
+    const Certificate certificate = verifier_->certificate_of(file, voxels, context_);
     Json warnings = Json::array();
     if (!warning.empty()) add_warning(warning, warnings);
     if (solid.weld && solid.weld->lost > 0) {
@@ -125,7 +125,11 @@ class Verifier {
 
   /// The mesh or image, read again only where another axis is of one that was welded otherwise.
   const SolidInput& load(const std::optional<double>& weld) {
-    if (!solid_ || weld != weld_) solid_ = load_solid(path_, weld);
+    if (!solid_ || weld != weld_) {
+      verifier_.reset();
+      solid_ = load_solid(path_, weld);
+      verifier_.emplace(*solid_);
+    }
     weld_ = weld;
     return *solid_;
   }
@@ -136,6 +140,7 @@ class Verifier {
   bool smooth_;
   const Context& context_;
   std::optional<SolidInput> solid_;
+  std::optional<SolidVerifier> verifier_;  ///< of this
   std::optional<double> weld_;
   TextTable table_;
   Json results_ = Json::array();

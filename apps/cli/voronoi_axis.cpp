@@ -97,13 +97,14 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
     out.phases.push_back({"simplify", watch.lap()});
     return lean;
   };
+  const SolidVerifier verifier(input);
   const auto certify = [&](const DecimatedAxis& made) {
     const fs::path& draft = out.drafts.front().path();
     write_medial(draft, made.axis, metadata, context);
     out.phases.push_back({"write", watch.lap()});
     MedialFile written = read_axis(draft);
     written.metadata.solid_rule = metadata.solid_rule;  // .obj and .ma say nothing of it
-    Certificate certificate = certificate_of(written, input, {}, context);
+    Certificate certificate = verifier.certificate_of(written, {}, context);
     out.phases.push_back({"certificate", watch.lap()});
     return certificate;
   };

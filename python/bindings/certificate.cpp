@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -61,33 +62,41 @@ void bind_certificate(nb::module_& m) {
       },
       nb::arg("metadata"), nb::arg("is_image"), nb::arg("label").none(), nb::arg("threshold").none(),
       nb::arg("weld").none());
-  m.def(
-      "verify_mesh",
-      [](const Complex& complex, const nb::dict& metadata, const nb::dict& has, const MeshArrays& mesh,
-         const nb::dict& checks, int threads, nb::object progress) {
-        const MeshView view = mesh.view();
-        const MedialClaims claims = claims_from(metadata, has);
-        const auto options = options_from<CertificateOptions>(checks);
-        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return verify(complex, claims, view, options, HUGE_VAL, context);
-        }));
-      },
-      nb::arg("complex"), nb::arg("metadata"), nb::arg("has"), nb::arg("mesh"), nb::arg("checks"), nb::arg("threads"),
-      nb::arg("progress").none());
-  m.def(
-      "verify_image",
-      [](const Complex& complex, const nb::dict& metadata, const nb::dict& has, const ImageArrays& image,
-         std::optional<std::int64_t> label, std::optional<double> threshold, const nb::dict& checks, int threads,
-         nb::object progress) {
-        const MedialClaims claims = claims_from(metadata, has);
-        const LabelSelection selection = LabelSelection::of(label, threshold);
-        const auto options = options_from<CertificateOptions>(checks);
-        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return verify(complex, claims, image.view, selection, options, context);
-        }));
-      },
-      nb::arg("complex"), nb::arg("metadata"), nb::arg("has"), nb::arg("image"), nb::arg("label").none(),
-      nb::arg("threshold").none(), nb::arg("checks"), nb::arg("threads"), nb::arg("progress").none());
+  nb::class_<MeshAxisVerifier>(m, "MeshAxisVerifier")
+      .def(
+          "__init__", [](MeshAxisVerifier* self, const MeshArrays& mesh) { new (self) MeshAxisVerifier(mesh.view()); },
+          nb::arg("mesh"), nb::keep_alive<1, 2>())
+      .def(
+          "verify",
+          [](const MeshAxisVerifier& self, const Complex& complex, const nb::dict& metadata, const nb::dict& has,
+             const nb::dict& checks, int threads, nb::object progress) {
+            const MedialClaims claims = claims_from(metadata, has);
+            const auto options = options_from<CertificateOptions>(checks);
+            return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
+              return self.verify(complex, claims, options, HUGE_VAL, context);
+            }));
+          },
+          nb::arg("complex"), nb::arg("metadata"), nb::arg("has"), nb::arg("checks"), nb::arg("threads"),
+          nb::arg("progress").none());
+  nb::class_<ImageAxisVerifier>(m, "ImageAxisVerifier")
+      .def(
+          "__init__",
+          [](ImageAxisVerifier* self, const ImageArrays& image) { new (self) ImageAxisVerifier(image.view); },
+          nb::arg("image"), nb::keep_alive<1, 2>())
+      .def(
+          "verify",
+          [](const ImageAxisVerifier& self, const Complex& complex, const nb::dict& metadata, const nb::dict& has,
+             std::optional<std::int64_t> label, std::optional<double> threshold, const nb::dict& checks, int threads,
+             nb::object progress) {
+            const MedialClaims claims = claims_from(metadata, has);
+            const LabelSelection selection = LabelSelection::of(label, threshold);
+            const auto options = options_from<CertificateOptions>(checks);
+            return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
+              return self.verify(complex, claims, selection, options, context);
+            }));
+          },
+          nb::arg("complex"), nb::arg("metadata"), nb::arg("has"), nb::arg("label").none(), nb::arg("threshold").none(),
+          nb::arg("checks"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 }  // namespace blum::python

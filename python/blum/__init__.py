@@ -91,11 +91,13 @@ from ._surface_map import (
     thickness_map,
 )
 from ._transform import distance_transform, distance_transforms
+from ._verifier import AxisVerifier
 from ._view import view
 from ._voronoi import VoronoiComplex, voronoi_complex
 
 __all__ = [
     "ROLES",
+    "AxisVerifier",
     "Cancelled",
     "CellularModel",
     "Centreline",

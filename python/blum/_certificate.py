@@ -39,51 +39,70 @@ class Claim:
     smooth: int | None = None  #: of an image: iterations of the smooth surface of its voxels; None: of their boxes
 
 
-def certified(
-    claim: Claim,
-    shape: Any,
-    triangles: Any = None,
-    *,
-    label: Integer | None = None,
-    threshold: Real | None = None,
-    grid: Grid | None = None,
-    weld: Real | None = None,
-    threads: int = 0,
-    progress: Progress = False,
-    **checks: Unpack[CertificateOptions],
-) -> Certificate:
-    """What `blum.certify` says of an axis."""
-    if grid is not None and not isinstance(grid, Grid):
-        raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-    has = dict(claim.has)
-    asked: dict[str, Any] = {name: has[name] for name in ("radii", "footprints", "angles", "sites", "labels")}
-    asked |= {"balls": has["radii"], **checks}
-    count = integer(threads, "threads")
-    of_image = triangles is None and is_image(shape)
-    said = _claims(claim, grid, "voxels" if of_image else "features")
-    chosen, least, merged, warning = _core.solid_of_axis(
-        said,
-        of_image,
-        None if label is None else label_of(label, "label"),
-        optional_number(threshold, "threshold"),
-        optional_number(weld, "weld"),
-    )
-    if warning:
-        warnings.warn(warning, InputWarning, stacklevel=3)
-    found: Certificate
-    if of_image:
-        image = as_image(shape)
-        with reporting(progress) as report:
-            found = _core.verify_image(
-                claim.complex._core, said, has, image._arrays, chosen, least, asked, count, report
-            )
-    else:
+class ShapeVerifier:
+    """Certifies axes of one mesh or image. What is read of it is read once, so it must not change meanwhile."""
+
+    def __init__(self, shape: Any, triangles: Any = None, weld: Real | None = None) -> None:
+        self._shape = shape
+        self._triangles = triangles
+        self._weld = weld
+        self._is_image = triangles is None and is_image(shape)
+        self._image: _core.ImageAxisVerifier | None = None
+        self._mesh: _core.MeshAxisVerifier | None = None
+        self._merged: Real | None = None  # how the vertices of the mesh are
+
+    def certified(
+        self,
+        claim: Claim,
+        *,
+        label: Integer | None = None,
+        threshold: Real | None = None,
+        grid: Grid | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+        **checks: Unpack[CertificateOptions],
+    ) -> Certificate:
+        """What `blum.certify` says of an axis."""
+        if grid is not None and not isinstance(grid, Grid):
+            raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
+        has = dict(claim.has)
+        asked: dict[str, Any] = {name: has[name] for name in ("radii", "footprints", "angles", "sites", "labels")}
+        asked |= {"balls": has["radii"], **checks}
+        count = integer(threads, "threads")
+        said = _claims(claim, grid, "voxels" if self._is_image else "features")
+        chosen, least, merged, warning = _core.solid_of_axis(
+            said,
+            self._is_image,
+            None if label is None else label_of(label, "label"),
+            optional_number(threshold, "threshold"),
+            optional_number(self._weld, "weld"),
+        )
+        if warning:
+            warnings.warn(warning, InputWarning, stacklevel=3)
+        found: Certificate
+        core = claim.complex._core
+        if self._is_image:
+            image = self._of_image()
+            with reporting(progress) as report:
+                found = image.verify(core, said, has, chosen, least, asked, count, report)
+        else:
+            mesh = self._of_mesh(merged)
+            with reporting(progress) as report:
+                found = mesh.verify(core, said, has, asked, count, report)
+        return found
+
+    def _of_image(self) -> _core.ImageAxisVerifier:
+        if self._image is None:
+            self._image = _core.ImageAxisVerifier(as_image(self._shape)._arrays)
+        return self._image
+
+    def _of_mesh(self, merged: Real | None) -> _core.MeshAxisVerifier:
         # Meshes in memory are as they are.
-        from_file = isinstance(shape, (str, os.PathLike))
-        mesh = as_mesh(shape, triangles, "shape", weld=merged if from_file else weld)
-        with reporting(progress) as report:
-            found = _core.verify_mesh(claim.complex._core, said, has, mesh._arrays, asked, count, report)
-    return found
+        weld = merged if isinstance(self._shape, (str, os.PathLike)) else self._weld
+        if self._mesh is None or weld != self._merged:
+            self._mesh = _core.MeshAxisVerifier(as_mesh(self._shape, self._triangles, "shape", weld=weld)._arrays)
+            self._merged = weld
+        return self._mesh
 
 
 def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any, Unpack
 
 from . import _core
 from ._arguments import PathLike, Real, integer, number, optional_number
+from ._certificate import ShapeVerifier
 from ._errors import InputWarning
 from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
@@ -95,11 +96,12 @@ class MedialAxis:
         (True, 12)
         """
         most = optional_number(tolerance, "tolerance")
-        found, failed = self._first_certified(theta, most, threads, progress)
+        verifier = ShapeVerifier(self._origin.shape)
+        found, failed = self._first_certified(theta, most, verifier, threads, progress)
         if not found.certificate.holds and self._grids is not None and self.report.topology_matches:
             for shift, as_it_was in _core.moved_grids(self._grids.grid_shift):
                 moved = MedialAxis(self._grids.on(shift, threads, progress), self._origin)
-                again, failed_there = moved._first_certified(theta, most, threads, progress)
+                again, failed_there = moved._first_certified(theta, most, verifier, threads, progress)
                 if again.certificate.holds:
                     text = f"{as_it_was}at theta {float(theta):g} {found.certificate.mismatches[0]}"
                     failed = [text, *failed_there]
@@ -112,7 +114,7 @@ class MedialAxis:
         return found
 
     def _first_certified(
-        self, theta: Real, tolerance: float | None, threads: int, progress: Progress
+        self, theta: Real, tolerance: float | None, verifier: ShapeVerifier, threads: int, progress: Progress
     ) -> tuple[MedialComplex, list[str]]:
         """The first form that is certified, or the last one, and why those before it are not."""
         failed: list[str] = []
@@ -124,7 +126,10 @@ class MedialAxis:
                 if most is not None:
                     lean = found.decimate(most, threads=threads, progress=progress)
                     found = lean if len(lean.vertices) < len(found.vertices) else found
-            if found.certificate.holds:
+            found._verifier = verifier
+            holds = found.certificate.holds
+            found._verifier = None
+            if holds:
                 break
             failed.append(f"at theta {float(theta):g} {without}{found.certificate.mismatches[0]}")
         return found, failed

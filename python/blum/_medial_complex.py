@@ -27,7 +27,7 @@ from ._arguments import (
     number,
     site_ids,
 )
-from ._certificate import Claim, certified
+from ._certificate import Claim, ShapeVerifier
 from ._complex import core_arguments
 from ._errors import InvalidOption
 from ._extend import ExtendedAxis, extend_axis
@@ -153,6 +153,7 @@ class MedialComplex(MedialColumns):
     def _take(self, core: _CoreComplex, has: dict[str, bool], origin: Origin) -> None:
         self._core = core
         self._origin = origin
+        self._verifier: ShapeVerifier | None = None  # of the shape, where others were certified against it
         #: Which attributes the complex has: radii, footprints, angles, sites, labels (roles and sheets).
         self.has = dict(has)
         #: The axes of all angles, where a file that was read holds them (:meth:`MedialAxis.write`).
@@ -191,7 +192,8 @@ class MedialComplex(MedialColumns):
         shape = self._origin.shape
         if shape is None:
             raise InvalidOption("what this axis was made from is not known here: use blum.certify(axis, shape)")
-        return certified(_claim(self), shape, label=self._origin.label, threshold=self._origin.threshold)
+        verifier = self._verifier or ShapeVerifier(shape)
+        return verifier.certified(claim_of(self), label=self._origin.label, threshold=self._origin.threshold)
 
     def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
         """Drops whole sheets whose largest separation angle is at most theta (degrees), smallest first."""
@@ -355,7 +357,10 @@ def _restored(
     return MedialComplex._of(_core.Complex(*arguments), has, origin, nested)
 
 
-def _claim(axis: MedialComplex) -> Claim:
+def claim_of(axis: MedialComplex) -> Claim:
+    """An axis as its certificate sees it."""
+    if not isinstance(axis, MedialComplex):
+        raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
     origin = axis._origin
     return Claim(
         axis,
@@ -451,25 +456,16 @@ def certify(
     **options
         What is not said: all that the axis has.
 
+    For several axes of one shape, :class:`AxisVerifier` reads it once.
+
     >>> import blum
     >>> torus = blum.generate("torus")
     >>> axis = blum.medial_axis(torus, resolution=32)
     >>> print(blum.certify(axis.simplify(60), torus))
     certified against the polyhedron: components, tunnels, voids (1, 1, 0)
     """
-    if not isinstance(axis, MedialComplex):
-        raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
-    return certified(
-        _claim(axis),
-        shape,
-        triangles,
-        label=label,
-        threshold=threshold,
-        grid=grid,
-        weld=weld,
-        threads=threads,
-        progress=progress,
-        **checks,
+    return ShapeVerifier(shape, triangles, weld).certified(
+        claim_of(axis), label=label, threshold=threshold, grid=grid, threads=threads, progress=progress, **checks
     )
 
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 
 #include "blum/complex/sample_axis.hpp"
@@ -98,13 +99,15 @@ double balls_to_surface(const std::vector<OwnedBall>& owned, const BallUnion& ba
   const auto ways = directions();
   std::vector<double> parts(count / grain + 1, 0);
   parallel_for(context, count, grain, "balls to surface", [&](const WorkRange& range) {
+    BallUnion::Holders holders{};
     for (std::size_t b = range.begin; b < range.end; ++b) {
       const auto& [ball, body] = owned[b * every];
       if (ball.radius <= margin) continue;
       for (const Vec3d& way : ways) {
         const Vec3d p = ball.centre + way * ball.radius;
-        if (balls.holds(p, margin)) continue;
-        parts[range.begin / grain] = std::max(parts[range.begin / grain], solid.distance(p, body));
+        if (balls.holds(p, margin, holders)) continue;
+        double& most = parts[range.begin / grain];
+        most = std::max(most, solid.distance_above(p, most, body));
       }
     }
   });
@@ -135,9 +138,9 @@ BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid, con
     return check;
   }
   const BallUnion all(balls, context);
-  const Samples samples = solid.samples(default_step(axis, solid.diagonal()), context);
-  check.step = samples.step;
-  measure_surface(samples.list, all, check, context);
+  const std::shared_ptr<const Samples> samples = solid.samples(default_step(axis, solid.diagonal()), context);
+  check.step = samples->step;
+  measure_surface(samples->list, all, check, context);
   check.balls_to_surface = balls_to_surface(owned, all, solid, context);
   return check;
 }

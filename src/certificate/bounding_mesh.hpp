@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/core/context.hpp"
 #include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -23,5 +24,8 @@ class BoundingMesh {
   MeshView mesh_;
   std::optional<ResolvedMesh> resolved_;
 };
+
+/// What solid_rule() says of a mesh that bounds a polyhedron.
+[[nodiscard]] MeshSolidRule rule_of_polyhedron(bool is_resolved);
 
 }  // namespace blum::verifier

@@ -16,14 +16,14 @@ constexpr std::size_t most_ranges = 64;
 
 BoxHierarchy::BoxHierarchy(const std::vector<Box3>& boxes, const Context& context) {
   const auto count = static_cast<std::uint32_t>(boxes.size());
-  order_.resize(count);
-  for (std::uint32_t k = 0; k < count; ++k) order_[k] = k;
   if (count == 0) return;
+  std::vector<Thing> things(count);
+  for (std::uint32_t k = 0; k < count; ++k) things[k] = {boxes[k].lower + boxes[k].upper, k};
   nodes_.push_back({{}, 0, count});
   for (std::size_t begin = 0; begin < nodes_.size();) {
     const std::size_t end = nodes_.size();
     parallel_for(context, end - begin, (end - begin) / most_ranges + 1, {}, [&](const WorkRange& range) {
-      for (std::size_t n = begin + range.begin; n < begin + range.end; ++n) sort_halves(nodes_[n], boxes);
+      for (std::size_t n = begin + range.begin; n < begin + range.end; ++n) sort_halves(nodes_[n], things);
     });
     for (std::size_t n = begin; n < end; ++n) {
       const auto [box, first, size] = nodes_[n];
@@ -35,25 +35,29 @@ BoxHierarchy::BoxHierarchy(const std::vector<Box3>& boxes, const Context& contex
     }
     begin = end;
   }
+  order_.reserve(count);
+  for (const Thing& thing : things) order_.push_back(thing.index);
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children come after their parents
+    Node& node = nodes_[n];
+    for (std::uint32_t k = 0; k < node.count; ++k) node.box.extend(boxes[order_[node.first + k]]);
+    if (node.count > 0) continue;
+    node.box = nodes_[node.first].box;
+    node.box.extend(nodes_[node.first + 1].box);
+  }
   pairs_.resize(nodes_.size() / 2);
   for (std::uint32_t n = 1; n < nodes_.size(); ++n) pairs_[pair_of(n)].set(place_in_pair(n), nodes_[n].box);
 }
 
-/// Finds the box of a node, and puts things of the lower half of its longest side first.
-void BoxHierarchy::sort_halves(Node& node, const std::vector<Box3>& boxes) {
-  Box3 middles;
-  for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-    node.box.extend(boxes[order_[k]]);
-    middles.extend(boxes[order_[k]].center());
-  }
+/// Puts things of the lower half of the longest side of a node first.
+void BoxHierarchy::sort_halves(const Node& node, std::vector<Thing>& things) {
   if (node.count <= most_per_leaf) return;
+  const auto begin = things.begin() + node.first;
+  Box3 middles;
+  for (std::uint32_t k = 0; k < node.count; ++k) middles.extend(begin[k].middle);
   const Vec3d extent = middles.size();
   const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-  const auto begin = order_.begin() + node.first;
-  std::nth_element(begin, begin + node.count / 2, begin + node.count, [&](std::uint32_t a, std::uint32_t b) {
-    const double at_a = boxes[a].lower[axis] + boxes[a].upper[axis];
-    const double at_b = boxes[b].lower[axis] + boxes[b].upper[axis];
-    return at_a != at_b ? at_a < at_b : a < b;
+  std::nth_element(begin, begin + node.count / 2, begin + node.count, [axis](const Thing& a, const Thing& b) {
+    return a.middle[axis] != b.middle[axis] ? a.middle[axis] < b.middle[axis] : a.index < b.index;
   });
 }
 

@@ -123,7 +123,11 @@ class BoxHierarchy {
   }
 
  private:
-  void sort_halves(Node& node, const std::vector<Box3>& boxes);
+  struct Thing {
+    Vec3d middle;  ///< of its box, twice
+    std::uint32_t index = 0;
+  };
+  static void sort_halves(const Node& node, std::vector<Thing>& things);
 
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;

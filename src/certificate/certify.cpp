@@ -2,28 +2,21 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "blum/certificate/axis_verifier.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
-#include "blum/geometry/self_intersections.hpp"
-#include "certificate/bounding_mesh.hpp"
 #include "certificate/checks.hpp"
 #include "certificate/homology/homology_check.hpp"
 #include "certificate/medial_check.hpp"
-#include "certificate/scaling.hpp"
-#include "certificate/shells.hpp"
 
 namespace blum {
 namespace {
 
-using verifier::factor_for;
 using verifier::Location;
-using verifier::scaled;
-using verifier::ScaledMesh;
 
 void scale_back(BallUnionCheck& balls, double factor) {
   for (double* value : {&balls.solid_to_balls, &balls.mean_solid_to_balls, &balls.balls_beyond_solid,
@@ -67,8 +60,10 @@ void compare_topology(Certificate& certificate, const Name& name) {
   }
 }
 
-Certificate certify_against(const Complex& complex, const verifier::KnownSolid& solid, double factor,
-                            const CertificateOptions& options, const Context& context) {
+}  // namespace
+
+Certificate verifier::certify_against(const Complex& complex, const KnownSolid& solid, double factor,
+                                      const CertificateOptions& options, const Context& context) {
   Certificate certificate;
   certificate.checked = options;
   certificate.solid = sum(solid.bodies);
@@ -122,98 +117,23 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
   return certificate;
 }
 
-/// The solid of a mesh, and the meshes that it refers to.
-struct BoundedSolid {
-  ScaledMesh given;
-  std::optional<verifier::BoundingMesh> bounding;
-  std::optional<ScaledMesh> own;
-  verifier::KnownSolid solid;
-
-  BoundedSolid(const MeshView& mesh, double factor, const Context& context) : given(mesh, factor) {
-    // Nearly always the mesh will do as it is, and is read once.
-    if (find_self_intersections(mesh, 0, context).complete) {
-      try {
-        solid = verifier::solid_of_mesh(given.view, given.view, context);
-        return;
-      } catch (const verifier::NoPolyhedron&) {  // NOLINT(bugprone-empty-catch): the next lines resolve it or say why
-      }
-    }
-    bounding.emplace(mesh, context);
-    own.emplace(bounding->view(), factor);
-    solid = verifier::solid_of_mesh(own->view, given.view, context);
-  }
-};
-
-/// With what nothing can be said of left out.
-CertificateOptions consistent(CertificateOptions options) {
-  options.radii = options.radii && options.positions;
-  options.footprints = options.footprints && options.radii;
-  options.angles = options.angles && options.footprints;
-  options.sites = options.sites && options.footprints;
-  options.labels = options.labels && options.positions;
-  options.balls = options.balls && options.radii;
-  options.medial = options.medial && options.radii;
-  return options;
-}
-
-/// Nothing but places.
-constexpr CertificateOptions only_places{.positions = true,
-                                         .radii = false,
-                                         .footprints = false,
-                                         .angles = false,
-                                         .sites = false,
-                                         .labels = false,
-                                         .balls = false,
-                                         .medial = false};
-
-/// The cells of a complex, with columns of which nothing is looked at.
-Complex with_medial_columns(const Complex& complex) {
-  Complex out;
-  out.positions = complex.positions;
-  out.edges = complex.edges;
-  out.triangles = complex.triangles;
-  add_missing_medial_columns(out);
-  return out;
-}
-
-}  // namespace
-
 Certificate certify_topology(const Complex& complex, const MeshView& mesh, const Context& context) {
-  return certify(with_medial_columns(complex), mesh, only_places, context);
+  return AxisVerifier(mesh).certify_topology(complex, context);
 }
 
 Certificate certify_topology(const Complex& complex, const VoxelSet& voxels, const GridSpec& grid,
                              const MeshView* surface, const Context& context) {
-  return certify(with_medial_columns(complex), voxels, grid, surface, only_places, context);
+  return AxisVerifier(voxels, grid, surface).certify_topology(complex, context);
 }
 
 Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options,
                     const Context& context) {
-  validate(mesh);
-  const double factor = factor_for(bounds(mesh).diagonal());
-  const BoundedSolid known(mesh, factor, context);
-  const verifier::KnownSolid& solid = known.solid;
-  return certify_against(factor == 1 ? axis : scaled(axis, factor), solid, factor, consistent(options), context);
+  return AxisVerifier(mesh).certify(axis, options, context);
 }
 
 Certificate certify(const Complex& axis, const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
                     const CertificateOptions& options, const Context& context) {
-  validate(grid);
-  if (grid.size != voxels.size()) throw InvalidOption("the grid of a certificate is not that of its voxels");
-  if (voxels.count() == 0) throw InvalidOption("there are no voxels, and so no solid to check an axis against");
-  if (surface != nullptr) validate(*surface);
-  const double factor = factor_for(length(grid.spacing));
-  GridSpec own_grid = grid;
-  own_grid.origin *= factor;
-  own_grid.spacing *= factor;
-  const ScaledMesh own(surface == nullptr ? MeshView{} : *surface, factor);
-  const verifier::KnownSolid solid =
-      verifier::solid_of_voxels(voxels, own_grid, surface == nullptr ? nullptr : &own.view, context);
-  Certificate certificate =
-      certify_against(factor == 1 ? axis : scaled(axis, factor), solid, factor, consistent(options), context);
-  certificate.voxel = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  certificate.against = surface == nullptr ? SolidRule::voxels : SolidRule::winding;
-  return certificate;
+  return AxisVerifier(voxels, grid, surface).certify(axis, options, context);
 }
 
 }  // namespace blum

@@ -98,4 +98,9 @@ void check_claims(CertificateOptions& options, double diagonal, std::vector<std:
 [[nodiscard]] BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid,
                                          const std::vector<Location>& locations, const Context& context);
 
+/// All of it. @param complex  with the columns of a medial axis, `factor` times as large as the caller knows it, as is
+/// the solid. @throws InvalidOption, Cancelled.
+[[nodiscard]] Certificate certify_against(const Complex& complex, const KnownSolid& solid, double factor,
+                                          const CertificateOptions& options, const Context& context);
+
 }  // namespace blum::verifier

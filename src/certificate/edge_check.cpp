@@ -43,7 +43,7 @@ class EdgeLook {
 
   [[nodiscard]] Findings look_at(std::uint32_t edge, const Stop& a, const Stop& b) const {
     Findings found;
-    if (edges_.is_inside(a, b)) return found;
+    if (edges_.is_inside(a, b) || solid_.holds(a.at, b.at, body_)) return found;
     const bool may_push = solid_.slack() == 0;
     const Stop worst = edges_.furthest_out(a, b, edges_.allowed());
     if (-worst.depth <= edges_.allowed()) {

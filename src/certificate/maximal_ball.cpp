@@ -7,40 +7,50 @@
 
 namespace blum::verifier {
 
-TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, double floor, double more) {
-  constexpr int most_steps = 64;
-  const double diagonal = solid.diagonal(body);
-  const double nothing = 1e-9 * diagonal;
-  TouchingBall ball;
-  ball.first = solid.closest_point(p, body);
-  const double depth = length(p - ball.first);
-  if (!(depth > nothing)) return ball;
-  const Vec3d along = (p - ball.first) / depth;
+ShrinkingBall::ShrinkingBall(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first,
+                             double more)
+    : body_(body), nothing_(1e-9 * solid.diagonal(body)), first_(first) {
+  const double depth = length(p - first);
+  has_ended_ = !(depth > nothing_);
+  if (has_ended_) return;
+  along_ = (p - first) / depth;
   // Outwards, until a ball reaches over the surface.
-  Vec3d other;
+  const double furthest = 2 * solid.diagonal(body);
   bool reaches_over = false;
-  double radius = more > 0 ? depth + more : 2 * depth;
-  for (;; radius *= 2) {
-    other = solid.closest_point_within(ball.first + along * radius, radius, body);
-    reaches_over = length(ball.first + along * radius - other) < radius - nothing;
-    if (reaches_over || radius > 2 * diagonal) break;
+  radius_ = more > 0 ? depth + more : 2 * depth;
+  for (;; radius_ *= 2) {
+    other_ = solid.closest_point_within(first + along_ * radius_, radius_, body);
+    reaches_over = length(first + along_ * radius_ - other_) < radius_ - nothing_;
+    if (reaches_over || radius_ > furthest) break;
   }
-  for (int step = 0; reaches_over && step < most_steps; ++step) {
-    const Vec3d apart = other - ball.first;
-    const double next = squared_length(apart) / (2 * dot(apart, along));
-    if (!(next > 0) || !(next < radius)) break;
-    const Vec3d centre = ball.first + along * next;
-    const double angle = degrees_between(ball.first - centre, other - centre);
-    if (angle < floor) break;
-    ball.centre = centre;
-    ball.radius = radius = next;
-    ball.second = other;
-    ball.angle = angle;
-    other = solid.closest_point_within(centre, radius, body);
-    if (length(centre - other) >= radius - nothing) {
-      ball.is_whole = true;
-      break;
-    }
+  has_ended_ = !reaches_over;
+}
+
+bool ShrinkingBall::shrink(const SolidOracle& solid, double floor, TouchingBall& ball) {
+  constexpr int most_steps = 64;
+  if (has_ended_ || steps_ >= most_steps) return false;
+  const Vec3d apart = other_ - first_;
+  const double next = squared_length(apart) / (2 * dot(apart, along_));
+  if (!(next > 0) || !(next < radius_)) {
+    has_ended_ = true;
+    return false;
+  }
+  const Vec3d centre = first_ + along_ * next;
+  const double angle = degrees_between(first_ - centre, other_ - centre);
+  if (angle < floor) return false;
+  ++steps_;
+  radius_ = next;
+  ball = {centre, next, first_, other_, angle, false};
+  other_ = solid.closest_point_within(centre, next, body_);
+  has_ended_ = ball.is_whole = length(centre - other_) >= next - nothing_;
+  return true;
+}
+
+TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first, double floor,
+                        double more) {
+  TouchingBall ball;
+  ShrinkingBall shrinking(solid, body, p, first, more);
+  while (shrinking.shrink(solid, floor, ball)) {
   }
   return ball;
 }

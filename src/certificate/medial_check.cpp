@@ -81,8 +81,8 @@ class Middle {
     const double nothing = 1e-9 * solid_.diagonal(point.body);
     if (!(depth > nothing)) return {is_thin(point) ? 0 : HUGE_VAL, 0};
     // Nearly always another wall is close behind.
-    TouchingBall ball = grown_ball(solid_, point.body, point.at, allowed_.noise, allowed_.middle);
-    if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, allowed_.noise);
+    TouchingBall ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise, allowed_.middle);
+    if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise);
     return ball.radius > 0 ? Found{distance_to_middle(point.at, ball), ball.radius} : Found{};
   }
 

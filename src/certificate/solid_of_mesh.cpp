@@ -19,14 +19,14 @@ namespace {
 
 class ShellOracle : public SolidOracle {
  public:
-  ShellOracle(const MeshView& mesh, const MeshView& named, const ClosedShells& shells,
-              const TriangleSearch& shell_search, const Context& context)
+  ShellOracle(const MeshView& mesh, const MeshView& named, ClosedShells shells, TriangleSearch shell_search,
+              const Context& context)
       : mesh_(mesh),
         named_(named),
-        shells_(shells),
-        body_of_(shells.of_triangle),
-        boxes_(shells.bodies),
-        surfaces_(shells.bodies),
+        shells_(std::move(shells)),
+        body_of_(shells_.of_triangle),
+        boxes_(shells_.bodies),
+        surfaces_(shells_.bodies),
         sites_(named, context) {
     for (std::size_t t = 0; t < body_of_.size(); ++t) {
       if (body_of_[t] == no_group) continue;
@@ -38,7 +38,7 @@ class ShellOracle : public SolidOracle {
       const auto [a, b, c] = corners_of(mesh_, t);
       surfaces_[body_of_[t]].add(length(cross(b - a, c - a)), t);
     }
-    search_ = shells_.shells.size() == 1 ? shell_search : TriangleSearch(mesh, body_of_, context);
+    search_ = shells_.shells.size() == 1 ? std::move(shell_search) : TriangleSearch(mesh, body_of_, context);
   }
 
   [[nodiscard]] double diagonal() const override { return search_.bounds().diagonal(); }
@@ -61,7 +61,11 @@ class ShellOracle : public SolidOracle {
     return search_.nearest(p, body).distance;
   }
 
-  [[nodiscard]] Samples samples(double step, const Context& context) const override {
+  [[nodiscard]] double distance_above(const Vec3d& p, double enough, std::uint32_t body) const override {
+    return search_.distance_above(p, enough, body);
+  }
+
+  [[nodiscard]] Samples make_samples(double step, const Context& context) const override {
     return samples_of_triangles(mesh_, body_of_, step, context);
   }
 
@@ -134,10 +138,10 @@ class ShellOracle : public SolidOracle {
   }
 
   [[nodiscard]] Vec3d closest_point_within(const Vec3d& p, double within, std::uint32_t body) const override {
-    return verifier::closest_point(p, corners_of(mesh_, search_.nearest_within(p, within, body).triangle));
+    return search_.closest_point_within(p, within, body);
   }
 
-  [[nodiscard]] std::unique_ptr<Complement> complement(const Context& context) const override {
+  [[nodiscard]] std::unique_ptr<Complement> make_complement(const Context& context) const override {
     std::vector<std::vector<std::uint32_t>> walls(shells_.shells.size());  // the triangles of voids
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       const std::uint32_t shell = shells_.of_triangle[t];
@@ -319,10 +323,10 @@ class ShellOracle : public SolidOracle {
 
 KnownSolid solid_of_mesh(const MeshView& mesh, const MeshView& named, const Context& context) {
   ClosedShells shells = cut_into_shells(mesh, context);
-  const TriangleSearch search(mesh, shells.of_triangle, context);
+  TriangleSearch search(mesh, shells.of_triangle, context);
   nest(shells, mesh, search, context);
   std::vector<BettiNumbers> bodies = betti_numbers(shells);
-  return {std::make_unique<ShellOracle>(mesh, named, shells, search, context), std::move(bodies)};
+  return {std::make_unique<ShellOracle>(mesh, named, std::move(shells), std::move(search), context), std::move(bodies)};
 }
 
 }  // namespace blum::verifier

@@ -63,6 +63,12 @@ class VoxelOracle : public SolidOracle {
     return voxel && body_of(*voxel) == body ? faces_.distance(p) : -faces_.distance(p);
   }
 
+  /// Bodies have no corner in common, so that a segment in the voxels is in one body.
+  [[nodiscard]] bool holds(const Vec3d& a, const Vec3d& b, std::uint32_t body) const override {
+    const auto voxel = faces_.held(a, b);
+    return voxel && body_of(*voxel) == body;
+  }
+
   [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t /*body*/) const override {
     const GridSpec& grid = faces_.grid();
     const Box3 face = faces_.rectangle(faces_.nearest(p).face);
@@ -83,7 +89,7 @@ class VoxelOracle : public SolidOracle {
     return std::sqrt(squared_distance(q, box));
   }
 
-  [[nodiscard]] Samples samples(double step, const Context& context) const override {
+  [[nodiscard]] Samples make_samples(double step, const Context& context) const override {
     std::size_t count = 0;
     for (std::size_t b = 0; b < faces_.brick_count(); ++b) {
       if (b % 4096 == 0) throw_if_cancelled(context);
@@ -168,9 +174,9 @@ class VoxelOracle : public SolidOracle {
 /// Voxels that stand for the inside of a mesh: distances are to the mesh, and a voxel more or less is no matter.
 class WindingOracle : public VoxelOracle {
  public:
-  WindingOracle(const VoxelSet& voxels, const GridSpec& grid, const VoxelBodies& bodies, const MeshView& surface,
+  WindingOracle(const VoxelSet& voxels, const GridSpec& grid, VoxelBodies bodies, const MeshView& surface,
                 const Context& context)
-      : VoxelOracle(voxels, grid, bodies, context),
+      : VoxelOracle(voxels, grid, std::move(bodies), context),
         mesh_(surface),
         search_(surface, {}, context),
         sites_(surface, context) {}
@@ -188,8 +194,12 @@ class WindingOracle : public VoxelOracle {
     return search_.nearest(p).distance;
   }
 
+  [[nodiscard]] double distance_above(const Vec3d& p, double enough, std::uint32_t /*body*/) const override {
+    return search_.distance_above(p, enough, no_group);
+  }
+
   [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t /*body*/) const override {
-    return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p).triangle));
+    return search_.closest_point_within(p, HUGE_VAL, no_group);
   }
 
   [[nodiscard]] double slack() const override { return length(faces().grid().spacing); }
@@ -198,7 +208,7 @@ class WindingOracle : public VoxelOracle {
     return verifier::distance_from_site(mesh_, sites_, p, site);
   }
 
-  [[nodiscard]] Samples samples(double step, const Context& context) const override {
+  [[nodiscard]] Samples make_samples(double step, const Context& context) const override {
     return samples_of_triangles(mesh_, {}, step, context);
   }
 
@@ -231,14 +241,15 @@ KnownSolid solid_of_voxels(const VoxelSet& voxels, const GridSpec& grid, const M
     if (surface->triangles.empty()) throw InvalidMesh("the mesh has no triangles: distances to it are not known");
     check_covers(grid, *surface);
   }
-  const VoxelBodies bodies(voxels, context);
-  KnownSolid known{nullptr, voxel_betti_numbers(voxels, bodies, context)};
+  VoxelBodies bodies(voxels, context);
+  std::vector<BettiNumbers> betti = voxel_betti_numbers(voxels, bodies, context);
+  std::unique_ptr<SolidOracle> oracle;
   if (surface == nullptr) {
-    known.solid = std::make_unique<VoxelOracle>(voxels, grid, bodies, context);
+    oracle = std::make_unique<VoxelOracle>(voxels, grid, std::move(bodies), context);
   } else {
-    known.solid = std::make_unique<WindingOracle>(voxels, grid, bodies, *surface, context);
+    oracle = std::make_unique<WindingOracle>(voxels, grid, std::move(bodies), *surface, context);
   }
-  return known;
+  return {std::move(oracle), std::move(betti)};
 }
 
 }  // namespace blum::verifier

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/voxel_set.hpp"
 #include "certificate/homology/complement.hpp"
+#include "certificate/lazy.hpp"
 
 namespace blum::verifier {
 
@@ -54,6 +56,10 @@ class SolidOracle {
   [[nodiscard]] virtual Location locate(const Vec3d& p) const = 0;
   /// Exact distance of a point from the surface of a body.
   [[nodiscard]] virtual double distance(const Vec3d& p, std::uint32_t body) const = 0;
+  /// The same; where it is below `enough` maybe more, but below it, too, which costs less.
+  [[nodiscard]] virtual double distance_above(const Vec3d& p, double /*enough*/, std::uint32_t body) const {
+    return distance(p, body);
+  }
   /// How deep a point lies in a body; below 0 outside of it. No two points differ by more than they are apart.
   [[nodiscard]] virtual double depth(const Vec3d& p, std::uint32_t body) const = 0;
   /// The same, but below 0 wherever the boundary is closer than `near`; and where `other_depth` is above that, or below
@@ -61,6 +67,11 @@ class SolidOracle {
   [[nodiscard]] virtual double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& /*other*/,
                                             double /*other_depth*/, double /*near*/) const {
     return depth(p, body);
+  }
+  /// Whether the segment between two points is known to lie in a body, boundary included; false also where this solid
+  /// cannot tell.
+  [[nodiscard]] virtual bool holds(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
+    return false;
   }
   /// Whether the segment between two points is known to meet no boundary of a body; false also where rounding leaves
   /// doubt, or this solid cannot tell.
@@ -96,20 +107,46 @@ class SolidOracle {
   [[nodiscard]] virtual double slack() const { return 0; }
   /// Distance of a point from a site; HUGE_VAL where there is no such site.
   [[nodiscard]] virtual double distance_from_site(const Vec3d& p, SiteId site) const = 0;
-  /// What linking and winding numbers are taken with; nullptr where that is not known.
-  [[nodiscard]] virtual std::unique_ptr<Complement> complement(const Context& /*context*/) const { return nullptr; }
-  /// Points of the surface, close enough together for `step` unless they would be too many. @throws Cancelled.
-  [[nodiscard]] virtual Samples samples(double step, const Context& context) const = 0;
+  /// What linking and winding numbers are taken with; nullptr where that is not known. Made once. @throws Cancelled.
+  [[nodiscard]] const Complement* complement(const Context& context) const;
+  /// Points of the surface, close enough together for `step` unless they would be too many. Those of the last step are
+  /// kept. @throws Cancelled.
+  [[nodiscard]] std::shared_ptr<const Samples> samples(double step, const Context& context) const;
+
+ private:
+  [[nodiscard]] virtual std::unique_ptr<Complement> make_complement(const Context& /*context*/) const {
+    return nullptr;
+  }
+  [[nodiscard]] virtual Samples make_samples(double step, const Context& context) const = 0;
+
+  Lazy<std::unique_ptr<Complement>> complement_;
+  mutable std::mutex samples_mutex_;
+  mutable std::shared_ptr<const Samples> samples_;  ///< the last ones
+  mutable double step_of_samples_ = 0;
 };
 
 /// No more samples of a mesh than this are taken, unless it has more triangles. Each is searched for among all balls,
 /// which is told and not judged: five times as many cost more than all that is judged.
 inline constexpr std::size_t most_samples = 50'000;
 
+class DrawnBalls;
+
 /// A solid, and the Betti numbers of its bodies.
 struct KnownSolid {
   std::unique_ptr<SolidOracle> solid;
   std::vector<BettiNumbers> bodies;
+
+  KnownSolid(std::unique_ptr<SolidOracle> own, std::vector<BettiNumbers> betti);
+  KnownSolid(KnownSolid&&) noexcept;
+  KnownSolid& operator=(KnownSolid&&) noexcept;
+  ~KnownSolid();
+
+  /// Made once.
+  [[nodiscard]] const DrawnBalls& drawn_balls() const;
+
+ private:
+  struct Later;
+  std::unique_ptr<Later> later_;
 };
 
 /// What closed shells bound. @param named  the mesh whose sites distances are asked of: the input.

@@ -313,28 +313,59 @@ TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t gr
   return nearest_within(p, HUGE_VAL, group);
 }
 
+template <class Visit>
+void TriangleSearch::search(const Vec3d& p, double best, std::uint32_t group, const Visit& visit) const {
+  tree_.search(
+      best, [&](std::uint32_t first_child) { return squared_bounds(p, first_child); },
+      [&](std::uint32_t place) {
+        if (group != no_group && groups_[place] != group) return best;
+        const Vec3d closest = verifier::closest_point(p, corners_[place]);
+        return best = visit(place, closest, squared_length(p - closest));
+      });
+}
+
 TriangleSearch::Nearest TriangleSearch::nearest_within(const Vec3d& p, double within, std::uint32_t group) const {
   double best = within * within * as_close;
   const double unknown = best;
   std::uint32_t triangle = 0;
   ClosePoints close;
-  tree_.search(
-      best, [&](std::uint32_t first_child) { return squared_bounds(p, first_child); },
-      [&](std::uint32_t place) {
-        if (group != no_group && groups_[place] != group) return best * as_close;
-        const Vec3d closest = closest_point(p, corners_[place]);
-        const double squared = squared_length(p - closest);
-        if (squared <= best * as_close) close.add(closest, squared, triangles_[place], std::min(best, squared));
-        if (squared < best) {
-          best = squared;
-          triangle = triangles_[place];
-        }
-        return best * as_close;
-      });
+  search(p, best, group, [&](std::uint32_t place, const Vec3d& closest, double squared) {
+    if (squared <= best * as_close) close.add(closest, squared, triangles_[place], std::min(best, squared));
+    if (squared < best) {
+      best = squared;
+      triangle = triangles_[place];
+    }
+    return best * as_close;
+  });
   if (best == unknown && within < HUGE_VAL) return nearest(p, group);  // nothing is that close after all
   Nearest found{std::sqrt(best), triangle, std::nullopt};
   close.count(best, found);
   return found;
+}
+
+Vec3d TriangleSearch::closest_point_within(const Vec3d& p, double within, std::uint32_t group) const {
+  double best = within * within * as_close;
+  const double unknown = best;
+  Vec3d point = corners_.empty() ? Vec3d{} : verifier::closest_point(p, corners_.front());
+  search(p, best, group, [&](std::uint32_t /*place*/, const Vec3d& closest, double squared) {
+    if (squared < best) {
+      best = squared;
+      point = closest;
+    }
+    return best * as_close;  // of those as close the same one as nearest_within() finds
+  });
+  return best == unknown && within < HUGE_VAL ? closest_point_within(p, HUGE_VAL, group) : point;
+}
+
+double TriangleSearch::distance_above(const Vec3d& p, double enough, std::uint32_t group) const {
+  constexpr double rounding = 1e-12;
+  const double enough_squared = enough > 0 ? enough * enough * (1 - rounding) : -1;
+  double best = HUGE_VAL;
+  search(p, best, group, [&](std::uint32_t /*place*/, const Vec3d& /*closest*/, double squared) {
+    best = std::min(best, squared);
+    return best < enough_squared ? -HUGE_VAL : best;  // nothing is below that: the search ends
+  });
+  return std::sqrt(best);
 }
 
 bool TriangleSearch::crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach) const {

@@ -57,6 +57,12 @@ class TriangleSearch {
   /// The same, and faster, where a triangle is known to be within a distance.
   [[nodiscard]] Nearest nearest_within(const Vec3d& p, double within, std::uint32_t group) const;
 
+  /// The closest point of the triangles of a group, where one is known to be within a distance; costs less than
+  /// nearest_within().
+  [[nodiscard]] Vec3d closest_point_within(const Vec3d& p, double within, std::uint32_t group) const;
+  /// The distance of the closest triangle of a group; where that is below `enough`, maybe more, but below it, too.
+  [[nodiscard]] double distance_above(const Vec3d& p, double enough, std::uint32_t group) const;
+
   /// Finds all crossings of a line, those with triangles near its first `reach` at least; false if it comes too close
   /// to an edge to tell.
   [[nodiscard]] bool crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach = HUGE_VAL) const;
@@ -88,6 +94,10 @@ class TriangleSearch {
 
     void set(std::size_t k, const FlatBox& flat);
   };
+  /// Calls best = visit(place, closest point, its squared distance) for the triangles of a group that may be closer
+  /// than the best.
+  template <class Visit>
+  void search(const Vec3d& p, double best, std::uint32_t group, const Visit& visit) const;
   void make_flat_boxes(const Context& context);
   [[nodiscard]] static FlatBox flat_box(std::span<const Corners> triangles);
   [[nodiscard]] Two squared_bounds(const Vec3d& p, std::uint32_t first_child) const;

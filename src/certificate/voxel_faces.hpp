@@ -18,9 +18,10 @@ namespace blum::verifier {
 /// The squares, edges or corners of voxels that lie between those in a set and those that are not.
 class VoxelFaces {
  public:
+  using Voxel = std::array<std::int64_t, 3>;
   /// The lower face of a voxel along an axis; the voxel may lie just beyond the box.
   struct Face {
-    std::array<std::int64_t, 3> voxel{0, 0, 0};
+    Voxel voxel{0, 0, 0};
     std::size_t axis = 0;
   };
 
@@ -35,7 +36,7 @@ class VoxelFaces {
   [[nodiscard]] Nearest nearest(const Vec3d& p) const;
   [[nodiscard]] double distance(const Vec3d& p) const { return nearest(p).distance; }
   /// The voxel of the set that a point lies in; where voxels meet, one of them; nullopt outside.
-  [[nodiscard]] std::optional<std::array<std::int64_t, 3>> voxel_at(const Vec3d& p) const;
+  [[nodiscard]] std::optional<Voxel> voxel_at(const Vec3d& p) const;
   [[nodiscard]] bool contains(const Vec3d& p) const { return voxel_at(p).has_value(); }
 
   /// The number of bricks of 4 x 4 x 4 voxels that have faces.
@@ -43,6 +44,10 @@ class VoxelFaces {
   /// Calls use(face) for the faces of a brick.
   template <class Use>
   void for_each_face(std::size_t brick, const Use& use) const;
+
+  /// One of the voxels of the set that a segment lies in, boundaries included; nullopt where it leaves them, or where
+  /// rounding leaves doubt.
+  [[nodiscard]] std::optional<Voxel> held(const Vec3d& from, const Vec3d& to) const;
 
   /// The rectangle of a face: along the axes of the grid, from its first node.
   [[nodiscard]] Box3 rectangle(const Face& face) const;
@@ -57,36 +62,56 @@ class VoxelFaces {
   using Window = std::array<std::uint8_t, 25>;
 
   [[nodiscard]] Window window(const Brick& brick) const;
+  /// Calls use(x, y, z, axis) for the faces in a window: of the voxel there, counted from the brick's first one.
+  template <class Use>
+  static void for_each_face(const Window& in, const Use& use);
+  /// Squared distances of a point from the planes and the slabs of voxels of a brick, along each axis.
+  struct Apart;
+  [[nodiscard]] Apart apart(const Vec3d& q, const Brick& brick) const;
   [[nodiscard]] std::uint8_t five_bits(std::int64_t i, std::int64_t j, std::int64_t k) const;
   void find_bricks(std::int32_t layer, std::vector<Brick>& found) const;
+  /// One of the voxels of the set that have both points. @param a  voxels are from whole numbers to the next ones.
+  [[nodiscard]] std::optional<Voxel> voxel_around(const Vec3d& a, const Vec3d& b) const;
+  /// With the centres of voxels at whole numbers.
+  [[nodiscard]] Vec3d in_voxels(const Vec3d& p) const {
+    const Vec3d q = local(p);
+    return {q.x / grid_.spacing.x, q.y / grid_.spacing.y, q.z / grid_.spacing.z};
+  }
   [[nodiscard]] Vec3d local(const Vec3d& p) const { return grid_.direction.transposed_times(p - grid_.origin); }
 
   const VoxelSet& voxels_;
   GridSpec grid_;
-  std::vector<Brick> bricks_;  ///< in the tree's order
-  std::vector<Box3> boxes_;    ///< around the faces of each
+  std::vector<Brick> bricks_;    ///< in the tree's order
+  std::vector<Window> windows_;  ///< of each
+  std::vector<Box3> boxes_;      ///< around the faces of each
   BoxHierarchy tree_;
   Box3 box_;
 };
 
 template <class Use>
-void VoxelFaces::for_each_face(std::size_t brick, const Use& use) const {
-  const Window in = window(bricks_[brick]);
-  const Brick& at = bricks_[brick];
+void VoxelFaces::for_each_face(const Window& in, const Use& use) {
   for (std::size_t z = 1; z < 5; ++z) {
     for (std::size_t y = 1; y < 5; ++y) {
       const unsigned row = in[y + 5 * z];
       const std::array<unsigned, 3> before{row << 1U, in[y - 1 + 5 * z], in[y + 5 * (z - 1)]};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         for (unsigned differ = (row ^ before[axis]) & 0x1eU; differ != 0; differ &= differ - 1) {
-          use(Face{{4 * std::int64_t{at[0]} + std::countr_zero(differ) - 1,
-                    4 * std::int64_t{at[1]} + static_cast<std::int64_t>(y) - 1,
-                    4 * std::int64_t{at[2]} + static_cast<std::int64_t>(z) - 1},
-                   axis});
+          use(static_cast<std::size_t>(std::countr_zero(differ)) - 1, y - 1, z - 1, axis);
         }
       }
     }
   }
+}
+
+template <class Use>
+void VoxelFaces::for_each_face(std::size_t brick, const Use& use) const {
+  const Brick& at = bricks_[brick];
+  for_each_face(windows_[brick], [&](std::size_t x, std::size_t y, std::size_t z, std::size_t axis) {
+    use(Face{
+        {4 * std::int64_t{at[0]} + static_cast<std::int64_t>(x), 4 * std::int64_t{at[1]} + static_cast<std::int64_t>(y),
+         4 * std::int64_t{at[2]} + static_cast<std::int64_t>(z)},
+        axis});
+  });
 }
 
 }  // namespace blum::verifier

@@ -19,13 +19,18 @@ CertifiedAxis first_certified(std::span<const AxisForm> forms, FunctionRef<Decim
 
 CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, double theta,
                              std::optional<double> tolerance, const Context& context) {
+  return certified_axis(axis, AxisVerifier(mesh), theta, tolerance, context);
+}
+
+CertifiedAxis certified_axis(const MedialAxis& axis, const AxisVerifier& verifier, double theta,
+                             std::optional<double> tolerance, const Context& context) {
   const auto certificate = [&](const DecimatedAxis& made) {
     CertificateOptions options;
     options.theta = theta;
     options.lambda = axis.lambda();
     options.spacing = axis.report().bodies.front().spacing;
     if (made.deviation > 0) options.deviation = made.deviation;
-    return certify(made.axis, mesh, options, context);
+    return verifier.certify(made.axis, options, context);
   };
   return first_certified(
       axis_forms(axis.report(), tolerance),
@@ -35,13 +40,14 @@ CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, doubl
 CertifiedAxis certified_axis(const MeshView& mesh, double theta, const MedialAxisOptions& options,
                              std::optional<double> tolerance, const Context& context) {
   const Solid solid = Solid::of(mesh, context);
+  const AxisVerifier verifier(mesh);
   bool model_passes = false;
   const auto on_grid = [&](double shift) {
     MedialAxisOptions moved = options;
     moved.grid_shift = shift;
     const MedialAxis axis = medial_axis(solid, moved, context);
     model_passes = axis.report().topology_matches;
-    return certified_axis(axis, mesh, theta, tolerance, context);
+    return certified_axis(axis, verifier, theta, tolerance, context);
   };
   CertifiedAxis first = on_grid(options.grid_shift);
   return model_passes ? certified_on_some_grid(std::move(first), options.grid_shift, on_grid) : first;

@@ -76,6 +76,12 @@ void check_fine_enough(const GridSpec& grid, const MeshView& mesh) {
                     ", fewer than 8 along the mesh, " + "whose longest side is " + rounded_text(longest));
 }
 
+bool selects_same(const LabelSelection& a, const LabelSelection& b) {
+  if (a.rule != b.rule) return false;
+  if (a.rule == LabelSelection::Rule::label) return a.label == b.label;
+  return a.rule == LabelSelection::Rule::nonzero || a.threshold == b.threshold;
+}
+
 Certificate with_claims(Certificate certificate, const Complex& axis, const MedialClaims& claims,
                         const GridSpec* image_grid) {
   if (!claims.metadata.version.empty() && certificate.checked.sites) {
@@ -123,18 +129,29 @@ std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule foun
   return out;
 }
 
-Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
-                   const CertificateOptions& options, double available_memory, const Context& context) {
+MeshAxisVerifier::MeshAxisVerifier(const MeshView& mesh) : mesh_(mesh), polyhedron_(mesh) {}
+
+Certificate MeshAxisVerifier::verify(const Complex& axis, const MedialClaims& claims, const CertificateOptions& options,
+                                     double available_memory, const Context& context) const {
   const CertificateOptions checks = checkable(claims, SiteIds::features, options);
-  const MeshSolidRule found = solid_rule(mesh, context);
+  const MeshSolidRule found = polyhedron_.rule(context);
   const CompleteAxis all(axis);
   if (found.rule == SolidRule::polyhedron) {
-    return with_claims(certify(all.get(), mesh, checks, context), all.get(), claims, nullptr);
+    return with_claims(polyhedron_.certify(all.get(), checks, context), all.get(), claims, nullptr);
   }
   if (!claims.metadata.grid) throw UntoldVoxels(found.reason);
-  const GridSpec& grid = *claims.metadata.grid;
+  const auto voxels = voxels_on(*claims.metadata.grid, found.reason, available_memory, context);
+  return with_claims(voxels->verifier.certify(all.get(), checks, context), all.get(), claims, nullptr);
+}
+
+std::shared_ptr<const MeshAxisVerifier::Voxels> MeshAxisVerifier::voxels_on(const GridSpec& grid,
+                                                                            const std::string& reason,
+                                                                            double available_memory,
+                                                                            const Context& context) const {
+  const std::scoped_lock lock(mutex_);
+  if (voxels_ != nullptr && voxels_->grid == grid) return voxels_;
   validate(grid);
-  check_fine_enough(grid, mesh);
+  check_fine_enough(grid, mesh_);
   // Distances, winding numbers, and what the fields beside them take.
   const double bytes = 16.0 * static_cast<double>(grid.node_count());
   if (bytes > available_memory) {
@@ -142,24 +159,61 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
                       rounded_text(bytes / 1e9) + " GB of memory, which are not free; it is not one that Blum would " +
                       "have made here");
   }
-  const VoxelSet voxels = voxels_inside(mesh, grid, context);
+  VoxelSet voxels = voxels_inside(mesh_, grid, context);
   if (voxels.count() == 0) {
-    throw InvalidMesh("the mesh bounds no polyhedron (" + found.reason +
+    throw InvalidMesh("the mesh bounds no polyhedron (" + reason +
                       "), and no voxel of the grid that the axis names lies inside of it, so there is no solid");
   }
-  return with_claims(certify(all.get(), voxels, grid, &mesh, checks, context), all.get(), claims, nullptr);
+  voxels_ = std::make_shared<const Voxels>(Voxels{grid, AxisVerifier(std::move(voxels), grid, &mesh_)});
+  return voxels_;
+}
+
+/// A solid of an image: its voxels, or their smooth surface.
+struct ImageAxisVerifier::Selected {
+  LabelSelection selection;
+  std::optional<int> smooth;
+  std::optional<SmoothSurface> surface;
+  std::optional<MeshAxisVerifier> mesh;
+  std::optional<AxisVerifier> voxels;
+};
+
+Certificate ImageAxisVerifier::verify(const Complex& axis, const MedialClaims& claims, const LabelSelection& selection,
+                                      const CertificateOptions& options, const Context& context) const {
+  const auto solid = selected(selection, claims.metadata.smooth, context);
+  if (solid->mesh) return solid->mesh->verify(axis, claims, options, 1e300, context);
+  const CertificateOptions checks = checkable(claims, SiteIds::voxels, options);
+  const CompleteAxis all(axis);
+  return with_claims(solid->voxels->certify(all.get(), checks, context), all.get(), claims, &image_.grid);
+}
+
+std::shared_ptr<const ImageAxisVerifier::Selected> ImageAxisVerifier::selected(const LabelSelection& selection,
+                                                                               const std::optional<int>& smooth,
+                                                                               const Context& context) const {
+  const std::scoped_lock lock(mutex_);
+  if (selected_ != nullptr && selects_same(selected_->selection, selection) && selected_->smooth == smooth) {
+    return selected_;
+  }
+  const auto made = std::make_shared<Selected>();
+  made->selection = selection;
+  made->smooth = smooth;
+  if (smooth) {
+    made->surface = smooth_surface(image_, selection, {.iterations = *smooth}, context);
+    made->mesh.emplace(made->surface->mesh);
+  } else {
+    made->voxels.emplace(selected_voxels(image_, selection, context), image_.grid, nullptr);
+  }
+  selected_ = made;
+  return selected_;
+}
+
+Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
+                   const CertificateOptions& options, double available_memory, const Context& context) {
+  return MeshAxisVerifier(mesh).verify(axis, claims, options, available_memory, context);
 }
 
 Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
                    const LabelSelection& selection, const CertificateOptions& options, const Context& context) {
-  if (claims.metadata.smooth) {
-    const SmoothSurface surface = smooth_surface(image, selection, {.iterations = *claims.metadata.smooth}, context);
-    return verify(axis, claims, surface.mesh, options, 1e300, context);
-  }
-  const VoxelSet voxels = selected_voxels(image, selection, context);
-  const CertificateOptions checks = checkable(claims, SiteIds::voxels, options);
-  const CompleteAxis all(axis);
-  return with_claims(certify(all.get(), voxels, image.grid, nullptr, checks, context), all.get(), claims, &image.grid);
+  return ImageAxisVerifier(image).verify(axis, claims, selection, options, context);
 }
 
 }  // namespace blum

@@ -124,6 +124,32 @@ def test_what_no_form_of_is_certified_is_warned_of(axis, monkeypatch):
         assert not axis.certified(60).certificate.holds
 
 
+def test_one_verifier_certifies_many_axes_as_each_alone(axis, plate, tmp_path):
+    plate.write(tmp_path / "plate.ply")
+    of_mesh = blum.AxisVerifier(plate)
+    of_file = blum.AxisVerifier(tmp_path / "plate.ply")
+    for theta in (120, 60, 90):
+        piece = axis.simplify(theta)
+        alone = blum.certify(piece, plate, threads=1)
+        assert alone.holds
+        assert of_mesh.certify(piece) == of_file.certify(piece) == alone == piece.certificate
+        assert of_mesh.certify(piece, balls=False) == blum.certify(piece, plate, balls=False)
+    wrong = axis.simplify(60)
+    moved = blum.MedialComplex(wrong.vertices + 1, radius=wrong.radius, edges=wrong.edges, triangles=wrong.triangles)
+    assert not of_mesh.certify(moved)
+    with pytest.raises(TypeError, match="MedialComplex"):
+        of_mesh.certify(plate)
+    labels = np.zeros((6, 6, 12), np.uint8)
+    labels[1:4, 1:4, 1:5] = 1
+    labels[1:4, 1:4, 7:11] = 2
+    of_image = blum.AxisVerifier(labels)
+    for label in (1, 2, 1):
+        piece = blum.medial_axis(labels, label=label).simplify(60)
+        assert of_image.certify(piece) == piece.certificate
+        with pytest.warns(blum.InputWarning, match="was made with"):
+            assert not of_image.certify(piece, label=3 - label)
+
+
 def test_a_wrong_axis_is_not_certified(axis, plate):
     piece = axis.simplify(60)
     parts = {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "blum/certificate/axis_verifier.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/function_ref.hpp"
@@ -35,10 +36,15 @@ struct CertifiedAxis {
 /// The axis of a mesh at an angle as `blum medial` writes it: with its borders where they belong and few vertices, if
 /// it is certified so; else simpler, see axis_forms().
 /// @param axis       medial_axis(mesh).
+/// @param verifier   AxisVerifier(mesh): one for all angles and grids.
 /// @param theta      degrees.
 /// @param tolerance  as for axis_forms().
 /// @throws InvalidOption, Cancelled, as MedialAxis::fitted(), decimate() and certify(). Cost: theirs for each form that
 /// is tried, mostly one.
+[[nodiscard]] CertifiedAxis certified_axis(const MedialAxis& axis, const AxisVerifier& verifier, double theta,
+                                           std::optional<double> tolerance = {}, const Context& context = {});
+
+/// The same with a verifier for this axis alone.
 [[nodiscard]] CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, double theta,
                                            std::optional<double> tolerance = {}, const Context& context = {});
 

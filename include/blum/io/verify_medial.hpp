@@ -1,13 +1,18 @@
 // Blum: medial axes and what their files claim, checked against their solids. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "blum/certificate/axis_verifier.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
 #include "blum/io/medial_io.hpp"
@@ -47,20 +52,75 @@ class UntoldVoxels : public InvalidMesh {
 [[nodiscard]] std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found,
                                                     const GridSpec* image_grid);
 
-/// certify() against the solid of a mesh, with what is false of the claims among the mismatches: of the polyhedron, or,
-/// where the verifier finds none (solid_rule()), of the voxels inside on the grid that the claims name. What the file
-/// does not have is not checked, nor are sites that it does not have for this kind of solid. Where Blum wrote it, no
-/// vertex may lack a site.
-/// @param available_memory  bytes: a grid that takes more is refused.
-/// @throws UntoldVoxels where the claims name no grid and one is needed; InvalidGrid where that has fewer than 8 steps
-/// along the longest side of the mesh; InvalidMesh where no voxel of it lies inside; OutOfMemory; as certify() and
-/// voxels_inside().
+/// Certifies axes of a mesh with what their files claim. What it reads of the mesh it reads once (AxisVerifier), and
+/// the voxels of a mesh that bounds no polyhedron once for axes that name the same grid, one after the other. May be
+/// used from many threads at once.
+class MeshAxisVerifier {
+ public:
+  /// @param mesh  must stay as it is while this lives. @throws InvalidMesh for what validate() refuses.
+  explicit MeshAxisVerifier(const MeshView& mesh);
+  MeshAxisVerifier(const MeshAxisVerifier&) = delete;
+  MeshAxisVerifier& operator=(const MeshAxisVerifier&) = delete;
+
+  /// AxisVerifier::certify() against the solid of the mesh, with what is false of the claims among the mismatches: of
+  /// the polyhedron, or, where the verifier finds none (solid_rule()), of the voxels inside on the grid that the claims
+  /// name. What the file does not have is not checked, nor are sites that it does not have for this kind of solid.
+  /// Where Blum wrote it, no vertex may lack a site.
+  /// @param available_memory  bytes: a grid that takes more is refused.
+  /// @throws UntoldVoxels where the claims name no grid and one is needed; InvalidGrid where that has fewer than 8
+  /// steps along the longest side of the mesh; InvalidMesh where no voxel of it lies inside; OutOfMemory; as certify()
+  /// and voxels_inside().
+  [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims,
+                                   const CertificateOptions& options = {}, double available_memory = 1e300,
+                                   const Context& context = {}) const;
+
+  /// That of the polyhedron: certificates without claims.
+  [[nodiscard]] const AxisVerifier& polyhedron() const { return polyhedron_; }
+
+ private:
+  struct Voxels {
+    GridSpec grid;
+    AxisVerifier verifier;
+  };
+  [[nodiscard]] std::shared_ptr<const Voxels> voxels_on(const GridSpec& grid, const std::string& reason,
+                                                        double available_memory, const Context& context) const;
+
+  MeshView mesh_;
+  AxisVerifier polyhedron_;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const Voxels> voxels_;  ///< the last ones
+};
+
+/// The same for axes of an image: of the union of its selected, closed voxels; or, where the claims say so, of what
+/// their smooth surface bounds (MedialMetadata::smooth). The solid of the last selection is kept.
+class ImageAxisVerifier {
+ public:
+  /// @param image  must stay as it is while this lives.
+  explicit ImageAxisVerifier(const VoxelImageView& image) : image_(image) {}
+  ImageAxisVerifier(const ImageAxisVerifier&) = delete;
+  ImageAxisVerifier& operator=(const ImageAxisVerifier&) = delete;
+
+  /// @throws as certify(), selected_voxels() and smooth_surface().
+  [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const LabelSelection& selection,
+                                   const CertificateOptions& options = {}, const Context& context = {}) const;
+
+ private:
+  struct Selected;
+  [[nodiscard]] std::shared_ptr<const Selected> selected(const LabelSelection& selection,
+                                                         const std::optional<int>& smooth,
+                                                         const Context& context) const;
+
+  VoxelImageView image_;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const Selected> selected_;  ///< the last one
+};
+
+/// MeshAxisVerifier for one axis. @throws as MeshAxisVerifier::verify().
 [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
                                  const CertificateOptions& options = {}, double available_memory = 1e300,
                                  const Context& context = {});
 
-/// The same against the union of the selected, closed voxels of an image; or, where the claims say so, against what
-/// their smooth surface bounds (MedialMetadata::smooth). @throws as certify(), selected_voxels() and smooth_surface().
+/// ImageAxisVerifier for one axis. @throws as ImageAxisVerifier::verify().
 [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
                                  const LabelSelection& selection, const CertificateOptions& options = {},
                                  const Context& context = {});

@@ -1,7 +1,6 @@
 #include "certificate/homology/homology_check.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -266,7 +265,7 @@ HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vec
                                 context);
   for (const std::uint32_t e : cycles.closing())
     ++proofs[given.parts.body_of[given.incidence.edges()[e][0]]].generators;
-  std::unique_ptr<Complement> complement;
+  const Complement* complement = nullptr;
   if (needs_complement) complement = given.solid.solid->complement(context);
   if (complement != nullptr) {
     found.is_looked_at = true;

@@ -1,0 +1,97 @@
+#include "certificate/drawn_balls.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "blum/core/random.hpp"
+
+namespace blum::verifier {
+namespace {
+
+constexpr std::size_t most_points_tried = 16'384;
+constexpr std::size_t most_points_of_bodies = 32'768;
+constexpr std::size_t most_points_of_body = 2'048;
+constexpr std::size_t least_points_of_body = 64;
+
+std::size_t points_of_each(std::uint32_t body_count) {
+  return std::clamp(most_points_of_bodies / body_count, least_points_of_body, most_points_of_body);
+}
+
+/// The bodies, by the sizes of their boxes.
+Spread boxes_of(const SolidOracle& solid, std::uint32_t body_count) {
+  Spread boxes;
+  for (std::uint32_t b = 0; b < body_count; ++b) {
+    const Vec3d size = solid.box(b).size();
+    boxes.add(size.x * size.y * size.z, b);
+  }
+  return boxes;
+}
+
+}  // namespace
+
+BallDraws::BallDraws(const SolidOracle& solid, std::size_t count, std::function<std::optional<Start>(std::size_t)> draw)
+    : solid_(solid), draw_(std::move(draw)), list_(count), locks_(count / per_lock + 1) {}
+
+BallDraws::Known* BallDraws::shrunk(std::size_t k, double floor) const {
+  Shrinking& from = list_[k];
+  if (!from.is_drawn) {
+    if (const std::optional<Start> start = draw_(k)) {
+      from.body = start->body;
+      from.next.emplace(solid_, start->body, start->point, solid_.closest_point(start->point, start->body), 0);
+    }
+    from.is_drawn = true;
+  }
+  const auto end =
+      std::find_if(from.balls.begin(), from.balls.end(), [&](const Known& known) { return known.ball.angle < floor; });
+  if (end != from.balls.end()) return end == from.balls.begin() ? nullptr : &*std::prev(end);
+  TouchingBall ball;
+  while (from.next && from.next->shrink(solid_, floor, ball)) from.balls.push_back({ball, {}, {}});
+  return from.balls.empty() ? nullptr : &from.balls.back();
+}
+
+double BallDraws::distance(const Shrinking& from, Known& known) const {
+  if (!known.distance) known.distance = solid_.distance(known.ball.centre, from.body);
+  return *known.distance;
+}
+
+bool BallDraws::is_inside(const Shrinking& from, Known& known) const {
+  if (!known.is_inside) known.is_inside = solid_.depth(known.ball.centre, from.body) > 0;
+  return *known.is_inside;
+}
+
+DrawnBalls::DrawnBalls(const SolidOracle& solid, std::uint32_t body_count)
+    : solid_(solid),
+      boxes_(boxes_of(solid, body_count)),
+      every_(static_cast<std::uint32_t>((points_of_each(body_count) * body_count + most_points_of_bodies - 1) /
+                                        most_points_of_bodies)),
+      in_solid_(solid, boxes_.total() > 0 ? most_points_tried : 0, [this](std::size_t k) { return in_boxes(k); }) {
+  if (!(boxes_.total() > 0)) return;
+  for (std::uint32_t b = 0; b < body_count; b += every_) {
+    in_bodies_.emplace_back(solid, points_of_each(body_count), [this, b](std::size_t k) { return beside(b, k); });
+  }
+}
+
+std::optional<BallDraws::Start> DrawnBalls::in_box(std::uint32_t body, Random& random) const {
+  const Box3 box = solid_.box(body);
+  const Vec3d share = random.in_cube();
+  const Vec3d size = box.upper - box.lower;
+  const Vec3d p = box.lower + Vec3d{share.x * size.x, share.y * size.y, share.z * size.z};
+  const Location location = solid_.locate(p);
+  if (location.outside_by > 0 || location.body != body) return std::nullopt;
+  return BallDraws::Start{p, body};
+}
+
+std::optional<BallDraws::Start> DrawnBalls::in_boxes(std::size_t k) const {
+  Random random(0xb1a5ULL + k);
+  return in_box(boxes_.at(random.uniform()), random);
+}
+
+std::optional<BallDraws::Start> DrawnBalls::beside(std::uint32_t body, std::size_t k) const {
+  Random random(0xb0d1ULL + k);
+  if (!solid_.has_triangles()) return in_box(body, random);
+  const std::optional<Vec3d> p = solid_.beside_surface(body, random);
+  return p ? std::optional(BallDraws::Start{*p, body}) : std::nullopt;
+}
+
+}  // namespace blum::verifier
