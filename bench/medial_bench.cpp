@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "blum/axis/decimate.hpp"
 #include "blum/certificate/axis_verifier.hpp"
 #include "blum/certificate/certificate.hpp"
-#include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "support/measure.hpp"
 #include "support/shapes.hpp"

@@ -1,17 +1,18 @@
 // Blum: the subcommands of the tool, one file each. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "common/command_line.hpp"
+
 namespace blum::cli {
 
 /// What subcommands are added to.
 struct CommandLine {
-  CLI::App& app;
+  const Command& app;
   std::vector<std::string>& arguments;  ///< first to last; a subcommand may take some of its own out of them
 };
 

@@ -9,7 +9,7 @@ import numpy as np
 
 
 class Scene:
-    """The scene of a page or a server, as apps/cli/scene_blob.hpp lays it out."""
+    """The scene of a page or a server, as apps/cli/view/scene_blob.hpp lays it out."""
 
     def __init__(self, data):
         assert data[:8] == b"BLUMVIEW"

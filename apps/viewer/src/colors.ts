@@ -1,4 +1,4 @@
-// Colours, which come with the scene: apps/cli/colors.cpp makes them, so that pictures and page agree.
+// Colours, which come with the scene: apps/cli/common/colors.cpp makes them, so that pictures and page agree.
 
 export type Color = [number, number, number]; // sRGB, 0 to 1
 

@@ -1,4 +1,4 @@
-// The scene that `blum view` hands over: a header of JSON, and arrays behind it. apps/cli/scene_blob.hpp says how.
+// The scene that `blum view` hands over: a header of JSON, and arrays behind it. apps/cli/view/scene_blob.hpp says how.
 import type { Colors } from "./colors.ts";
 
 export type Numbers =

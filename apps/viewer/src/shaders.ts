@@ -21,7 +21,7 @@ export function useColors({ diverging, sequential, palette }: Colors): void {
   shared.palette.value = colorTexture(palette, paletteHues, THREE.NearestFilter);
 }
 
-// Where the colour of a region is in the palette, as region_color() in apps/cli/colors.cpp scrambles its number: what is
+// Where the colour of a region is in the palette, as region_color() in apps/cli/common/colors.cpp scrambles its number: what is
 // there twice, as a graphics card has no table of all numbers.
 const paletteHues = 256;
 const regionColor = /* glsl */ `

@@ -1,4 +1,4 @@
-// Lays out scenes as apps/cli/scene_blob.cpp does.
+// Lays out scenes as apps/cli/view/scene_blob.cpp does.
 import { deflateSync } from "node:zlib";
 
 const types = new Map<unknown, string>([
@@ -20,7 +20,7 @@ export function delta(numbers: Part["numbers"]): Uint8Array {
   return out;
 }
 
-/** A scene as apps/cli/scene_blob.cpp lays it out. */
+/** A scene as apps/cli/view/scene_blob.cpp lays it out. */
 export function sceneOf(header: (entries: object[]) => object, parts: Part[]): Uint8Array {
   const stored: Uint8Array[] = [];
   let offset = 0;

@@ -1,0 +1,143 @@
+#include "common/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/options.hpp"
+
+namespace blum::cli {
+
+CommandOption CommandOption::required() const {
+  option_->required();
+  return *this;
+}
+
+CommandOption CommandOption::type_name(const std::string& name) const {
+  option_->type_name(name);
+  return *this;
+}
+
+CommandOption CommandOption::one_value_each() const {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
+Command Command::add_subcommand(const std::string& name, const std::string& help) const {
+  return Command(*app_->add_subcommand(name, help));
+}
+
+CommandOption Command::add_option(const std::string& name, std::string& value, const std::string& help) const {
+  return CommandOption(*app_->add_option(name, value, help));
+}
+
+CommandOption Command::add_option(const std::string& name, std::optional<std::string>& value,
+                                  const std::string& help) const {
+  return CommandOption(*app_->add_option(name, value, help));
+}
+
+CommandOption Command::add_option(const std::string& name, std::vector<std::string>& values,
+                                  const std::string& help) const {
+  return CommandOption(*app_->add_option(name, values, help));
+}
+
+CommandOption Command::add_option_function(const std::string& name, std::function<void(const std::string&)> set,
+                                           const std::string& help) const {
+  return CommandOption(*app_->add_option_function<std::string>(name, std::move(set), help));
+}
+
+void Command::add_flag(const std::string& name, bool& value, const std::string& help) const {
+  app_->add_flag(name, value, help);
+}
+
+void Command::add_flag_function(const std::string& name, std::function<void()> set, const std::string& help) const {
+  app_->add_flag_callback(name, std::move(set), help);
+}
+
+void Command::footer(const std::string& text) const {
+  app_->footer(text);
+}
+
+void Command::callback(std::function<void()> run) const {
+  app_->callback(std::move(run));
+}
+
+namespace {
+
+/// A word of the command line that is neither an option nor a command, where a command is due.
+void check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), arguments[0]) != names.end()) return;
+  throw UsageError("there is no command '" + arguments[0] + "'" + hint(similar_words(arguments[0], names)) +
+                   "; the commands are " + join_words(names));
+}
+
+/// What CLI11 could make nothing of, with a hint for a misspelt option; empty where there is nothing.
+std::string leftover_text(const CLI::App& command) {
+  const std::vector<std::string> left = command.remaining(true);
+  if (left.empty()) return {};
+  const std::string word = left.front().substr(0, left.front().find('='));
+  if (word.size() < 2 || word[0] != '-') {
+    const CLI::Option* theta = command.get_option_no_throw("--theta");
+    const bool is_angle = theta != nullptr && theta->count() == 1 && looks_like_number(word);
+    return "'" + left.front() + "' was not expected" +
+           (is_angle ? "; for several angles, --theta " + theta->results().front() + "," + word : "");
+  }
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  if (word.size() == 2) {  // one letter: what begins with it
+    std::erase_if(names, [&](const std::string& name) { return name[2] != word[1]; });
+    return "there is no option " + word + hint(names);
+  }
+  return "there is no option " + word + hint(similar_words(word, names));
+}
+
+/// CLI11's own exits: help and version, which are no errors, are printed.
+void finish(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    app.exit(error);
+    std::fflush(stdout);
+    return;
+  }
+  std::string message = error.what();
+  while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
+  const auto used = app.get_subcommands();
+  const std::string command = used.empty() ? "blum" : "blum " + used.front()->get_name();
+  // A misspelt option leaves what it should have set missing: the first is the cause, and is said first.
+  const std::string leftover = leftover_text(used.empty() ? app : *used.front());
+  const bool only_leftover = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  if (!leftover.empty()) message = only_leftover ? leftover : leftover + "; also: " + message;
+  throw UsageError(message + "; see `" + command + " --help`");
+}
+
+}  // namespace
+
+void run_command_line(const ToolTexts& texts, const std::function<void(const Command&)>& add_commands,
+                      std::vector<std::string>& arguments) {
+  CLI::App app{texts.about, texts.name};
+  app.set_version_flag("--version", texts.version, "Print the version");
+  app.set_help_flag("-h,--help", "Print this help");
+  app.footer(texts.footer);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  add_commands(Command(app));
+  check_command(app, arguments);
+  if (arguments.empty()) arguments.emplace_back("--help");
+  std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+  try {
+    app.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    finish(app, error);
+  }
+}
+
+}  // namespace blum::cli

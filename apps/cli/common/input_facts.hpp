@@ -1,0 +1,40 @@
+// Blum: what the commands say of their input. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/grid/voxel_image.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "common/summary.hpp"
+
+namespace blum::cli {
+
+/// File, format and counts of a mesh.
+[[nodiscard]] Json file_json(const std::filesystem::path& path, const MeshFile& file);
+[[nodiscard]] std::string file_text(const MeshFile& file);
+
+/// Whether welding left nothing of a mesh's faces, and what to say then.
+[[nodiscard]] bool is_welded_away(const MeshFile& file);
+[[nodiscard]] std::string welded_away_text(const MeshFile& file);
+
+/// The same with the cheap facts of its surface.
+[[nodiscard]] Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
+                             const Orientation& facts);
+[[nodiscard]] std::string mesh_text(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
+                                    const Orientation& facts);
+
+/// File, format, type and grid of an image.
+[[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image);
+[[nodiscard]] std::string image_text(const std::filesystem::path& path, const VoxelImage& image);
+/// Whether no voxel holds a number.
+[[nodiscard]] bool has_only_nan(const VoxelImage& image);
+/// "uint8", "float32" and so on.
+[[nodiscard]] std::string type_name(const VoxelImage::Values& values);
+
+}  // namespace blum::cli

@@ -1,0 +1,128 @@
+#include "common/summary.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "common/options.hpp"
+
+namespace blum::cli {
+
+std::string bytes_text(double bytes) {
+  constexpr std::array<std::string_view, 7> units = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+  std::size_t unit = 0;
+  while (bytes >= 1024 && unit + 1 < units.size()) {
+    bytes /= 1024;
+    ++unit;
+  }
+  std::array<char, 32> text{};
+  const auto result =
+      std::to_chars(text.data(), text.data() + text.size(), bytes, std::chars_format::fixed, unit == 0 ? 0 : 1);
+  return std::string(text.data(), result.ptr) + " " + std::string(units[unit]);
+}
+
+std::string vector_text(const Vec3d& v) {
+  return "(" + rounded_text(v.x) + ", " + rounded_text(v.y) + ", " + rounded_text(v.z) + ")";
+}
+
+std::string size_text(const GridSpec& grid) {
+  return std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " + std::to_string(grid.size[2]);
+}
+
+std::string plural(std::uint64_t count, std::string_view one, std::string_view many) {
+  return count_text(count) + " " + std::string(count == 1 ? one : many);
+}
+
+std::string percentiles_text(std::span<const double> percents, std::span<const double> values) {
+  std::string out;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    out += (k == 0 ? "" : ", ") + rounded_text(percents[k]) + " % below " + rounded_text(values[k]);
+  }
+  return out;
+}
+
+std::string TextTable::text() const {
+  std::size_t width = 0;
+  for (const auto& [label, content] : rows_) width = std::max(width, label.size());
+  std::string text;
+  for (const auto& [label, content] : rows_) {
+    text += label + std::string(width - label.size() + 2, ' ') + content + "\n";
+  }
+  return text;
+}
+
+std::uint64_t peak_memory() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::vector<std::filesystem::path> ReportOptions::files() const {
+  if (!json || json_to_stdout()) return {};
+  if (json->empty()) throw UsageError("--json needs a file name, or - for standard output");
+  return {*json};
+}
+
+Json answer_json(std::string_view command, const Json& facts) {
+  Json json = {{"blum_version", BLUM_VERSION}, {"command", command}};
+  json.update(facts);
+  return json;
+}
+
+void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
+                   const std::vector<std::string>& warnings, const Json& outputs) {
+  answer["seconds"] = spent.seconds;
+  answer["total_seconds"] = spent.total;
+  answer["peak_memory_bytes"] = peak_memory();
+  answer["threads"] = thread_count(context);
+  answer["warnings"] = warnings;
+  answer["outputs"] = outputs;
+}
+
+void report(const ReportOptions& options, const Json& json, const std::string& text) {
+  if (options.json) {
+    // Names of files need not be valid UTF-8.
+    const std::string dump = json.dump(2) + "\n";
+    if (options.json_to_stdout()) {
+      print(dump);
+    } else {
+      AtomicFile file(*options.json);
+      file.write(dump);
+      file.commit();
+    }
+  }
+  if (!options.quiet && !options.json_to_stdout()) print(text);
+}
+
+void warn(const std::vector<std::string>& warnings) {
+  std::fflush(stdout);
+  for (const std::string& warning : warnings) std::fprintf(stderr, "blum: warning: %s\n", warning.c_str());
+}
+
+void print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw FileError("standard output cannot be written");
+  }
+}
+
+PhaseSummary summarize(const std::vector<PhaseTime>& phases) {
+  PhaseSummary out;
+  out.seconds = to_json(phases);
+  for (const PhaseTime& phase : phases) out.total += phase.seconds;
+  const auto rounded = [](double seconds) { return rounded_text(std::round(seconds * 1e3) / 1e3); };
+  std::string each;
+  for (const auto& [phase, seconds] : out.seconds.members()) {
+    each += (each.empty() ? " (" : ", ") + phase + " " + rounded(seconds.number());
+  }
+  out.text = rounded(out.total) + " s" + each + (each.empty() ? "" : ")");
+  return out;
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,442 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/field/distance_transform.hpp"
+#include "blum/field/field.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/io/field_io.hpp"
+#include "commands.hpp"
+#include "common/common_options.hpp"
+#include "common/files.hpp"
+#include "common/input_facts.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/solid_input.hpp"
+#include "common/summary.hpp"
+#include "field/field_statistics.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum field bunny.obj -o bunny.nrrd --resolution 256
+  blum field bunny.obj -o bunny.npz --band 3v --json summary.json
+  blum field part.stl -o part.vti --weld 1e-6 --sign winding
+  blum field parts.ply -o gap.npz --order 2 --second other-object
+  blum field part.ply -o cut.nrrd --bounds -1,-1,0,1,1,0      one layer: a 2D field
+  blum field scan.nii.gz -o organ.nrrd --label 1,3            organ-label1.nrrd and organ-label3.nrrd
+  blum field scan.nrrd -o bone.npz --threshold 300)";
+
+/// The command line as text; values are read in checked order by `resolve`.
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> resolution, spacing, bounds, padding, threshold, weld, threads, device;
+  OptionTexts<FieldOptions> options;
+  std::vector<std::string> labels;
+  ReportOptions report;
+};
+
+struct Request {
+  fs::path input;
+  fs::path output;
+  int resolution = 256;
+  std::optional<double> spacing;
+  std::optional<Box3> bounds;
+  double padding = 0.1;
+  OptionTexts<FieldOptions> option_texts;
+  FieldOptions options;  ///< lengths in voxels are known with the grid only
+  Selections selections;
+  std::optional<double> weld;
+  int threads = 0;
+  Device device;
+  ReportOptions report;
+};
+
+Request parse(const Arguments& a) {
+  Request r;
+  r.input = a.input;
+  r.output = a.output;
+  check_extension("--output", r.output, file_extensions(FileContent::field, FileAccess::write));
+  if (r.input.empty()) throw UsageError("INPUT needs a file name");
+  exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
+  exclude(a.bounds.has_value(), "--bounds", a.padding.has_value(), "--padding", "the bounds are taken as they are");
+  if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
+  if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
+  if (a.bounds) r.bounds = parse_bounds("--bounds", *a.bounds);
+  if (a.padding) r.padding = parse_non_negative("--padding", *a.padding);
+  exclude(a.options.has("site_ids"), "--site-ids", a.options.has("sites"), "--no-sites", "there are none to number");
+  r.option_texts = a.options;
+  r.options = a.options.read(1);
+  if (a.options.has("second") && r.options.order != 2) throw UsageError("--second needs --order 2");
+  r.selections = parse_selections(a.labels, a.threshold);
+  r.weld = parse_weld(a.weld);
+  r.threads = parse_threads(a.threads);
+  if (a.device) r.device = parse_device(*a.device);
+  r.report = a.report;
+  return r;
+}
+
+void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
+  if (kind == InputKind::mesh) {
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, r.input, "a mesh",
+                 "images");
+    return;
+  }
+  refuse_given({{a.resolution.has_value(), "--resolution"},
+                {a.spacing.has_value(), "--spacing"},
+                {a.bounds.has_value(), "--bounds"},
+                {a.padding.has_value(), "--padding"},
+                {a.options.has("site_ids"), "--site-ids"},
+                {a.options.has("sites"), "--no-sites"},
+                {a.options.has("order"), "--order"},
+                {a.options.has("second"), "--second"},
+                {a.weld.has_value(), "--weld"},
+                {r.options.sign == SignMode::normals, "--sign normals"},
+                {r.options.sign == SignMode::winding, "--sign winding"}},
+               r.input, "an image", "meshes");
+}
+
+/// What a run gathers for its summary.
+struct Run {
+  Json input;
+  std::string input_text;
+  Json fields = Json::array();
+  std::vector<PhaseTime> phases;
+  double field_seconds = 0;
+  std::vector<fs::path> outputs;
+  std::optional<fs::path> removed;       ///< sites of a field that was replaced by one without
+  std::vector<fs::path> removed_second;  ///< likewise what was of order 2
+  std::vector<std::string> warnings;
+  TextTable table;
+  bool names_device = false;  ///< one other than the CPU was asked for, which `auto` may be, too
+  void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
+};
+
+Json kind_json(const KindCount& count) {
+  return {{"nodes", count.nodes}, {"sites", count.sites}};
+}
+
+Json sites_json(const Field& field, const FieldStatistics& s) {
+  if (field.site.empty()) return nullptr;
+  const SiteIds ids = field.site_ids;
+  Json json = {{"count", to_string(ids)}, {"distinct", s.all.sites}, {"nodes_without", s.siteless_nodes}};
+  if (ids == SiteIds::features) {
+    json["vertices"] = kind_json(s.kinds[0]);
+    json["edges"] = kind_json(s.kinds[1]);
+    json["faces"] = kind_json(s.kinds[2]);
+  }
+  return json;
+}
+
+std::string sites_text(const Field& field, const FieldStatistics& s) {
+  if (field.site.empty()) return "none, as asked for";
+  const SiteIds ids = field.site_ids;
+  if (ids == SiteIds::voxels) return count_text(s.all.sites) + " closest voxels";
+  if (ids == SiteIds::triangles) return count_text(s.all.sites) + " closest triangles";
+  const auto part = [&](std::size_t kind, const char* name) {
+    const double share =
+        s.all.nodes == 0 ? 0 : 100.0 * static_cast<double>(s.kinds[kind].nodes) / static_cast<double>(s.all.nodes);
+    return count_text(s.kinds[kind].sites) + " " + name + " (" + rounded_text(std::round(share * 10) / 10) + " %)";
+  };
+  return part(0, "vertices") + ", " + part(1, "edges") + ", " + part(2, "faces") + " of the nodes' closest";
+}
+
+Json second_json(const Field& field, const FieldStatistics& s) {
+  if (!s.second) return nullptr;
+  return {{"rule", field.second ? Json(to_string(*field.second)) : Json(nullptr)},
+          {"minimum", s.second->minimum ? Json(*s.second->minimum) : Json(nullptr)},
+          {"maximum", s.second->maximum ? Json(*s.second->maximum) : Json(nullptr)},
+          {"nodes_without", s.second->nodes_without}};
+}
+
+std::string second_text(const Field& field, const SecondStatistics& s) {
+  std::string text = "no site may be second";
+  if (s.minimum && s.maximum) text = "distance " + rounded_text(*s.minimum) + " to " + rounded_text(*s.maximum);
+  if (field.second) text += ", " + std::string(to_string(*field.second));
+  if (s.nodes_without > 0) text += "; " + count_text(s.nodes_without) + " nodes have none";
+  return text;
+}
+
+/// `label` may be null.
+void add_field(Run& run, const Field& field, const FieldStatistics& s, const std::vector<fs::path>& files,
+               const std::int64_t* label) {
+  Json json;
+  if (label) json["label"] = *label;
+  Json names = Json::array();
+  for (const fs::path& file : files) {
+    names.push_back(file.string());
+    run.outputs.push_back(file);
+  }
+  json["files"] = names;
+  json["sign"] = {{"rule", to_string(field.sign_rule)}, {"reason", field.sign_reason}};
+  json["device"] = to_string(field.device);
+  json["device_reason"] = field.device_reason.empty() ? Json(nullptr) : Json(field.device_reason);
+  json["band"] = field.band ? Json(*field.band) : Json(nullptr);
+  json["distance"] = {{"minimum", s.minimum}, {"maximum", s.maximum}, {"inside_nodes", s.inside_nodes}};
+  json["sites"] = sites_json(field, s);
+  json["second"] = second_json(field, s);
+  run.fields.push_back(json);
+
+  if (label) run.table.add("label", std::to_string(*label));
+  run.table.add("sign",
+                std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
+  if (run.names_device) run.table.add("device", to_string(field.device));
+  if (!field.device_reason.empty()) run.table.add("no device", field.device_reason);
+  run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
+                                (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
+  run.table.add("sites", sites_text(field, s));
+  if (s.second) run.table.add("second", second_text(field, *s.second));
+}
+
+/// The largest spacing along which an image has neighbours.
+double coarsest_step(const GridSpec& grid) {
+  double step = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.size[axis] > 1) step = std::max(step, grid.spacing[axis]);
+  }
+  return step > 0 ? step : grid.spacing.x;
+}
+
+/// What deserves a look although the field was made as asked.
+std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& s, const MeshView& mesh,
+                                     const Orientation& facts) {
+  if (field.sign_rule == SignRule::none) return {};
+  if (facts.closed && facts.oriented && !facts.outward) {
+    if (facts.signed_volume < 0) {
+      return {"the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"};
+    }
+    // Shells that cross have no depth that would tell which way they must face; winding numbers join them.
+    if (field.sign_rule == SignRule::normals || !SelfIntersectionSearch().finds_any(mesh)) {
+      return {
+          "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
+          "says more of its shells"};
+    }
+  }
+  if (s.inside_nodes > 0) return {};
+  if (facts.inconsistent_edges > 0) {
+    return {"no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
+            " between triangles that face different ways, so that their winding numbers cancel; orient the mesh first"};
+  }
+  return {"no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"};
+}
+
+void finish(const Request& request, Run& run, const GridSpec& grid, const Context& context) {
+  const PhaseSummary spent = summarize(run.phases);
+  const double nodes = static_cast<double>(grid.node_count()) * static_cast<double>(run.fields.size());
+  const double rate = nodes / std::max(run.field_seconds, 1e-9);
+  Json outputs = Json::array();
+  for (const fs::path& file : run.outputs) outputs.push_back(file.string());
+  Json removed_second = Json::array();
+  for (const fs::path& file : run.removed_second) removed_second.push_back(file.string());
+  const Json json = answer_json("field", {{"input", run.input},
+                                          {"grid", to_json(grid)},
+                                          {"sign_asked", to_string(request.options.sign)},
+                                          {"fields", run.fields},
+                                          {"seconds", spent.seconds},
+                                          {"field_seconds", run.field_seconds},
+                                          {"total_seconds", spent.total},
+                                          {"nodes_per_second", rate},
+                                          {"peak_memory_bytes", peak_memory()},
+                                          {"threads", thread_count(context)},
+                                          {"thread_backend", thread_backend()},
+                                          {"warnings", run.warnings},
+                                          {"outputs", outputs},
+                                          {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)},
+                                          {"removed_second", removed_second}});
+  run.table.add("time", spent.text);
+  run.table.add("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
+                             plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +
+                             bytes_text(static_cast<double>(peak_memory())) + " at most");
+  for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
+  if (run.removed) run.table.add("removed", run.removed->string() + ": sites of the field that was replaced");
+  for (const fs::path& file : run.removed_second) {
+    run.table.add("removed", file.string() + ": of the second order of the field that was replaced");
+  }
+  report(request.report, json, run.input_text + run.table.text());
+  if (!request.report.quiet) warn(run.warnings);
+}
+
+GridSpec make_grid(const Request& r, const Box3& box) {
+  if (r.spacing) check_spacing(*r.spacing, r.bounds.value_or(box));
+  if (r.bounds) return r.spacing ? grid_in_with_spacing(*r.bounds, *r.spacing) : grid_in(*r.bounds, r.resolution);
+  return r.spacing ? grid_around_with_spacing(box, *r.spacing, r.padding) : grid_around(box, r.resolution, r.padding);
+}
+
+void check_field_memory(const GridSpec& grid, std::size_t fields, double bytes_per_node = 8) {
+  check_memory(bytes_per_node * static_cast<double>(grid.node_count()) * static_cast<double>(fields),
+               "a grid of " + size_text(grid) + " nodes", "use a coarser grid, or smaller bounds");
+}
+
+void add_grid_text(Run& run, const GridSpec& grid) {
+  run.table.add("grid",
+                size_text(grid) + " nodes, spacing " +
+                    (grid.spacing.x == grid.spacing.y && grid.spacing.y == grid.spacing.z ? rounded_text(grid.spacing.x)
+                                                                                          : vector_text(grid.spacing)) +
+                    ", origin " + vector_text(grid.origin));
+}
+
+void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) {
+  Context context = make_context(r.threads, progress, interrupt);
+  context.device = r.device;
+  check_outputs(
+      [&] {
+        std::vector<fs::path> files = files_of_field(r.output, true, r.options.order);
+        for (const fs::path& file : r.report.files()) files.push_back(file);
+        return files;
+      }(),
+      {r.input});
+  Run run;
+  run.names_device = r.device != Device::cpu();
+  Stopwatch watch;
+  MeshFile file;
+  {
+    const Unattended reading;
+    file = read_mesh_of_any_name(r.input, {r.weld});
+  }
+  run.time("read", watch.lap());
+  const MeshView mesh = file.mesh;
+  validate(mesh);
+  const SiteTable sites(mesh, context);
+  const Orientation facts = orientation(mesh, sites);
+  run.input = mesh_json(r.input, file, sites, facts);
+  run.input_text = mesh_text(r.input, file, sites, facts);
+  run.time("input facts", watch.lap());
+
+  const GridSpec grid = make_grid(r, bounds(mesh));
+  // The second order needs the sites of both on the way.
+  check_field_memory(grid, 1, r.options.order == 2 ? 16 : r.options.sites ? 8 : 4);
+  add_grid_text(run, grid);
+  static_cast<void>(watch.lap());
+  const Field field = distance_field(mesh, grid, r.option_texts.read(grid.spacing.x), context);
+  run.field_seconds = watch.lap();
+  run.phases.insert(run.phases.end(), field.phases.begin(), field.phases.end());
+  progress.clear();
+
+  const SiteTable* features = r.options.site_ids == SiteIds::features ? &sites : nullptr;
+  const FieldStatistics statistics = field_statistics(field, features, context);
+  run.time("statistics", watch.lap());
+  if (!r.options.sites) run.removed = sites_of_replaced_field(r.output);
+  if (r.options.order == 1) run.removed_second = second_of_replaced_field(r.output);
+  write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
+  run.time("write", watch.lap());
+  progress.clear();
+  add_field(run, field, statistics, files_of_field(r.output, r.options.sites, r.options.order), nullptr);
+  run.warnings = warnings_of(field, statistics, mesh, facts);
+  if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
+  finish(r, run, grid, context);
+}
+
+void run_image(const Request& r, Progress& progress, const Interrupt& interrupt) {
+  Context context = make_context(r.threads, progress, interrupt);
+  context.device = r.device;
+  std::vector<fs::path> names;
+  if (r.selections.labels.size() < 2) names.push_back(r.output);
+  if (r.selections.labels.size() >= 2) {
+    for (const std::int64_t label : r.selections.labels) names.push_back(with_label(r.output, label));
+  }
+  std::vector<fs::path> all = r.report.files();
+  for (const fs::path& name : names) {
+    for (const fs::path& file : files_of_field(name)) all.push_back(file);
+  }
+  check_outputs(all, {r.input});
+
+  Run run;
+  run.names_device = r.device != Device::cpu();
+  Stopwatch watch;
+  VoxelImage image;
+  {
+    const Unattended reading;
+    image = read_image_of_any_name(r.input);
+  }
+  run.time("read", watch.lap());
+  if (has_only_nan(image)) {
+    throw FileError("'" + r.input.string() + "': every voxel is NaN (not a number), so none can be selected");
+  }
+  run.input = image_json(r.input, image);
+  run.input_text = image_text(r.input, image);
+  run.time("input facts", watch.lap());
+  const std::vector<LabelSelection> selections = r.selections.all();
+  check_field_memory(image.grid, selections.size());
+  add_grid_text(run, image.grid);
+  DistanceTransformOptions options;
+  options.is_signed = r.options.sign != SignMode::none;
+  options.band = r.option_texts.read(coarsest_step(image.grid)).band;
+  static_cast<void>(watch.lap());
+  std::vector<Field> fields = distance_transforms(image, selections, options, context);
+  run.field_seconds = watch.lap();
+  progress.clear();
+  for (const Field& field : fields) run.phases.insert(run.phases.end(), field.phases.begin(), field.phases.end());
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    static_cast<void>(watch.lap());
+    const FieldStatistics statistics = field_statistics(fields[i], nullptr, context);
+    run.time("statistics", watch.lap());
+    write_field(names[i], fields[i], {nullptr, nullptr, r.input.filename().string(), BLUM_VERSION, image.space},
+                context);
+    run.time("write", watch.lap());
+    add_field(run, fields[i], statistics, files_of_field(names[i]),
+              r.selections.labels.empty() ? nullptr : &r.selections.labels[i]);
+    fields[i] = {};
+  }
+  progress.clear();
+  finish(r, run, image.grid, context);
+}
+
+void run(const Arguments& arguments) {
+  const Request request = parse(arguments);
+  const InputKind kind = input_kind(request.input);
+  // The distances of a .nrrd can be read as an image of numbers, but only a threshold makes sense of them.
+  const bool is_image = file_extension(request.input) == ".nrrd";
+  if (kind == InputKind::field && !(is_image && arguments.threshold)) {
+    throw FileError("'" + request.input.string() + "' is a field; a mesh or a voxel image is needed here" +
+                    (is_image ? ", or --threshold, to take it as an image" : ""));
+  }
+  check_applicable(arguments, request, kind);
+  Progress progress(!request.report.quiet);
+  const Interrupt interrupt;
+  kind == InputKind::mesh ? run_mesh(request, progress, interrupt) : run_image(request, progress, interrupt);
+}
+
+}  // namespace
+
+void add_field_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  const Command command = line.app.add_subcommand("field", "Exact distance and closest site at every node of a grid");
+  command.add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
+      .required();
+  command
+      .add_option("-o,--output", a->output,
+                  "Field file: .nrrd (and OUT.site.nrrd; of order 2 OUT.distance2.nrrd, OUT.site2.nrrd), .npz or .vti")
+      .required()
+      .type_name("FILE");
+  const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
+    add_text_option(command, name, value, type, help);
+  };
+  text("--resolution", a->resolution, "N", "Mesh: nodes along the longest side of the grid (default 256)");
+  text("--spacing", a->spacing, "H", "Mesh: distance between nodes, instead of --resolution");
+  text("--bounds", a->bounds, "BOX",
+       "Mesh: grid box x0,y0,z0,x1,y1,z1, grown to whole steps; a side of zero gives a 2D field");
+  text("--padding", a->padding, "F", "Mesh: room around the shape, as a part of its longest side (default 0.1)");
+  a->options.add_to(command, "", {}, true);
+  add_label_option(command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give a field each");
+  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  add_weld_option(command, a->weld);
+  add_threads_option(command, a->threads);
+  add_device_option(command, a->device);
+  add_report_options(command, a->report);
+  command.footer(examples);
+  command.callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,54 @@
+#include "medial/axis_solid.hpp"
+
+#include "common/options.hpp"
+
+namespace blum::cli {
+namespace {
+
+/// Whether a file tells how it was made: .obj, .ma and those of other programs do not.
+bool tells_its_solid(const MedialMetadata& metadata) {
+  return !metadata.solid_rule.empty();
+}
+
+}  // namespace
+
+SolidSelection parse_solid(const std::vector<std::string>& labels, const std::optional<std::string>& threshold,
+                           const std::optional<std::string>& weld) {
+  const Selections selections = parse_selections(labels, threshold);
+  if (selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
+  SolidSelection out;
+  if (!selections.labels.empty()) out.label = selections.labels.front();
+  out.threshold = selections.threshold;
+  out.weld = parse_weld(weld);
+  return out;
+}
+
+AxisSolid solid_of_axis(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
+                        const std::filesystem::path& axis) {
+  return blum::solid_of_axis(given, kind == InputKind::image, metadata, "'" + axis.string() + "'",
+                             OptionStyle::command_line);
+}
+
+void record(const LabelSelection& selection, std::optional<double> weld, InputKind kind, MedialMetadata& metadata) {
+  if (kind == InputKind::mesh) {
+    metadata.weld = weld;
+    return;
+  }
+  if (selection.rule == LabelSelection::Rule::label) metadata.label = selection.label;
+  if (selection.rule == LabelSelection::Rule::threshold) metadata.threshold = selection.threshold;
+}
+
+std::string missing_options(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
+                            bool topology_holds) {
+  if (tells_its_solid(metadata)) return {};
+  if (kind == InputKind::mesh) {
+    // Welding moves vertices by little, and changes what is closed.
+    if (given.weld || topology_holds) return {};
+    return "; the file of the axis does not tell how the mesh was read: if --weld was given then, give it here too";
+  }
+  if (given.label || given.threshold) return {};
+  return "; the file of the axis does not tell which voxels it is of: if --label or --threshold was given then, or "
+         "--smooth, give it here too";
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,71 @@
+#include "medial/extended_file.hpp"
+
+#include <string_view>
+
+#include "blum/io/extended_io.hpp"
+#include "blum/io/formats.hpp"
+#include "common/common_options.hpp"
+#include "common/described.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+
+namespace blum::cli {
+
+namespace fs = std::filesystem;
+
+void add_extend_options(const Command& command, std::optional<std::string>& extend,
+                        std::optional<std::string>& length) {
+  const std::string names = extension_list(FileContent::extended_axis, FileAccess::write);
+  add_text_option(
+      command, "--extend", extend, "FILE",
+      ("Its sheets, continued to the surface, for meshes of shells (" + names + "); best at --theta 110").c_str());
+  add_text_option(command, "--extend-length", length, "N",
+                  "With --extend: continue a rim by at most N of its radii (default 4)");
+}
+
+std::optional<fs::path> parse_extend(const std::optional<std::string>& text) {
+  if (!text) return std::nullopt;
+  check_extension("--extend", *text, file_extensions(FileContent::extended_axis, FileAccess::write));
+  return fs::path(*text);
+}
+
+ExtendOptions parse_extend_length(const std::optional<std::string>& text, bool has_extend) {
+  ExtendOptions options;
+  if (!text) return options;
+  if (!has_extend) throw UsageError("--extend-length needs --extend: it says how far rims are continued there");
+  options.max_length = parse_positive("--extend-length", *text);
+  return options;
+}
+
+std::string extended_text(const ExtendReport& report) {
+  if (report.rim_vertices == 0) return "nothing: the axis has no rims";
+  std::string text = "area from " + rounded_text(report.axis_area) + " to " + rounded_text(report.area) + " by " +
+                     plural(report.triangles, "triangle", "triangles") + "; of " +
+                     plural(report.rim_vertices, "rim vertex", "rim vertices") + " " +
+                     count_text(report.reached_border) + " reach the surface";
+  if (report.reached_sheet > 0) text += ", " + count_text(report.reached_sheet) + " another sheet";
+  if (report.at_border > 0) text += ", " + count_text(report.at_border) + " were there";
+  if (report.not_reached > 0) text += ", " + count_text(report.not_reached) + " reach nothing";
+  return text;
+}
+
+std::vector<std::string> extended_warnings(const ExtendReport& report) {
+  if (!(report.open_length > 0)) return {};
+  return {"of rims " + rounded_text(report.rim_length) + " long, " + rounded_text(report.open_length) +
+          " are not extended: nothing is near, or triangles would fold back or leave the solid"};
+}
+
+Json extended_json(const ExtendReport& report, const fs::path& file) {
+  Json json{{"file", file.string()}};
+  json.update(to_json(report));
+  return json;
+}
+
+fs::path beside_axis(const fs::path& file, const fs::path& output, const fs::path& name) {
+  fs::path out = file.parent_path() / file.stem();
+  out += name.stem().string().substr(output.stem().string().size());
+  out += file.extension();
+  return out;
+}
+
+}  // namespace blum::cli

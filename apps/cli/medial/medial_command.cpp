@@ -1,0 +1,596 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/axis/decimate.hpp"
+#include "blum/axis/extend_axis.hpp"
+#include "blum/axis/prune_sheets.hpp"
+#include "blum/certificate/certificate.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/field/smooth_surface.hpp"
+#include "blum/io/certified_axis.hpp"
+#include "blum/io/complex_io.hpp"
+#include "blum/io/draft.hpp"
+#include "blum/io/extended_io.hpp"
+#include "blum/io/graph_io.hpp"
+#include "blum/io/medial_io.hpp"
+#include "blum/medial_axis/axis_forms.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+#include "commands.hpp"
+#include "common/common_options.hpp"
+#include "common/files.hpp"
+#include "common/input_facts.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/solid_input.hpp"
+#include "common/summary.hpp"
+#include "medial/axis_graph_file.hpp"
+#include "medial/axis_solid.hpp"
+#include "medial/extended_file.hpp"
+#include "medial/medial_report.hpp"
+#include "medial/medial_run.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum medial part.stl -o part.vtp                        for ParaView, with all attributes
+  blum medial part.stl -o part.vtp --theta 20,60,120      part-theta20.vtp and so on
+  blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
+  blum medial part.stl -o part.vtp --graph part.json      its sheets with their thickness, seams, curves, junctions
+  blum medial part.stl -o part.vtp --theta 110 --extend shell.ply   its sheets up to the surface, for shell elements
+  blum medial scan.nii.gz -o vessels.npz --label 1,3      vessels-label1.npz and vessels-label3.npz
+  blum medial scan.nii.gz -o vessels.npz --smooth         of the smooth surface that the voxels sample
+
+Exit status 3: the axis could not be certified, and no file was written.)";
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> theta, prune, simplify, threshold, weld, threads, graph, extend, extend_length;
+  OptionTexts<MedialAxisOptions> options;
+  std::vector<std::string> labels;
+  bool allow_uncertified = false;
+  bool nested = false;
+  bool smooth = false;
+  ReportOptions report;
+};
+
+struct Request {
+  fs::path input;
+  fs::path output;
+  std::optional<fs::path> graph;
+  std::optional<fs::path> extend;
+  ExtendOptions extending;
+  MedialAxisOptions options;
+  std::vector<double> thetas{60};  ///< rising where sheets are pruned
+  bool prunes_sheets = false;
+  std::optional<double> simplify;  ///< mesh units; a quarter of a voxel where it is not set
+  Selections selections;
+  std::optional<double> weld;
+  bool allow_uncertified = false;
+  bool nested = false;
+  bool smooth = false;          ///< images: of their smooth surface
+  bool has_resolution = false;  ///< or a spacing: voxels need not be those of the image
+  int threads = 0;
+  ReportOptions report;
+};
+
+std::vector<double> parse_thetas(const std::string& text) {
+  std::vector<double> thetas;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const double theta = parse_angle("--theta", std::string_view(text).substr(begin, end - begin));
+    if (std::find(thetas.begin(), thetas.end(), theta) != thetas.end()) {
+      throw UsageError("--theta names " + rounded_text(theta) + " twice");
+    }
+    thetas.push_back(theta);
+    begin = end + 1;
+  }
+  return thetas;
+}
+
+Request parse(const Arguments& a) {
+  Request r;
+  r.input = a.input;
+  r.output = a.output;
+  check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::both));
+  if (r.input.empty()) throw UsageError("INPUT needs a file name");
+  r.graph = parse_graph(a.graph);
+  r.extend = parse_extend(a.extend);
+  r.extending = parse_extend_length(a.extend_length, r.extend.has_value());
+  exclude(a.options.has("resolution"), "--resolution", a.options.has("spacing"), "--spacing",
+          "each sets the voxel size");
+  r.options = a.options.read();
+  if (a.theta) r.thetas = parse_thetas(*a.theta);
+  if (a.prune && *a.prune != "sheets") throw UsageError("--prune '" + *a.prune + "': must be sheets");
+  r.prunes_sheets = a.prune.has_value();
+  r.nested = a.nested;
+  r.smooth = a.smooth;
+  r.has_resolution = a.options.has("resolution") || a.options.has("spacing");
+  if (r.nested && !may_hold_further(r.output)) {
+    throw UsageError("--nested needs an output with the extension .npz: the other formats hold the axis of one angle");
+  }
+  if (r.nested && r.thetas.size() > 1) {
+    throw UsageError("--nested keeps the axes of all angles from --theta on in one file: give one angle");
+  }
+  if (a.simplify) r.simplify = parse_non_negative("--simplify", *a.simplify);
+  if (r.nested && r.simplify.value_or(0) > 0) {
+    throw UsageError("--nested keeps all vertices, as axes of several angles share them: leave --simplify out");
+  }
+  if (r.nested) r.simplify = 0;
+  exclude(r.nested, "--nested", r.prunes_sheets, "--prune", "sheets that go whole have no order to keep");
+  if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
+  // Sheets are pruned whole, so they must be whole first.
+  r.options.least_theta = r.prunes_sheets ? 0 : *std::min_element(r.thetas.begin(), r.thetas.end());
+  if (!r.prunes_sheets && !r.nested) r.options.greatest_theta = *std::max_element(r.thetas.begin(), r.thetas.end());
+  r.selections = parse_selections(a.labels, a.threshold);
+  r.weld = parse_weld(a.weld);
+  r.allow_uncertified = a.allow_uncertified;
+  r.threads = parse_threads(a.threads);
+  r.report = a.report;
+  return r;
+}
+
+void check_applicable(const Arguments& a, const fs::path& input, InputKind kind) {
+  if (kind == InputKind::mesh) {
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {a.smooth, "--smooth"}},
+                 input, "a mesh", "images");
+    return;
+  }
+  refuse_given({{a.weld.has_value(), "--weld"}}, input, "an image", "meshes");
+  if (a.smooth) return;
+  refuse_given({{a.extend.has_value(), "--extend"}}, input, "an image", "meshes and images with --smooth");
+  refuse_given({{a.options.has("resolution"), "--resolution"},
+                {a.options.has("spacing"), "--spacing"},
+                {a.options.has("max_resolution"), "--max-resolution"},
+                {a.options.has("grid_shift"), "--grid-shift"}},
+               input, "an image", "meshes and images with --smooth");
+}
+
+/// OUT-theta20.vtp for OUT.vtp.
+fs::path with_theta(const fs::path& path, double theta) {
+  fs::path name = path.parent_path() / path.stem();
+  name += "-theta" + rounded_text(theta);
+  name += path.extension();
+  return name;
+}
+
+std::string advice(const std::vector<ModelFailure>& failures) {
+  const bool has_needle = std::any_of(failures.begin(), failures.end(), [](const ModelFailure& failure) {
+    return failure.obstacle == ModelObstacle::slanted_needle;
+  });
+  return has_needle ? "fill the narrow holes, or turn the part so that they run along an axis"
+                    : "raise --max-resolution, or mend the mesh there";
+}
+
+/// Where the model of a solid does not pass, and what there is to do about it.
+std::vector<std::string> shortfalls(const MedialAxisReport& report) {
+  std::vector<std::string> out;
+  for (std::size_t b = 0; b < report.bodies.size(); ++b) {
+    const BodyReport& body = report.bodies[b];
+    if (body.topology_matches) continue;
+    const Vec3d at = 0.5 * (body.failures.front().low + body.failures.front().high);
+    out.push_back("the model of " + (report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : "the solid") +
+                  " at voxels of side " + rounded_text(body.spacing) + " does not pass in " +
+                  plural(body.failures.size(), "place", "places") + ", the first one at " + vector_text(at) + " (" +
+                  std::string(to_string(body.failures.front().obstacle)) + "): " + advice(body.failures));
+  }
+  return out;
+}
+
+/// The side of a mesh's voxels that the options ask for.
+double asked_spacing(const SolidInput& input, const MedialAxisOptions& options) {
+  const Vec3d size = bounds(input.mesh.mesh).size();
+  return options.spacing.value_or(std::max({size.x, size.y, size.z}) / options.resolution);
+}
+
+/// How many bodies have finer voxels than were asked for, and why; empty where none has.
+std::string refined_text(const MedialAxisReport& report, double asked) {
+  std::size_t finer = 0;
+  double finest = asked;
+  for (const BodyReport& body : report.bodies) {
+    if (body.spacing < asked * (1 - 1e-9)) ++finer;
+    finest = std::min(finest, body.spacing);
+  }
+  if (finer == 0) return {};
+  const std::string of_bodies =
+      report.bodies.size() == 1 ? ""
+                                : " for " + count_text(finer) + " of " + count_text(report.bodies.size()) + " bodies";
+  return "voxels from side " + rounded_text(asked) + " to " + rounded_text(finest) + of_bodies +
+         (report.rule == SolidRule::polyhedron ? ": with larger ones its model does not pass"
+                                               : ": of larger ones none lies inside");
+}
+
+/// "0.5", "0.25 to 0.5" for bodies that differ, "(0.5, 1, 2.5)" for an image.
+std::string sides_text(const MedialAxisReport& report) {
+  const Vec3d& sides = report.grid.spacing;
+  if (report.rule == SolidRule::voxels && (sides.x != sides.y || sides.y != sides.z)) return "s " + vector_text(sides);
+  const auto [least, most] =
+      std::minmax_element(report.bodies.begin(), report.bodies.end(),
+                          [](const BodyReport& a, const BodyReport& b) { return a.spacing < b.spacing; });
+  return " " + rounded_text(least->spacing) +
+         (least->spacing < most->spacing ? " to " + rounded_text(most->spacing) : "");
+}
+
+void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<double> asked, Json& json) {
+  std::size_t voxels = 0;
+  std::size_t extra = 0;
+  for (const BodyReport& body : report.bodies) {
+    voxels += body.voxels;
+    extra += body.extra_cells;
+  }
+  json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
+  json.update(to_json(report));
+  json.erase("seconds");  // those of all solids are told together
+  run.table.add("solid", betti_text(report.betti) + " (" + report.reason + ")");
+  run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
+                              (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts beside them" : ""));
+  if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
+  if (report.reversed_shells > 0) run.warnings.push_back(reversed_shells_text(report.reversed_shells));
+  if (report.rule == SolidRule::winding) run.warnings.push_back(report.reason + ", as voxels");
+}
+
+/// Writes the graph of an axis, where it is asked for; null where not.
+Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
+               const MedialMetadata& metadata, const fs::path& name, const Context& context) {
+  if (!r.graph) return nullptr;
+  Stopwatch watch;
+  AxisGraphOptions options;
+  options.homotopy_angle = metadata.theta;
+  const AxisGraph graph = input.kind == InputKind::mesh ? axis_graph(complex, input.mesh.mesh, options, context)
+                                                        : axis_graph(complex, options, context);
+  run.graphs.emplace_back(beside_axis(*r.graph, r.output, name));
+  write_graph(run.graphs.back().path(), graph, metadata);
+  run.phases.push_back({"graph", watch.lap()});
+  run.table.add("graph", graph_text(graph));
+  return graph_json(graph, run.graphs.back().name());
+}
+
+/// Writes the extended surface of an axis, where it is asked for; null where not.
+Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
+                  const MedialMetadata& metadata, const fs::path& name, const Context& context) {
+  if (!r.extend) return nullptr;
+  Stopwatch watch;
+  const ExtendedAxis made = extend_axis(complex, input.mesh.mesh, r.extending, context);
+  run.extended.emplace_back(beside_axis(*r.extend, r.output, name));
+  write_extended(run.extended.back().path(), made.surface, metadata, context);
+  run.phases.push_back({"extend", watch.lap()});
+  run.table.add("extended", extended_text(made.report));
+  for (const std::string& warning : extended_warnings(made.report)) {
+    run.warnings.push_back("at theta " + rounded_text(metadata.theta.value_or(0)) + " " + warning);
+  }
+  return extended_json(made.report, run.extended.back().name());
+}
+
+MedialMetadata metadata_of(const Request& r, const SolidInput& input, const LabelSelection& selection,
+                           const MedialAxisReport& report, double theta) {
+  MedialMetadata metadata;
+  metadata.source = r.input.filename().string();
+  metadata.version = BLUM_VERSION;
+  metadata.site_ids = input.kind == InputKind::image ? SiteIds::voxels : SiteIds::features;
+  metadata.theta = theta;
+  metadata.lambda = r.options.lambda;
+  metadata.spacing = report.bodies.front().spacing;
+  metadata.solid_rule = to_string(report.rule);
+  metadata.grid = report.grid;
+  record(selection, r.weld, r.smooth ? InputKind::image : input.kind, metadata);
+  if (r.smooth) metadata.smooth = SmoothSurfaceOptions{}.iterations;
+  return metadata;
+}
+
+/// A solid whose axes are asked for.
+struct AskedSolid {
+  const SolidInput& input;
+  const SolidVerifier& verifier;
+  const LabelSelection& selection;
+  std::optional<std::int64_t> label;
+  const fs::path& output;
+  Json smooth;  ///< how its surface was made smooth; null where it was not
+};
+
+/// Writes an axis to the last draft, reads it again and certifies it.
+Certificate write_and_certify(MedialRun& run, const Request& r, const SolidVerifier& verifier,
+                              const LabelSelection& selection, const MedialAxis& axis, const Complex& complex,
+                              const MedialMetadata& metadata, const Context& context) {
+  Stopwatch watch;
+  const fs::path& path = run.drafts.back().path();
+  if (r.nested) {
+    write_medial(path, complex, axis.nested(context), axis.least_theta(), metadata, context);
+  } else {
+    write_medial(path, complex, metadata, context);
+  }
+  run.phases.push_back({"write", watch.lap()});
+  MedialFile written = read_axis(path);
+  if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
+    written.metadata.solid_rule = metadata.solid_rule;
+    written.metadata.grid = metadata.grid;
+  }
+  Certificate certificate = verifier.certificate_of(written, selection, context);
+  run.phases.push_back({"certificate", watch.lap()});
+  return certificate;
+}
+
+/// The forms that an axis is written in. @param pruned  whether it is a given one without some of its sheets.
+std::vector<AxisForm> forms_of(const Request& r, const MedialAxisReport& report, bool pruned) {
+  std::vector<AxisForm> forms = axis_forms(report, r.simplify);
+  if (pruned) std::erase_if(forms, [](const AxisForm& form) { return form.is_fitted; });
+  return forms;
+}
+
+/// Writes and certifies an axis at one angle: the first of its forms that is certified, or else the last.
+void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxis& axis, const Complex* pruned,
+              double theta, const fs::path& name, Json& axes, const Context& context) {
+  const SolidInput& input = solid.input;
+  const MedialAxisReport& report = axis.report();
+  MedialMetadata metadata = metadata_of(r, input, solid.selection, report, theta);
+  run.drafts.emplace_back(name);
+  const auto make = [&](const AxisForm& form) {
+    Stopwatch watch;
+    DecimatedAxis lean =
+        pruned != nullptr ? decimate(*pruned, form, context) : axis_in_form(axis, theta, form, context);
+    const bool is_lean = lean.axis.positions.size() < lean.vertices_before;
+    metadata.deviation = is_lean ? std::optional(lean.deviation) : std::nullopt;
+    run.phases.push_back({"simplify", watch.lap()});
+    return lean;
+  };
+  const auto certify = [&](const DecimatedAxis& made) {
+    return write_and_certify(run, r, solid.verifier, solid.selection, axis, made.axis, metadata, context);
+  };
+  const CertifiedAxis made = first_certified(forms_of(r, report, pruned != nullptr), make, certify);
+  const Certificate& certificate = made.certificate;
+  for (const std::string& warning : made.warnings) {
+    run.warnings.push_back("at theta " + rounded_text(theta) + " " + warning);
+  }
+  run.is_kept.push_back((certificate.holds() && report.topology_matches) || r.allow_uncertified);
+  const MedialCounts counts = count(made.axis.axis);
+  run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
+  if (metadata.deviation) {
+    run.table.add("simplified", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
+                                    rounded_text(made.axis.deviation));
+  }
+  axes.push_back({{"theta", theta},
+                  {"file", name.string()},
+                  {"counts", counts_json(counts, true)},
+                  {"deviation", made.axis.deviation},
+                  {"vertices_before", made.axis.vertices_before},
+                  {"graph", add_graph(run, r, input, made.axis.axis, metadata, name, context)},
+                  {"extended", add_extended(run, r, input, made.axis.axis, metadata, name, context)},
+                  {"certificate", certificate_json(certificate, r.nested)}});
+  add_certificate(run.table, certificate, r.nested);
+  for (const std::string& mismatch : certificate.mismatches) {
+    run.mismatches.push_back("at theta " + rounded_text(theta) + ": " + mismatch);
+  }
+}
+
+MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, const Context& context) {
+  if (input.kind == InputKind::image) return medial_axis(input.image, options, context);
+  if (options.spacing) check_spacing(*options.spacing, bounds(input.mesh.mesh));
+  return medial_axis(input.mesh.mesh, options, context);
+}
+
+/// The smooth surface of an image as the input.
+SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSelection& selection,
+                        const Context& context) {
+  Stopwatch watch;
+  SmoothSurface surface = smooth_surface(image.image, selection, {}, context);
+  run.phases.push_back({"surface", watch.lap()});
+  run.table.add("smooth", count_text(surface.mesh.triangles.size()) + " triangles; moved by at most " +
+                              rounded_text(surface.largest_move) + " voxels from the boxes");
+  SolidInput out;
+  out.json = {{"iterations", SmoothSurfaceOptions{}.iterations},
+              {"triangles", surface.mesh.triangles.size()},
+              {"largest_move", surface.largest_move},
+              {"held_vertices", surface.held_vertices}};
+  out.mesh.mesh = std::move(surface.mesh);
+  return out;
+}
+
+/// The axes of a solid on one grid. @return  whether its model passes.
+bool add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
+              const Context& context) {
+  const MedialAxis axis = make_axis(solid.input, options, context);
+  const MedialAxisReport& report = axis.report();
+  run.phases.insert(run.phases.end(), report.phases.begin(), report.phases.end());
+  Json json = {{"smooth", solid.smooth}, {"grid_shift", options.grid_shift}};
+  if (solid.label) {
+    json["label"] = *solid.label;
+    run.table.add("label", std::to_string(*solid.label));
+  }
+  const bool is_mesh = solid.input.kind == InputKind::mesh;
+  add_report(run, report, is_mesh ? std::optional(asked_spacing(solid.input, options)) : std::nullopt, json);
+  for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
+  Json axes = Json::array();
+  Complex whole;
+  if (r.prunes_sheets) whole = axis.simplify(0, context);
+  for (const double theta : r.thetas) {
+    const fs::path name = r.thetas.size() == 1 ? solid.output : with_theta(solid.output, theta);
+    Stopwatch watch;
+    // From one angle to the next, so that what is left is nested.
+    if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
+    run.phases.push_back({"simplify", watch.lap()});
+    add_axis(run, r, solid, axis, r.prunes_sheets ? &whole : nullptr, theta, name, axes, context);
+  }
+  json["axes"] = axes;
+  run.solids.push_back(json);
+  return report.topology_matches;
+}
+
+/// Parts much thinner than a voxel may lie badly in one grid, and well in the next one: where an axis is not certified,
+/// the grid is moved, and what has the fewest failures is taken.
+void add_on_best_grid(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
+                      const Context& context) {
+  MedialRun best;
+  const bool model_passes = add_axes(best, r, solid, options, context);
+  const bool can_move = model_passes && solid.input.kind == InputKind::mesh;
+  const std::string reason = best.mismatches.empty() ? "" : best.mismatches.front();
+  for (const MovedGrid& grid : moved_grids(options.grid_shift)) {
+    if (!can_move || best.mismatches.empty()) break;
+    MedialAxisOptions moved = options;
+    moved.grid_shift = grid.shift;
+    MedialRun next;
+    next.warnings.push_back(grid.as_it_was + reason);
+    const bool is_better = add_axes(next, r, solid, moved, context) && next.mismatches.size() < best.mismatches.size();
+    if (is_better) std::swap(best, next);
+    // What was in vain took its time, too.
+    run.phases.insert(run.phases.end(), next.phases.begin(), next.phases.end());
+  }
+  run.add(std::move(best));
+}
+
+void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const LabelSelection& selection,
+               const std::optional<std::int64_t>& label, const fs::path& output, const Context& context) {
+  MedialAxisOptions options = r.options;
+  options.selection = selection;
+  const SolidInput surface = r.smooth ? smooth_input(run, given, selection, context) : SolidInput{};
+  if (r.smooth && !r.has_resolution) {
+    // As fine as the image, where the surface has room for that: it may be smaller than a voxel, or flat.
+    const Vec3d& sides = given.image.grid.spacing;
+    const Vec3d size = bounds(surface.mesh.mesh).size();
+    const double longest = std::max({size.x, size.y, size.z});
+    options.spacing = std::clamp(std::min({sides.x, sides.y, sides.z}), longest / options.max_resolution, longest / 8);
+  }
+  const SolidInput& input = r.smooth ? surface : given;
+  const SolidVerifier verifier(input);
+  add_on_best_grid(run, r, {input, verifier, selection, label, output, surface.json}, options, context);
+}
+
+std::vector<fs::path> outputs_of(const Request& r) {
+  std::vector<fs::path> bases{r.output};
+  if (r.selections.labels.size() > 1) {
+    bases.clear();
+    for (const std::int64_t label : r.selections.labels) bases.push_back(with_label(r.output, label));
+  }
+  return bases;
+}
+
+void check_all_outputs(const Request& r, const std::vector<fs::path>& bases) {
+  std::vector<fs::path> files = r.report.files();
+  for (const fs::path& base : bases) {
+    if (r.thetas.size() == 1) files.push_back(base);
+    if (r.thetas.size() > 1) {
+      for (const double theta : r.thetas) files.push_back(with_theta(base, theta));
+    }
+  }
+  const std::size_t axes = files.size();
+  for (const std::optional<fs::path>& further : {r.graph, r.extend}) {
+    for (std::size_t f = r.report.files().size(); further && f < axes; ++f) {
+      files.push_back(beside_axis(*further, r.output, files[f]));
+    }
+  }
+  check_outputs(files, {r.input});
+}
+
+void finish(const Request& r, MedialRun& run, const SolidInput& input, bool is_certified, const Context& context) {
+  const PhaseSummary spent = summarize(run.phases);
+  Json outputs = Json::array();
+  for (std::size_t d = 0; d < run.drafts.size(); ++d) {
+    if (!run.is_kept[d]) continue;
+    for (const std::vector<Draft>* const kind : {&run.drafts, &run.graphs, &run.extended}) {
+      if (kind->empty()) continue;
+      outputs.push_back((*kind)[d].name().string());
+      run.table.add("wrote", (*kind)[d].name().string());
+    }
+  }
+  const Json json = answer_json("medial", {{"input", input.json},
+                                           {"certified", is_certified},
+                                           {"mismatches", run.mismatches},
+                                           {"lambda", r.options.lambda},
+                                           {"prune", r.prunes_sheets ? Json("sheets") : Json(nullptr)},
+                                           {"solids", run.solids},
+                                           {"seconds", spent.seconds},
+                                           {"total_seconds", spent.total},
+                                           {"peak_memory_bytes", peak_memory()},
+                                           {"threads", thread_count(context)},
+                                           {"thread_backend", thread_backend()},
+                                           {"warnings", run.warnings},
+                                           {"outputs", outputs}});
+  run.table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  report(r.report, json, input.text + run.table.text());
+  if (!r.report.quiet) warn(run.warnings);
+}
+
+/// What became of the files of a run in which something is not certified.
+std::string written_text(const Request& r, const MedialRun& run) {
+  if (r.allow_uncertified) return {};
+  const auto kept = std::count(run.is_kept.begin(), run.is_kept.end(), true);
+  if (kept == 0) return "; nothing was written";
+  return "; of " + count_text(run.drafts.size()) + " axes the " + count_text(static_cast<std::size_t>(kept)) +
+         " that are certified were written";
+}
+
+void run(const Arguments& arguments) {
+  const Request r = parse(arguments);
+  check_applicable(arguments, r.input, input_kind(r.input));
+  const std::vector<fs::path> bases = outputs_of(r);
+  check_all_outputs(r, bases);
+  Progress progress(!r.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(r.threads, progress, interrupt);
+  MedialRun run;
+  Stopwatch watch;
+  const SolidInput input = load_solid(r.input, r.weld);
+  for (const std::string& warning : warnings_of(input)) run.warnings.push_back(warning);
+  run.phases.push_back({"read", watch.lap()});
+  const std::vector<LabelSelection> selections = r.selections.all();
+  for (std::size_t s = 0; s < selections.size(); ++s) {
+    const bool is_label = !r.selections.labels.empty();
+    add_solid(run, r, input, selections[s], is_label ? std::optional(r.selections.labels[s]) : std::nullopt,
+              bases[std::min(s, bases.size() - 1)], context);
+  }
+  progress.clear();
+  const bool is_certified = run.mismatches.empty();
+  for (std::size_t d = 0; d < run.drafts.size(); ++d) {
+    if (!run.is_kept[d]) continue;
+    run.drafts[d].keep();
+    if (r.graph) run.graphs[d].keep();
+    if (r.extend) run.extended[d].keep();
+  }
+  finish(r, run, input, is_certified, context);
+  if (!is_certified) throw NotCertified(run.mismatches, written_text(r, run));
+}
+
+}  // namespace
+
+void add_medial_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  const Command command = line.app.add_subcommand("medial", "Medial axis with the topology of the solid, certified");
+  command.add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
+      .required();
+  command.add_option("-o,--output", a->output, "Medial axis: " + extension_list(FileContent::complex, FileAccess::both))
+      .required()
+      .type_name("FILE");
+  const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
+    add_text_option(command, name, value, type, help);
+  };
+  text("--theta", a->theta, "DEG",
+       "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) give a "
+       "file each, nested but for what --simplify moves");
+  text("--simplify", a->simplify, "TOL",
+       "Fewer triangles, at most TOL mesh units away (default: a quarter of a voxel); 0 keeps all");
+  text("--prune", a->prune, "sheets", "Drop whole sheets of at most --theta instead of cutting them there");
+  a->options.add_to(command, "", {"least_theta", "greatest_theta"});
+  add_label_option(command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
+  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  command.add_flag("--smooth", a->smooth,
+                   "Image: the solid is what the smooth surface bounds that the voxels sample, instead of their boxes");
+  add_graph_option(command, a->graph, "Its sheets, seams, curves and junctions as a graph");
+  add_extend_options(command, a->extend, a->extend_length);
+  command.add_flag("--nested", a->nested,
+                   "Keep the axes of all angles from --theta on as well (.npz), for `blum view`");
+  command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even where it is not certified");
+  add_weld_option(command, a->weld);
+  add_threads_option(command, a->threads);
+  add_report_options(command, a->report);
+  command.footer(examples);
+  command.callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,342 @@
+#include "medial/medial_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/io/complex_io.hpp"
+#include "commands.hpp"
+#include "common/files.hpp"
+
+namespace blum::cli {
+namespace {
+
+std::string against_text(const Certificate& c) {
+  if (c.against == SolidRule::polyhedron) return "the polyhedron";
+  const std::string voxels = c.against == SolidRule::winding ? "voxels (of the winding number)" : "the image's voxels";
+  return c.voxel ? voxels + " of side " + rounded_text(*c.voxel) : voxels;
+}
+
+/// Which axis a file says that it holds.
+std::string claims_text(const CertificateOptions& said) {
+  std::string text;
+  const auto add = [&](const std::optional<double>& value, const char* before, const char* after) {
+    if (value) text += (text.empty() ? "; at " : ", ") + std::string(before) + rounded_text(*value) + after;
+  };
+  add(said.theta, "theta ", " degrees");
+  add(said.lambda, "lambda ", "");
+  add(said.spacing, "voxels of ", "");
+  return text;
+}
+
+/// Where a mesh bounds no polyhedron, and the axis's file has no metadata.
+constexpr const char* untold_rule =
+    ": its axis is that of voxels, and the file of the axis does not tell which (.obj and .ma name neither rule nor "
+    "grid): verify the .vtp, .ply or .npz of the same run, or give --weld here too if it was given then";
+
+std::string percent(double share) {
+  return rounded_text(std::round(share * 1000) / 10) + " %";
+}
+
+std::string nothing_seen(const MedialCheck& check) {
+  return "random points show " + std::string(check.balls == 0 ? "nothing" : "too little") + " above " +
+         rounded_text(check.sought_angle) + " degrees";
+}
+
+std::string medial_text(const MedialCheck& check) {
+  std::string text;
+  if (check.samples == 0) {
+    text = "nothing of it says that two walls see it at more than theta";
+  } else {
+    text = percent(check.medial_share) +
+           " of its samples are in the middle (allowed: " + rounded_text(check.allowance) + " off)";
+  }
+  if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of its area is for homotopy alone";
+  if (check.sought_angle == 0) return text + "; what it misses was not looked for: its theta is not known";
+  if (!check.judges_missing) return text + "; what it misses was not checked: " + nothing_seen(check);
+  return text + "; it misses " + percent(check.missed_share) + " of what random points show above " +
+         rounded_text(check.sought_angle) + " degrees (" + count_text(check.balls) + " balls), in no body more than " +
+         percent(check.missed_share_of_body);
+}
+
+/// What is told of roles, sheets, and the angles of triangles and edges.
+std::string labels_text(const Certificate& c) {
+  if (!c.checked.labels && !c.checked.angles) return "not looked at";
+  std::string text;
+  if (c.checked.labels) text = c.labels.holds ? "roles and sheets follow from the triangles" : "wrong roles or sheets";
+  if (!c.checked.angles) return text;
+  if (!text.empty()) text += "; ";
+  if (!c.angles.holds) return text + "wrong angles of triangles or edges";
+  return text + "of the triangles " + percent(c.angles.below_share) + " say less than their corners see, " +
+         percent(c.angles.above_share) + " more than is seen around them";
+}
+
+}  // namespace
+
+MedialFile read_axis(const std::filesystem::path& path) {
+  MedialFile file = read_medial(path);
+  add_missing_medial_columns(file.complex);
+  return file;
+}
+
+namespace {
+
+std::string text_of(const FileMetadata& metadata, std::string_view name) {
+  const auto at = std::find_if(metadata.begin(), metadata.end(), [&](const auto& pair) { return pair.first == name; });
+  return at == metadata.end() ? "" : at->second;
+}
+
+/// Numbers walls between the same two sites as one sheet.
+void number_walls(Complex& complex) {
+  const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
+  const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> number;
+  std::vector<std::int32_t> sheets;
+  for (std::size_t t = 0; t < site_a.size(); ++t) {
+    sheets.push_back(
+        number.try_emplace({site_a[t], site_b[t]}, static_cast<std::int32_t>(number.size())).first->second);
+  }
+  const auto out = complex.triangle_columns.edit<std::int32_t>(medial_columns::sheet);
+  std::copy(sheets.begin(), sheets.end(), out.begin());
+}
+
+}  // namespace
+
+std::string walls_text(const ShownAxis& shown) {
+  const Complex& complex = shown.file.complex;
+  return plural(complex.positions.size(), "vertex", "vertices") + ", " +
+         plural(complex.triangles.size(), "triangle", "triangles") + " between " +
+         plural(sheet_count(complex), "pair", "pairs") + " of sites";
+}
+
+namespace {
+
+/// What the metadata of a Voronoi diagram say of its certificate.
+void add_certified(const FileMetadata& metadata, ShownAxis& out) {
+  const std::string certified = text_of(metadata, "certified");
+  if (certified != "true" && certified != "false") return;
+  out.is_certified = certified == "true";
+  const std::string bound = text_of(metadata, "hausdorff_bound");
+  const std::string cubes = text_of(metadata, "failing_cubes");
+  out.certified = *out.is_certified ? "yes" : "NO";
+  if (!bound.empty()) out.certified += "; at most " + bound + " from the exact one, everywhere";
+  if (!cubes.empty()) out.certified += ": " + cubes + " cubes did not pass";
+}
+
+}  // namespace
+
+ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
+  if (may_hold_columns(path)) {
+    ComplexFile file = read_complex(path);
+    const std::string content = text_of(file.metadata, "content");
+    const bool has_sites = file.complex.triangle_columns.find("site_a") != nullptr &&
+                           file.complex.triangle_columns.find("site_b") != nullptr;
+    if (content.ends_with("Voronoi diagram") && has_sites) {
+      ShownAxis out;
+      out.content = content;
+      out.is_axis = false;
+      add_certified(file.metadata, out);
+      out.file.complex = std::move(file.complex);
+      out.file.metadata.source = text_of(file.metadata, "source");
+      out.file.has_radii = out.file.has_footprints = true;
+      out.file.has_sites = out.file.has_angles = true;
+      add_missing_medial_columns(out.file.complex);
+      number_walls(out.file.complex);
+      return out;
+    }
+  }
+  return {read_axis(path), "medial axis", true, {}, ""};
+}
+
+SolidVerifier::SolidVerifier(const SolidInput& input) {
+  if (input.kind == InputKind::image) {
+    image_.emplace(input.image);
+  } else {
+    mesh_.emplace(input.mesh.mesh);
+  }
+}
+
+Certificate SolidVerifier::certificate_of(const MedialFile& file, const LabelSelection& selection,
+                                          const Context& context) const {
+  if (image_) return image_->verify(file.complex, claims_of(file), selection, {}, context);
+  try {
+    return mesh_->verify(file.complex, claims_of(file), {}, available_memory(), context);
+  } catch (const UntoldVoxels& error) {
+    throw InvalidMesh("the mesh bounds no polyhedron (" + error.reason() + ")" + untold_rule);
+  }
+}
+
+namespace {
+
+/// With names as the text has them.
+std::vector<std::pair<bool, const char*>> what_files_may_lack(const Certificate& c) {
+  return {{c.checked.radii, "radii"},
+          {c.checked.footprints, "footprints"},
+          {c.checked.angles, "separation angles"},
+          {c.checked.sites, "sites"},
+          {c.checked.labels, "roles and sheets"}};
+}
+
+/// What was not looked at though the file has it, or the solid.
+std::vector<std::string> not_looked_at(const Certificate& c, bool has_nested) {
+  std::vector<std::string> all;
+  const MedialCheck& medial = c.medial;
+  if (c.checked.medial && medial.sought_angle == 0) {
+    all.emplace_back("what is missing: its theta is not known");
+  } else if (c.checked.medial && !medial.judges_missing) {
+    all.push_back("what is missing: " + nothing_seen(medial));
+  } else if (c.checked.medial && c.bodies.size() > 1 && medial.bodies_unseen > 0) {
+    all.push_back("what is missing in " + count_text(medial.bodies_unseen) + " of " + count_text(c.bodies.size()) +
+                  " bodies: points beside the surface show too little there");
+  }
+  if (has_nested) all.emplace_back("nested columns: the axes of other angles");
+  return all;
+}
+
+/// What a file may say that no certificate judges.
+std::vector<std::string> taken_as_said(const Certificate& c) {
+  std::vector<std::string> all;
+  if (c.checked.deviation) all.emplace_back("deviation");
+  for (const char* const what : {"source", "version"}) all.emplace_back(what);
+  return all;
+}
+
+Json not_checked_json(const Certificate& c, bool has_nested) {
+  Json all = Json::array();
+  for (const auto& [is_checked, what] : what_files_may_lack(c)) {
+    if (!is_checked) all.push_back(std::string(what) + ": not in the file");
+  }
+  for (const std::string& what : not_looked_at(c, has_nested)) all.push_back(what);
+  for (const std::string& what : taken_as_said(c)) all.push_back(what + ": taken as said");
+  return all;
+}
+
+}  // namespace
+
+NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std::string& rest)
+    : std::runtime_error([&] {
+        std::string all;
+        for (const std::string& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch;
+        return "NOT certified: " + all + rest;
+      }()) {}
+
+Json certificate_json(const Certificate& c, bool has_nested) {
+  Json json = {{"certified", c.holds()}};
+  json.update(to_json(c));
+  json.erase("holds");
+  Json checked = {"topology", "positions", "edges", "triangles"};
+  for (const char* const what : {"radii", "footprints", "angles", "sites", "labels", "medial"}) {
+    if (json["checked"][what].is_true()) checked.push_back(what);
+  }
+  if (c.checked.medial && c.medial.judges_missing) checked.push_back("missing");
+  json["claims"] = Json::object();
+  for (const char* const what : {"theta", "lambda", "spacing", "deviation"}) {
+    json["claims"][what] = json["checked"][what];
+  }
+  for (const char* const what : {"theta", "lambda", "spacing"}) {
+    if (!json["checked"][what].is_null()) checked.push_back(what);
+  }
+  json["checked"] = checked;
+  json["not_checked"] = not_checked_json(c, has_nested);
+  const auto wrong =
+      std::count_if(c.bodies.begin(), c.bodies.end(), [](const BodyCheck& body) { return body.solid != body.axis; });
+  json["bodies"] = {{"count", c.bodies.size()}, {"wrong", wrong}};
+  // What was not looked at is not told.
+  Json& geometry = json["geometry"];
+  if (!c.checked.radii) geometry.erase("radius_error");
+  if (!c.checked.footprints) geometry.erase("footprint_off_surface");
+  if (!c.checked.footprints) geometry.erase("footprint_error");
+  if (!c.checked.sites) geometry.erase("site_error");
+  if (!c.checked.angles) geometry.erase("angle_error");
+  if (!c.checked.labels) json.erase("labels");
+  if (!c.checked.angles) json.erase("angles");
+  if (!c.checked.balls) json.erase("balls");
+  if (!c.checked.medial) json.erase("medial");
+  return json;
+}
+
+Json counts_json(const MedialCounts& counts, bool has_labels) {
+  Json json = to_json(counts);
+  if (!has_labels) {
+    for (const char* const told : {"sheets", "rim_edges", "seam_edges", "junctions"}) json[told] = nullptr;
+  }
+  return json;
+}
+
+std::string betti_text(const BettiNumbers& betti) {
+  const auto number = [](std::int64_t n, const char* one, const char* many) {
+    return plural(static_cast<std::uint64_t>(n), one, many);
+  };
+  return number(betti[0], "component", "components") + ", " + number(betti[1], "tunnel", "tunnels") + ", " +
+         number(betti[2], "void", "voids");
+}
+
+std::string counts_text(const MedialCounts& counts, bool has_labels) {
+  const std::string cells =
+      plural(counts.vertices, "vertex", "vertices") + ", " + plural(counts.triangles, "triangle", "triangles");
+  if (!has_labels) {
+    return cells + ", " + plural(counts.curve_edges, "edge", "edges") + " of curves (the file tells no sheets)";
+  }
+  return cells + " in " + plural(counts.sheets, "sheet", "sheets") + "; edges: " + count_text(counts.curve_edges) +
+         " of curves, " + count_text(counts.rim_edges) + " of rims, " + count_text(counts.seam_edges) + " of seams; " +
+         plural(counts.junctions, "junction", "junctions");
+}
+
+std::string angles_text(double least_theta) {
+  return "all from " + rounded_text(least_theta) + " degrees on";
+}
+
+void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
+  const std::string axis = "the axis has " + betti_text(c.axis);
+  if (c.holds()) {
+    table.add("certified",
+              "against " + against_text(c) + ": " + axis + ", as many as the solid" +
+                  (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : "") +
+                  claims_text(c.checked));
+  } else {
+    // Why is told by the error.
+    table.add("NOT certified", (c.topology_holds ? axis + ", as the solid, but is wrong otherwise"
+                                                 : axis + "; the solid " + betti_text(c.solid)) +
+                                   claims_text(c.checked));
+  }
+  table.add("proven", c.homology.shown);
+  std::string geometry = "vertices, edges and triangles in the solid";
+  if (!c.geometry.holds || !c.edges.holds || !c.triangles.holds) geometry = "wrong";
+  if (c.edges.pushed > 0) {
+    geometry += ", but for " + plural(c.edges.pushed, "edge that cuts a corner", "edges that cut corners") +
+                " by up to " + rounded_text(c.edges.pushed_by);
+  }
+  if (c.triangles.holds && c.triangles.leaving > 0) {
+    geometry += ", but for the insides of " + plural(c.triangles.leaving, "triangle", "triangles") + ", by up to " +
+                rounded_text(c.triangles.outside_by);
+  }
+  if (c.triangles.undecided > 0) {
+    geometry += ", " + plural(c.triangles.undecided, "triangle", "triangles") + " in thin walls undecided";
+  }
+  if (c.checked.radii) geometry += "; radii off by at most " + rounded_text(c.geometry.radius_error);
+  if (c.checked.footprints) {
+    geometry += ", footprints " + rounded_text(c.geometry.footprint_off_surface) + " off the surface";
+  }
+  table.add("geometry", geometry + " (tolerance " + rounded_text(c.geometry.tolerance) + ")");
+  std::string unknown;
+  for (const auto& [is_checked, what] : what_files_may_lack(c)) {
+    if (!is_checked) unknown += (unknown.empty() ? "" : ", ") + std::string(what);
+  }
+  table.add("labels", labels_text(c));
+  if (!unknown.empty()) unknown = "not in the file: " + unknown;
+  for (const std::string& what : not_looked_at(c, has_nested)) unknown += (unknown.empty() ? "" : "; ") + what;
+  if (!unknown.empty()) table.add("not checked", unknown);
+  std::string said;
+  for (const std::string& what : taken_as_said(c)) said += (said.empty() ? "" : ", ") + what;
+  table.add("as said", said);
+  if (c.checked.medial) table.add("medial", medial_text(c.medial));
+  if (!c.checked.balls) return;
+  table.add("balls", "the solid reaches at most " + rounded_text(c.balls.solid_to_balls) +
+                         " beyond the union of the balls (mean " + rounded_text(c.balls.mean_solid_to_balls) +
+                         "), whose surface is at most " + rounded_text(c.balls.balls_to_surface) + " from the solid's");
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,194 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/field/smooth_surface.hpp"
+#include "blum/io/medial_io.hpp"
+#include "commands.hpp"
+#include "common/common_options.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/solid_input.hpp"
+#include "common/summary.hpp"
+#include "medial/axis_solid.hpp"
+#include "medial/medial_report.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum verify part.stl part.vtp
+  blum verify part.stl part-theta20.vtp part-theta60.vtp     all of one run
+  blum verify scan.nii.gz vessels.npz --json -
+
+Nothing of what made the axis is used. Exit status 0: all are certified; 3: one is not.
+Several axes give a JSON array.)";
+
+struct Arguments {
+  std::string input;
+  std::vector<std::string> axes;
+  std::optional<std::string> threshold, weld, threads;
+  std::vector<std::string> labels;
+  bool smooth = false;
+  ReportOptions report;
+};
+
+SolidSelection solid_of_options(const Arguments& a, InputKind kind) {
+  const SolidSelection given = parse_solid(a.labels, a.threshold, a.weld);
+  if (kind == InputKind::mesh) {
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {a.smooth, "--smooth"}},
+                 a.input, "a mesh", "images");
+  } else {
+    refuse_given({{a.weld.has_value(), "--weld"}}, a.input, "an image", "meshes");
+  }
+  return given;
+}
+
+/// What is said first of an axis that is not certified: that its file names another solid, where it does. The name is
+/// no proof: files are renamed.
+std::vector<std::string> other_source(const fs::path& input, const MedialMetadata& metadata) {
+  const fs::path source = fs::path(metadata.source).filename();
+  if (source.empty() || source == input.filename()) return {};
+  return {"the file says that it is the axis of '" + source.string() + "'"};
+}
+
+/// Certifies one axis after the other.
+class Verifier {
+ public:
+  Verifier(fs::path path, InputKind kind, SolidSelection given, bool smooth, const Context& context)
+      : path_(std::move(path)), kind_(kind), given_(given), smooth_(smooth), context_(context) {}
+
+  void verify(const fs::path& axis) {
+    MedialFile file = read_axis(axis);
+    if (smooth_ && !file.metadata.smooth) file.metadata.smooth = SmoothSurfaceOptions{}.iterations;
+    const auto& [selection, warning] = solid_of_axis(given_, kind_, file.metadata, axis);
+    const SolidInput& solid = load(selection.weld);
+    const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
+    const Certificate certificate = verifier_->certificate_of(file, voxels, context_);
+    Json warnings = Json::array();
+    if (!warning.empty()) add_warning(warning, warnings);
+    if (solid.weld && solid.weld->lost > 0) {
+      // Nobody asked here for what the file says.
+      const std::string asked = given_.weld ? std::string() : "as '" + axis.string() + "' asks, ";
+      if (!given_.weld || solid.weld->before != solid.weld->after)
+        add_warning(asked + weld_text(*solid.weld), warnings);
+    }
+    const MedialCounts counts = count(file.complex);
+    table_.add("axis", axis.string() + ": " + counts_text(counts, file.has_labels));
+    add_certificate(table_, certificate, file.nested.has_value());
+    results_.push_back(
+        answer_json("verify", {{"input", solid.json},
+                               {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},
+                               {"certificate", certificate_json(certificate, file.nested.has_value())},
+                               {"warnings", warnings}}));
+    if (!certificate.holds()) {
+      std::vector<std::string> mismatches = other_source(path_, file.metadata);
+      mismatches.insert(mismatches.end(), certificate.mismatches.begin(), certificate.mismatches.end());
+      failures_.push_back(
+          {axis, std::move(mismatches), missing_options(given_, kind_, file.metadata, certificate.topology_holds)});
+    }
+  }
+
+  [[nodiscard]] std::string text() const { return solid_->text + table_.text(); }
+  /// An object for one axis, an array for several.
+  [[nodiscard]] Json json() const { return results_.size() == 1 ? results_.front() : results_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// @throws NotCertified where an axis is not.
+  void check() const {
+    if (failures_.empty()) return;
+    if (results_.size() == 1) throw NotCertified(failures_.front().mismatches, failures_.front().advice);
+    std::vector<std::string> all;
+    for (const Failure& failure : failures_) {
+      for (const std::string& mismatch : failure.mismatches) all.push_back(failure.axis.string() + ": " + mismatch);
+    }
+    throw NotCertified(all, failures_.front().advice);
+  }
+
+ private:
+  struct Failure {
+    fs::path axis;
+    std::vector<std::string> mismatches;
+    std::string advice;
+  };
+
+  void add_warning(const std::string& warning, Json& of_axis) {
+    of_axis.push_back(warning);
+    warnings_.push_back(warning);
+  }
+
+  /// The mesh or image, read again only where another axis is of one that was welded otherwise.
+  const SolidInput& load(const std::optional<double>& weld) {
+    if (!solid_ || weld != weld_) {
+      verifier_.reset();
+      solid_ = load_solid(path_, weld);
+      verifier_.emplace(*solid_);
+    }
+    weld_ = weld;
+    return *solid_;
+  }
+
+  fs::path path_;
+  InputKind kind_;
+  SolidSelection given_;
+  bool smooth_;
+  const Context& context_;
+  std::optional<SolidInput> solid_;
+  std::optional<SolidVerifier> verifier_;  ///< of this
+  std::optional<double> weld_;
+  TextTable table_;
+  Json results_ = Json::array();
+  std::vector<std::string> warnings_;
+  std::vector<Failure> failures_;
+};
+
+void run(const Arguments& a) {
+  const fs::path path = a.input;
+  const std::vector<fs::path> axes(a.axes.begin(), a.axes.end());
+  for (const fs::path& axis : axes)
+    check_extension("AXIS", axis, file_extensions(FileContent::complex, FileAccess::read));
+  const InputKind kind = input_kind(path);
+  const SolidSelection given = solid_of_options(a, kind);
+  std::vector<fs::path> inputs = axes;
+  inputs.push_back(path);
+  check_outputs(a.report.files(), inputs);
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(parse_threads(a.threads), progress, interrupt);
+  Verifier verifier(path, kind, given, a.smooth, context);
+  for (const fs::path& axis : axes) verifier.verify(axis);
+  progress.clear();
+  report(a.report, verifier.json(), verifier.text());
+  if (!a.report.quiet) warn(verifier.warnings());
+  verifier.check();
+}
+
+}  // namespace
+
+void add_verify_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  const Command command =
+      line.app.add_subcommand("verify", "Check medial axes against their solid, from the files alone");
+  command.add_option("INPUT", a->input, "The mesh or image whose axis it is").required();
+  command
+      .add_option("AXIS", a->axes,
+                  "Medial axes: " + join_words(file_extensions(FileContent::complex, FileAccess::read), "or"))
+      .required();
+  add_label_option(command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
+  add_text_option(command, "--threshold", a->threshold, "T",
+                  "Image: the voxels of value T or more (default: as AXIS tells)");
+  command.add_flag("--smooth", a->smooth, "Image: AXIS is that of the smooth surface (default: as AXIS tells)");
+  add_weld_option(command, a->weld, weld_of_axis_help);
+  add_threads_option(command, a->threads);
+  add_report_options(command, a->report, "Write the certificates as JSON; - is standard output");
+  command.footer(examples);
+  command.callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,163 @@
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/phase_timer.hpp"
+#include "blum/io/file_content.hpp"
+#include "blum/io/formats.hpp"
+#include "blum/io/point_io.hpp"
+#include "blum/points/sample_surface.hpp"
+#include "commands.hpp"
+#include "common/common_options.hpp"
+#include "common/described.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/summary.hpp"
+#include "points/point_columns.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum sample part.stl -n 100000 -o points.ply                       points of the surface, with normals
+  blum sample part.stl -n 5000 -o even.npz --blue-noise              that keep their distance from each other
+  blum sample part.stl -n 200000 -o near.npz --near --in-box 0.1     points near it, with signed distances)";
+
+struct Arguments {
+  std::string mesh, output;
+  std::string count;
+  bool near = false;
+  std::optional<std::string> weld, threads;
+  OptionTexts<SampleOptions> options;
+  OptionTexts<NearSampleOptions> near_options;
+  ReportOptions report;
+};
+
+/// @param parts_normals  nx, ny, nz, by which programs know normals in .ply files; else `normal`.
+Complex points_of_surface(const SurfaceSamples& samples, bool parts_normals) {
+  Complex out;
+  const std::size_t count = samples.points.size();
+  out.positions = samples.points;
+  out.vertex_columns = Columns(count);
+  if (parts_normals) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto part = out.vertex_columns.add<double>(std::string("n") + "xyz"[axis]);
+      for (std::size_t k = 0; k < count; ++k) part[k] = samples.normals[k][axis];
+    }
+  } else {
+    const auto normal = out.vertex_columns.add<double>("normal", 3);
+    for (std::size_t k = 0; k < 3 * count; ++k) normal[k] = samples.normals[k / 3][k % 3];
+  }
+  const auto triangle = out.vertex_columns.add<std::int32_t>("triangle");
+  for (std::size_t k = 0; k < count; ++k) triangle[k] = samples.triangles[k].to_file();
+  return out;
+}
+
+/// `--seed` is one option for both kinds of points.
+void refuse_others(const Arguments& a) {
+  if (a.near && a.options.has("blue_noise")) throw UsageError("--blue-noise is for points of the surface, not --near");
+  for (const char* member : {"sigma", "in_box", "sign"}) {
+    if (!a.near && a.near_options.has(member)) {
+      throw UsageError(option_name(member) + " is for points near the surface: give --near, too");
+    }
+  }
+}
+
+/// What is asked for.
+struct Request {
+  std::size_t count = 0;
+  SampleOptions options;
+  NearSampleOptions near;
+};
+
+Request read(const Arguments& a) {
+  Request out{static_cast<std::size_t>(parse_integer("-n", a.count, 0, std::numeric_limits<std::int32_t>::max())),
+              a.options.read(), a.near_options.read()};
+  out.near.seed = out.options.seed;
+  return out;
+}
+
+Complex points_for(const Arguments& a, const Request& asked, const MeshView& mesh, const Context& context) {
+  if (!a.near) {
+    const bool is_ply = file_extension(a.output) == ".ply";
+    return points_of_surface(sample_surface(mesh, asked.count, asked.options, context), is_ply);
+  }
+  const NearSamples samples = sample_near(mesh, asked.count, asked.near, context);
+  return points_with_distances(samples.points, samples.closest);
+}
+
+void run(const Arguments& a) {
+  const fs::path input = a.mesh;
+  const fs::path output = a.output;
+  check_extension("--output", output, file_extensions(FileContent::points, FileAccess::write));
+  refuse_others(a);
+  const Request asked = read(a);
+  const std::optional<double> weld = parse_weld(a.weld);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  outputs.push_back(output);
+  check_outputs(outputs, {input});
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  MeshFile file;
+  {
+    const Unattended reading;
+    file = read_mesh_of_any_name(input, {weld});
+  }
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const Complex points = points_for(a, asked, file.mesh, context);
+  phases.push_back({"sample", watch.lap()});
+  write_points(output, points, {{"tool", "blum sample"}, {"source", input.filename().string()}}, context);
+  phases.push_back({"write", watch.lap()});
+  progress.clear();
+  const PhaseSummary spent = summarize(phases);
+  Json json = answer_json("sample", {{"mesh", input.string()},
+                                     {"triangles", file.mesh.triangles.size()},
+                                     {"points", points.positions.size()},
+                                     {"near", a.near},
+                                     {"seed", asked.options.seed}});
+  add_run_facts(json, spent, context, {}, Json::array({output.string()}));
+  TextTable table;
+  table.add("mesh", input.string() + ": " + plural(file.mesh.triangles.size(), "triangle", "triangles"));
+  table.add("points",
+            plural(points.positions.size(), "point", "points") + (a.near ? " near the surface" : " of the surface"));
+  table.add("wrote", output.string());
+  table.add("time", spent.text);
+  report(a.report, json, table.text());
+}
+
+}  // namespace
+
+void add_sample_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  const Command command =
+      line.app.add_subcommand("sample", "Random points of a surface, or near it with signed distances");
+  command.add_option("MESH", a->mesh, extensions_help({FileContent::mesh}, FileAccess::read)).required();
+  command.add_option("-n,--count", a->count, "How many points").required().type_name("N");
+  command
+      .add_option("-o,--output", a->output,
+                  extension_list(FileContent::points, FileAccess::write) +
+                      ": the points with columns normal (nx, ny, nz in .ply) and triangle; with --near "
+                      "distance, gradient, "
+                      "closest, site and triangle")
+      .required()
+      .type_name("FILE");
+  command.add_flag("--near", a->near, "Points near the surface, with exact signed distances");
+  a->options.add_to(command);
+  a->near_options.add_to(command, "With --near: ", {"seed"});
+  add_weld_option(command, a->weld);
+  add_threads_option(command, a->threads);
+  add_report_options(command, a->report);
+  command.footer(examples);
+  command.callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,280 @@
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/summary.hpp"
+#include "proximity/queries.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check(const ProximityArguments& a) {
+  if (!a.ends.empty()) throw UsageError("--frames are those of one object, which --to does not go with");
+  if (!a.self) throw UsageError("--frames are those of one object, which has nothing to meet but itself: give --self");
+  if (a.scene.size() < 2) throw UsageError("--frames takes at least two files");
+  if (a.output) check_extension("--output", *a.output, {".json"});
+}
+
+Json pair_json(const char* kind, const Vec3d& first, const Vec3d& second, double distance) {
+  return {{"kind", kind}, {"points", {to_json(first), to_json(second)}}, {"distance", distance}};
+}
+
+/// What a frame holds, and what that took.
+struct Frame {
+  Json pairs = Json::array();
+  std::size_t count = 0;  ///< of all pairs, also of those that --limit leaves out
+  std::optional<double> earliest;
+  std::string skipped;  ///< why the step to the next frame was; empty where it was not
+  std::vector<PhaseTime> phases;
+
+  void add(Json pair, std::size_t limit) {
+    if (count++ < limit) pairs.push_back(std::move(pair));
+  }
+};
+
+void tell(const ProximityPairs& found, const char* kind, std::size_t limit, Frame& out) {
+  for (const PrimitivePair& pair : found.pairs) {
+    const TriangleDistance& between = pair.between;
+    out.add(pair_json(kind, between.first_point, between.second_point, between.distance), limit);
+  }
+  out.phases.insert(out.phases.end(), found.report.phases.begin(), found.report.phases.end());
+}
+
+/// Features that meet on the way to the next frame, by the way of one of their vertices until they do.
+void tell(const SceneCollisions& found, const TriangleMesh& from, std::span<const Vec3d> to, std::size_t limit,
+          Frame& out) {
+  const auto add = [&](std::uint32_t vertex, double time) {
+    const Vec3d& start = from.vertices[vertex];
+    const Vec3d end = start + (to[vertex] - start) * time;
+    Json pair = pair_json("collision", start, end, length(end - start));
+    pair["time"] = time;
+    out.add(std::move(pair), limit);
+  };
+  out.earliest = found.earliest();
+  for (const ObjectCollisions& pair : found.objects) {
+    for (const auto& one : pair.vertex_face) add(one.vertex, one.time);
+    for (const auto& one : pair.edge_edge) add(one.first[0], one.time);
+  }
+  out.phases.insert(out.phases.end(), found.phases.begin(), found.phases.end());
+}
+
+/// One object, frame after frame.
+class Sequence {
+ public:
+  Sequence(const ProximityArguments& a, const Context& context)
+      : arguments_(a),
+        context_(context),
+        impact_(a.impact.read()),
+        penetration_(a.penetration.read()),
+        weld_(parse_weld(a.weld)),
+        limit_(read_limit(a)),
+        scene_(a.culling.read()) {
+    if (a.within) within_ = parse_non_negative("--within", *a.within);
+  }
+
+  Frame frame(std::size_t k) {
+    Frame out;
+    Stopwatch watch;
+    move_to(k);
+    out.phases.push_back({"boxes", watch.lap()});
+    const std::string& query = arguments_.query;
+    const double most = within_.value_or(std::numeric_limits<double>::infinity());
+    if (query == "continuous") {
+      if (k + 1 < arguments_.scene.size()) ask_continuous(k, out);
+    } else if (query == "penetration") {
+      ask_penetration(k, out);
+    } else if (query == "collide") {
+      const bool is_near = within_.value_or(0) > 0;
+      tell(is_near ? scene_.closer_than(*within_, context_) : scene_.collisions(context_),
+           is_near ? "closest" : "collision", limit_, out);
+    } else {
+      tell(query == "nbody" ? scene_.closest_primitives(most, context_) : scene_.separation(most, context_), "closest",
+           limit_, out);
+    }
+    return out;
+  }
+
+ private:
+  void move_to(std::size_t k) {
+    TriangleMesh next = next_ ? std::move(*next_) : read_mesh(arguments_.scene[k], {weld_});
+    next_.reset();
+    const bool is_same = difference(mesh_, next).empty();
+    mesh_ = std::move(next);
+    if (scene_.size() == 0) {
+      ObjectOptions options;
+      options.self = true;
+      object_ = scene_.add(mesh_, options, context_);
+    } else if (is_same) {
+      scene_.update(object_, mesh_.vertices, context_);
+    } else {
+      scene_.update(object_, mesh_, context_);
+    }
+  }
+
+  void ask_penetration(std::size_t k, Frame& out) {
+    try {
+      for (const ScenePenetration& part : all_penetrations(scene_, true, penetration_, context_, out.phases)) {
+        out.add(pair_json("penetration", part.part.deep_point, part.part.surface_point, part.part.depth), limit_);
+      }
+    } catch (const InvalidMesh& error) {
+      throw InvalidMesh(with_names(error.what(), {arguments_.scene[k]}));
+    }
+  }
+
+  /// @throws FormatError where the next frame is another mesh, unless such steps are skipped.
+  void ask_continuous(std::size_t k, Frame& out) {
+    const std::vector<std::string>& files = arguments_.scene;
+    next_ = read_mesh(files[k + 1], {weld_});
+    if (const std::string what = difference(mesh_, *next_); !what.empty()) {
+      out.skipped = "'" + files[k + 1] + "': " + what + " '" + files[k] + "'";
+      if (arguments_.skip_changed) return;
+      throw FormatError(out.skipped +
+                        ": between frames of different triangles or vertices nothing can be told; --skip-changed "
+                        "leaves out such steps");
+    }
+    ObjectMotion motion;
+    motion.object = object_;
+    motion.vertices = next_->vertices;
+    tell(scene_.continuous({&motion, 1}, impact_, context_), mesh_, next_->vertices, limit_, out);
+  }
+
+  const ProximityArguments& arguments_;
+  const Context& context_;
+  ImpactOptions impact_;
+  PenetrationOptions penetration_;
+  std::optional<double> within_;
+  std::optional<double> weld_;
+  std::size_t limit_;
+  ProximityScene scene_;
+  ObjectId object_;
+  TriangleMesh mesh_;
+  std::optional<TriangleMesh> next_;
+};
+
+/// What is told of all frames.
+struct Answer {
+  Json frames = Json::array();
+  Json counts = Json::array();
+  Json earliest = Json::array();
+  Json skipped = Json::array();
+  std::size_t pairs = 0;
+  std::optional<std::size_t> first;  ///< the first frame behind which something meets on the way to the next
+  double first_time = 0;
+  std::size_t most = 0;  ///< pairs of one frame
+  std::vector<PhaseTime> phases;
+
+  void add(std::size_t k, Frame frame) {
+    pairs += frame.count;
+    most = std::max(most, frame.count);
+    counts.push_back(frame.count);
+    earliest.push_back(to_json(frame.earliest));
+    if (frame.earliest && !first) {
+      first = k;
+      first_time = *frame.earliest;
+    }
+    Json told{{"pairs", std::move(frame.pairs)}, {"stages", to_json(frame.phases)}};
+    if (!frame.skipped.empty()) {
+      told["skipped"] = frame.skipped;
+      skipped.push_back({{"frame", k}, {"reason", frame.skipped}});
+    }
+    frames.push_back(std::move(told));
+    phases.insert(phases.end(), frame.phases.begin(), frame.phases.end());
+  }
+};
+
+std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
+  std::string text = count_text(answer.pairs);
+  if (answer.first) {
+    text += "; the first from '" + a.scene[*answer.first] + "' to '" + a.scene[*answer.first + 1] + "', at time " +
+            rounded_text(answer.first_time);
+  }
+  if (!a.output) return text;
+  if (const std::size_t limit = read_limit(a); answer.most > limit) {
+    text += "; the first " + count_text(limit) + " of each frame are told, as --limit says";
+  }
+  return text + "; see them with: blum view FRAMES --frames --pairs " + *a.output;
+}
+
+std::string text_of(const ProximityArguments& a, const Answer& answer, const PhaseSummary& spent) {
+  constexpr std::size_t most_rows = 20;
+  TextTable table;
+  table.add("frames", count_text(a.scene.size()));
+  table.add("pairs", pairs_text(a, answer));
+  for (std::size_t k = 0; k < std::min(answer.skipped.size(), most_rows); ++k) {
+    table.add("skipped", answer.skipped[k]["reason"].text());
+  }
+  if (answer.skipped.size() > most_rows) {
+    table.add("...",
+              plural(answer.skipped.size() - most_rows, "step", "steps") + " skipped more; --json FILE tells all");
+  }
+  if (a.output) table.add("wrote", *a.output);
+  table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  return table.text();
+}
+
+Json json_of(const ProximityArguments& a, const Answer& answer, const PhaseSummary& spent, int threads) {
+  Json facts{{"query", a.query}, {"frames", a.scene.size()}, {"pairs", answer.counts}};
+  if (a.query == "continuous") {
+    facts["earliest"] = answer.earliest;
+    facts["skipped"] = answer.skipped;
+  }
+  facts["seconds"] = spent.seconds;
+  facts["total_seconds"] = spent.total;
+  facts["peak_memory_bytes"] = peak_memory();
+  facts["threads"] = threads;
+  facts["limit"] = limit_json(a);
+  facts["outputs"] = outputs_json(a);
+  return answer_json("proximity", facts);
+}
+
+void write(const ProximityArguments& a, Answer& answer) {
+  AtomicFile file(*a.output);
+  file.write(Json{{"query", a.query}, {"files", a.scene}, {"frames", std::move(answer.frames)}}.dump() + "\n");
+  file.commit();
+}
+
+}  // namespace
+
+void run_frames(const ProximityArguments& a) {
+  check(a);
+  check(a.impact.read());
+  check(a.penetration.read());
+  check(a.culling.read());
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  if (a.output) outputs.emplace_back(*a.output);
+  check_outputs(outputs, {a.scene.begin(), a.scene.end()});
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  Context context = make_context(threads, progress, interrupt);
+  const auto show = std::exchange(context.progress, {});
+  Sequence sequence(a, context);
+  Answer answer;
+  for (std::size_t k = 0; k < a.scene.size(); ++k) {
+    throw_if_cancelled(context);
+    answer.add(k, sequence.frame(k));
+    if (show) show(static_cast<double>(k + 1) / static_cast<double>(a.scene.size()), "frames");
+  }
+  if (a.output) {
+    Stopwatch watch;
+    write(a, answer);
+    answer.phases.push_back({"write", watch.lap()});
+  }
+  progress.clear();
+  const PhaseSummary spent = summarize(answer.phases);
+  report(a.report, json_of(a, answer, spent, thread_count(context)), text_of(a, answer, spent));
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/io/collision_io.hpp"
+#include "blum/proximity/scene.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/summary.hpp"
+#include "proximity/queries.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows of the table that are printed.
+constexpr std::size_t most_rows = 20;
+
+void check(const ProximityArguments& a) {
+  if (a.ends.size() != a.scene.size()) {
+    throw UsageError("--to names " + plural(a.ends.size(), "file", "files") + ", but " +
+                     plural(a.scene.size(), "object is", "objects are") +
+                     " given: name one for each, in the same order; for an object that rests its file again");
+  }
+  if (a.scene.size() == 1 && !a.self) {
+    throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
+  }
+  check_continuous_options(a);
+}
+
+/// The objects of a scene, and what of them collides.
+struct Answer {
+  std::vector<MovingMesh> meshes;
+  ImpactOptions options;
+  SceneCollisions found;
+  std::vector<std::string> names;  ///< of the objects
+  PhaseSummary spent;
+  int threads = 0;
+  std::size_t limit = 0;
+
+  [[nodiscard]] std::size_t moving() const {
+    return static_cast<std::size_t>(
+        std::count_if(meshes.begin(), meshes.end(), [](const MovingMesh& mesh) { return !mesh.end.empty(); }));
+  }
+};
+
+std::vector<MovingMesh> read_objects(const ProximityArguments& a) {
+  std::vector<MovingMesh> meshes;
+  meshes.reserve(a.scene.size());
+  const std::optional<double> weld = parse_weld(a.weld);
+  for (std::size_t k = 0; k < a.scene.size(); ++k) meshes.push_back(read_moving_mesh(a.scene[k], a.ends[k], weld));
+  return meshes;
+}
+
+ProximityScene scene_of(const std::vector<MovingMesh>& meshes, const ProximityArguments& a, const Context& context) {
+  ProximityScene scene;
+  ObjectOptions options;
+  options.self = a.self;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    try {
+      scene.add(meshes[k].start, options, context);
+    } catch (const InvalidMesh& error) {
+      throw InvalidMesh("'" + a.scene[k] + "': " + error.what());
+    }
+  }
+  return scene;
+}
+
+std::vector<ObjectMotion> motions_of(const std::vector<MovingMesh>& meshes) {
+  std::vector<ObjectMotion> motions;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    if (meshes[k].end.empty()) continue;
+    ObjectMotion& motion = motions.emplace_back();
+    motion.object = ObjectId(static_cast<std::uint32_t>(k));
+    motion.vertices = meshes[k].end;
+  }
+  return motions;
+}
+
+/// How many pairs of features of two objects meet, and when the first of them does.
+struct PairSummary {
+  std::size_t vertex_face = 0;
+  std::size_t edge_edge = 0;
+  std::optional<double> earliest;
+
+  [[nodiscard]] std::size_t count() const { return vertex_face + edge_edge; }
+};
+
+PairSummary summary_of(const ObjectCollisions& pair) {
+  return {pair.vertex_face.size() + pair.face_vertex.size(), pair.edge_edge.size(), pair.earliest()};
+}
+
+/// Of all pairs of objects.
+PairSummary summary_of(const SceneCollisions& found) {
+  PairSummary out{0, 0, found.earliest()};
+  for (const ObjectCollisions& pair : found.objects) {
+    out.vertex_face += pair.vertex_face.size() + pair.face_vertex.size();
+    out.edge_edge += pair.edge_edge.size();
+  }
+  return out;
+}
+
+FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
+  FileMetadata out{{"content", "continuous collisions"},
+                   {"blum_version", BLUM_VERSION},
+                   {"self", a.self ? "true" : "false"},
+                   {"tolerance", exact_text(answer.options.tolerance)},
+                   {"min_separation", exact_text(answer.options.min_separation)}};
+  const std::vector<std::string> ends = told_apart(a.ends);
+  for (std::size_t k = 0; k < a.scene.size(); ++k) {
+    out.emplace_back("object_" + std::to_string(k), answer.names[k]);
+    out.emplace_back("end_" + std::to_string(k), ends[k]);
+  }
+  return out;
+}
+
+Json objects_json(const ProximityArguments& a, const Answer& answer) {
+  Json json = Json::array();
+  for (std::size_t k = 0; k < a.scene.size(); ++k) {
+    const MovingMesh& mesh = answer.meshes[k];
+    json.push_back({{"file", a.scene[k]},
+                    {"end", a.ends[k]},
+                    {"moves", !mesh.end.empty()},
+                    {"vertices", mesh.start.vertices.size()},
+                    {"triangles", mesh.start.triangles.size()},
+                    {"segments", mesh.start.segments.size()},
+                    {"points", mesh.start.points.size()}});
+  }
+  return json;
+}
+
+Json pairs_json(const SceneCollisions& found) {
+  Json json = Json::array();
+  for (const ObjectCollisions& pair : found.objects) {
+    const PairSummary summary = summary_of(pair);
+    json.push_back({{"object", {pair.first.value, pair.second.value}},
+                    {"vertex_face", summary.vertex_face},
+                    {"edge_edge", summary.edge_edge},
+                    {"earliest", to_json(summary.earliest)}});
+  }
+  return json;
+}
+
+Json json_of(const ProximityArguments& a, const Answer& answer) {
+  const PairSummary all = summary_of(answer.found);
+  return answer_json("proximity", {{"query", a.query},
+                                   {"objects", objects_json(a, answer)},
+                                   {"self", a.self},
+                                   {"tolerance", answer.options.tolerance},
+                                   {"min_separation", answer.options.min_separation},
+                                   {"vertex_face", all.vertex_face},
+                                   {"edge_edge", all.edge_edge},
+                                   {"earliest", to_json(all.earliest)},
+                                   {"pairs", pairs_json(answer.found)},
+                                   {"box_pairs", answer.found.box_pairs},
+                                   {"exact_tests", answer.found.exact_tests},
+                                   {"seconds", answer.spent.seconds},
+                                   {"total_seconds", answer.spent.total},
+                                   {"peak_memory_bytes", peak_memory()},
+                                   {"threads", answer.threads},
+                                   {"limit", limit_json(a)},
+                                   {"outputs", outputs_json(a)}});
+}
+
+std::string collisions_text(const PairSummary& pair) {
+  return plural(pair.vertex_face, "of a vertex and a face", "of a vertex and a face") + ", " +
+         plural(pair.edge_edge, "of two edges", "of two edges") +
+         (pair.earliest ? "; the first at time " + rounded_text(*pair.earliest) : "");
+}
+
+std::string text_of(const ProximityArguments& a, const Answer& answer) {
+  std::size_t triangles = 0;
+  for (const MovingMesh& mesh : answer.meshes) triangles += mesh.start.triangles.size();
+  const auto& pairs = answer.found.objects;
+  TextTable table;
+  table.add("scene", plural(answer.meshes.size(), "object", "objects") + ", of which " +
+                         plural(answer.moving(), "moves", "move") + "; " + plural(triangles, "triangle", "triangles"));
+  const PairSummary all = summary_of(answer.found);
+  table.add("collisions", collisions_text(all) + (a.output ? limit_text(all.count(), answer.limit) : ""));
+  for (std::size_t k = 0; k < std::min(pairs.size(), most_rows); ++k) {
+    table.add(objects_text(answer.names, pairs[k].first, pairs[k].second), collisions_text(summary_of(pairs[k])));
+  }
+  if (pairs.size() > most_rows) {
+    table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " of objects more; --json FILE tells all");
+  }
+  table.add("tests", count_text(answer.found.exact_tests) + " exact ones, of " + count_text(answer.found.box_pairs) +
+                         " pairs whose moving boxes touch");
+  if (a.output) table.add("wrote", *a.output);
+  table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  return table.text();
+}
+
+void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
+  std::vector<MeshMotion> objects;
+  for (const MovingMesh& mesh : answer.meshes) objects.emplace_back(mesh.start, mesh.end);
+  const bool is_all = summary_of(answer.found).count() <= answer.limit;
+  write_collisions(*a.output, is_all ? answer.found : first_of(answer.found, answer.limit), objects,
+                   metadata_of(a, answer), context);
+}
+
+}  // namespace
+
+void run_moving_scene(const ProximityArguments& a) {
+  check(a);
+  Answer answer;
+  answer.options = a.impact.read();
+  check(answer.options);
+  answer.limit = read_limit(a);
+  answer.names = told_apart(a.scene);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  if (a.output) outputs.emplace_back(*a.output);
+  std::vector<fs::path> inputs(a.scene.begin(), a.scene.end());
+  inputs.insert(inputs.end(), a.ends.begin(), a.ends.end());
+  check_outputs(outputs, inputs);
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  answer.meshes = read_objects(a);
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const ProximityScene scene = scene_of(answer.meshes, a, context);
+  phases.push_back({"build", watch.lap()});
+  answer.found = scene.continuous(motions_of(answer.meshes), answer.options, context);
+  phases.insert(phases.end(), answer.found.phases.begin(), answer.found.phases.end());
+  static_cast<void>(watch.lap());
+  if (a.output) {
+    write(a, answer, context);
+    phases.push_back({"write", watch.lap()});
+  }
+  progress.clear();
+  answer.spent = summarize(phases);
+  answer.threads = thread_count(context);
+  report(a.report, json_of(a, answer), text_of(a, answer));
+}
+
+}  // namespace blum::cli

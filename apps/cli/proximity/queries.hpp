@@ -1,0 +1,125 @@
+// Blum: the queries of `blum proximity`. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "blum/complex/columns.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/proximity/continuous_collisions.hpp"
+#include "blum/proximity/impact.hpp"
+#include "blum/proximity/scene.hpp"
+#include "common/common_options.hpp"
+#include "common/described.hpp"
+#include "common/summary.hpp"
+
+namespace blum::cli {
+
+struct ProximityArguments {
+  std::vector<std::string> scene;
+  std::vector<std::string> ends;  ///< of continuous alone: where each object is at the end
+  std::string query = "separation";
+  bool self = false;
+  bool frames = false;        ///< whether files are frames of one object
+  bool skip_changed = false;  ///< of frames and continuous: goes on where a frame is another mesh than the one before
+  std::optional<std::string> within;
+  std::optional<std::string> limit;  ///< the most pairs that are written
+  std::optional<std::string> weld;
+  std::optional<std::string> output;
+  std::optional<std::string> threads;
+  OptionTexts<ImpactOptions> impact;            ///< of continuous collisions alone
+  OptionTexts<SceneOptions> culling;            ///< of separation, signed, nbody and collide
+  OptionTexts<PenetrationOptions> penetration;  ///< of penetration and signed alone
+  ReportOptions report;
+};
+
+/// --query continuous: two files are a mesh at the start and the end of a motion; with --to as run_moving_scene().
+void run_continuous_query(const ProximityArguments& a);
+
+/// --query continuous with --to: each file is an object at the start of a motion, and has one at the end.
+void run_moving_scene(const ProximityArguments& a);
+
+/// A mesh at the start and the end of a motion.
+struct MovingMesh {
+  TriangleMesh start;
+  std::vector<Vec3d> end;  ///< empty: it rests
+};
+
+/// A mesh that rests where both are one path. @throws FileError; FormatError where the files are not one mesh.
+[[nodiscard]] MovingMesh read_moving_mesh(const std::filesystem::path& start, const std::filesystem::path& end,
+                                          std::optional<double> weld);
+
+/// In what two frames of one motion are not one mesh: "it has 3 vertices, not 4 as"; empty where they are one.
+[[nodiscard]] std::string difference(const MeshView& start, const MeshView& end);
+
+/// What is asked of options by --query continuous, whatever moves. @throws UsageError.
+void check_continuous_options(const ProximityArguments& a);
+
+/// --query separation, signed, nbody, collide or penetration: each file is an object.
+void run_scene_query(const ProximityArguments& a);
+
+/// Any query with --frames: the files are those of one object, one after the other.
+void run_frames(const ProximityArguments& a);
+
+/// A part of what two objects of a scene have in common.
+struct ScenePenetration {
+  ObjectId first;
+  ObjectId second;
+  Penetration part;
+};
+
+/// Those of all pairs of objects, and with `is_self` of each with itself.
+[[nodiscard]] std::vector<ScenePenetration> all_penetrations(const ProximityScene& scene, bool is_self,
+                                                             const PenetrationOptions& options, const Context& context,
+                                                             std::vector<PhaseTime>& phases);
+
+/// A part as a pair: of the points that are told of it, with the depth as a negative distance.
+[[nodiscard]] PrimitivePair pair_of(const ScenePenetration& penetration);
+
+/// For each two objects (and with self those that are asked for themselves) the closest pair or, of solids that lie in
+/// each other, the deepest part as pair_of() tells it. @param meshes  of the objects. @throws as ProximityScene.
+[[nodiscard]] ProximityPairs signed_separations(const ProximityScene& scene, std::span<const MeshView> meshes,
+                                                const PenetrationOptions& options, const Context& context);
+
+/// What files of pairs tell of parts beside their pairs: depth_bound, direction, area, volume, deep_object.
+[[nodiscard]] Columns columns_of(std::span<const ScenePenetration> penetrations);
+
+[[nodiscard]] Json json_of(const ScenePenetration& penetration);
+
+/// Names of files: the last parts of their paths, as many as it takes to tell different paths apart.
+[[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& files);
+
+/// The names of two objects; "name, itself" of one.
+[[nodiscard]] std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second);
+
+/// A point, where coordinates that are rounding beside a size (mesh units) read 0.
+[[nodiscard]] std::string point_text(const Vec3d& point, double size);
+
+/// A message of the library, with the names of files in place of "object 0" and so on.
+[[nodiscard]] std::string with_names(std::string message, const std::vector<std::string>& files);
+
+/// The most pairs that are written: --limit, or more than there can be. @throws UsageError.
+[[nodiscard]] std::size_t read_limit(const ProximityArguments& a);
+
+/// What is said behind a count of pairs where not all are written; else nothing.
+[[nodiscard]] std::string limit_text(std::size_t pairs, std::size_t limit);
+
+/// The first collisions in the order of files, of a vertex and a face, then of two edges.
+[[nodiscard]] ContinuousCollisions first_of(ContinuousCollisions found, std::size_t limit);
+[[nodiscard]] SceneCollisions first_of(SceneCollisions found, std::size_t limit);
+
+/// --limit, for --json: null where it is not given.
+[[nodiscard]] inline Json limit_json(const ProximityArguments& a) {
+  return a.limit ? Json(read_limit(a)) : Json(nullptr);
+}
+
+/// The files that were written, for --json.
+[[nodiscard]] inline Json outputs_json(const ProximityArguments& a) {
+  return a.output ? Json::array({*a.output}) : Json::array();
+}
+
+}  // namespace blum::cli

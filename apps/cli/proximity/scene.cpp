@@ -1,0 +1,330 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/geometry/primitives.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/io/proximity_io.hpp"
+#include "blum/proximity/scene.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/summary.hpp"
+#include "proximity/queries.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows of the table that separation prints.
+constexpr std::size_t most_rows = 20;
+
+void check(const ProximityArguments& a) {
+  if (a.scene.size() == 1 && !a.self) {
+    throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
+  }
+  const bool is_penetration = a.query == "penetration";
+  if (const auto names = a.impact.given(); !names.empty()) {
+    throw UsageError(names.front() + " is for --query continuous alone");
+  }
+  const bool is_signed = a.query == "signed";
+  if (const auto names = a.penetration.given(); !is_penetration && !is_signed && !names.empty()) {
+    throw UsageError(names.front() + " is for --query penetration and signed alone");
+  }
+  if ((is_penetration || is_signed) && a.within) throw UsageError("--within is not for --query " + a.query);
+  if (const auto names = a.culling.given(); is_penetration && !names.empty()) {
+    throw UsageError(names.front() + " is not for --query penetration");
+  }
+  if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
+}
+
+/// The objects of a scene, and what was asked of them.
+struct Answer {
+  std::vector<TriangleMesh> meshes;
+  std::optional<double> within;
+  ProximityPairs found;
+  std::vector<ScenePenetration> parts;  ///< of --query penetration: what `found` tells
+  std::vector<std::string> names;       ///< of the objects
+  PhaseSummary spent;
+  int threads = 0;
+  std::size_t limit = 0;
+
+  [[nodiscard]] std::vector<MeshView> views() const { return {meshes.begin(), meshes.end()}; }
+  /// Of those equally close the first; nullptr where there is none.
+  [[nodiscard]] const PrimitivePair* closest() const {
+    const auto& pairs = found.pairs;
+    const auto first = std::min_element(pairs.begin(), pairs.end(), [](const PrimitivePair& p, const PrimitivePair& q) {
+      return p.between.distance < q.between.distance;
+    });
+    return first == pairs.end() ? nullptr : &*first;
+  }
+  [[nodiscard]] std::optional<double> min_distance() const {
+    const PrimitivePair* const pair = closest();
+    return pair == nullptr ? std::nullopt : std::optional(pair->between.distance);
+  }
+};
+
+std::vector<TriangleMesh> read_objects(const std::vector<std::string>& files, std::optional<double> weld) {
+  const Unattended reading;
+  std::vector<TriangleMesh> meshes;
+  meshes.reserve(files.size());
+  for (const std::string& file : files) meshes.push_back(read_mesh(file, {weld}));
+  return meshes;
+}
+
+ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const ProximityArguments& a,
+                        const SceneOptions& culling, const Context& context) {
+  ProximityScene scene(culling);
+  ObjectOptions options;
+  options.self = a.self;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    try {
+      scene.add(meshes[k], options, context);
+    } catch (const InvalidMesh& error) {
+      throw InvalidMesh("'" + a.scene[k] + "': " + error.what());
+    }
+  }
+  return scene;
+}
+
+void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
+  try {
+    answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh(with_names(error.what(), a.scene));
+  }
+  answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
+  for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
+}
+
+void ask_signed(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
+  try {
+    answer.found = signed_separations(scene, answer.views(), a.penetration.read(), context);
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh(with_names(error.what(), a.scene));
+  }
+}
+
+ProximityPairs ask(const ProximityScene& scene, const std::string& query, std::optional<double> within,
+                   const Context& context) {
+  const double most = within.value_or(std::numeric_limits<double>::infinity());
+  if (query == "separation") return scene.separation(most, context);
+  if (query == "nbody") return scene.closest_primitives(most, context);
+  return within.value_or(0) > 0 ? scene.closer_than(*within, context) : scene.collisions(context);
+}
+
+FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
+  FileMetadata out{{"content", "pairs of primitives"}, {"blum_version", BLUM_VERSION}, {"query", a.query}};
+  if (answer.within) out.emplace_back("within", exact_text(*answer.within));
+  out.emplace_back("self", a.self ? "true" : "false");
+  for (std::size_t k = 0; k < a.scene.size(); ++k) {
+    out.emplace_back("object_" + std::to_string(k), answer.names[k]);
+  }
+  return out;
+}
+
+Json objects_json(const ProximityArguments& a, const Answer& answer) {
+  Json json = Json::array();
+  for (std::size_t k = 0; k < a.scene.size(); ++k) {
+    const TriangleMesh& mesh = answer.meshes[k];
+    json.push_back({{"file", a.scene[k]},
+                    {"vertices", mesh.vertices.size()},
+                    {"triangles", mesh.triangles.size()},
+                    {"segments", mesh.segments.size()},
+                    {"points", mesh.points.size()}});
+  }
+  return json;
+}
+
+Json closest_json(const Answer& answer) {
+  const PrimitivePair* pair = answer.closest();
+  if (pair == nullptr) return nullptr;
+  return {{"distance", pair->between.distance},
+          {"object", {pair->first_object.value, pair->second_object.value}},
+          {"primitive", {pair->first, pair->second}},
+          {"point", {to_json(pair->between.first_point), to_json(pair->between.second_point)}}};
+}
+
+Json json_of(const ProximityArguments& a, const Answer& answer) {
+  Json parts = Json::array();
+  for (const ScenePenetration& part : answer.parts) parts.push_back(json_of(part));
+  return answer_json("proximity", {{"query", a.query},
+                                   {"objects", objects_json(a, answer)},
+                                   {"self", a.self},
+                                   {"within", to_json(answer.within)},
+                                   {"object_pairs", answer.found.report.object_pairs},
+                                   {"pairs", answer.found.pairs.size()},
+                                   {"min_distance", to_json(answer.min_distance())},
+                                   {"closest", closest_json(answer)},
+                                   {"penetrations", parts},
+                                   {"culling", to_json(answer.found.report.culling)},
+                                   {"cells", answer.found.report.cells},
+                                   {"left_over", answer.found.report.left_over},
+                                   {"candidates", answer.found.report.candidates},
+                                   {"exact_tests", answer.found.report.exact_tests},
+                                   {"seconds", answer.spent.seconds},
+                                   {"total_seconds", answer.spent.total},
+                                   {"peak_memory_bytes", peak_memory()},
+                                   {"threads", answer.threads},
+                                   {"limit", limit_json(a)},
+                                   {"outputs", outputs_json(a)}});
+}
+
+/// The largest coordinate, mesh units.
+double largest(const std::vector<TriangleMesh>& meshes) {
+  double out = 0;
+  for (const TriangleMesh& mesh : meshes) {
+    for (const Vec3d& p : mesh.vertices) out = std::max({out, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  return out;
+}
+
+std::string distance_text(const PrimitivePair& pair, double size) {
+  const TriangleDistance& between = pair.between;
+  if (between.distance < 0) {
+    return rounded_text(between.distance) + ": they overlap, from " + point_text(between.first_point, size) + " to " +
+           point_text(between.second_point, size);
+  }
+  if (between.distance == 0) return "they meet, near " + point_text(between.first_point, size);
+  return rounded_text(between.distance) + ", from " + point_text(between.first_point, size) + " to " +
+         point_text(between.second_point, size);
+}
+
+std::string penetration_text(const Penetration& part, double size) {
+  // The direction is the difference of two points that are rounded, by their distance.
+  const double blur = std::clamp(size / part.depth, 1.0, 1e6);
+  return "depth " + rounded_text(part.depth) + " (at most " + rounded_text(part.depth_bound) + ") at " +
+         point_text(part.deep_point, size) + ", out along " + point_text(part.direction, blur) + "; volume " +
+         rounded_text(part.volume);
+}
+
+std::string object_text(const Answer& answer, const PrimitivePair& pair) {
+  return objects_text(answer.names, pair.first_object, pair.second_object);
+}
+
+/// A row for each part of what two objects have in common.
+void add_penetrations(const Answer& answer, TextTable& table) {
+  const double size = largest(answer.meshes);
+  for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {
+    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k].part, size));
+  }
+  if (answer.parts.size() > most_rows) {
+    table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more; --json FILE tells all");
+  }
+}
+
+/// A row for each pair of objects.
+void add_separations(const Answer& answer, TextTable& table) {
+  const double size = largest(answer.meshes);
+  const auto& pairs = answer.found.pairs;
+  for (std::size_t k = 0; k < std::min(pairs.size(), most_rows); ++k) {
+    table.add(object_text(answer, pairs[k]), distance_text(pairs[k], size));
+  }
+  if (pairs.size() > most_rows) {
+    table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " more; -o PAIRS tells all");
+  }
+}
+
+std::string scene_text(const Answer& answer) {
+  std::size_t triangles = 0;
+  std::size_t others = 0;
+  for (const TriangleMesh& mesh : answer.meshes) {
+    triangles += mesh.triangles.size();
+    others += mesh.segments.size() + mesh.points.size();
+  }
+  return plural(answer.meshes.size(), "object", "objects") + ", " + plural(triangles, "triangle", "triangles") +
+         (others > 0 ? ", " + plural(others, "segment or point", "segments and points") : "");
+}
+
+std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
+  if (a.query == "penetration") {
+    return answer.parts.empty() ? "none: nothing lies in anything else"
+                                : plural(answer.parts.size(), "part in common", "parts in common");
+  }
+  const bool meet = a.query == "collide" && answer.within.value_or(0) == 0;
+  return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
+         (answer.within && !meet ? " within " + rounded_text(*answer.within) : "");
+}
+
+std::string text_of(const ProximityArguments& a, const Answer& answer) {
+  TextTable table;
+  table.add("scene", scene_text(answer));
+  table.add("pairs", pairs_text(a, answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
+  if (a.query == "penetration") {
+    add_penetrations(answer, table);
+  } else if (a.query == "separation" || a.query == "signed") {
+    add_separations(answer, table);
+  } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
+    table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
+  }
+  if (a.query != "penetration")
+    table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
+                           count_text(answer.found.report.candidates) + " candidates in " +
+                           plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
+  if (a.output) table.add("wrote", *a.output);
+  table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  return table.text();
+}
+
+void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
+  const std::span<const PrimitivePair> pairs = answer.found.pairs;
+  const std::size_t count = std::min(pairs.size(), answer.limit);
+  const std::span<const ScenePenetration> parts = answer.parts;
+  const Columns more = a.query == "penetration" ? columns_of(parts.first(count)) : Columns();
+  write_proximity_pairs(*a.output, pairs.first(count), answer.views(), metadata_of(a, answer), more, context);
+}
+
+}  // namespace
+
+void run_scene_query(const ProximityArguments& a) {
+  check(a);
+  Answer answer;
+  const SceneOptions culling = a.culling.read();
+  check(culling);
+  check(a.penetration.read());
+  if (a.within) answer.within = parse_non_negative("--within", *a.within);
+  answer.limit = read_limit(a);
+  answer.names = told_apart(a.scene);
+  const std::optional<double> weld = parse_weld(a.weld);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  if (a.output) outputs.emplace_back(*a.output);
+  check_outputs(outputs, {a.scene.begin(), a.scene.end()});
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  answer.meshes = read_objects(a.scene, weld);
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
+  phases.push_back({"build", watch.lap()});
+  if (a.query == "penetration") {
+    ask_penetration(scene, a, context, answer);
+  } else if (a.query == "signed") {
+    ask_signed(scene, a, context, answer);
+  } else {
+    answer.found = ask(scene, a.query, answer.within, context);
+  }
+  phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
+  static_cast<void>(watch.lap());
+  if (a.output) {
+    write(a, answer, context);
+    phases.push_back({"write", watch.lap()});
+  }
+  progress.clear();
+  answer.spent = summarize(phases);
+  answer.threads = thread_count(context);
+  report(a.report, json_of(a, answer), text_of(a, answer));
+}
+
+}  // namespace blum::cli

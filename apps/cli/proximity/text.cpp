@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "blum/core/exact_text.hpp"
+#include "common/options.hpp"
+#include "common/summary.hpp"
+#include "proximity/queries.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The last parts of a path, so many of them.
+std::string tail_of(const fs::path& path, std::size_t parts) {
+  const std::vector<fs::path> all(path.begin(), path.end());
+  fs::path out;
+  for (std::size_t k = all.size() - std::min(parts, all.size()); k < all.size(); ++k) out /= all[k];
+  return out.string();
+}
+
+/// Leaves the first entries, as many as `left`, and takes them from it.
+template <class T>
+void cut(std::vector<T>& entries, std::size_t& left) {
+  if (entries.size() > left) entries.resize(left);
+  left -= entries.size();
+}
+
+}  // namespace
+
+std::vector<std::string> told_apart(const std::vector<std::string>& files) {
+  std::vector<std::size_t> parts(files.size(), 1);
+  std::vector<std::string> names(files.size());
+  for (bool is_longer = true; is_longer;) {
+    is_longer = false;
+    std::map<std::string, std::vector<std::size_t>> of_name;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      names[k] = tail_of(files[k], parts[k]);
+      of_name[names[k]].push_back(k);
+    }
+    for (const auto& same : of_name) {
+      const auto is_other = [&](std::size_t k) { return files[k] != files[same.second.front()]; };
+      if (std::none_of(same.second.begin(), same.second.end(), is_other)) continue;
+      for (const std::size_t k : same.second) {
+        if (names[k] == fs::path(files[k]).string()) continue;  // all of it
+        ++parts[k];
+        is_longer = true;
+      }
+    }
+  }
+  return names;
+}
+
+std::string point_text(const Vec3d& point, double size) {
+  constexpr double rounding = 1e-14;
+  Vec3d shown;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    shown[axis] = std::abs(point[axis]) <= rounding * size ? 0 : point[axis];
+  }
+  return vector_text(shown);
+}
+
+std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second) {
+  return names[first.value] + ", " + (first == second ? "itself" : names[second.value]);
+}
+
+std::string with_names(std::string message, const std::vector<std::string>& files) {
+  static const std::string word = "object ";
+  constexpr const char* digits = "0123456789";
+  for (std::size_t at = message.find(word); at != std::string::npos; at = message.find(word, at)) {
+    const std::size_t number = at + word.size();
+    const std::size_t end = std::min(message.find_first_not_of(digits, number), message.size());
+    at = end;
+    if (end == number || end - number > 9) continue;
+    const std::size_t object = std::stoul(message.substr(number, end - number));
+    if (object >= files.size()) continue;
+    const std::string name = "'" + files[object] + "'";
+    message.replace(number - word.size(), end - (number - word.size()), name);
+    at = number - word.size() + name.size();
+  }
+  return message;
+}
+
+std::size_t read_limit(const ProximityArguments& a) {
+  constexpr std::int64_t most = std::int64_t{1} << 40;
+  return a.limit ? static_cast<std::size_t>(parse_integer("--limit", *a.limit, 0, most)) : most;
+}
+
+std::string limit_text(std::size_t pairs, std::size_t limit) {
+  return pairs > limit ? "; the first " + count_text(limit) + " are told, as --limit says" : "";
+}
+
+ContinuousCollisions first_of(ContinuousCollisions found, std::size_t limit) {
+  cut(found.vertex_face, limit);
+  cut(found.edge_edge, limit);
+  return found;
+}
+
+SceneCollisions first_of(SceneCollisions found, std::size_t limit) {
+  for (ObjectCollisions& pair : found.objects) {
+    cut(pair.vertex_face, limit);
+    cut(pair.face_vertex, limit);
+  }
+  for (ObjectCollisions& pair : found.objects) cut(pair.edge_edge, limit);
+  return found;
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,99 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/phase_timer.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/solid/clean_mesh.hpp"
+#include "commands.hpp"
+#include "common/common_options.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/solid_input.hpp"
+#include "common/summary.hpp"
+#include "shape/cleaning.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum clean part.stl -o part.ply --tolerance 0.001              nowhere moved by more than a thousandth of a unit
+  blum clean part.stl -o clean.ply --tolerance 1e-4 --json -     with what was done, and the bound that holds
+  blum voronoi clean.ply -o diagram.vtp                          quicker than of part.stl)";
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::string tolerance;
+  std::optional<std::string> weld, threads;
+  ReportOptions report;
+};
+
+void run(const Arguments& a) {
+  const fs::path path = a.input;
+  const fs::path output = a.output;
+  check_extension("--output", output, file_extensions(FileContent::mesh, FileAccess::both));
+  const double tolerance = parse_positive("--tolerance", a.tolerance);
+  const std::optional<double> weld = parse_weld(a.weld);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  outputs.push_back(output);
+  check_outputs(outputs, {path});
+  if (input_kind(path) != InputKind::mesh) throw FileError("'" + path.string() + "' is no mesh, which cleaning is for");
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  SolidInput input = load_solid(path, weld);
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const CleanedMesh cleaned = of_file(path, [&] { return clean_mesh(input.mesh.mesh, tolerance, context); });
+  phases.push_back({"clean", watch.lap()});
+  input.reversed_triangles = cleaned.report.reversed_triangles;
+  input.reversed_shells = cleaned.report.reversed_shells;
+  std::vector<std::string> warnings = warnings_of(input);
+  add_left_out_warning(input.mesh.mesh, warnings);
+  write_mesh(output, cleaned.mesh);
+  phases.push_back({"write", watch.lap()});
+  add_rounding_warning(output, cleaned.mesh, warnings);
+  progress.clear();
+  const PhaseSummary spent = summarize(phases);
+  Json facts = {{"input", input.json}};
+  facts.update(cleaning_json(cleaned.report, tolerance));
+  Json json = answer_json("clean", facts);
+  add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
+  TextTable table;
+  add_cleaning(cleaned.report, tolerance, table);
+  table.add("wrote", output.string());
+  table.add("time", spent.text);
+  report(a.report, json, input.text + table.text());
+  if (!a.report.quiet) warn(warnings);
+}
+
+}  // namespace
+
+void add_clean_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  const Command command = line.app.add_subcommand(
+      "clean", "A closed mesh without needles and needless vertices, within a tolerance that is certain");
+  command.add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read)).required();
+  command.add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::both))
+      .required()
+      .type_name("FILE");
+  command
+      .add_option("--tolerance", a->tolerance,
+                  "The result is nowhere further from the mesh than TOL, nor the mesh from it; mesh units")
+      .required()
+      .type_name("TOL");
+  add_weld_option(command, a->weld);
+  add_threads_option(command, a->threads);
+  add_report_options(command, a->report);
+  command.footer(examples);
+  command.callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,54 @@
+#include "shape/cleaning.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+#include "common/described.hpp"
+#include "medial/medial_report.hpp"
+
+namespace blum::cli {
+namespace {
+
+std::string change_text(std::size_t before, std::size_t after) {
+  return count_text(after) + " of " + count_text(before);
+}
+
+}  // namespace
+
+void add_cleaning(const CleanReport& done, double tolerance, TextTable& table) {
+  table.add("vertices", change_text(done.vertices_before, done.vertices));
+  table.add("triangles", change_text(done.triangles_before, done.triangles));
+  table.add("steps", plural(done.collapses, "collapse", "collapses") + ", " + plural(done.flips, "flip", "flips"));
+  table.add("deviation",
+            "at most " + rounded_text(done.deviation) + ", both ways; tolerance " + rounded_text(tolerance));
+  table.add("heights", "of triangles at least " + rounded_text(done.smallest_height) + ", before " +
+                           rounded_text(done.smallest_height_before));
+  table.add("topology", betti_text(done.betti) + ", as before; no crossings, checked exactly");
+}
+
+Json cleaning_json(const CleanReport& done, double tolerance) {
+  Json out = {{"tolerance", tolerance}};
+  out.update(to_json(done));
+  return out;
+}
+
+void add_left_out_warning(const MeshView& mesh, std::vector<std::string>& warnings) {
+  if (mesh.segments.empty() && mesh.points.empty()) return;
+  warnings.push_back(plural(mesh.segments.size(), "segment", "segments") + " and " +
+                     plural(mesh.points.size(), "point", "points") + " beside the triangles were left out");
+}
+
+void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh,
+                          std::vector<std::string>& warnings) {
+  if (file.extension() != ".stl") return;
+  const auto is_single = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
+  const bool is_kept = std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                   [&](const Vec3d& p) { return is_single(p.x) && is_single(p.y) && is_single(p.z); });
+  if (is_kept) return;
+  warnings.push_back("'" + file.string() +
+                     "' holds coordinates in single precision, so that what was checked need not hold of it: write "
+                     ".ply, .obj or .off");
+}
+
+}  // namespace blum::cli

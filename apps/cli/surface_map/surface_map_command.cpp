@@ -1,0 +1,309 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/phase_timer.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/io/file_content.hpp"
+#include "blum/io/formats.hpp"
+#include "blum/io/surface_map_io.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/surface_map/surface_distance_map.hpp"
+#include "blum/surface_map/surface_map_statistics.hpp"
+#include "blum/surface_map/thickness.hpp"
+#include "commands.hpp"
+#include "common/common_options.hpp"
+#include "common/described.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum surface-map part.stl housing.stl -o clearance.glb --units mm      clearance between parts, as a texture
+  blum surface-map scan.ply design.stl -o deviation.png --sign auto      deviation, negative inside of the design
+  blum surface-map part.stl -o thickness.vtp --thickness ray             how thick a solid is, straight inwards
+  blum surface-map cloth.obj -o close.npz --self --within 2              to triangles that share no vertex)";
+
+struct Arguments {
+  std::string target;
+  std::vector<std::string> others, outputs;
+  bool self = false;
+  std::optional<std::string> thickness, separation, within, texel, sign, range, weld, threads;
+  std::string units;
+  ReportOptions report;
+};
+
+/// What is asked for, checked.
+struct Request {
+  SurfaceMapOptions map;
+  std::optional<ThicknessOptions> thickness;
+  SurfaceMapWriteOptions write;
+  std::vector<fs::path> outputs;
+};
+
+std::pair<double, double> parse_range(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) throw UsageError("--range is '" + text + "', but must be two numbers, as in 0,2.5");
+  const double low = parse_number("--range", text.substr(0, comma));
+  const double high = parse_number("--range", text.substr(comma + 1));
+  if (!(low < high)) throw UsageError("--range is '" + text + "': the first number must be less than the second");
+  return {low, high};
+}
+
+void check_kind(const Arguments& a) {
+  if (a.self && a.thickness) throw UsageError("--self and --thickness are two kinds of maps: give one of them");
+  if ((a.self || a.thickness) && !a.others.empty()) {
+    throw UsageError(std::string(a.self ? "--self" : "--thickness") + " is of one mesh alone, but '" + a.others[0] +
+                     "' is given, too");
+  }
+  if (!a.self && !a.thickness && a.others.empty()) {
+    throw UsageError("give another mesh, or --self or --thickness for a map of one mesh alone");
+  }
+  if ((a.self || a.thickness) && a.sign) throw UsageError("--sign is for distances to other meshes");
+  if (a.separation && a.thickness != "ball") throw UsageError("--separation is for --thickness ball");
+}
+
+Request read(const Arguments& a) {
+  check_kind(a);
+  Request out;
+  if (a.texel) out.map.texel = parse_positive("--texel", *a.texel);
+  if (a.within) out.map.max_distance = parse_non_negative("--within", *a.within);
+  if (a.sign) out.map.sign = parse_enum<SignMode>("--sign", *a.sign);
+  if (a.thickness) {
+    out.thickness.emplace();
+    out.thickness->kind = parse_enum<ThicknessKind>("--thickness", *a.thickness);
+    if (a.separation) out.thickness->separation = number_in("--separation", *a.separation, Range::between(0, 180));
+  }
+  if (a.range) out.write.range = parse_range(*a.range);
+  out.write.units = a.units;
+  for (const std::string& output : a.outputs) {
+    check_extension("--output", output, file_extensions(FileContent::surface_map, FileAccess::write));
+    out.outputs.emplace_back(output);
+  }
+  return out;
+}
+
+/// The other meshes as one.
+struct Joined {
+  TriangleMesh mesh;
+  std::vector<std::size_t> ends;  ///< of their vertices
+
+  [[nodiscard]] std::size_t object_of(std::size_t vertex) const {
+    return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), vertex) - ends.begin());
+  }
+};
+
+SurfaceMap map_of(const Request& asked, const MeshView& target, const Joined& others, const Context& context) {
+  if (asked.thickness) return thickness_map(target, asked.map, *asked.thickness, context);
+  if (others.ends.empty()) return self_distance_map(target, asked.map, context);
+  return surface_distance_map(target, others.mesh, asked.map, context);
+}
+
+/// A texel as JSON tells of it.
+Json place_json(const SurfaceMap& map, const MeshView& target, std::size_t texel) {
+  const Vec3d point = surface_point(target, *map.atlas, texel);
+  const Vec3f way = map.vector[texel];
+  return {{"distance", map.distance[texel]},
+          {"point", to_json(point)},
+          {"closest", to_json(point + Vec3d{way.x, way.y, way.z})},
+          {"triangle", map.atlas->triangle[texel].to_file()},
+          {"site", map.site[texel].to_file()}};
+}
+
+std::optional<std::size_t> furthest_texel(const SurfaceMap& map) {
+  std::optional<std::size_t> best;
+  for (std::size_t k = 0; k < map.distance.size(); ++k) {
+    if (std::isfinite(map.distance[k]) && (!best || map.distance[k] > map.distance[*best])) best = k;
+  }
+  return best;
+}
+
+/// "0.25 at (1, 2, 3)".
+std::string place_text(const Json& place) {
+  const Json& p = place["point"];
+  return rounded_text(place["distance"].number()) + " at " + vector_text({p[0].number(), p[1].number(), p[2].number()});
+}
+
+/// Facts of a map, for JSON and for the table.
+struct Facts {
+  std::size_t texels = 0;
+  std::size_t without = 0;  ///< texels that nothing is found for
+  double largest_error = 0;
+  Json smallest = nullptr, largest = nullptr;
+
+  Facts(const SurfaceMap& map, const MeshView& target, const Joined& others) {
+    for (std::size_t k = 0; k < map.distance.size(); ++k) {
+      if (!map.atlas->triangle[k].has_value()) continue;
+      ++texels;
+      without += map.site[k].has_value() ? 0U : 1U;
+    }
+    for (const float error : map.error) largest_error = std::max<double>(largest_error, error);
+    if (const auto at = map.closest_texel()) smallest = place_json(map, target, *at);
+    if (const auto at = furthest_texel(map)) largest = place_json(map, target, *at);
+    if (others.ends.size() < 2) return;
+    const SiteTable sites(others.mesh);
+    for (Json* place : {&smallest, &largest}) {
+      if (place->is_null()) continue;
+      const SiteId site(static_cast<std::uint32_t>((*place)["site"].number()));
+      (*place)["object"] = others.object_of(static_cast<std::size_t>(sites.vertices(site)[0]));
+    }
+  }
+};
+
+/// What keeps all of a mesh from having a thickness, or a meaningful one.
+std::vector<std::string> thickness_warnings(const MeshView& solid) {
+  const Orientation found = orientation(solid, SiteTable(solid));
+  const auto edges = [](std::size_t count) { return plural(count, "edge", "edges"); };
+  if (found.boundary_edges > 0) {
+    return {"the mesh is open (" + edges(found.boundary_edges) +
+            " with one triangle): behind a hole there is no thickness, or one too large; --weld joins vertices"};
+  }
+  if (found.inconsistent_edges > 0) {
+    return {"triangles face different ways (" + edges(found.inconsistent_edges) +
+            "): where they face inwards, thickness is measured outside of the solid"};
+  }
+  if (found.closed && !found.outward) {
+    return {
+        found.signed_volume < 0
+            ? "triangles face into the solid, so that thickness is measured outside of it; turn them around"
+            : "shells lie in or cross each other and face the same way, or have no volume: thickness may be that of "
+              "one of them alone"};
+  }
+  return {};
+}
+
+void run(const Arguments& a) {
+  const Request asked = read(a);
+  const std::optional<double> weld = parse_weld(a.weld);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> inputs{a.target};
+  inputs.insert(inputs.end(), a.others.begin(), a.others.end());
+  std::vector<fs::path> outputs = a.report.files();
+  outputs.insert(outputs.end(), asked.outputs.begin(), asked.outputs.end());
+  check_outputs(outputs, inputs);
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  MeshFile target;
+  Joined others;
+  {
+    const Unattended reading;
+    target = read_mesh_of_any_name(inputs[0], {weld});
+    for (const std::string& other : a.others) {
+      append(others.mesh, read_mesh_of_any_name(other, {weld}).mesh);
+      others.ends.push_back(others.mesh.vertices.size());
+    }
+  }
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const SurfaceMap map = map_of(asked, target.mesh, others, context);
+  phases.push_back({"map", watch.lap()});
+  for (const fs::path& output : asked.outputs) {
+    write_surface_map(output, target.mesh, map,
+                      {{"tool", "blum surface-map"}, {"source", inputs[0].filename().string()}}, asked.write, context);
+  }
+  phases.push_back({"write", watch.lap()});
+  progress.clear();
+  const PhaseSummary spent = summarize(phases);
+  const Facts facts(map, target.mesh, others);
+  const SurfaceMapStatistics by_area = surface_map_statistics(target.mesh, map);
+  const std::string quantity(to_string(map.quantity));
+  Json json =
+      answer_json("surface-map", {{"target", a.target},
+                                  {"others", a.others},
+                                  {"triangles", target.mesh.triangles.size()},
+                                  {"quantity", quantity},
+                                  {"units", a.units},
+                                  {"width", map.atlas->width},
+                                  {"height", map.atlas->height},
+                                  {"texels", facts.texels},
+                                  {"without_value", facts.without},
+                                  {"largest_error", map.error.empty() ? Json(nullptr) : Json(facts.largest_error)},
+                                  {"smallest", facts.smallest},
+                                  {"largest", facts.largest},
+                                  {"by_area", by_area.measured_area > 0 ? to_json(by_area) : Json(nullptr)}});
+  if (map.sign_rule != SignRule::none) {
+    json["sign_rule"] = to_string(map.sign_rule);
+    json["sign_reason"] = map.sign_reason;
+  }
+  std::vector<std::string> warnings;
+  if (asked.thickness) warnings = thickness_warnings(target.mesh);
+  if (facts.texels == facts.without) {
+    warnings.emplace_back(asked.thickness ? "no texel has a thickness"
+                                          : "nothing lies within the distance of any texel");
+  }
+  Json written = Json::array();
+  for (const fs::path& output : asked.outputs) written.push_back(output.string());
+  add_run_facts(json, spent, context, warnings, written);
+  TextTable table;
+  table.add("target", a.target + ": " + plural(target.mesh.triangles.size(), "triangle", "triangles"));
+  table.add("map", quantity + ", " + std::to_string(map.atlas->width) + " x " + std::to_string(map.atlas->height) +
+                       " texels, " + count_text(facts.texels) + " of them used");
+  const std::string unit = a.units.empty() ? "" : " " + a.units;
+  if (!map.error.empty()) table.add("error", "at most " + rounded_text(facts.largest_error) + unit + " between texels");
+  if (facts.without > 0) table.add("nothing", "of " + plural(facts.without, "texel", "texels") + " is found");
+  if (!facts.smallest.is_null()) table.add("smallest", place_text(facts.smallest));
+  if (!facts.largest.is_null()) table.add("largest", place_text(facts.largest));
+  if (by_area.measured_area > 0) {
+    table.add("mean", rounded_text(by_area.mean) + ", rms " + rounded_text(by_area.rms) + ", by area");
+    table.add("of the area", percentiles_text(SurfaceMapStatistics::percents, by_area.percentiles));
+  }
+  if (map.sign_rule != SignRule::none) {
+    table.add("sign", std::string(to_string(map.sign_rule)) + ": " + map.sign_reason);
+  }
+  for (const fs::path& output : asked.outputs) table.add("wrote", output.string());
+  table.add("time", spent.text);
+  if (!a.report.quiet) warn(warnings);
+  report(a.report, json, table.text());
+}
+
+}  // namespace
+
+void add_surface_map_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  const Command command = line.app.add_subcommand(
+      "surface-map", "Distances over a surface as a texture: to other meshes, to itself, or how thick a solid is");
+  const std::string help = extensions_help({FileContent::mesh}, FileAccess::read);
+  command.add_option("TARGET", a->target, help).required();
+  command.add_option("OTHER", a->others, "Meshes that distances are measured to");
+  command
+      .add_option("-o,--output", a->outputs,
+                  ".npz everything; .png the texture with a bar of colours; .glb for viewers; .ply .vtp values of "
+                  "vertices and triangles. May be given several times")
+      .required()
+      .type_name("FILE");
+  command.add_flag("--self", a->self, "Distances to the triangles of TARGET that share no vertex");
+  add_text_option(command, "--thickness", a->thickness, "KIND",
+                  "How thick TARGET is: ray, straight inwards to the far side; ball, diameter of the largest ball "
+                  "inside that touches");
+  add_text_option(command, "--separation", a->separation, "DEGREES",
+                  "Of balls: triangles that are turned by less do not end them (default 30)");
+  add_text_option(command, "--texel", a->texel, "H",
+                  "Side of a texel on the surface, in mesh units (default: about a million texels)");
+  add_text_option(command, "--within", a->within, "D", "Look for nothing further than this, in mesh units");
+  add_text_option(command, "--sign", a->sign, "SIGN",
+                  "How signs are found: auto, normals, winding or none (default none); negative inside of OTHER");
+  add_text_option(command, "--range", a->range, "LOW,HIGH",
+                  "Of the colours (default: that of the map, of distances with 0)");
+  command.add_option("--units", a->units, "Of the mesh, such as mm, for the bar of colours and metadata")
+      .type_name("TEXT");
+  add_weld_option(command, a->weld);
+  add_threads_option(command, a->threads);
+  add_report_options(command, a->report);
+  command.footer(examples);
+  command.callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

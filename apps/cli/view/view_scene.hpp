@@ -1,0 +1,27 @@
+// Blum: what files look like in the viewer. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "view/scene_blob.hpp"
+
+namespace blum::cli {
+
+/// Files as the viewer shows them: one item each, in their order.
+struct Scene {
+  Json header;  ///< the items, and what the page has from here only: colours, and the numbers of roles
+  SceneBlob blob;
+  std::vector<std::string> problems;  ///< of the files that could not be read
+};
+
+/// Reads meshes, images, fields, medial axes and surface maps. A file that cannot be read becomes an item with its
+/// message.
+/// @param weld  of meshes.
+/// @throws Cancelled.
+[[nodiscard]] Scene make_scene(const std::vector<std::filesystem::path>& files, std::optional<double> weld,
+                               bool compresses, const Context& context);
+
+}  // namespace blum::cli

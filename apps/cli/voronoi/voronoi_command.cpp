@@ -1,0 +1,401 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/complex.hpp"
+#include "blum/core/error.hpp"
+#include "blum/io/complex_io.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/io/voronoi_io.hpp"
+#include "blum/solid/clean_mesh.hpp"
+#include "blum/solid/solid.hpp"
+#include "blum/voronoi/failing_cells.hpp"
+#include "blum/voronoi/voronoi_complex.hpp"
+#include "blum/voronoi/voronoi_graph.hpp"
+#include "blum/voronoi/voronoi_regions.hpp"
+#include "blum/voronoi/voronoi_sites.hpp"
+#include "commands.hpp"
+#include "common/common_options.hpp"
+#include "common/described.hpp"
+#include "common/files.hpp"
+#include "common/options.hpp"
+#include "common/progress.hpp"
+#include "common/solid_input.hpp"
+#include "common/summary.hpp"
+#include "medial/medial_report.hpp"
+#include "shape/cleaning.hpp"
+#include "voronoi/voronoi_axis.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum voronoi part.stl -o part.vtp                for ParaView: walls and surface, with the sites on both sides
+  blum voronoi part.stl -o walls.ply --walls       what lies between regions, without the surface
+  blum voronoi part.stl -o axis.vtp --medial       the medial axis: walls with two footprints
+  blum voronoi part.stl -o axis.vtp --medial --theta 60 --simplify 0.01    where these are 60 degrees apart; fewer triangles
+  blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
+  blum voronoi part.stl -o part.vtp --tolerance 0.1    nowhere more than 0.1 mesh units off the exact walls
+  blum voronoi scan.stl -o scan.vtp --clean 0.001 --cleaned clean.ply    of the mesh without needles, which is written, too
+  blum voronoi part.stl --json -                   only the facts: sites, cubes, whether it can be certified
+
+Exit status 3: the complex could not be certified, and no file was written.)";
+
+struct Arguments {
+  std::string input;
+  std::optional<std::string> output, clean, cleaned, weld, threads;
+  OptionTexts<VoronoiOptions> options;
+  bool walls = false;
+  bool medial = false;
+  VoronoiAxisTexts axis;
+  bool allow_uncertified = false;
+  ReportOptions report;
+};
+
+bool is_wall(std::int32_t site_a) {
+  return site_a != -1;
+}
+
+SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
+  if (input_kind(path) != InputKind::mesh) {
+    throw FileError("'" + path.string() + "' is no mesh; the Voronoi diagram is that of a closed mesh");
+  }
+  return load_solid(path, weld);
+}
+
+/// What the complex is, in messages.
+std::string subject_of(VoronoiPart part) {
+  if (part == VoronoiPart::medial_axis) return "the medial axis";
+  return part == VoronoiPart::walls ? "walls" : "walls and surface";
+}
+
+/// What may let more cubes pass.
+std::string advice(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
+  std::vector<std::string> all;
+  if (options.depth < VoronoiOptions{}.depth) all.emplace_back("a larger --depth may help");
+  if (report.stopped_at_max_cubes) {
+    all.push_back("it stopped at --max-cubes " + count_text(static_cast<std::size_t>(options.max_cubes)) +
+                  (options.tolerance || options.resolution > VoronoiOptions{}.resolution
+                       ? ", too few for so fine a --resolution or --tolerance"
+                       : ""));
+  }
+  if (!is_cleaned && options.depth == VoronoiOptions{}.depth) {
+    all.emplace_back("where coordinates are rounded, as in .stl files, --clean with a small tolerance may help");
+  }
+  std::string out;
+  for (const std::string& one : all) out += "; " + one;
+  return out;
+}
+
+/// Why a complex is not certified; nothing where it is.
+std::vector<std::string> mismatches_of(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
+  std::vector<std::string> all;
+  if (report.certified) return all;
+  if (!report.failing.empty()) {
+    const FailingVoronoiCell& first = report.failing.front();
+    std::string text = report.failing.size() == 1
+                           ? "a cube does not pass, that"
+                           : count_text(report.failing.size()) + " cubes do not pass, the first one";
+    text += " from " + vector_text(first.low) + " to " + vector_text(first.high) + " (" +
+            std::string(to_string(first.obstacle)) + ")";
+    all.push_back(text + advice(report, options, is_cleaned));
+  }
+  if (report.undecided_lines > 0) {
+    all.push_back("of " + plural(report.undecided_lines, "part of a grid line", "parts of grid lines") +
+                  " it is not known what is closest");
+  }
+  if (report.contradictions > 0) {
+    all.push_back("of " + plural(report.contradictions, "point", "points") +
+                  " of the grid it is not certain what is closest, at none of its places");
+  }
+  if (report.found != report.expected) {
+    all.push_back("the complex has " + betti_text(report.found) + ", but " + subject_of(options.part) +
+                  (options.part == VoronoiPart::medial_axis ? " has " : " have ") + betti_text(report.expected));
+  }
+  return all;
+}
+
+/// Numbers of a complex, as JSON and as text.
+struct Counts {
+  std::size_t vertices = 0;
+  std::size_t walls = 0;    ///< triangles
+  std::size_t surface = 0;  ///< triangles
+
+  explicit Counts(const Complex& complex) : vertices(complex.positions.size()) {
+    const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
+    walls = static_cast<std::size_t>(std::count_if(site_a.begin(), site_a.end(), is_wall));
+    surface = site_a.size() - walls;
+  }
+  [[nodiscard]] Json json() const {
+    return {{"vertices", vertices},
+            {"triangles", walls + surface},
+            {"wall_triangles", walls},
+            {"surface_triangles", surface}};
+  }
+  [[nodiscard]] std::string text() const {
+    return plural(vertices, "vertex", "vertices") + ", " + plural(walls + surface, "triangle", "triangles") + ": " +
+           count_text(walls) + " on walls, " + count_text(surface) + " on the surface";
+  }
+};
+
+std::string sites_text(const VoronoiReport& report) {
+  std::string text = plural(report.faces, "face", "faces") + ", " +
+                     plural(report.reflex_edges, "reflex edge", "reflex edges") + ", " +
+                     plural(report.reflex_vertices, "reflex vertex", "reflex vertices");
+  if (report.thin_vertices > 0) text += " (" + count_text(report.thin_vertices) + " of them thin)";
+  return text;
+}
+
+std::string certificate_text(VoronoiPart part) {
+  if (part == VoronoiPart::medial_axis)
+    return "the homology is that of the solid's exact medial axis, and of the solid";
+  return subject_of(part) + " have the homology of the exact diagram's";
+}
+
+void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, TextTable& table) {
+  table.add("sites", sites_text(report));
+  table.add("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
+                         plural(report.splits, "split", "splits") + ", the smallest " + std::to_string(report.depth) +
+                         " times; " + rounded_text(report.governors) + " labels in a cube, mean");
+  table.add("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
+                         count_text(report.exact_lines) + " by exact signs");
+  table.add("complex", counts.text());
+  if (report.certified) {
+    table.add("geometry", "at most " + rounded_text(report.hausdorff_bound) + " from the exact one, everywhere");
+  }
+  table.add("expected", betti_text(report.expected));
+  table.add("found", betti_text(report.found));
+  table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
+}
+
+struct Request {
+  VoronoiOptions options;
+  VoronoiAxisOptions axis;
+  std::optional<double> clean;  ///< mesh units
+  std::optional<double> weld;
+  int threads = 0;
+};
+
+/// What ids of triangles, edges and vertices in a file are of.
+fs::path source_of(const Arguments& a) {
+  return a.cleaned ? *a.cleaned : a.input;
+}
+
+FileMetadata metadata_of(const Arguments& a, const Request& r, const VoronoiReport& report) {
+  FileMetadata out =
+      voronoi_metadata(r.options.part, report.certified ? std::optional(report.hausdorff_bound) : std::nullopt,
+                       report.failing.size(), BLUM_VERSION);
+  out.emplace_back("source", source_of(a).filename().string());
+  if (r.weld) out.emplace_back("weld", exact_text(*r.weld));
+  if (r.clean) out.emplace_back("clean", exact_text(*r.clean));
+  return out;
+}
+
+Request parse(const Arguments& a) {
+  Request r{a.options.read(), parse_axis_options(a.axis), {}, parse_weld(a.weld), parse_threads(a.threads)};
+  if (a.clean) r.clean = parse_positive("--clean", *a.clean);
+  if (a.walls && a.medial) throw UsageError("--walls and --medial are two different parts of the diagram: give one");
+  if (a.walls) r.options.part = VoronoiPart::walls;
+  if (a.medial) r.options.part = VoronoiPart::medial_axis;
+  const std::string of_axis = a.axis.given();
+  if (!of_axis.empty() && !a.medial) throw UsageError(of_axis + " is for medial axes: give --medial, too");
+  if (!of_axis.empty() && !a.output) throw UsageError(of_axis + " is for files: give --output, too");
+  std::vector<fs::path> outputs = a.report.files();
+  if (r.axis.graph) {
+    if (a.medial && !a.output) throw UsageError("--graph of a medial axis is for files: give --output, too");
+    outputs.push_back(*r.axis.graph);
+  }
+  if (a.cleaned) {
+    check_extension("--cleaned", *a.cleaned, file_extensions(FileContent::mesh, FileAccess::both));
+    outputs.emplace_back(*a.cleaned);
+  } else if (a.clean && a.medial && a.output) {
+    throw UsageError("a medial axis is verified against the mesh that it is of: give --cleaned FILE for that, too");
+  }
+  if (a.output) {
+    const FileAccess access = a.medial ? FileAccess::both : FileAccess::write;  // axes are read again
+    check_extension("--output", *a.output, file_extensions(FileContent::complex, access));
+    outputs.emplace_back(*a.output);
+  } else if (a.allow_uncertified) {
+    throw UsageError("--allow-uncertified is for files: give --output, too");
+  }
+  check_outputs(outputs, {a.input});
+  return r;
+}
+
+/// The parts of the diagram, where a file of them is asked for. The same that Python's VoronoiComplex.graph() tells.
+std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, std::span<const VoronoiSite> sites,
+                                       const VoronoiComplex& made, const Context& context) {
+  if (a.medial || !r.axis.graph) return std::nullopt;
+  VoronoiGraph graph = voronoi_graph(made.complex, context);
+  write_voronoi_graph(*r.axis.graph, graph, sites, metadata_of(a, r, made.report));
+  return graph;
+}
+
+std::string graph_text(const VoronoiGraph& graph) {
+  std::string text = graph.regions.empty() ? "" : plural(graph.regions.size(), "region", "regions") + ", ";
+  return text + plural(graph.walls.size(), "wall", "walls") + ", " + plural(graph.seams.size(), "seam", "seams") +
+         ", " + plural(graph.junctions.size(), "junction", "junctions");
+}
+
+/// The solid whose diagram is made.
+struct Prepared {
+  Solid solid;
+  std::optional<CleanReport> cleaning;
+};
+
+/// The solid of the mesh that was read, cleaned where that is asked for; its surface takes the mesh's place, and is
+/// written where it has numbers of its own.
+Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<std::string>& warnings,
+                 const Context& context) {
+  const auto make = [&]() -> Prepared {
+    const TriangleMesh& mesh = input.mesh.mesh;
+    if (!r.clean) return {Solid::of(mesh, context), std::nullopt};
+    CleanedMesh cleaned = clean_mesh(mesh, *r.clean, context);
+    add_left_out_warning(mesh, warnings);
+    return {std::move(cleaned.solid), cleaned.report};
+  };
+  Prepared out = of_file(a.input, make);
+  input.reversed_triangles = out.cleaning ? out.cleaning->reversed_triangles : out.solid.reversed_triangles();
+  input.reversed_shells = out.cleaning ? out.cleaning->reversed_shells : out.solid.reversed_shells();
+  if (out.solid.resolved()) {
+    if (a.medial && a.output && !a.cleaned) {
+      throw InvalidMesh("'" + a.input +
+                        "': the mesh crosses itself, and a medial axis is verified against the mesh that it is of: "
+                        "give --cleaned FILE for that without the crossings, too");
+    }
+    warnings.push_back(out.solid.reason());
+    if (!a.cleaned) warnings.emplace_back("triangles are those without the crossings: --cleaned FILE writes them");
+  }
+  input.mesh.mesh = out.solid.surface().mesh;
+  if (a.cleaned) write_mesh(*a.cleaned, input.mesh.mesh);
+  return out;
+}
+
+void run(const Arguments& a) {
+  const Request r = parse(a);
+  const fs::path path = a.input;
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(r.threads, progress, interrupt);
+  Stopwatch watch;
+  SolidInput input = read_mesh_input(path, r.weld);
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  std::vector<std::string> left_out;
+  const Prepared prepared = prepare(a, r, input, left_out, context);
+  const std::optional<CleanReport>& cleaning = prepared.cleaning;
+  phases.push_back({cleaning ? "clean" : "solid", watch.lap()});
+  std::vector<std::string> warnings = warnings_of(input);
+  warnings.insert(warnings.end(), left_out.begin(), left_out.end());
+  if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
+  VoronoiComplex made = of_file(path, [&] { return voronoi_complex(prepared.solid, r.options, context); });
+  const VoronoiReport& found = made.report;
+  phases.insert(phases.end(), found.phases.begin(), found.phases.end());
+  static_cast<void>(watch.lap());
+  const Counts counts(made.complex);
+  const std::vector<VoronoiSite> sites = voronoi_sites(input.mesh.mesh, context);
+  std::vector<std::string> mismatches = mismatches_of(found, r.options, r.clean.has_value());
+  const bool may_write = mismatches.empty() || a.allow_uncertified;
+  bool is_written = a.output && may_write;
+  std::optional<VoronoiAxis> axis;
+  std::optional<VoronoiGraph> graph;
+  if (may_write) graph = make_graph(a, r, sites, made, context);
+  if (graph) phases.push_back({"graph", watch.lap()});
+  if (is_written && a.medial) {
+    axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
+                             context);
+    mismatches.insert(mismatches.end(), axis->mismatches.begin(), axis->mismatches.end());
+    is_written = mismatches.empty() || a.allow_uncertified;
+    if (is_written) {
+      for (Draft& draft : axis->drafts) draft.keep();
+    }
+    phases.insert(phases.end(), axis->phases.begin(), axis->phases.end());
+    warnings.insert(warnings.end(), axis->warnings.begin(), axis->warnings.end());
+  } else if (is_written) {
+    ComplexWriteOptions how;
+    how.allow_loss = true;  // as the table of formats says
+    if (!mismatches.empty()) add_failing_cells(made.complex, found.failing);
+    write_complex(*a.output, made.complex, metadata_of(a, r, found), how, context);
+    phases.push_back({"write", watch.lap()});
+  }
+  progress.clear();
+  const PhaseSummary spent = summarize(phases);
+  Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
+  facts["reversed_triangles"] = input.reversed_triangles;
+  facts["reversed_shells"] = input.reversed_shells;
+  facts["cleaning"] = cleaning ? cleaning_json(*cleaning, *r.clean) : Json(nullptr);
+  facts.update(to_json(found));
+  facts.erase("seconds");  // the run's, below, hold them
+  facts["certified"] = mismatches.empty();
+  facts["mismatches"] = mismatches;
+  facts["complex"] = counts.json();
+  facts["sites"] = to_json(sites);
+  facts["regions"] = nullptr;
+  if (r.options.part == VoronoiPart::all) {
+    facts["regions"] = to_json(graph ? graph->regions : voronoi_regions(made.complex));
+  }
+  facts["graph"] =
+      graph
+          ? Json{{"walls", graph->walls.size()}, {"seams", graph->seams.size()}, {"junctions", graph->junctions.size()}}
+          : Json(nullptr);
+  facts["axis"] = axis ? axis->json : Json(nullptr);
+  Json json = answer_json("voronoi", facts);
+  Json outputs = Json::array();
+  if (a.cleaned) outputs.push_back(*a.cleaned);
+  if (is_written) outputs.push_back(*a.output);
+  const bool is_graph_written = graph || (axis && is_written && r.axis.graph);
+  if (is_graph_written) outputs.push_back(r.axis.graph->string());
+  add_run_facts(json, spent, context, warnings, outputs);
+  TextTable table;
+  if (cleaning) add_cleaning(*cleaning, *r.clean, table);
+  add_facts(found, r.options.part, counts, table);
+  if (axis) table.add(axis->table);
+  if (graph) table.add("graph", graph_text(*graph));
+  if (a.cleaned) table.add("wrote", *a.cleaned);
+  if (is_written) table.add("wrote", *a.output);
+  if (is_graph_written) table.add("wrote", r.axis.graph->string());
+  table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  report(a.report, json, input.text + table.text());
+  if (!a.report.quiet) warn(warnings);
+  if (mismatches.empty()) return;
+  const bool is_any_missing = a.output && !is_written;
+  const std::string missing = a.cleaned ? "; of it nothing was written" : "; nothing was written";
+  throw NotCertified(mismatches, is_any_missing ? missing : "");
+}
+
+}  // namespace
+
+void add_voronoi_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  const Command command = line.app.add_subcommand(
+      "voronoi", "The Voronoi diagram of faces, reflex edges and reflex vertices inside a closed mesh, certified");
+  command.add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read)).required();
+  add_text_option(command, "-o,--output", a->output, "FILE",
+                  "Its walls and the surface: a complex, with columns in .vtp, .ply or .npz, without in .obj");
+  command.add_flag("--walls", a->walls, "Walls between regions alone, without the surface");
+  command.add_flag("--medial", a->medial,
+                   "The medial axis: of the walls those with two footprints, none between a face and its own edge");
+  a->axis.add_to(command);
+  a->options.add_to(command, {}, {"part"});
+  add_text_option(
+      command, "--clean", a->clean, "TOL",
+      "Take needles and needless vertices out of the mesh first, as `blum clean` does: nowhere further than "
+      "TOL from it, mesh units");
+  add_text_option(command, "--cleaned", a->cleaned, "FILE", "Write the mesh that --clean makes, which ids are then of");
+  command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even where it is not certified");
+  add_weld_option(command, a->weld);
+  add_threads_option(command, a->threads);
+  add_report_options(command, a->report);
+  command.footer(examples);
+  command.callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli
