@@ -145,9 +145,8 @@ void add_sample_command(const CommandLine& line) {
   command
       .add_option("-o,--output", a->output,
                   extension_list(FileContent::points, FileAccess::write) +
-                      ": the points with columns normal (nx, ny, nz in .ply) and triangle; with --near "
-                      "distance, gradient, "
-                      "closest, site and triangle")
+                      ": the points with columns normal (nx, ny, nz in .ply) and triangle; with --near distance, "
+                      "gradient, closest, site and triangle")
       .required()
       .type_name("FILE");
   command.add_flag("--near", a->near, "Points near the surface, with exact signed distances");
