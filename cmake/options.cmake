@@ -6,6 +6,7 @@ cmake_dependent_option(BLUM_CLI "Build the command-line tool (needs CLI11)" ${PR
                        BLUM_IO OFF)
 option(BLUM_TESTS "Build the tests and the examples (needs GoogleTest)" ${PROJECT_IS_TOP_LEVEL})
 cmake_dependent_option(BLUM_PYTHON "Build the Python extension module (needs Python 3.11, nanobind)" OFF BLUM_IO OFF)
+option(BLUM_UNITY "Compile the Python bindings several files at a time, which is faster; OFF: one by one" ON)
 option(BLUM_BENCH "Build the benchmarks (needs Google Benchmark)" OFF)
 option(BLUM_GPU_BENCH "Build the programs of bench/gpu (needs a CUDA compiler, and no other package)" OFF)
 option(BLUM_FUZZ "Build the libFuzzer targets (needs clang)" OFF)

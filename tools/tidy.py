@@ -19,6 +19,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
@@ -34,20 +35,27 @@ QUICK = [f"--extra-arg={word}" for word in ("-Xclang", "-analyzer-config", "-Xcl
 
 
 def compile_commands() -> dict[str, list[str]]:
-    """The compiler's arguments for each source, without the compiler and its output."""
+    """The compiler's arguments for each source, without the compiler and its output.
+
+    Sources that are compiled several at a time (BLUM_UNITY) have those of the file that includes them.
+    """
     if not (BUILD / "compile_commands.json").is_file():
         subprocess.run(["cmake", "--preset", "release"], cwd=PROJECT, check=True, stdout=subprocess.DEVNULL)
     found = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8")):
         file = pathlib.Path(entry["file"])
-        if not file.is_file() or not any(file.is_relative_to(PROJECT / folder) for folder in FOLDERS):
-            continue
+        files = [file]
+        if file.is_file() and file.parent == BUILD / "python/units":
+            files = [PROJECT / "python" / name for name in re.findall(r'"(.+)"', file.read_text(encoding="utf-8"))]
         words = shlex.split(entry["command"])
-        found[file.relative_to(PROJECT).as_posix()] = [
-            word
-            for before, word in zip(words, words[1:], strict=False)
-            if before == "-isystem" or word.startswith(("-I", "-D", "-std", "-f", "-isystem"))
-        ]
+        for source in files:
+            if not source.is_file() or not any(source.is_relative_to(PROJECT / folder) for folder in FOLDERS):
+                continue
+            found[source.relative_to(PROJECT).as_posix()] = [
+                word
+                for before, word in zip(words, words[1:], strict=False)
+                if before == "-isystem" or word.startswith(("-I", "-D", "-std", "-f", "-isystem"))
+            ]
     return found
 
 

@@ -79,6 +79,15 @@ template <class T, class Entry>
   return width == 0 ? view_of<T>(data, {length}, kept.owner) : view_of<T>(data, {length, width}, kept.owner);
 }
 
+// Compiled once, in arrays.cpp.
+extern template Out<double> handed_over<double>(std::vector<double>, std::size_t);
+extern template Out<double> handed_over<double>(std::vector<Vec3d>, std::size_t);
+extern template Out<std::int32_t> handed_over<std::int32_t>(std::vector<std::int32_t>, std::size_t);
+extern template Out<std::int32_t> handed_over<std::int32_t>(std::vector<std::uint32_t>, std::size_t);
+extern template Out<std::int32_t> handed_over<std::int32_t>(std::vector<Segment>, std::size_t);
+extern template Out<std::int32_t> handed_over<std::int32_t>(std::vector<Triangle>, std::size_t);
+extern template Out<std::uint32_t> handed_over<std::uint32_t>(std::vector<std::uint32_t>, std::size_t);
+
 /// Values at the nodes of a grid as an array [z, y, x]. @param size  nodes along x, y, z.
 template <class T>
 [[nodiscard]] Out<T> grid_view(T* data, const std::array<std::int64_t, 3>& size, nb::handle owner) {
@@ -105,11 +114,7 @@ struct MeshArrays {
 };
 
 /// (vertices, triangles, segments, points).
-[[nodiscard]] inline nb::tuple arrays_of(TriangleMesh mesh) {
-  return nb::make_tuple(
-      handed_over<double>(std::move(mesh.vertices), 3), handed_over<std::int32_t>(std::move(mesh.triangles), 3),
-      handed_over<std::int32_t>(std::move(mesh.segments), 2), handed_over<std::int32_t>(std::move(mesh.points)));
-}
+[[nodiscard]] nb::tuple arrays_of(TriangleMesh mesh);
 
 [[nodiscard]] inline std::array<double, 3> triple(const Vec3d& v) {
   return {v.x, v.y, v.z};

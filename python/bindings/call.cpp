@@ -149,7 +149,7 @@ void end_calls_at_exit() {
   }));
 }
 
-void run_call(const Call& call, const std::function<void(const Context&)>& work) {
+void run_call(const Call& call, void (*work)(const void* subject, const Context& context), const void* subject) {
   Shared shared;
   RunningCalls& calls = running_calls();
   if (calls.is_over()) {
@@ -166,7 +166,7 @@ void run_call(const Call& call, const std::function<void(const Context&)>& work)
   std::jthread worker([&] {
     std::exception_ptr failure;
     try {
-      work(context);
+      work(subject, context);
     } catch (...) {
       failure = std::current_exception();
     }

@@ -3,7 +3,7 @@
 
 #include <nanobind/nanobind.h>
 
-#include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -21,8 +21,13 @@ struct Call {
 
 /// Runs work in a thread of its own, without the interpreter's lock. Meanwhile the calling thread looks after signals
 /// and progress every 50 ms: what a handler (Ctrl-C) or the progress callback raises cancels the work, and is raised
-/// here once that has ended.
-void run_call(const Call& call, const std::function<void(const Context&)>& work);
+/// here once that has ended. @param work  called once, with `subject`.
+void run_call(const Call& call, void (*work)(const void* subject, const Context& context), const void* subject);
+template <class Work>
+void run_call(const Call& call, const Work& work) {
+  const auto begin = [](const void* subject, const Context& context) { (*static_cast<const Work*>(subject))(context); };
+  run_call(call, begin, std::addressof(work));
+}
 
 /// Registers with Python's atexit what ends the calls of other threads when the interpreter ends: they never return.
 void end_calls_at_exit();

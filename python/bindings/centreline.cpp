@@ -52,7 +52,7 @@ nb::tuple parts_of(Centreline& line) {
 }  // namespace
 
 void bind_centreline(nb::module_& m) {
-  static_cast<void>(type_name<CentrelineNodeKind>(m, false));
+  static_cast<void>(type_name<CentrelineNodeKind>(m));
   bind_options<CentrelineOptions>(m);
   m.def(
       "centreline",

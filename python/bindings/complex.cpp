@@ -20,7 +20,7 @@ namespace {
 
 /// Numbers of one or several per row.
 template <class T>
-using NumbersIn = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
+using ColumnIn = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
 
 /// The columns by name, each seen without a copy and read-only.
 /// @param owner  what keeps them alive.
@@ -42,7 +42,7 @@ nb::dict views_of(const Columns& columns, nb::handle owner) {
 /// Adds copies of arrays.
 template <class T>
 bool add_column(Columns& columns, const std::string& name, nb::handle array) {
-  NumbersIn<T> numbers;
+  ColumnIn<T> numbers;
   if (!nb::try_cast(array, numbers, false)) return false;
   if (numbers.ndim() != 1 && numbers.ndim() != 2) {
     throw InvalidOption("column '" + name + "' has " + std::to_string(numbers.ndim()) + " axes, but must have 1 or 2");

@@ -169,14 +169,14 @@ void bind_device_array(nb::module_& m) {
 /// A solver that many threads may call, one after the other. None of them holds Python's lock meanwhile: the device may
 /// wait for Python, too.
 template <class Solver>
-class Shared {
+class Locked {
  public:
   template <class Options>
-  Shared(const GridSpec& grid, const Options& options, const Context& context)
+  Locked(const GridSpec& grid, const Options& options, const Context& context)
       : solver_(std::in_place, grid, options, context) {}
-  Shared(const Shared&) = delete;
-  Shared& operator=(const Shared&) = delete;
-  ~Shared() {
+  Locked(const Locked&) = delete;
+  Locked& operator=(const Locked&) = delete;
+  ~Locked() {
     const nb::gil_scoped_release released;
     solver_.reset();
   }
@@ -192,8 +192,8 @@ class Shared {
   std::mutex mutex_;
   std::optional<Solver> solver_;
 };
-using FieldSolverHere = Shared<DeviceFieldSolver>;
-using TransformHere = Shared<DeviceDistanceTransform>;
+using FieldSolverHere = Locked<DeviceFieldSolver>;
+using TransformHere = Locked<DeviceDistanceTransform>;
 
 /// @param site  may be null.
 DeviceFieldView output_of(const DeviceArray& distance, const DeviceArray* site) {
@@ -227,18 +227,18 @@ std::uint64_t transform(TransformHere& transform, const DeviceArray& values, con
 
 /// What both solvers have.
 template <class Solver>
-void bind_queue(nb::class_<Shared<Solver>>& type) {
+void bind_queue(nb::class_<Locked<Solver>>& type) {
   type.def_prop_ro(
           "device",
-          [](Shared<Solver>& self) { return self.with([](const Solver& own) { return to_string(own.device()); }); })
+          [](Locked<Solver>& self) { return self.with([](const Solver& own) { return to_string(own.device()); }); })
       .def("progress",
-           [](Shared<Solver>& self) {
+           [](Locked<Solver>& self) {
              const DeviceProgress progress = self.with([](const Solver& own) { return own.progress(); });
              return nb::make_tuple(progress.queued, progress.finished);
            })
       .def(
           "device_of",
-          [](Shared<Solver>& self, std::uintptr_t address) {
+          [](Locked<Solver>& self, std::uintptr_t address) {
             return self.with([&](const Solver& own) -> std::optional<int> {
               const std::optional<Device> device = own.device_of(stream_of(address));
               return device ? std::make_optional(device->index) : std::nullopt;
@@ -247,13 +247,13 @@ void bind_queue(nb::class_<Shared<Solver>>& type) {
           nb::arg("address"))
       .def(
           "follow",
-          [](Shared<Solver>& self, std::uint64_t pieces, std::uintptr_t stream) {
+          [](Locked<Solver>& self, std::uint64_t pieces, std::uintptr_t stream) {
             self.with([&](Solver& own) { own.follow(pieces, stream_of(stream)); });
           },
           nb::arg("pieces"), nb::arg("stream"))
       .def(
           "order",
-          [](Shared<Solver>& self, std::uintptr_t before, std::uintptr_t after) {
+          [](Locked<Solver>& self, std::uintptr_t before, std::uintptr_t after) {
             self.with([&](Solver& own) { own.order(stream_of(before), stream_of(after)); });
           },
           nb::arg("before"), nb::arg("after"));

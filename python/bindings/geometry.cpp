@@ -106,13 +106,15 @@ void bind_sites(nb::module_& m) {
                    })
       .def("vertices",
            [](const SiteTable& self, const IndicesIn& ids) {
-             std::vector<std::array<std::int32_t, 3>> out;
-             for (const std::uint32_t id : rows<std::uint32_t>(ids)) out.push_back(self.vertices(SiteId(id)));
+             const auto sites = rows<std::uint32_t>(ids);
+             std::vector<std::array<std::int32_t, 3>> out(sites.size());
+             for (std::size_t k = 0; k < sites.size(); ++k) out[k] = self.vertices(SiteId(sites[k]));
              return handed_over<std::int32_t>(std::move(out), 3);
            })
       .def("triangles", [](const SiteTable& self, const IndicesIn& ids) {
-        std::vector<std::int32_t> out;
-        for (const std::uint32_t id : rows<std::uint32_t>(ids)) out.push_back(self.triangle(SiteId(id)).to_file());
+        const auto sites = rows<std::uint32_t>(ids);
+        std::vector<std::int32_t> out(sites.size());
+        for (std::size_t k = 0; k < sites.size(); ++k) out[k] = self.triangle(SiteId(sites[k])).to_file();
         return handed_over<std::int32_t>(std::move(out));
       });
   m.def(

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -151,11 +152,13 @@ VoxelSet voxel_set(const MaskIn& mask) {
 
 Out<std::uint8_t> mask_of(const VoxelSet& voxels) {
   const auto& size = voxels.size();
-  std::vector<std::uint8_t> mask;
-  mask.reserve(static_cast<std::size_t>(size[0] * size[1] * size[2]));
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(size[0] * size[1] * size[2]));
+  std::uint8_t* at = mask.data();
   for (std::int64_t k = 0; k < size[2]; ++k) {
     for (std::int64_t j = 0; j < size[1]; ++j) {
-      for (std::int64_t i = 0; i < size[0]; ++i) mask.push_back(voxels.contains(i, j, k) ? 1 : 0);
+      const std::span<const std::uint64_t> row = voxels.row(j, k);
+      const auto length = static_cast<std::size_t>(size[0]);
+      for (std::size_t i = 0; i < length; ++i, ++at) *at = static_cast<std::uint8_t>(row[i / 64] >> (i % 64) & 1U);
     }
   }
   return grid_handed_over(std::move(mask), size);

@@ -111,7 +111,7 @@ void bind_medial_axis(nb::module_& m) {
     }
     return true;
   }());
-  static_cast<void>(type_name<MedialRole>(m, false));
+  static_cast<void>(type_name<MedialRole>(m));
   bind_options<MedialAxisOptions>(m);
   bind_struct<MedialAxisReport>(m);
   bind_axis(m);
@@ -147,11 +147,12 @@ void bind_medial_axis(nb::module_& m) {
       "sample_axis",
       [](const Complex& axis, double step) {
         const CompleteAxis all(axis);
-        std::vector<Vec3d> centres;
-        std::vector<double> radii;
-        for (const AxisSample& sample : sample_axis(MedialView(all.get()), step)) {
-          centres.push_back(sample.position);
-          radii.push_back(sample.radius);
+        const std::vector<AxisSample> samples = sample_axis(MedialView(all.get()), step);
+        std::vector<Vec3d> centres(samples.size());
+        std::vector<double> radii(samples.size());
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+          centres[k] = samples[k].position;
+          radii[k] = samples[k].radius;
         }
         return nb::make_tuple(handed_over<double>(std::move(centres), 3), handed_over<double>(std::move(radii)));
       },

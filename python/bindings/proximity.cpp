@@ -43,7 +43,7 @@ Out<double> times_of(const std::vector<std::optional<double>>& impacts) {
 }
 
 /// (vertex_face, face, vertex_face_time, edge_edge, edge_edge_time, box_pairs, exact_tests).
-nb::tuple arrays_of(ContinuousCollisions found, const MeshView& mesh) {
+nb::tuple columns_of(ContinuousCollisions found, const MeshView& mesh) {
   std::vector<Four> vertex_face;
   for (const VertexFaceCollision& one : found.vertex_face) {
     const auto& [a, b, c] = mesh.triangles[one.face.value];
@@ -86,7 +86,7 @@ void bind_proximity(nb::module_& m) {
       [](const MeshArrays& mesh, const PointsIn& end, const nb::dict& given, int threads, nb::object progress) {
         const MeshView view = mesh.view();
         const auto options = options_from<ImpactOptions>(given);
-        return arrays_of(
+        return columns_of(
             run({threads, std::move(progress)},
                 [&](const Context& context) { return continuous_collisions(view, vectors(end), options, context); }),
             view);

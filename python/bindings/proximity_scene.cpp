@@ -94,7 +94,7 @@ Out<std::int32_t> features_out(std::vector<Features> features) {
 }
 
 /// (object, primitive, distance, point, feature, culling, cells, left_over, object_pairs, candidates, exact_tests).
-nb::tuple arrays_of(Pairs found) {
+nb::tuple columns_of(Pairs found) {
   const Held<PrimitivePair> pairs = held(std::move(found.pairs));
   return nb::make_tuple(numbers<std::int32_t>(
                             pairs, [](PrimitivePair& one) -> auto& { return one.first_object; }, two),
@@ -110,7 +110,7 @@ nb::tuple arrays_of(Pairs found) {
 }
 
 /// (distance, point, feature), features by corners.
-nb::tuple arrays_of(std::vector<TriangleDistance> found) {
+nb::tuple columns_of(std::vector<TriangleDistance> found) {
   constexpr Triangle corners{0, 1, 2};
   std::vector<Features> features;
   features.reserve(found.size());
@@ -180,7 +180,7 @@ void bind_query(nb::class_<ProximityScene>& scene, const char* name, Query query
   scene.def(
       name,
       [query](const ProximityScene& self, double distance, int threads, nb::object progress) {
-        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
           return with_features(self, (self.*query)(distance, context), context);
         }));
       },
@@ -192,7 +192,7 @@ void bind_queries(nb::class_<ProximityScene>& scene) {
       "separation",
       [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, double most, int threads,
          nb::object progress) {
-        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
           ProximityPairs found;
           found.report.object_pairs = 1;
           if (const auto pair = self.separation(ObjectId(first), ObjectId(second), most, context)) {
@@ -208,7 +208,7 @@ void bind_queries(nb::class_<ProximityScene>& scene) {
   scene.def(
       "collisions",
       [](const ProximityScene& self, int threads, nb::object progress) {
-        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
           return with_features(self, self.collisions(context), context);
         }));
       },
@@ -335,7 +335,7 @@ void bind_proximity_scene(nb::module_& m) {
   m.def(
       "triangle_distances",
       [](const TrianglesOfPointsIn& a, const TrianglesOfPointsIn& b, int threads, nb::object progress) {
-        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
           return triangle_distances(rows<std::array<Vec3d, 3>>(a), rows<std::array<Vec3d, 3>>(b), context);
         }));
       },

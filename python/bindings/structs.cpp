@@ -1,18 +1,159 @@
 #include "structs.hpp"
 
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/vector.h>
+#include <nanobind/stl/string.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "blum/core/error.hpp"
 
 namespace blum::python {
+namespace {
 
+/// The name of a member in Python, where some words are taken: `lambda` becomes `lambda_`.
 std::string python_name(std::string_view name) {
   return name == "lambda" ? "lambda_" : std::string(name);
 }
 
-nb::object make_struct(std::string_view name, const nb::dict& members) {
-  return nb::module_::import_("blum._structs").attr(std::string(name).c_str())(**members);
+/// Where a stored member lies.
+const void* place_in(const void* whole, const StructMember& member) {
+  return static_cast<const std::byte*>(whole) + member.offset;
+}
+void* place_in(void* whole, const StructMember& member) {
+  return static_cast<std::byte*>(whole) + member.offset;
+}
+
+/// What is given by a name, and whether that is anything.
+class Given {
+ public:
+  explicit Given(const nb::dict& values) : values_(&values) {}
+
+  [[nodiscard]] nb::object take(std::string_view name) {
+    const std::string& key = names_.emplace_back(name);
+    return values_->contains(key.c_str()) ? nb::object((*values_)[key.c_str()]) : nb::object();
+  }
+  /// @throws nanobind::type_error for a key that was not taken.
+  void refuse_others() const {
+    for (const auto& [key, value] : *values_) {
+      const auto name = nb::cast<std::string>(key);
+      if (std::find(names_.begin(), names_.end(), name) != names_.end()) continue;
+      const std::vector<std::string_view> words(names_.begin(), names_.end());
+      throw nb::type_error(("there is no option '" + name + "': there are " + join_words(words)).c_str());
+    }
+  }
+
+ private:
+  const nb::dict* values_;
+  std::vector<std::string> names_;
+};
+
+template <class T>
+std::optional<T> number_of(const nb::object& value, const char* name) {
+  std::optional<T> number;
+  if (value.is_valid()) value_type<std::optional<T>>().from_python(&number, value, name, {});
+  return number;
+}
+
+LabelSelection selection_from(Given& given) {
+  const nb::object label = given.take("label");
+  const nb::object threshold = given.take("threshold");
+  const auto number = number_of<std::int64_t>(label, "label");
+  return LabelSelection::of(number, number_of<double>(threshold, "threshold"));
+}
+
+bool is_described(const nb::module_& m, std::string_view name) {
+  return nb::cast<nb::dict>(m.attr("described")).contains(std::string(name).c_str());
+}
+
+/// A member as the module tells of it. @param type  its name as a type.
+nb::tuple told(const std::string& name, const std::string& type, const nb::object& value, std::string_view unit,
+               std::string_view doc) {
+  return nb::make_tuple(name, type, value, std::string(unit), std::string(doc));
+}
+
+}  // namespace
+
+nb::object StructMember::of(const void* whole) const {
+  return read != nullptr ? read(fact, whole) : type->to_python(place_in(whole, *this));
+}
+
+void add_member(StructType& type, const std::string_view& name, const std::string_view& unit,
+                const std::string_view& doc, const ValueType* value, const Choices& choices, std::size_t offset) {
+  type.members.push_back({name, unit, doc, value, choices, offset});
+}
+
+void add_fact(StructType& type, const std::string_view& name, const std::string_view& unit, const std::string_view& doc,
+              const ValueType* value, nb::object (*read)(const void* fact, const void* whole), const void* fact) {
+  type.members.push_back({name, unit, doc, value, {}, 0, read, fact});
+}
+
+nb::object struct_of(const StructType& type, const void* whole) {
+  const nb::object python = nb::module_::import_("blum._structs").attr(std::string(type.name).c_str());
+  return python(**members_of(type, whole));
+}
+
+nb::dict members_of(const StructType& type, const void* whole) {
+  nb::dict out;
+  for (const StructMember& member : type.members) {
+    if (member.type != nullptr) {
+      out[python_name(member.name).c_str()] = member.of(whole);
+      continue;
+    }
+    using Rule = LabelSelection::Rule;
+    const auto& chosen = *static_cast<const LabelSelection*>(place_in(whole, member));
+    out["label"] = chosen.rule == Rule::label ? to_python(chosen.label) : nb::none();
+    out["threshold"] = chosen.rule == Rule::threshold ? to_python(chosen.threshold) : nb::none();
+  }
+  return out;
+}
+
+void read_members(const StructType& type, const nb::dict& given, void* whole) {
+  Given values(given);
+  for (const StructMember& member : type.members) {
+    if (member.read != nullptr) continue;
+    if (member.type == nullptr) {
+      *static_cast<LabelSelection*>(place_in(whole, member)) = selection_from(values);
+      continue;
+    }
+    const std::string name = python_name(member.name);
+    const nb::object value = values.take(name);
+    if (value.is_valid()) member.type->from_python(place_in(whole, member), value, name, member.choices);
+  }
+  values.refuse_others();
+}
+
+void bind_members(nb::module_& m, const StructType& type, bool is_options) {
+  nb::list members;
+  for (const StructMember& member : type.members) {
+    if (member.type == nullptr) {
+      members.append(told("label", "Integer | None", nb::none(), "", "images: the voxels of this value are the ones"));
+      members.append(
+          told("threshold", "Real | None", nb::none(), "", "images: those of at least this value; excludes a label"));
+      continue;
+    }
+    // Defaults are of options; results may hold what Python has a class for only once the package is there.
+    const nb::object value = is_options ? member.of(type.defaults) : nb::none();
+    const std::string name = member.type->type_name(m, is_options, member.choices);
+    members.append(told(python_name(member.name), name, value, member.unit, member.doc));
+  }
+  nb::dict entry;
+  entry["doc"] = std::string(type.doc);
+  entry["is_options"] = is_options;
+  entry["members"] = members;
+  nb::cast<nb::dict>(m.attr("described"))[std::string(type.name).c_str()] = entry;
+}
+
+std::string struct_name(nb::module_& m, const StructType& type) {
+  if (!is_described(m, type.name)) bind_members(m, type, false);
+  return std::string(type.name);
+}
+
+nb::object word(std::string_view text) {
+  return nb::cast(std::string(text));
+}
+
+std::string word_from(nb::handle value) {
+  return nb::cast<std::string>(nb::isinstance<nb::str>(value) ? nb::str(value) : nb::repr(value));
 }
 
 nb::dict seconds_of(const std::vector<PhaseTime>& phases) {
@@ -25,56 +166,16 @@ nb::dict seconds_of(const std::vector<PhaseTime>& phases) {
   return out;
 }
 
-nb::object grid_of(const GridSpec& grid) {
-  return nb::module_::import_("blum._grid").attr("Grid").attr("_of")(grid);
+nb::object tuple_of(const ValueType& type, const void* first, std::size_t count, std::size_t size) {
+  nb::list all;
+  for (std::size_t k = 0; k < count; ++k) all.append(type.to_python(static_cast<const std::byte*>(first) + k * size));
+  return nb::tuple(all);
 }
 
-GridSpec grid_from(nb::handle grid, const std::string& name) {
-  const nb::object type = nb::module_::import_("blum._grid").attr("Grid");
-  if (!nb::isinstance(grid, type)) {
-    throw nb::type_error((name + " must be a blum.Grid").c_str());
-  }
-  return nb::cast<GridSpec>(grid.attr("_spec"));
-}
-
-double number_from(nb::handle value, const std::string& name) {
-  return nb::cast<double>(nb::module_::import_("blum._arguments").attr("number")(value, name));
-}
-
-std::int64_t integer_from(nb::handle value, const std::string& name, int bits, bool is_unsigned) {
-  // Of 64 bits without a sign those of 63 are taken, which are enough for seeds and counts.
-  const char* kind = is_unsigned ? "natural" : "integer";
-  return nb::cast<std::int64_t>(nb::module_::import_("blum._arguments").attr(kind)(value, name, bits));
-}
-
-bool truth_from(nb::handle value, const std::string& name) {
-  return nb::cast<bool>(nb::module_::import_("blum._arguments").attr("truth")(value, name));
-}
-
-std::string word_from(nb::handle value) {
-  return nb::cast<std::string>(nb::isinstance<nb::str>(value) ? nb::str(value) : nb::repr(value));
-}
-
-void refuse_unknown(const nb::dict& given, const std::vector<std::string>& names) {
-  for (const auto& [key, value] : given) {
-    const auto name = nb::cast<std::string>(key);
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    const std::vector<std::string_view> words(names.begin(), names.end());
-    throw nb::type_error(("there is no option '" + name + "': there are " + join_words(words)).c_str());
-  }
-}
-
-void add_described(nb::module_& m, std::string_view name, std::string_view doc, bool is_options,
-                   const nb::list& members) {
-  nb::dict entry;
-  entry["doc"] = std::string(doc);
-  entry["is_options"] = is_options;
-  entry["members"] = members;
-  nb::cast<nb::dict>(m.attr("described"))[std::string(name).c_str()] = entry;
-}
-
-bool is_described(const nb::module_& m, std::string_view name) {
-  return nb::cast<nb::dict>(m.attr("described")).contains(std::string(name).c_str());
+std::string tuple_name(nb::module_& m, const ValueType& type, std::size_t count, bool is_options) {
+  std::string parts;
+  for (std::size_t k = 0; k < count; ++k) parts += (k > 0 ? ", " : "") + type.type_name(m, is_options, {});
+  return "tuple[" + parts + "]";
 }
 
 std::string enum_type(nb::module_& m, std::string_view name, const std::vector<std::string_view>& values, bool is_all) {

@@ -51,6 +51,7 @@ from ._medial_columns import ROLES, NestedComplex, Present
 from ._medial_complex import MedialComplex, ball_union_field, certify, read_medial
 from ._mesh import (
     Mesh,
+    MeshLike,
     SelfIntersections,
     Sites,
     WindingNumber,
@@ -131,6 +132,7 @@ __all__ = [
     "MedialAxis",
     "MedialComplex",
     "Mesh",
+    "MeshLike",
     "NearPrimitives",
     "NearSamples",
     "NestedComplex",

@@ -7,10 +7,12 @@ import os
 from pathlib import Path
 from typing import Any, Unpack
 
+import numpy.typing as npt
+
 from . import _core
 from ._arguments import PathLike, integer
 from ._complex import Complex
-from ._mesh import Mesh, as_mesh
+from ._mesh import Mesh, MeshOrVertices, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions
@@ -19,8 +21,8 @@ from ._structs import AxisGraph, AxisGraphOptions
 @takes("AxisGraphOptions")
 def axis_graph(
     axis: Complex,
-    mesh: Any = None,
-    triangles: Any = None,
+    mesh: MeshOrVertices | None = None,
+    triangles: npt.ArrayLike | None = None,
     *,
     threads: int = 0,
     progress: Progress = False,
@@ -61,7 +63,13 @@ def axis_graph(
     return found
 
 
-def write_graph(path: PathLike, axis: Complex, mesh: Any, triangles: Any, options: AxisGraphOptions) -> None:
+def write_graph(
+    path: PathLike,
+    axis: Complex,
+    mesh: MeshOrVertices | None,
+    triangles: npt.ArrayLike | None,
+    options: AxisGraphOptions,
+) -> None:
     """Writes the graph of an axis, with what is known of where the axis came from."""
     own = mesh_of(axis, mesh, triangles)
     origin = getattr(axis, "_origin", None)
@@ -76,7 +84,7 @@ def _told(axis: Complex, options: AxisGraphOptions) -> dict[str, Any]:
     return ({} if theta is None else {"homotopy_angle": theta}) | dict(options)
 
 
-def mesh_of(axis: Complex, mesh: Any, triangles: Any) -> Mesh | None:
+def mesh_of(axis: Complex, mesh: MeshOrVertices | None, triangles: npt.ArrayLike | None) -> Mesh | None:
     if mesh is not None:
         return as_mesh(mesh, triangles)
     known = getattr(getattr(axis, "_origin", None), "shape", None)

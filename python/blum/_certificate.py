@@ -6,15 +6,17 @@ import os
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
+
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number
 from ._complex import Complex
 from ._errors import InputWarning
 from ._grid import Grid
-from ._image import as_image, is_image
-from ._mesh import as_mesh
+from ._image import Image, as_image, is_image
+from ._mesh import MeshOrVertices, as_mesh
 from ._progress import Progress, reporting
 from ._structs import Certificate, CertificateOptions, MeshSolidRule
 
@@ -42,7 +44,12 @@ class Claim:
 class ShapeVerifier:
     """Certifies axes of one mesh or image. What is read of it is read once, so it must not change meanwhile."""
 
-    def __init__(self, shape: Any, triangles: Any = None, weld: Real | None = None) -> None:
+    def __init__(
+        self,
+        shape: MeshOrVertices | Image,
+        triangles: npt.ArrayLike | None = None,
+        weld: Real | None = None,
+    ) -> None:
         self._shape = shape
         self._triangles = triangles
         self._weld = weld
@@ -100,7 +107,9 @@ class ShapeVerifier:
         # Meshes in memory are as they are.
         weld = merged if isinstance(self._shape, (str, os.PathLike)) else self._weld
         if self._mesh is None or weld != self._merged:
-            self._mesh = _core.MeshAxisVerifier(as_mesh(self._shape, self._triangles, "shape", weld=weld)._arrays)
+            self._mesh = _core.MeshAxisVerifier(
+                as_mesh(cast(MeshOrVertices, self._shape), self._triangles, "shape", weld=weld)._arrays
+            )
             self._merged = weld
         return self._mesh
 
@@ -124,7 +133,12 @@ def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
 
 
 def solid_rule(
-    mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
 ) -> MeshSolidRule:
     """Whether a mesh bounds a polyhedron, and if not, why.
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._arguments import Real, integer, number
-from ._mesh import Mesh, as_mesh, mesh_of_arrays
+from ._mesh import Mesh, MeshLike, as_mesh, mesh_of_arrays
 from ._progress import Progress, reporting
 from ._structs import CleanReport
 
@@ -25,7 +24,7 @@ class CleanedMesh:
 
 
 def clean_mesh(
-    mesh: Any,
+    mesh: MeshLike,
     tolerance: Real,
     *,
     weld: Real | None = None,
@@ -73,7 +72,9 @@ class OrientedMesh:
     reversed_shells: int  #: that faced the solid, as a whole
 
 
-def oriented_mesh(mesh: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False) -> OrientedMesh:
+def oriented_mesh(
+    mesh: MeshLike, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+) -> OrientedMesh:
     """The same triangles, in their order, turned such that all face away from the solid that they bound.
 
     First those are turned that disagree with most of their shell, then shells that face the solid.

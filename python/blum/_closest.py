@@ -11,7 +11,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, IntArray, Integer, Real, float_rows, integer, number, points_and_shape
 from ._errors import InvalidOption
-from ._mesh import as_mesh
+from ._mesh import MeshLike, MeshOrVertices, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions
@@ -63,8 +63,8 @@ class ClosestPointQuery:
 
     def __init__(
         self,
-        mesh: Any,
-        triangles: Any = None,
+        mesh: MeshOrVertices,
+        triangles: npt.ArrayLike | None = None,
         *,
         weld: Real | None = None,
         threads: int = 0,
@@ -158,7 +158,7 @@ class ClosestPointQuery:
 
 @takes("ClosestPointOptions")
 def closest_points(
-    mesh: Any,
+    mesh: MeshLike,
     points: Any,
     *,
     weld: Real | None = None,
@@ -185,7 +185,7 @@ def closest_points(
 
 
 def winding_number(
-    mesh: Any,
+    mesh: MeshLike,
     points: Any,
     *,
     max_error: Real = 1e-6,

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import FloatArray, IntArray, PathLike, integer
 from ._axis_graph import mesh_of
 from ._complex import Complex, core_arguments
 from ._errors import InvalidOption
-from ._mesh import Mesh
+from ._mesh import Mesh, MeshOrVertices
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ExtendOptions, ExtendReport
@@ -79,8 +80,8 @@ def _restored(arguments: tuple[Any, ...], report: ExtendReport, told: dict[str, 
 @takes("ExtendOptions")
 def extend_axis(
     axis: Complex,
-    mesh: Any = None,
-    triangles: Any = None,
+    mesh: MeshOrVertices | None = None,
+    triangles: npt.ArrayLike | None = None,
     *,
     threads: int = 0,
     progress: Progress = False,

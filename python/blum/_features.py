@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ._arguments import FloatArray, IntArray, Real, integer, number
-from ._mesh import Mesh, as_mesh
+from ._mesh import Mesh, MeshLike, as_mesh
 from ._progress import Progress
 from ._proximity_results import ProximityPairs
 from ._proximity_scene import ProximityScene
@@ -36,7 +35,7 @@ class FeaturePairs:
         return f"FeaturePairs({len(self.vertex_face):,} vertex_face, {len(self.edge_edge):,} edge_edge)"
 
 
-def close_features(mesh: Any, distance: Real, *, threads: int = 0, progress: Progress = False) -> FeaturePairs:
+def close_features(mesh: MeshLike, distance: Real, *, threads: int = 0, progress: Progress = False) -> FeaturePairs:
     """All pairs of a vertex and a triangle, and of two edges, of a mesh that share no vertex and are no further apart
     than `distance`; exact. They are what contact potentials of simulations take.
 

@@ -31,7 +31,7 @@ from ._arguments import (
 from ._errors import InputWarning
 from ._grid import Grid, grid_for, mask_array
 from ._image import as_image
-from ._mesh import Mesh, as_mesh, mesh_of_arrays
+from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import FieldOptions, VoxelTopology
@@ -283,8 +283,8 @@ def _objects_array(objects: Any) -> npt.NDArray[np.uint32] | None:
 
 @takes("FieldOptions")
 def distance_field(
-    mesh: Any,
-    triangles: Any = None,
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
     *,
     resolution: Integer = 256,
     spacing: Real | None = None,
@@ -414,8 +414,8 @@ class FieldSolver:
 
     def compute(
         self,
-        mesh: Any,
-        triangles: Any = None,
+        mesh: MeshOrVertices,
+        triangles: npt.ArrayLike | None = None,
         *,
         weld: Real | None = None,
         objects: Any = None,

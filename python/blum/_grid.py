@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, Integer, Real, as_array, box, integer, matrix, number, triple
 from ._errors import InvalidOption
-from ._mesh import as_mesh
+from ._mesh import MeshLike, as_mesh
 from ._structs import Bounds
 
 
@@ -47,7 +47,9 @@ class Grid:
         )
 
     @classmethod
-    def around(cls, shape: Any, *, resolution: Integer = 256, spacing: Real | None = None, padding: Real = 0.1) -> Grid:
+    def around(
+        cls, shape: MeshLike | Bounds, *, resolution: Integer = 256, spacing: Real | None = None, padding: Real = 0.1
+    ) -> Grid:
         """The default grid around a mesh, or a pair of corners of a box.
 
         Parameters
@@ -150,7 +152,7 @@ def _short(values: tuple[float, float, float]) -> str:
     return f"({', '.join(f'{value:.6g}' for value in values)})"
 
 
-def bounds_of(shape: Any) -> Bounds:
+def bounds_of(shape: MeshLike | Bounds) -> Bounds:
     """The box of a mesh, or the box that a pair of corners is."""
     if isinstance(shape, (tuple, list)) and len(shape) == 2 and np.asarray(shape[0], dtype=object).ndim == 1:
         return box(shape, "bounds")
@@ -158,9 +160,14 @@ def bounds_of(shape: Any) -> Bounds:
 
 
 def grid_for(
-    shape: Any, grid: Grid | None, bounds: Any, resolution: Integer, spacing: Real | None, padding: Real
+    shape: MeshLike | Bounds | None,
+    grid: Grid | None,
+    bounds: Any,
+    resolution: Integer,
+    spacing: Real | None,
+    padding: Real,
 ) -> Grid:
-    """The grid that the arguments of a field ask for."""
+    """The grid that the arguments of a field ask for; with `grid` or `bounds` there need not be a shape."""
     if grid is not None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
@@ -169,7 +176,7 @@ def grid_for(
         return grid
     if bounds is not None:
         return Grid.within(bounds, resolution=resolution, spacing=spacing)
-    return Grid.around(shape, resolution=resolution, spacing=spacing, padding=padding)
+    return Grid.around(cast(MeshLike | Bounds, shape), resolution=resolution, spacing=spacing, padding=padding)
 
 
 def image_grid(shape: tuple[int, ...], spacing: Any, origin: Any, direction: Any) -> Grid:

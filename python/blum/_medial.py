@@ -6,7 +6,9 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
+
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import PathLike, Real, integer, number, optional_number
@@ -15,7 +17,7 @@ from ._errors import InputWarning
 from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
-from ._mesh import as_mesh
+from ._mesh import MeshOrVertices, as_mesh
 from ._options import default_of, takes
 from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
@@ -178,8 +180,8 @@ class MedialAxis:
 
 @takes("MedialAxisOptions", "spacing")
 def medial_axis(
-    shape: Any,
-    triangles: Any = None,
+    shape: MeshOrVertices | Image,
+    triangles: npt.ArrayLike | None = None,
     *,
     spacing: Any = None,
     weld: Real | None = None,
@@ -227,7 +229,7 @@ def medial_axis(
         origin = Origin(image, chosen, optional_number(threshold, "threshold"), lambda_=smallest, source=image.source)
         return MedialAxis(core, origin)
     refuse_selection(label, threshold)
-    mesh = as_mesh(shape, triangles, "shape", weld=weld)
+    mesh = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=weld)
     given = {**options, "spacing": spacing}
 
     def on_grid(shift: float, threads: int, progress: Progress) -> _core.MedialAxis:

@@ -35,7 +35,7 @@ from ._field import Field
 from ._grid import Grid, grid_for
 from ._image import Image
 from ._medial_columns import ROLES, MedialColumns, NestedComplex
-from ._mesh import Mesh
+from ._mesh import Mesh, MeshOrVertices
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import Bounds, Certificate, CertificateOptions, ExtendOptions
@@ -232,8 +232,8 @@ class MedialComplex(MedialColumns):
     @takes("ExtendOptions")
     def extend(
         self,
-        mesh: Any = None,
-        triangles: Any = None,
+        mesh: MeshOrVertices | None = None,
+        triangles: npt.ArrayLike | None = None,
         *,
         threads: int = 0,
         progress: Progress = False,
@@ -417,8 +417,8 @@ def _footprint_rows(value: Any, count: int) -> FloatArray:
 @takes("CertificateOptions")
 def certify(
     axis: MedialComplex,
-    shape: Any,
-    triangles: Any = None,
+    shape: MeshOrVertices | Image,
+    triangles: npt.ArrayLike | None = None,
     *,
     label: Integer | None = None,
     threshold: Real | None = None,

@@ -30,6 +30,7 @@ from ._arguments import (
     source_name,
 )
 from ._errors import InputWarning, InvalidMesh
+from ._mesh_like import MeshioLike, Open3DLike, Open3DTensorLike, PyVistaLike, TrimeshLike
 from ._progress import Progress, reporting
 from ._structs import Bounds, Topology
 
@@ -165,12 +166,34 @@ def mesh_of_arrays(arrays: tuple[Any, Any, Any, Any]) -> Mesh:
     return Mesh(vertices, triangles, segments, points)
 
 
-def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh", *, weld: Any = None) -> Mesh:
+#: What functions take as a mesh: one of Blum's, a path, a pair (vertices, triangles), a mesh of trimesh, Open3D (legacy
+#: or of tensors), meshio or PyVista.
+MeshLike = (
+    Mesh
+    | str
+    | os.PathLike[str]
+    | tuple[npt.ArrayLike, npt.ArrayLike]
+    | TrimeshLike
+    | Open3DLike
+    | Open3DTensorLike
+    | MeshioLike
+    | PyVistaLike
+)
+#: The same, or vertices where triangles are an argument of their own.
+MeshOrVertices = MeshLike | npt.ArrayLike
+
+
+def as_mesh(
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
+    name: str = "mesh",
+    *,
+    weld: Real | None = None,
+) -> Mesh:
     """Anything that stands for a mesh, as a Mesh, its vertices merged where `weld` is given.
 
-    Mesh; a path; vertices with triangles, apart or as a pair; an object with ``vertices`` and ``faces`` or
-    ``triangles`` (trimesh, Open3D); one of Open3D's tensors; a meshio mesh (triangles, quads, lines and vertices of
-    it); a PyVista dataset.
+    All functions and methods that take a mesh call it. Of meshio's cells the triangles, quads, lines and vertices
+    count; of PyVista's datasets the surface.
     """
     if weld is None:
         own = _converted(mesh, triangles, name)
@@ -186,19 +209,23 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh", *, weld: Any =
     return welded
 
 
-def end_vertices(end: Any, name: str, triangles: Any = None) -> FloatArray:
+def end_vertices(end: MeshOrVertices, name: str, triangles: IntArray | None = None) -> FloatArray:
     """Where vertices are at the end of a motion: an (n, 3) array, or what stands for the mesh there.
 
     With `triangles`, a mesh must have the same ones.
     """
-    is_pair = isinstance(end, (tuple, list)) and len(end) == 2 and np.ndim(end[0]) == 2
     words = ("vertices", "vertex", "extract_surface", "points")
-    if not (is_pair or isinstance(end, (str, os.PathLike)) or any(hasattr(end, word) for word in words)):
+    if not (_is_pair(end) or isinstance(end, (str, os.PathLike)) or any(hasattr(end, word) for word in words)):
         return float_rows(end, name)
     mesh = as_mesh(end, name=name)
     if triangles is not None and not np.array_equal(mesh.triangles, triangles):
         raise InvalidMesh(f"{name} has other triangles than the mesh at the start: give frames of one mesh")
     return float_rows(mesh.vertices, name)
+
+
+def _is_pair(mesh: Any) -> bool:
+    """Whether this is vertices with triangles."""
+    return isinstance(mesh, (tuple, list)) and len(mesh) == 2 and np.ndim(mesh[0]) == 2
 
 
 def _tell_of_seams(mesh: Mesh, name: str) -> None:
@@ -217,7 +244,7 @@ def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:
         return mesh
     if isinstance(mesh, (str, os.PathLike)):
         return read_mesh(mesh)
-    if isinstance(mesh, (tuple, list)) and len(mesh) == 2 and np.ndim(mesh[0]) == 2:
+    if _is_pair(mesh):
         return Mesh(mesh[0], mesh[1])
     if hasattr(mesh, "vertices"):
         for faces in ("faces", "triangles"):
@@ -231,8 +258,17 @@ def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:
         return _of_meshio(mesh)
     raise TypeError(
         f"{name} is a {type(mesh).__name__}, but must be a blum.Mesh, a path, a pair (vertices, triangles), or an "
-        "object of trimesh, Open3D, meshio or PyVista"
+        f"object of trimesh, Open3D, meshio or PyVista{_advice(mesh)}"
     )
+
+
+def _advice(given: Any) -> str:
+    """What to do about something that is no mesh, where that can be told."""
+    if hasattr(given, "geometry") and hasattr(given, "to_mesh"):  # a trimesh.Scene
+        return ": .to_mesh() makes one of it"
+    if hasattr(given, "points") or (isinstance(given, np.ndarray) and given.ndim == 2 and given.shape[1] == 3):
+        return ": blum.Mesh(points) makes one of points alone"
+    return ""
 
 
 def _of_open3d_tensors(mesh: Any, name: str) -> Mesh:
@@ -287,7 +323,7 @@ def _of_pyvista(mesh: Any) -> Mesh:
     return Mesh(np.asarray(surface.points), None if is_cloud else faces, None if is_cloud else np.array(segments))
 
 
-def read_mesh(path: PathLike, *, weld: float | None = None) -> Mesh:
+def read_mesh(path: PathLike, *, weld: Real | None = None) -> Mesh:
     """Reads .obj, .off, .stl (text, binary) or .ply (text, binary).
 
     Parameters
@@ -310,7 +346,7 @@ def read_mesh(path: PathLike, *, weld: float | None = None) -> Mesh:
     return mesh
 
 
-def weld(mesh: Any, tolerance: Real = 0.0) -> Mesh:
+def weld(mesh: MeshLike, tolerance: Real = 0.0) -> Mesh:
     """Merges vertices at the same place, or that steps no longer than `tolerance` (mesh units) join.
 
     >>> import blum
@@ -328,7 +364,12 @@ def weld_clusters(vertices: Any, tolerance: Real = 0.0) -> IntArray:
 
 
 def topology(
-    mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
 ) -> Topology:
     """What a mesh is as a surface and as a solid. Crossings are not looked for: :func:`self_intersections`.
 
@@ -353,8 +394,8 @@ class SelfIntersections:
 
 
 def self_intersections(
-    mesh: Any,
-    triangles: Any = None,
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
     *,
     limit: int = 100000,
     weld: Real | None = None,
@@ -393,8 +434,8 @@ class Sites:
 
     def __init__(
         self,
-        mesh: Any,
-        triangles: Any = None,
+        mesh: MeshOrVertices,
+        triangles: npt.ArrayLike | None = None,
         *,
         weld: Real | None = None,
         threads: int = 0,
@@ -458,7 +499,12 @@ class Sites:
 
 
 def pseudonormals(
-    mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
 ) -> FloatArray:
     """(sites, 3): angle-weighted normals of all sites, not normalised; zero where a site lies on no triangle."""
     with reporting(progress) as report:
@@ -479,8 +525,8 @@ class WindingNumber:
 
     def __init__(
         self,
-        mesh: Any,
-        triangles: Any = None,
+        mesh: MeshOrVertices,
+        triangles: npt.ArrayLike | None = None,
         *,
         weld: Real | None = None,
         threads: int = 0,

@@ -12,7 +12,7 @@ from . import _core
 from ._arguments import FloatArray, IntArray, Integer, Real, integer, points_and_shape
 from ._closest import closest_points
 from ._errors import InvalidOption
-from ._mesh import Mesh, as_mesh
+from ._mesh import Mesh, MeshLike, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions, NearSampleOptions, SampleOptions
@@ -44,7 +44,7 @@ class SignedDistances:
 
 @takes("ClosestPointOptions")
 def signed_distance(
-    mesh: Any,
+    mesh: MeshLike,
     points: Any,
     *,
     weld: Real | None = None,
@@ -99,7 +99,7 @@ class SurfaceSamples:
 
 @takes("SampleOptions")
 def sample_surface(
-    mesh: Any,
+    mesh: MeshLike,
     count: Integer,
     *,
     weld: Real | None = None,
@@ -145,7 +145,7 @@ class NearSamples:
 
 @takes("NearSampleOptions")
 def sample_near(
-    mesh: Any,
+    mesh: MeshLike,
     count: Integer,
     *,
     weld: Real | None = None,

@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from ._arguments import FloatArray, IntArray, as_array, integer
 from ._errors import InvalidMesh
-from ._mesh import as_mesh, end_vertices
+from ._mesh import MeshLike, MeshOrVertices, as_mesh, end_vertices
 from ._options import takes
 from ._progress import Progress, reporting
 from ._proximity_results import earliest_of
@@ -40,8 +40,8 @@ class ContinuousCollisions:
 
 @takes("ImpactOptions")
 def continuous_collisions(
-    mesh: Any,
-    end: Any,
+    mesh: MeshLike,
+    end: MeshOrVertices,
     *,
     threads: int = 0,
     progress: Progress = False,

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, Unpack, overload
+from typing import Any, TypeGuard, Unpack, cast, overload
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from ._arguments import (
     truth,
 )
 from ._errors import InvalidMesh, InvalidOption
-from ._mesh import as_mesh, end_vertices
+from ._mesh import MeshLike, as_mesh, end_vertices
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
 from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
@@ -68,7 +68,7 @@ class ProximityScene:
 
     def add(
         self,
-        mesh: Any,
+        mesh: MeshLike,
         *,
         layers: Integer = 1,
         meets: Integer = _ALL_LAYERS,
@@ -112,7 +112,7 @@ class ProximityScene:
         index: Integer,
         vertices: Any = None,
         transform: Any = None,
-        mesh: Any = None,
+        mesh: MeshLike | None = None,
         *,
         threads: int = 0,
         progress: Progress = False,
@@ -316,7 +316,7 @@ class ProximityScene:
 
 
 def separation(
-    a: Any, b: Any, *, max_distance: Real = np.inf, threads: int = 0, progress: Progress = False
+    a: MeshLike, b: MeshLike, *, max_distance: Real = np.inf, threads: int = 0, progress: Progress = False
 ) -> PrimitivePair | None:
     """The closest points of two meshes, exactly; None where they are further apart than `max_distance`.
 
@@ -335,7 +335,7 @@ def separation(
 
 
 def closest_primitives(
-    meshes: Any,
+    meshes: MeshLike | Sequence[MeshLike],
     *,
     max_distance: Real = np.inf,
     compare_self: bool | None = None,
@@ -363,7 +363,7 @@ def closest_primitives(
 
 
 def collisions(
-    meshes: Any,
+    meshes: MeshLike | Sequence[MeshLike],
     *,
     within: Real = 0.0,
     compare_self: bool | None = None,
@@ -429,8 +429,11 @@ def triangle_distances(a: Any, b: Any, *, threads: int = 0, progress: Progress =
         return TriangleDistances(*_core.triangle_distances(first, second, integer(threads, "threads"), report))
 
 
-def _scene_of(meshes: Any, compare_self: bool | None, threads: int) -> ProximityScene:
-    several = [(f"meshes[{k}]", mesh) for k, mesh in enumerate(meshes)] if _is_several(meshes) else [("mesh", meshes)]
+def _scene_of(meshes: MeshLike | Sequence[MeshLike], compare_self: bool | None, threads: int) -> ProximityScene:
+    if _is_several(meshes):
+        several = [(f"meshes[{k}]", mesh) for k, mesh in enumerate(meshes)]
+    else:
+        several = [("mesh", cast(MeshLike, meshes))]
     if not several:
         raise InvalidMesh("meshes holds no mesh: give at least one")
     own = len(several) == 1 if compare_self is None else truth(compare_self, "compare_self")
@@ -503,7 +506,7 @@ def closest_rotation(matrix: Any) -> FloatArray:
     return out
 
 
-def _is_several(meshes: Any) -> bool:
+def _is_several(meshes: Any) -> TypeGuard[Sequence[MeshLike]]:
     """Whether this is a list of meshes, and not vertices with triangles."""
     if not isinstance(meshes, Sequence) or isinstance(meshes, (str, bytes)):
         return False

@@ -9,7 +9,7 @@ from . import _core
 from ._arguments import Integer, Real, float_rows, integer, number
 from ._errors import InvalidOption
 from ._image import Image, image_of_parts
-from ._mesh import Betti, Mesh, as_mesh, mesh_of_arrays
+from ._mesh import Betti, Mesh, MeshLike, as_mesh, mesh_of_arrays
 
 _ImageName = Literal["ball_image", "balls_image", "noise_image", "tube_image"]
 
@@ -120,7 +120,7 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
     )
 
 
-def noisy(mesh: Any, amplitude: Real, *, seed: Integer = 1, weld: Real | None = None) -> Mesh:
+def noisy(mesh: MeshLike, amplitude: Real, *, seed: Integer = 1, weld: Real | None = None) -> Mesh:
     """A copy whose vertices are each moved by a random vector, uniform in a ball of this radius; it may cross itself.
 
     >>> import blum, numpy as np
@@ -135,7 +135,7 @@ def noisy(mesh: Any, amplitude: Real, *, seed: Integer = 1, weld: Real | None = 
     return mesh_of_arrays(_core.noisy(as_mesh(mesh, weld=weld)._arrays, number(amplitude, "amplitude"), chosen))
 
 
-def subdivided(mesh: Any, levels: Integer = 1, *, weld: Real | None = None) -> Mesh:
+def subdivided(mesh: MeshLike, levels: Integer = 1, *, weld: Real | None = None) -> Mesh:
     """The same shape with each triangle cut into four at the midpoints of its edges, and each segment into two.
 
     Parameters

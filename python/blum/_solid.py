@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -11,8 +11,8 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number, points_and_shape
 from ._complex import Complex
-from ._image import as_image, is_image, refuse_selection
-from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
+from ._image import Image, as_image, is_image, refuse_selection
+from ._mesh import Betti, Mesh, MeshOrVertices, as_mesh, betti_of, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import Bounds, CellularModelOptions, CellularModelReport, CrossingCounts, SolidShell
@@ -92,8 +92,8 @@ class Solid:
 
     def __init__(
         self,
-        shape: Any,
-        triangles: Any = None,
+        shape: MeshOrVertices | Image,
+        triangles: npt.ArrayLike | None = None,
         *,
         label: Integer | None = None,
         threshold: Real | None = None,
@@ -110,7 +110,7 @@ class Solid:
                 self._core = _core.solid_of_image(image._arrays, chosen, least, count, report)
             return
         refuse_selection(label, threshold)
-        mesh = as_mesh(shape, triangles, "shape", weld=weld)
+        mesh = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=weld)
         with reporting(progress) as report:
             self._core = _core.solid_of_mesh(mesh._arrays, count, report)
 

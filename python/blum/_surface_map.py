@@ -25,7 +25,7 @@ from ._arguments import (
     number,
     points_and_shape,
 )
-from ._mesh import Mesh, Sites, as_mesh, mesh_of_arrays
+from ._mesh import Mesh, MeshLike, Sites, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import (
@@ -144,8 +144,8 @@ def read_surface_map(path: PathLike) -> SurfaceMap:
 
 @takes("SurfaceMapOptions")
 def surface_distance_map(
-    target: Any,
-    *others: Any,
+    target: MeshLike,
+    *others: MeshLike,
     weld: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
@@ -208,8 +208,8 @@ class SurfaceMapper:
 
     def __init__(
         self,
-        target: Any,
-        other: Any,
+        target: MeshLike,
+        other: MeshLike,
         *,
         texture_coordinates: Any = None,
         texture_size: tuple[Integer, Integer] = (1024, 1024),
@@ -245,7 +245,7 @@ class SurfaceMapper:
         """New places of the vertices of the other mesh, as many as it has."""
         self._mapper.move_other(float_rows(vertices, "vertices"), integer(threads, "threads"))
 
-    def replace_other(self, other: Any, *, weld: Real | None = None, threads: int = 0) -> None:
+    def replace_other(self, other: MeshLike, *, weld: Real | None = None, threads: int = 0) -> None:
         """Another mesh instead of the other one."""
         mesh = as_mesh(other, name="other", weld=weld)
         self._mapper.replace_other(mesh._arrays, integer(threads, "threads"))
@@ -267,7 +267,7 @@ def _places(coordinates: Any, width: int, height: int) -> FloatArray:
 
 @takes("SurfaceMapOptions", "sign")
 def self_distance_map(
-    target: Any,
+    target: MeshLike,
     *,
     weld: Real | None = None,
     threads: int = 0,
@@ -295,7 +295,7 @@ def self_distance_map(
 
 @takes("SurfaceMapOptions", "sign")
 def thickness_map(
-    solid: Any,
+    solid: MeshLike,
     *,
     kind: str = "ray",
     separation: Real = 30,
@@ -341,7 +341,7 @@ class Thickness:
 
 @takes("ThicknessOptions")
 def thickness(
-    solid: Any,
+    solid: MeshLike,
     points: Any = None,
     *,
     weld: Real | None = None,
@@ -381,8 +381,8 @@ def thickness(
 
 @takes("HausdorffOptions")
 def hausdorff_distance(
-    a: Any,
-    b: Any,
+    a: MeshLike,
+    b: MeshLike,
     *,
     weld: Real | None = None,
     threads: int = 0,
@@ -412,8 +412,8 @@ def hausdorff_distance(
 
 @takes("HausdorffOptions")
 def directed_hausdorff_distance(
-    mesh: Any,
-    other: Any,
+    mesh: MeshLike,
+    other: MeshLike,
     *,
     weld: Real | None = None,
     threads: int = 0,
@@ -443,8 +443,8 @@ def directed_hausdorff_distance(
 
 @takes("DeviationOptions")
 def surface_deviation(
-    mesh: Any,
-    other: Any,
+    mesh: MeshLike,
+    other: MeshLike,
     *,
     weld: Real | None = None,
     threads: int = 0,

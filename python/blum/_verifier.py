@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Unpack
+from typing import Unpack
+
+import numpy.typing as npt
 
 from ._arguments import Integer, Real
 from ._certificate import ShapeVerifier
 from ._grid import Grid
+from ._image import Image
 from ._medial_complex import MedialComplex, claim_of
+from ._mesh import MeshOrVertices
 from ._options import takes
 from ._progress import Progress
 from ._structs import Certificate, CertificateOptions
@@ -33,7 +37,9 @@ class AxisVerifier:
     [True, True]
     """
 
-    def __init__(self, shape: Any, triangles: Any = None, *, weld: Real | None = None) -> None:
+    def __init__(
+        self, shape: MeshOrVertices | Image, triangles: npt.ArrayLike | None = None, *, weld: Real | None = None
+    ) -> None:
         self._verifier = ShapeVerifier(shape, triangles, weld)
 
     @takes("CertificateOptions")

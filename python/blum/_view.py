@@ -11,6 +11,8 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
+import numpy.typing as npt
+
 from ._arguments import PathLike, existing_file
 from ._errors import Error, FileError, InvalidOption
 from ._field import Field
@@ -18,7 +20,7 @@ from ._image import Image, as_image, is_image
 from ._medial import MedialAxis
 from ._medial_columns import NestedComplex
 from ._medial_complex import MedialComplex
-from ._mesh import Mesh, as_mesh
+from ._mesh import Mesh, MeshLike, as_mesh
 from ._surface_map import SurfaceMap
 
 _TOOL = Path(__file__).parent / "_bin" / "blum"
@@ -26,7 +28,11 @@ _UNREADABLE = 1  # exit status
 _PREFIX = re.compile(r"^blum: (?:error|warning): ")
 
 
-def view(*things: Any, output: PathLike | None = None, show: bool | None = None, **named: Any) -> Path:
+#: What a page shows.
+Viewable = MeshLike | Image | Field | MedialAxis | MedialComplex | SurfaceMap | npt.NDArray[Any]
+
+
+def view(*things: Viewable, output: PathLike | None = None, show: bool | None = None, **named: Viewable) -> Path:
     """Writes one HTML page that shows meshes, images, fields, medial axes, surface maps in any mixture, and opens it.
 
     The page is one file that needs neither a network nor this process: slices and isosurfaces of fields, a slider for

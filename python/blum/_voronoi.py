@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import FloatArray, IntArray, PathLike, Real, integer, number
 from ._complex import Complex, core_arguments
 from ._errors import InvalidOption
 from ._medial_complex import EVERYTHING, MedialComplex, Origin
-from ._mesh import Mesh, as_mesh
+from ._mesh import Mesh, MeshOrVertices, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport, VoronoiSite
@@ -176,8 +177,8 @@ def _restored(arguments: tuple[Any, ...], report: VoronoiReport, part: str, mesh
 
 @takes("VoronoiOptions")
 def voronoi_complex(
-    mesh: Any,
-    triangles: Any = None,
+    mesh: MeshOrVertices,
+    triangles: npt.ArrayLike | None = None,
     *,
     threads: int = 0,
     progress: Progress = False,

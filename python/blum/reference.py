@@ -7,14 +7,14 @@ from typing import Any
 from . import _core
 from ._arguments import FloatArray, IntArray, Real, indices, integer, points_and_shape
 from ._grid import Grid, mask_array
-from ._mesh import as_mesh
+from ._mesh import MeshLike, as_mesh
 from ._progress import Progress, reporting
 
 __all__ = ["nearest", "nearest_voxel", "winding_number"]
 
 
 def nearest(
-    mesh: Any, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+    mesh: MeshLike, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
 ) -> tuple[FloatArray, IntArray]:
     """Distance and closest site of each point of the shape (..., 3), over all sites: O(points * sites).
 
@@ -32,7 +32,7 @@ def nearest(
 
 
 def winding_number(
-    mesh: Any, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+    mesh: MeshLike, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
 ) -> FloatArray:
     """The sum of all solid angles at each point of the shape (..., 3): O(points * triangles)."""
     rows, shape = points_and_shape(points, "points")

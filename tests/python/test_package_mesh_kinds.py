@@ -1,0 +1,292 @@
+"""Proves that all functions and methods that take a mesh take the same kinds, with the same results, byte for byte."""
+
+import dataclasses
+import inspect
+import operator
+import pathlib
+import re
+import typing
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+blum = pytest.importorskip("blum")
+
+GUIDE = pathlib.Path(__file__).resolve().parents[2] / "docs/guide/python.md"
+POINTS = np.array([[0.1, 0.2, 0.9], [2.0, 0.0, 0.0], [0.3, -0.2, 0.1]])
+
+
+class Vectors:
+    """As Open3D's Vector3dVector: no array and none of NumPy's attributes, but np.asarray() makes one of it."""
+
+    def __init__(self, rows):
+        self._rows = np.array(rows)
+
+    def __len__(self):
+        return len(self._rows)
+
+    def __getitem__(self, index):
+        return self._rows[index]
+
+
+class Tensor:
+    """As Open3D's: on a device, perhaps."""
+
+    def __init__(self, values):
+        self._values = np.array(values)
+
+    def cpu(self):
+        return self
+
+    def numpy(self):
+        return self._values
+
+
+class TensorMap(dict):
+    """As Open3D's: what it does not hold is a KeyError, also as an attribute."""
+
+    def __getattr__(self, name):
+        return self[name]
+
+
+def of_trimesh(mesh, folder):
+    return pytest.importorskip("trimesh").Trimesh(mesh.vertices, mesh.triangles, process=False)
+
+
+def of_pyvista(mesh, folder):
+    pyvista = pytest.importorskip("pyvista")
+    return pyvista.PolyData.from_regular_faces(np.array(mesh.vertices), np.array(mesh.triangles))
+
+
+def of_meshio(mesh, folder):
+    return pytest.importorskip("meshio").Mesh(mesh.vertices, [("triangle", mesh.triangles)])
+
+
+def of_open3d(mesh, folder):
+    return SimpleNamespace(vertices=Vectors(mesh.vertices), triangles=Vectors(mesh.triangles))
+
+
+def of_open3d_tensors(mesh, folder):
+    return SimpleNamespace(
+        vertex=TensorMap(positions=Tensor(mesh.vertices)),
+        triangle=TensorMap(indices=Tensor(mesh.triangles.astype(np.int64))),
+    )
+
+
+def of_file(mesh, folder):
+    mesh.write(folder / "mesh.ply")
+    return folder / "mesh.ply"
+
+
+KINDS = {
+    "path": of_file,
+    "str": lambda mesh, folder: str(of_file(mesh, folder)),
+    "pair": lambda mesh, folder: (mesh.vertices, mesh.triangles),
+    "lists": lambda mesh, folder: (mesh.vertices.tolist(), mesh.triangles.tolist()),
+    "blum": lambda mesh, folder: mesh,
+    "trimesh": of_trimesh,
+    "pyvista": of_pyvista,
+    "meshio": of_meshio,
+    "open3d": of_open3d,
+    "open3d tensors": of_open3d_tensors,
+}
+
+
+def scene_of(mesh):
+    scene = blum.ProximityScene()
+    first = scene.add(blum.generate("box"))
+    scene.update(first, transform=(np.eye(3), [3, 0, 0]))
+    return scene, scene.add(mesh)
+
+
+def updated_scene(mesh):
+    scene, index = scene_of(blum.generate("box"))
+    scene.update(index, mesh=mesh)
+    return scene.separation(0, index)
+
+
+def replaced(mesh):
+    mapper = blum.SurfaceMapper(blum.generate("box"), blum.generate("box"), texel=0.1)
+    mapper.replace_other(mesh)
+    return mapper.map()
+
+
+def axis_of(mesh):
+    return blum.medial_axis(mesh, resolution=16).simplify(60)
+
+
+def page_of(mesh, folder):
+    page = blum.view(part=mesh, output=folder / "page.html", show=False)
+    text = page.read_text("utf-8")
+    page.unlink()
+    return len(text)  # times and the source of files are in it
+
+
+def solver():
+    return blum.FieldSolver(blum.Grid.around(blum.generate("box"), resolution=8))
+
+
+AXIS = axis_of(blum.generate("box"))
+
+#: Everything that takes a mesh, by the name that the guide has.
+TAKERS = {
+    "distance_field": lambda mesh: blum.distance_field(mesh, resolution=8),
+    "FieldSolver.compute": lambda mesh: solver().compute(mesh),
+    "Grid.around": lambda mesh: blum.Grid.around(mesh, resolution=8),
+    "reference.nearest": lambda mesh: blum.reference.nearest(mesh, POINTS),
+    "reference.winding_number": lambda mesh: blum.reference.winding_number(mesh, POINTS),
+    "Sites": lambda mesh: blum.Sites(mesh).edges,
+    "pseudonormals": blum.pseudonormals,
+    "WindingNumber": lambda mesh: blum.WindingNumber(mesh)(POINTS),
+    "winding_number": lambda mesh: blum.winding_number(mesh, POINTS),
+    "topology": blum.topology,
+    "self_intersections": blum.self_intersections,
+    "weld": blum.weld,
+    "noisy": lambda mesh: blum.noisy(mesh, 0.01),
+    "subdivided": blum.subdivided,
+    "clean_mesh": lambda mesh: blum.clean_mesh(mesh, 1e-6),
+    "oriented_mesh": blum.oriented_mesh,
+    "close_features": lambda mesh: blum.close_features(mesh, 0.1),
+    "closest_points": lambda mesh: blum.closest_points(mesh, POINTS),
+    "ClosestPointQuery": lambda mesh: blum.ClosestPointQuery(mesh)(POINTS),
+    "signed_distance": lambda mesh: blum.signed_distance(mesh, POINTS),
+    "sample_surface": lambda mesh: blum.sample_surface(mesh, 20),
+    "sample_near": lambda mesh: blum.sample_near(mesh, 20),
+    "Solid": lambda mesh: blum.Solid(mesh).inside(POINTS),
+    "solid_rule": blum.solid_rule,
+    "medial_axis": axis_of,
+    "certify": lambda mesh: blum.certify(AXIS, mesh),
+    "axis_graph": lambda mesh: blum.axis_graph(AXIS, mesh),
+    "extend_axis": lambda mesh: blum.extend_axis(AXIS, mesh),
+    "MedialComplex.extend": lambda mesh: AXIS.extend(mesh),
+    "voronoi_complex": blum.voronoi_complex,
+    "ProximityScene.add": lambda mesh: scene_of(mesh)[0].separation(0, 1),
+    "ProximityScene.update": updated_scene,
+    "separation": lambda mesh: blum.separation(mesh, (blum.generate("box").vertices + 3, [[0, 1, 2]])),
+    "closest_primitives": blum.closest_primitives,
+    "collisions": lambda mesh: blum.collisions([mesh, blum.generate("box")]),
+    "continuous_collisions": lambda mesh: blum.continuous_collisions(mesh, mesh),
+    "surface_distance_map": lambda mesh: blum.surface_distance_map(mesh, mesh, texel=0.1),
+    "SurfaceMapper": lambda mesh: blum.SurfaceMapper(mesh, mesh, texel=0.1).map(),
+    "SurfaceMapper.replace_other": replaced,
+    "self_distance_map": lambda mesh: blum.self_distance_map(mesh, texel=0.1),
+    "thickness_map": lambda mesh: blum.thickness_map(mesh, texel=0.1),
+    "thickness": blum.thickness,
+    "hausdorff_distance": lambda mesh: blum.hausdorff_distance(mesh, mesh),
+    "directed_hausdorff_distance": lambda mesh: blum.directed_hausdorff_distance(mesh, mesh),
+    "surface_deviation": lambda mesh: blum.surface_deviation(mesh, mesh),
+    "view": page_of,
+}
+
+
+def told(value):
+    """What a result holds, as bytes; without how long it took, and without where meshes came from."""
+    if isinstance(value, np.ndarray):
+        return str(value.dtype), value.shape, value.tobytes()
+    if isinstance(value, (tuple, list)):
+        return [told(part) for part in value]
+    if isinstance(value, dict):
+        return {name: told(part) for name, part in value.items()}
+    if isinstance(value, blum.Mesh):
+        return [told(part) for part in (value.vertices, value.triangles, value.segments, value.points)]
+    if isinstance(value, blum.Field):
+        return [told(part) for part in (value.distance, value.site, value.sign_rule, value.grid)]
+    if isinstance(value, blum.Complex):
+        columns = (value.vertex_columns, value.edge_columns, value.triangle_columns)
+        return [told(part) for part in (value.vertices, value.edges, value.triangles, *map(dict, columns))]
+    if dataclasses.is_dataclass(value):
+        names = [field.name for field in dataclasses.fields(value)]
+        return {name: told(getattr(value, name)) for name in names if name not in ("seconds", "_handle", "_mesh")}
+    return repr(value)
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    """What each function says of two arrays, found once."""
+    known = {}
+
+    def of(name):
+        if name not in known:
+            box = blum.generate("box")
+            known[name] = result(name, (box.vertices, box.triangles), tmp_path_factory.mktemp("arrays"))
+        return known[name]
+
+    return of
+
+
+def result(name, mesh, folder):
+    taker = TAKERS[name]
+    return told(taker(mesh, folder) if taker is page_of else taker(mesh))
+
+
+@pytest.mark.filterwarnings("ignore::blum.InputWarning")
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", TAKERS)
+def test_results_are_those_of_arrays(name, kind, expected, tmp_path):
+    mesh = KINDS[kind](blum.generate("box"), tmp_path)
+    assert result(name, mesh, tmp_path) == expected(name)
+
+
+def test_vertices_and_triangles_apart():
+    box = blum.generate("box")
+    names = [name for name, taker in takers().items() if "triangles" in inspect.signature(taker).parameters]
+    of_axis = {"certify", "axis_graph", "extend_axis", "MedialComplex.extend"}
+    assert {*names} >= of_axis | {"distance_field", "medial_axis", "voronoi_complex"}
+    coarse = {"medial_axis": {"resolution": 16}, "distance_field": {"resolution": 8}}
+    for name in {*names} - of_axis:
+        options = coarse.get(name, {})
+        taker = operator.attrgetter(name)(blum) if name != "FieldSolver.compute" else solver().compute
+        assert repr(taker(box.vertices, box.triangles, **options)) == repr(taker(box, **options)), name
+    for name in of_axis - {"MedialComplex.extend"}:
+        taker = getattr(blum, name)
+        assert repr(taker(AXIS, box.vertices, box.triangles)) == repr(taker(AXIS, box)), name
+
+
+def takers():
+    """Each function of blum that has an argument of the type MeshLike."""
+    found = {}
+    for name in blum.__all__:
+        thing = getattr(blum, name)
+        if inspect.isclass(thing):
+            own = {
+                f"{name}.{k}": getattr(thing, k) for k, v in vars(thing).items() if inspect.isroutine(v) and k[0] != "_"
+            }
+            found |= {name: thing.__init__} | own if "__init__" in vars(thing) else own
+        elif inspect.isroutine(thing):
+            found[name] = thing
+    found |= {f"reference.{k}": getattr(blum.reference, k) for k in ("nearest", "winding_number")}
+    annotations = {k: str(getattr(v, "__annotations__", {})) for k, v in found.items()}
+    return {k: v for k, v in found.items() if re.search("MeshLike|MeshOrVertices|Viewable", annotations[k])}
+
+
+def test_nothing_that_takes_a_mesh_is_left_out():
+    unwrapped = {name.removesuffix(".__init__") for name in takers()}
+    assert unwrapped == set(TAKERS)
+
+
+def test_the_guide_lists_them():
+    table = GUIDE.read_text("utf-8").split("### Kinds of meshes")[1].split("\n#")[0]
+    listed = {name.removesuffix("()") for name in re.findall(r"`([\w.]+)`", table.split("| functions and methods")[1])}
+    assert set(TAKERS) <= listed, set(TAKERS) - listed
+
+
+def test_the_type_names_the_kinds():
+    names = {getattr(kind, "__name__", str(kind)) for kind in typing.get_args(blum.MeshLike)}
+    assert {"Mesh", "str", "TrimeshLike", "Open3DLike", "Open3DTensorLike", "MeshioLike", "PyVistaLike"} <= names
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (3, r"is a int, but must be a blum\.Mesh, a path, a pair \(vertices, triangles\)"),
+        (POINTS, r"is a ndarray, but must .*: blum\.Mesh\(points\) makes one of points alone"),
+        (SimpleNamespace(points=POINTS), r"must .*: blum\.Mesh\(points\) makes one of points alone"),
+        (SimpleNamespace(geometry={}, to_mesh=None), r"must .*: \.to_mesh\(\) makes one of it"),
+        (SimpleNamespace(vertex=TensorMap(), triangle=TensorMap()), r"has no vertex\.positions and triangle\.indices"),
+    ],
+)
+def test_what_is_no_mesh_is_told(given, message):
+    for taker in (blum.topology, blum.pseudonormals, lambda mesh: blum.distance_field(mesh, resolution=8)):
+        with pytest.raises(TypeError, match=message):
+            taker(given)
