@@ -50,18 +50,27 @@ std::vector<std::uint8_t> inside(const Solid& solid, std::span<const Vec3d> poin
   return out;
 }
 
+template <class Shape>
+nb::tuple cleaned(const Call& call, const Shape& shape, double tolerance) {
+  const CleanedMesh out = run(call, [&](const Context& context) { return clean_mesh(shape, tolerance, context); });
+  return nb::make_tuple(arrays_of(out.mesh), handed_over<std::uint32_t>(out.vertex_of), to_python(out.report));
+}
+
 /// (mesh, vertex_of, report).
 void bind_clean_mesh(nb::module_& m) {
   bind_struct<CleanReport>(m);
   m.def(
       "clean_mesh",
       [](const MeshArrays& mesh, double tolerance, int threads, nb::object progress) {
-        const MeshView view = mesh.view();
-        const CleanedMesh out = run({threads, std::move(progress)},
-                                    [&](const Context& context) { return clean_mesh(view, tolerance, context); });
-        return nb::make_tuple(arrays_of(out.mesh), handed_over<std::uint32_t>(out.vertex_of), to_python(out.report));
+        return cleaned({threads, std::move(progress)}, mesh.view(), tolerance);
       },
       nb::arg("mesh"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "clean_solid",
+      [](const Solid& solid, double tolerance, int threads, nb::object progress) {
+        return cleaned({threads, std::move(progress)}, solid, tolerance);
+      },
+      nb::arg("solid"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 /// (mesh, reversed_triangles, reversed_shells).
@@ -103,6 +112,8 @@ void bind_solid(nb::module_& m) {
   nb::class_<Solid>(m, "Solid")
       .def_prop_ro("rule", [](const Solid& solid) { return std::string(to_string(solid.rule())); })
       .def_prop_ro("reason", &Solid::reason)
+      .def_prop_ro("problem", &Solid::problem)
+      .def_prop_ro("surface", [](const Solid& solid) { return arrays_of(solid.surface().mesh); })
       .def_prop_ro("betti", [](const Solid& solid) { return nb::cast(solid.betti()); })
       .def_prop_ro("bodies", &bodies_of)
       .def_prop_ro("shells", &shells_of)

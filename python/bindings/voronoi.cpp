@@ -16,6 +16,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/io/voronoi_io.hpp"
+#include "blum/solid/solid.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
@@ -33,14 +34,13 @@ void bind_voronoi(nb::module_& m) {
   bind_struct<VoronoiReport>(m);
   m.def(
       "voronoi_complex",
-      [](const MeshArrays& mesh, const nb::dict& given, int threads, nb::object progress) {
+      [](const Solid& solid, const nb::dict& given, int threads, nb::object progress) {
         const auto options = options_from<VoronoiOptions>(given);
-        VoronoiComplex out = run({threads, std::move(progress)}, [&](const Context& context) {
-          return voronoi_complex(mesh.view(), options, context);
-        });
+        VoronoiComplex out = run({threads, std::move(progress)},
+                                 [&](const Context& context) { return voronoi_complex(solid, options, context); });
         return nb::make_tuple(std::move(out.complex), to_python(out.report));
       },
-      nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("solid"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
       "voronoi_regions",
       [](const Complex& complex) {

@@ -11,6 +11,7 @@ from . import _core
 from ._arguments import Real, integer, number
 from ._mesh import Mesh, MeshLike, as_mesh, mesh_of_arrays
 from ._progress import Progress, reporting
+from ._solid import Solid
 from ._structs import CleanReport
 
 
@@ -19,12 +20,12 @@ class CleanedMesh:
     """A cleaned mesh: what :func:`clean_mesh` returns."""
 
     mesh: Mesh  #: its vertices are some of the input's, in their order
-    vertex_of: npt.NDArray[np.uint32]  #: of each vertex, in the input; rising
+    vertex_of: npt.NDArray[np.uint32]  #: of each vertex, in the input; 0xffffffff: new
     report: CleanReport  #: what was done, and the bound that holds
 
 
 def clean_mesh(
-    mesh: MeshLike,
+    mesh: MeshLike | Solid,
     tolerance: Real,
     *,
     weld: Real | None = None,
@@ -39,8 +40,8 @@ def clean_mesh(
     Parameters
     ----------
     mesh : mesh
-        As for :func:`distance_field`: closed, without crossings, not touching itself. It may face any way, as for
-        :func:`oriented_mesh`.
+        As for :func:`distance_field`, closed; or a :class:`Solid`. It may face any way, and cross itself: the result is
+        then near the surface without the crossings.
     tolerance : float
         The result is nowhere further from the mesh than this, nor the mesh from it, for certain; mesh units.
     weld, threads, progress
@@ -55,11 +56,14 @@ def clean_mesh(
     >>> found.mesh, found.report.triangles_before, found.report.deviation < 1e-12
     (Mesh(8 vertices, 12 triangles), 768, True)
     """
-    given = as_mesh(mesh, weld=weld)
-    with reporting(progress) as report:
-        arrays, vertex_of, done = _core.clean_mesh(
-            given._arrays, number(tolerance, "tolerance"), integer(threads, "threads"), report
-        )
+    most, count = number(tolerance, "tolerance"), integer(threads, "threads")
+    if isinstance(mesh, Solid):
+        with reporting(progress) as report:
+            arrays, vertex_of, done = _core.clean_solid(mesh._core, most, count, report)
+    else:
+        given = as_mesh(mesh, weld=weld)
+        with reporting(progress) as report:
+            arrays, vertex_of, done = _core.clean_mesh(given._arrays, most, count, report)
     return CleanedMesh(mesh_of_arrays(arrays), vertex_of, done)
 
 

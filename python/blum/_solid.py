@@ -125,6 +125,17 @@ class Solid:
         return self._core.reason
 
     @property
+    def problem(self) -> str:
+        """What keeps a mesh from bounding bodies that do not touch, with what to do; empty where nothing does."""
+        return self._core.problem
+
+    @property
+    def surface(self) -> Mesh:
+        """Meshes: the surface of all bodies, which faces outwards. Triangles and vertices have the numbers that they
+        have in the input, but where crossings were resolved."""
+        return mesh_of_arrays(self._core.surface)
+
+    @property
     def betti(self) -> Betti | None:
         """Components, tunnels and voids; None for "winding", where only voxels have numbers."""
         numbers: Any = self._core.betti

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -12,11 +13,12 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, IntArray, PathLike, Real, integer, number
 from ._complex import Complex, core_arguments
-from ._errors import InvalidOption
+from ._errors import InputWarning, InvalidOption
 from ._medial_complex import EVERYTHING, MedialComplex, Origin
-from ._mesh import Mesh, MeshOrVertices, as_mesh
+from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
+from ._solid import Solid
 from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport, VoronoiSite
 
 # A class that has a member `_core` cannot name the module in its annotations.
@@ -177,7 +179,7 @@ def _restored(arguments: tuple[Any, ...], report: VoronoiReport, part: str, mesh
 
 @takes("VoronoiOptions")
 def voronoi_complex(
-    mesh: MeshOrVertices,
+    mesh: MeshOrVertices | Solid,
     triangles: npt.ArrayLike | None = None,
     *,
     threads: int = 0,
@@ -192,7 +194,8 @@ def voronoi_complex(
     Parameters
     ----------
     mesh, triangles
-        As for :func:`distance_field`; closed, facing outwards, without crossings.
+        As for :func:`distance_field`, closed; or a :class:`Solid`. Where it crosses itself, sites are those of its
+        solid's surface, without the crossings.
     threads, progress
         As for :func:`distance_field`.
     **options
@@ -208,7 +211,17 @@ def voronoi_complex(
     >>> found.report.certified, found.report.found_betti
     (True, (1, 0, 6))
     """
-    own = as_mesh(mesh, triangles)
+    count = integer(threads, "threads")
+    if isinstance(mesh, Solid):
+        solid = mesh._core
+    else:
+        solid = _core.solid_of_mesh(as_mesh(mesh, triangles)._arrays, count, None)
+        if solid.resolved is not None:
+            warnings.warn(
+                f"{solid.reason}; sites are those of the surface without the crossings, Solid(mesh).surface",
+                InputWarning,
+                stacklevel=3,
+            )
     with reporting(progress) as report:
-        core, told = _core.voronoi_complex(own._arrays, dict(options), integer(threads, "threads"), report)
-    return VoronoiComplex._of(core, told, options.get("part", "all"), own)
+        core, told = _core.voronoi_complex(solid, dict(options), count, report)
+    return VoronoiComplex._of(core, told, options.get("part", "all"), mesh_of_arrays(solid.surface))

@@ -170,3 +170,19 @@ def test_networkx_reads_graphs_of_diagrams(box, tmp_path):
     assert json.loads((tmp_path / "walls.json").read_text())["regions"] == []
     with pytest.raises(blum.InvalidOption, match=r"\.json, \.graphml"):
         found.write_graph(tmp_path / "g.gml")
+
+
+def test_where_a_mesh_crosses_itself_the_diagram_is_that_of_its_solid():
+    box = blum.generate("box")
+    vertices = np.concatenate([box.vertices, box.vertices + [0.5, 0.25, 0.125]])
+    triangles = np.concatenate([box.triangles, box.triangles + len(box.vertices)])
+    solid = blum.Solid(vertices, triangles)
+    assert solid.problem == "" and blum.topology(solid.surface).betti == (1, 0, 0)
+    with pytest.warns(blum.InputWarning, match="without the crossings"):
+        warned = blum.voronoi_complex(vertices, triangles)
+    found = blum.voronoi_complex(solid)
+    assert found.report.certified and np.array_equal(found.triangle_sites, warned.triangle_sites)
+    cleaned = blum.clean_mesh(solid, 1e-6)
+    assert blum.topology(cleaned.mesh).betti == (1, 0, 0)
+    with pytest.raises(blum.InvalidMesh, match="not closed"):
+        blum.voronoi_complex(blum.Solid(box.vertices, box.triangles[1:]))
