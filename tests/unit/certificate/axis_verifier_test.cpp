@@ -38,7 +38,7 @@ struct Said {
   CertificateOptions options;
 };
 
-/// Axes of three angles, lean ones among them, and some that lie.
+/// Lean axes of three angles, one that is not, and two that lie.
 std::vector<Said> axes_of(const MedialAxis& axis) {
   std::vector<Said> all;
   const double voxel = axis.report().bodies.front().spacing;
@@ -47,13 +47,12 @@ std::vector<Said> axes_of(const MedialAxis& axis) {
     options.theta = theta;
     options.lambda = 0;
     options.spacing = voxel;
+    if (all.empty()) all.push_back({axis.simplify(theta), options});  // once with all vertices
     DecimatedAxis lean = decimate(axis.simplify(theta), voxel / 4);
-    all.push_back({axis.simplify(theta), options});
     options.deviation = lean.deviation;
     all.push_back({std::move(lean.axis), options});
   }
   Said wrong = all.back();
-  if (!wrong.axis.triangles.empty()) wrong.axis = all[2].axis;
   for (Vec3d& at : wrong.axis.positions) at += Vec3d{voxel, 0, 0};
   all.push_back(wrong);
   wrong = all.front();
@@ -69,8 +68,10 @@ void expect_as_alone(const AxisVerifier& verifier, const std::vector<Said>& axes
   for (const Said& said : axes) {
     const std::string expected = described_text(alone(said));
     EXPECT_EQ(described_text(verifier.certify(said.axis, said.options)), expected);
-    EXPECT_EQ(described_text(verifier.certify(said.axis, said.options, {.threads = 3})), expected);
   }
+  const Said& first = axes.front();
+  EXPECT_EQ(described_text(verifier.certify(first.axis, first.options, {.threads = 3})),
+            described_text(verifier.certify(first.axis, first.options, {.threads = 1})));
 }
 
 class AxesOfAShape : public testing::TestWithParam<std::string> {};
@@ -80,7 +81,7 @@ TEST_P(AxesOfAShape, HaveTheirCertificatesFromOneVerifier) {
   if (mesh.triangles.empty()) return;  // bounds nothing
   std::optional<MedialAxis> axis;
   try {
-    axis = medial_axis(mesh, {.resolution = 16});
+    axis = medial_axis(mesh, {.resolution = 12});
   } catch (const InvalidMesh&) {
     return;  // the same
   }
@@ -114,7 +115,7 @@ TEST(AxisVerifier, IsOneForAllAxesOfAnImage) {
     const bool is_noise = info.name == "noise_image";
     const VoxelImage image = is_noise ? make_noise_image({.size = 16, .density = 0.05}) : make_image(info.name);
     const VoxelSet voxels = selected_voxels(image, {});
-    if (voxels.count() == 0 || voxels.count() > 100'000) continue;
+    if (voxels.count() == 0 || voxels.count() > 20'000) continue;
     const AxisVerifier verifier(voxels, image.grid, nullptr);
     EXPECT_EQ(verifier.rule().rule, SolidRule::voxels);
     expect_as_alone(verifier, axes_of(medial_axis(image)),
