@@ -174,7 +174,7 @@ def test_networkx_reads_graphs_of_diagrams(box, tmp_path):
 
 def test_where_a_mesh_crosses_itself_the_diagram_is_that_of_its_solid():
     box = blum.generate("box")
-    vertices = np.concatenate([box.vertices, box.vertices + [0.5, 0.25, 0.125]])
+    vertices = np.concatenate([box.vertices, box.vertices + np.array([0.5, 0.25, 0.125])])
     triangles = np.concatenate([box.triangles, box.triangles + len(box.vertices)])
     solid = blum.Solid(vertices, triangles)
     assert solid.problem == "" and blum.topology(solid.surface).betti == (1, 0, 0)
