@@ -90,19 +90,26 @@ concept DescribedStruct = requires { Description<T>::members; };
 
 namespace detail {
 
+/// A list of types; lists are joined by +, which compilers do much faster than std::tuple_cat().
+template <class... Types>
+struct TypeList {};
+template <class... Left, class... Right>
+consteval TypeList<Left..., Right...> operator+(TypeList<Left...> /*left*/, TypeList<Right...> /*right*/) {
+  return {};
+}
+
 template <class Entry>
-using StoredType =
-    std::conditional_t<Entry::is_stored, std::tuple<std::type_identity<typename Entry::Value>>, std::tuple<>>;
+using StoredType = std::conditional_t<Entry::is_stored, TypeList<typename Entry::Value>, TypeList<>>;
 
 /// Whether a T can be made of exactly these, and of no more.
 template <class T, class... Types>
-consteval bool consists_of(std::type_identity<std::tuple<std::type_identity<Types>...>> /*types*/) {
+consteval bool consists_of(TypeList<Types...> /*types*/) {
   return requires { T{std::declval<Types>()...}; } && !requires { T{std::declval<Types>()..., {}}; };
 }
 
 template <class T, class... Entries>
 consteval bool is_described_by(const std::tuple<Entries...>& /*members*/) {
-  return consists_of<T>(std::type_identity<decltype(std::tuple_cat(std::declval<StoredType<Entries>>()...))>{});
+  return consists_of<T>((TypeList<>{} + ... + StoredType<Entries>{}));
 }
 
 /// @throws InvalidOption: `what` is 'text', but must be one of some names.
@@ -115,7 +122,10 @@ template <DescribedStruct T, class Visitor>
 constexpr void for_each_member(const Visitor& visit) {
   static_assert(detail::is_described_by<T>(Description<T>::members),
                 "Description<T>::members must name every member of T, in their order");
-  std::apply([&](const auto&... entries) { (visit(entries), ...); }, Description<T>::members);
+  constexpr std::size_t count = std::tuple_size_v<std::remove_cvref_t<decltype(Description<T>::members)>>;
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (visit(std::get<k>(Description<T>::members)), ...);
+  }(std::make_index_sequence<count>{});
 }
 
 /// The name of a value of an enumeration.
