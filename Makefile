@@ -24,6 +24,7 @@ test: ## Install what the tests need, build, and run every test
 	@tools/test.sh
 
 demo: setup ## Build the tool and run the main job on a generated shape: a field, pictures, a medial axis and a page in out/demo
+	@tools/demo.sh --time $(JOBS)
 	@tools/build.sh release $(configure_options) -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
 
@@ -33,7 +34,7 @@ simulate: ## Run a simulation without a missed collision, and make a page of it 
 	@tools/simulate.sh '$(or $(S),cloth)' out/simulations $(if $(FRAMES),--frames '$(FRAMES)')
 
 python: ## Build the Python package alone: build/release/python, for PYTHONPATH, with the Python of build/venv
-	@tools/setup.sh --tests
+	@tools/setup.sh --python
 	@tools/build.sh release $(configure_options) -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_python
 	@echo "make python: PYTHONPATH=$(CURDIR)/build/release/python build/venv/bin/python"
 

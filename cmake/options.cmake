@@ -12,6 +12,7 @@ option(BLUM_GPU_BENCH "Build the programs of bench/gpu (needs a CUDA compiler, a
 option(BLUM_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
 option(BLUM_INSTALL "Write install rules" ${PROJECT_IS_TOP_LEVEL})
 option(BLUM_WERROR "Treat warnings as errors" OFF)
+option(BLUM_PCH "Precompile the headers that every file of the tool includes; OFF compiles each file by itself" ON)
 option(BLUM_CCACHE "Compile through ccache where there is one" ${PROJECT_IS_TOP_LEVEL})
 option(BLUM_SIMD "Choose SIMD instructions when a program starts; OFF compiles one path only" ON)
 set(BLUM_THREADS "TBB" CACHE STRING "Thread back end: TBB, STD (std::thread) or SERIAL")

@@ -52,8 +52,9 @@ case ${1:-} in
   compiler-alone-serial) compiler_alone compiler-alone-serial SERIAL ;;
   # Other instructions in geometry and field, and std::thread in core.
   scalar) with_tests scalar 'core|geometry|field|property|regression' -DBLUM_CLI=OFF -DBLUM_SIMD=OFF -DBLUM_THREADS=STD ;;
-  # No threads in core: every loop runs otherwise.
-  serial) with_tests serial '.*' -DBLUM_CLI=OFF -DBLUM_THREADS=SERIAL ;;
+  # No threads in core: every loop runs otherwise. And the tool without its precompiled header, which might hide that a
+  # file lacks an include.
+  serial) with_tests serial '.*' -DBLUM_PCH=OFF -DBLUM_THREADS=SERIAL ;;
   *)
     echo "configurations: unknown configuration $1" >&2
     exit 2

@@ -1,7 +1,15 @@
 #!/usr/bin/env bash
 # `make demo`: the main job end to end, on a shape that Blum generates.
 #   tools/demo.sh BLUM_PROGRAM OUTPUT_FOLDER
+#   tools/demo.sh --time JOBS       only says how long building the tool takes
 set -euo pipefail
+
+if [[ $1 == --time ]]; then
+  processor_seconds=1000  # of library and tool, without a compiler cache, on a server of 2023
+  minutes=$((processor_seconds / 60 / $2 + 2))
+  echo "demo: where nothing is built yet, this takes about $minutes minutes with $2 at a time, on older machines twice that"
+  exit
+fi
 
 blum=$1
 out=$2

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Blum needs on Debian 12 (and its kin), or says what is missing.
-#   tools/setup.sh [--tests] [--bench] [--docs] [--lint] [--fuzz] [--viewer] [--ci] [--all] [--check]
+#   tools/setup.sh [--python] [--tests] [--bench] [--docs] [--lint] [--fuzz] [--viewer] [--ci] [--all] [--check]
 # Without options: what the library and the command-line tool need. --check only looks, and installs nothing.
 # As root, or where sudo works, apt installs what is missing; anyone else gets the command to run, and exit status 1.
 # Running it again does nothing. BLUM_SETUP=skip in the environment: trust that everything is there.
@@ -9,6 +9,7 @@ cd "$(dirname "$0")/.."
 
 packages=(make g++ cmake ninja-build libtbb-dev libhwy-dev libboost-dev zlib1g-dev libpng-dev libcli11-dev
           nlohmann-json3-dev libtinygltf-dev)
+python=(python3-dev python3-venv ca-certificates)
 tests=(libgtest-dev python3-dev python3-venv ca-certificates)
 bench=(libbenchmark-dev libembree-dev libcgal-dev libopenvdb-dev libfcl-dev python3 python3-venv ca-certificates)
 docs=(doxygen python3-dev python3-venv ca-certificates)
@@ -27,25 +28,26 @@ check_only=false
 requirement_files=()
 for option in "$@"; do
   case $option in
-    --tests) packages+=("${tests[@]}") requirement_files+=(tests/python/requirements.txt) ;;
+    --python) packages+=("${python[@]}") requirement_files+=(python/requirements.txt) ;;
+    --tests) packages+=("${tests[@]}") requirement_files+=(python/requirements.txt tests/python/requirements.txt) ;;
     --bench)
       packages+=("${bench[@]}")
-      requirement_files+=(tests/python/requirements.txt bench/requirements.txt)
+      requirement_files+=(python/requirements.txt tests/python/requirements.txt bench/requirements.txt)
       ;;
     --docs)
       packages+=("${docs[@]}")
-      requirement_files+=(tests/python/requirements.txt)
+      requirement_files+=(python/requirements.txt tests/python/requirements.txt)
       ;;
     --lint)
       packages+=("${lint[@]}")
-      requirement_files+=(tests/python/requirements.txt)
+      requirement_files+=(python/requirements.txt tests/python/requirements.txt)
       ;;
     --fuzz) packages+=("${fuzz[@]}") ;;
     --viewer) packages+=("${viewer[@]}") ;;
     --ci) packages+=("${ci[@]}") ;;
     --all)
       packages+=("${tests[@]}" "${bench[@]}" "${docs[@]}" "${lint[@]}" "${fuzz[@]}" "${viewer[@]}")
-      requirement_files+=(tests/python/requirements.txt bench/requirements.txt)
+      requirement_files+=(python/requirements.txt tests/python/requirements.txt bench/requirements.txt)
       ;;
     --check) check_only=true ;;
     *)

@@ -10,6 +10,8 @@
 The commit in tools/tidy-base passed all of it. Where it is unknown (a shallow clone), or .clang-tidy changed, all is
 checked. Build folder: build/release, configured when it is not there. JOBS limits how many run at once.
 
+Every source is read by itself, without precompiled headers: one that relies on these for an include fails.
+
 What passed is remembered beside the compiler cache: the same preprocessed source, checks and clang-tidy need not pass
 twice, also in another clone.
 """
@@ -28,10 +30,23 @@ from check_includes import INCLUDE, PROJECT, resolve
 
 FOLDERS = ("src", "apps", "examples", "python")
 BUILD = PROJECT / "build/release"
+ALONE = BUILD / "tidy"
 BASE = PROJECT / "tools/tidy-base"
 CLANG_TIDY = PROJECT / "build/venv/bin/clang-tidy"
 #: The analyzer's own limit is 225,000 states of a function.
 QUICK = [f"--extra-arg={word}" for word in ("-Xclang", "-analyzer-config", "-Xclang", "max-nodes=20000")]
+
+
+def without_precompiled(words: list[str]) -> list[str]:
+    """A compiler's arguments without CMake's precompiled header, which g++ makes and clang cannot read."""
+    kept = []
+    skipped = False
+    for word, following in zip(words, [*words[1:], ""], strict=True):
+        is_header = word == "-include" and "cmake_pch" in following
+        if not (skipped or is_header or word in ("-Winvalid-pch", "-fpch-preprocess")):
+            kept.append(word)
+        skipped = is_header
+    return kept
 
 
 def compile_commands() -> dict[str, list[str]]:
@@ -42,20 +57,24 @@ def compile_commands() -> dict[str, list[str]]:
     if not (BUILD / "compile_commands.json").is_file():
         subprocess.run(["cmake", "--preset", "release"], cwd=PROJECT, check=True, stdout=subprocess.DEVNULL)
     found = {}
+    alone = []
     for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8")):
         file = pathlib.Path(entry["file"])
         files = [file]
         if file.is_file() and file.parent == BUILD / "python/units":
             files = [PROJECT / "python" / name for name in re.findall(r'"(.+)"', file.read_text(encoding="utf-8"))]
-        words = shlex.split(entry["command"])
+        words = without_precompiled(shlex.split(entry["command"]))
         for source in files:
             if not source.is_file() or not any(source.is_relative_to(PROJECT / folder) for folder in FOLDERS):
                 continue
+            alone.append({"directory": entry["directory"], "file": str(source), "arguments": words})
             found[source.relative_to(PROJECT).as_posix()] = [
                 word
                 for before, word in zip(words, words[1:], strict=False)
                 if before == "-isystem" or word.startswith(("-I", "-D", "-std", "-f", "-isystem"))
             ]
+    ALONE.mkdir(exist_ok=True)
+    (ALONE / "compile_commands.json").write_text(json.dumps(alone), encoding="utf-8")
     return found
 
 
@@ -131,7 +150,7 @@ def key_of(file: str, arguments: list[str], common: str) -> str | None:
 
 
 def run_tidy(file: str, options: list[str]) -> str:
-    command = [str(CLANG_TIDY), "-p", str(BUILD), "--quiet", "--extra-arg=-Wno-unknown-warning-option", *options, file]
+    command = [str(CLANG_TIDY), "-p", str(ALONE), "--quiet", "--extra-arg=-Wno-unknown-warning-option", *options, file]
     done = subprocess.run(command, cwd=PROJECT, check=False, capture_output=True, text=True)
     return "" if done.returncode == 0 else f"{file}: exit status {done.returncode}\n{done.stdout}{done.stderr}"
 

@@ -46,9 +46,9 @@ CommandOption Command::add_option(const std::string& name, std::vector<std::stri
   return CommandOption(*app_->add_option(name, values, help));
 }
 
-CommandOption Command::add_option_function(const std::string& name, std::function<void(const std::string&)> set,
+CommandOption Command::add_option_function(const std::string& name, const std::function<void(const std::string&)>& set,
                                            const std::string& help) const {
-  return CommandOption(*app_->add_option_function<std::string>(name, std::move(set), help));
+  return CommandOption(*app_->add_option_function<std::string>(name, set, help));
 }
 
 void Command::add_flag(const std::string& name, bool& value, const std::string& help) const {

@@ -38,7 +38,7 @@ class Command {
   CommandOption add_option(const std::string& name, std::optional<std::string>& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
   /// @param set  is called with the value.
-  CommandOption add_option_function(const std::string& name, std::function<void(const std::string&)> set,
+  CommandOption add_option_function(const std::string& name, const std::function<void(const std::string&)>& set,
                                     const std::string& help) const;
   void add_flag(const std::string& name, bool& value, const std::string& help) const;
   /// @param set  is called where the flag is given.
