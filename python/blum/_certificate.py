@@ -58,6 +58,11 @@ class ShapeVerifier:
         self._mesh: _core.MeshAxisVerifier | None = None
         self._merged: Real | None = None  # how the vertices of the mesh are
 
+    @property
+    def kind(self) -> str:
+        """What it is of."""
+        return "image" if self._is_image else "mesh"
+
     def certified(
         self,
         claim: Claim,

@@ -67,3 +67,6 @@ class AxisVerifier:
         return self._verifier.certified(
             claim_of(axis), label=label, threshold=threshold, grid=grid, threads=threads, progress=progress, **checks
         )
+
+    def __repr__(self) -> str:
+        return f"AxisVerifier({self._verifier.kind})"

@@ -157,6 +157,7 @@ TAKERS = {
     "solid_rule": blum.solid_rule,
     "medial_axis": axis_of,
     "certify": lambda mesh: blum.certify(AXIS, mesh),
+    "AxisVerifier": lambda mesh: blum.AxisVerifier(mesh).certify(AXIS),
     "axis_graph": lambda mesh: blum.axis_graph(AXIS, mesh),
     "extend_axis": lambda mesh: blum.extend_axis(AXIS, mesh),
     "MedialComplex.extend": lambda mesh: AXIS.extend(mesh),
