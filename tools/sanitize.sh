@@ -23,9 +23,9 @@ case $preset in
     export UBSAN_OPTIONS=print_stacktrace=1
     ;;
   tsan)
-    targets=(-- test_core test_field test_points test_medial_axis test_proximity test_surface_map test_voronoi)
+    targets=(-- test_core test_field test_points test_axis test_medial_axis test_proximity test_surface_map test_voronoi)
     # Kernels on the host (/Host, Kernels) run on one thread.
-    selection=(--label-exclude 'slow|many' --exclude-regex '/Host$|Kernels' --tests-regex '^test_(core|field|points|medial_axis)\.|^test_(proximity|surface_map|voronoi)\..*Threads')
+    selection=(--label-exclude 'slow|many' --exclude-regex '/Host$|Kernels' --tests-regex '^test_(core|field|points|axis|medial_axis)\.|^test_(proximity|surface_map|voronoi)\..*Threads')
     export TSAN_OPTIONS=allocator_may_return_null=1:halt_on_error=1:second_deadlock_stack=1
     ;;
   *)
