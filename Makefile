@@ -1,7 +1,7 @@
 # Blum: the commands of everyday work. `make` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build python test check demo simulate format lint tidy bench docs coverage asan tsan fuzz configurations install viewer clean
+.PHONY: help setup build python test check demo simulate format lint tidy bench docs coverage asan tsan fuzz configurations install viewer findings clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
@@ -82,6 +82,9 @@ fuzz: ## Run every fuzz target for a short while (FUZZ_SECONDS=15 each)
 
 configurations: ## Build every switched-off part, and test the scalar and the serial paths
 	@tools/check_configurations.sh
+
+findings: ## Run what findings/ keeps of other packages, with pinned versions from PyPI (a few minutes; not part of CI)
+	@failed=0; for finding in findings/*.sh; do echo "== $$finding"; "$$finding" || failed=1; done; exit $$failed
 
 install: build ## Install the library and the tool under PREFIX (/usr/local)
 	cmake --install build/release --prefix $(PREFIX)
