@@ -67,7 +67,8 @@ def compile_commands() -> dict[str, list[str]]:
         for source in files:
             if not source.is_file() or not any(source.is_relative_to(PROJECT / folder) for folder in FOLDERS):
                 continue
-            alone.append({"directory": entry["directory"], "file": str(source), "arguments": words})
+            own = [str(source) if word == entry["file"] else word for word in words]
+            alone.append({"directory": entry["directory"], "file": str(source), "arguments": own})
             found[source.relative_to(PROJECT).as_posix()] = [
                 word
                 for before, word in zip(words, words[1:], strict=False)

@@ -5,7 +5,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
-#include "proximity/exact_impact.hpp"
+#include "proximity/exact/exact_impact.hpp"
 #include "proximity/impact_filter.hpp"
 
 namespace blum {

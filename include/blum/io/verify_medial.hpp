@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/certificate/axis_verifier.hpp"
@@ -96,7 +97,7 @@ class MeshAxisVerifier {
 class ImageAxisVerifier {
  public:
   /// @param image  must stay as it is while this lives.
-  explicit ImageAxisVerifier(const VoxelImageView& image) : image_(image) {}
+  explicit ImageAxisVerifier(VoxelImageView image) : image_(std::move(image)) {}
   ImageAxisVerifier(const ImageAxisVerifier&) = delete;
   ImageAxisVerifier& operator=(const ImageAxisVerifier&) = delete;
 

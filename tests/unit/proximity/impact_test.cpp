@@ -12,7 +12,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
-#include "proximity/exact_impact.hpp"
+#include "proximity/exact/exact_impact.hpp"
 #include "proximity/impact_filter.hpp"
 #include "support/slow_impact.hpp"
 

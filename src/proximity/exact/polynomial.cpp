@@ -1,4 +1,4 @@
-#include "proximity/polynomial.hpp"
+#include "proximity/exact/polynomial.hpp"
 
 #include <algorithm>
 #include <array>

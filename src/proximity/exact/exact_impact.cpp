@@ -1,4 +1,4 @@
-#include "proximity/exact_impact.hpp"
+#include "proximity/exact/exact_impact.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "blum/proximity/impact.hpp"
-#include "proximity/polynomial.hpp"
+#include "proximity/exact/polynomial.hpp"
 
 namespace blum::detail {
 namespace {
