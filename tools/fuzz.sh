@@ -26,7 +26,7 @@ run_target() {
 }
 export -f run_target
 
-tools/results.py check "$results" fuzz-build -- tools/build.sh fuzz
+tools/results.py check "$results" fuzz-build -- tools/build.sh fuzz -DBLUM_WERROR=ON
 # As many at once as there are cores.
 # shellcheck disable=SC2016  # $0 is the inner shell's
 for folder in tests/fuzz/corpus/*; do basename "$folder"; done |
