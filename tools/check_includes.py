@@ -34,6 +34,7 @@ LOWER = {
     "proximity": {"core", "exact", "geometry", "grid", "complex", "solid"},
     "voronoi": {"core", "exact", "geometry", "grid", "complex", "solid"},
     "certificate": {"core", "complex"},
+    "certified": {"core", "geometry", "grid", "complex", "solid", "field", "axis", "medial_axis", "certificate"},
 }
 LOWER["io"] = set(LOWER)
 # Single headers of layers that a layer does not see otherwise. The certificate takes types of input and names from

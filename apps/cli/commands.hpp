@@ -44,11 +44,4 @@ inline constexpr std::array commands{
     add_proximity_command, add_ccd_command,    add_query_command,       add_sample_command,  add_surface_map_command,
     add_hausdorff_command, add_clean_command,  add_voronoi_command,     add_view_command};
 
-/// An axis or a diagram that is not certified: exit status 3.
-class NotCertified : public std::runtime_error {
- public:
-  /// @param mismatches  why not.  @param rest  what else there is to say.
-  explicit NotCertified(const std::vector<std::string>& mismatches, const std::string& rest = "");
-};
-
 }  // namespace blum::cli

@@ -17,8 +17,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "blum/io/axis_solid.hpp"
-#include "blum/io/verify_medial.hpp"
+#include "blum/certified/axis_solid.hpp"
+#include "blum/certified/verify_axis.hpp"
 #include "call.hpp"
 #include "images.hpp"
 #include "structs.hpp"

@@ -4,9 +4,14 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,10 +20,11 @@
 #include "blum/axis/collapse_axis.hpp"
 #include "blum/axis/decimate.hpp"
 #include "blum/axis/prune_sheets.hpp"
+#include "blum/certified/certified_axis.hpp"
+#include "blum/certified/verify_axis.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/complex/sample_axis.hpp"
 #include "blum/field/ball_union.hpp"
-#include "blum/medial_axis/axis_forms.hpp"
 #include "call.hpp"
 #include "images.hpp"
 #include "structs.hpp"
@@ -48,28 +54,10 @@ void bind_axis(nb::module_& m) {
             return run({0, nb::none()}, [&](const Context& context) { return axis.fitted(theta, context); });
           },
           nb::arg("theta"))
-      .def(
-          "lean",
-          [](const MedialAxis& axis, double theta, double tolerance, int threads, nb::object progress) {
-            DecimatedAxis out = run({threads, std::move(progress)},
-                                    [&](const Context& context) { return axis.lean(theta, tolerance, context); });
-            return nb::make_tuple(std::move(out.axis), out.deviation, out.vertices_before);
-          },
-          nb::arg("theta"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none())
       .def("nested",
            [](const MedialAxis& axis) {
              return run({0, nb::none()}, [&](const Context& context) { return axis.nested(context); });
            })
-      .def(
-          "forms",
-          [](const MedialAxis& axis, std::optional<double> tolerance) {
-            nb::list out;
-            for (const AxisForm& form : axis_forms(axis.report(), tolerance)) {
-              out.append(nb::make_tuple(form.is_fitted, form.tolerance, form.without));
-            }
-            return out;
-          },
-          nb::arg("tolerance").none())
       .def_prop_ro("least_theta", &MedialAxis::least_theta)
       .def_prop_ro("greatest_theta", &MedialAxis::greatest_theta)
       .def_prop_ro("report", [](const MedialAxis& axis) { return result_of(axis.report()); });
@@ -92,17 +80,71 @@ void bind_axis(nb::module_& m) {
       nb::arg("image"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }
 
+/// Makes an axis again where its grid is moved.
+using MakeAxis = FunctionRef<MedialAxis(double shift, const Context& context)>;
+using VerifyAxis = FunctionRef<Certificate(const Complex& axis, const MedialClaims& claims, const Context& context)>;
+
+/// certified_axes() at one angle, from an axis of all angles that is there: the complex, how far it is at most from
+/// that with all vertices (None: it has all), its report, its certificate, mismatches and warnings (codes and texts).
+nb::tuple certified(const MedialAxis& first, bool may_move, double grid_shift, MakeAxis make, VerifyAxis verify,
+                    const CertifiedAxisOptions& options, int threads, nb::object progress) {
+  CertifiedAxes made = run({threads, std::move(progress)}, [&](const Context& context) {
+    const auto on_grid = [&](double shift) {
+      if (shift == grid_shift) return std::shared_ptr<const MedialAxis>(std::shared_ptr<void>(), &first);  // not owned
+      return std::shared_ptr<const MedialAxis>(std::make_shared<const MedialAxis>(make(shift, context)));
+    };
+    const auto certify = [&](const AxisCandidate& axis) { return verify(axis.axis.axis, {axis.metadata}, context); };
+    return certified_axes({grid_shift, may_move, on_grid}, certify, options, context);
+  });
+  CertifiedAxis& axis = made.axes.front();
+  nb::list warnings;
+  for (const auto* const all : {&made.warnings, &axis.warnings}) {
+    for (const Warning& warning : *all)
+      warnings.append(nb::make_tuple(std::string(to_string(warning.code)), warning.text));
+  }
+  return nb::make_tuple(std::move(axis.axis.axis), axis.metadata.deviation, result_of(made.report),
+                        result_of(axis.certificate), made.mismatches, warnings);
+}
+
+void bind_certified(nb::module_& m) {
+  m.def(
+      "certified_axis_of_mesh",
+      [](const MedialAxis& first, const MeshAxisVerifier& verifier, const MeshArrays& mesh, const nb::dict& given,
+         double theta, std::optional<double> tolerance, int threads, nb::object progress) {
+        const auto options = options_from<MedialAxisOptions>(given);
+        const MeshView view = mesh.view();
+        const auto make = [&](double shift, const Context& context) {
+          MedialAxisOptions moved = options;
+          moved.grid_shift = shift;
+          return medial_axis(view, moved, context);
+        };
+        const auto verify = [&](const Complex& axis, const MedialClaims& claims, const Context& context) {
+          return verifier.verify(axis, claims, {}, HUGE_VAL, context);
+        };
+        return certified(first, true, options.grid_shift, make, verify, {{theta}, tolerance}, threads,
+                         std::move(progress));
+      },
+      nb::arg("first"), nb::arg("verifier"), nb::arg("mesh"), nb::arg("options"), nb::arg("theta"),
+      nb::arg("tolerance").none(), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "certified_axis_of_image",
+      [](const MedialAxis& first, const ImageAxisVerifier& verifier, std::optional<std::int64_t> label,
+         std::optional<double> threshold, double theta, std::optional<double> tolerance, int threads,
+         nb::object progress) {
+        const LabelSelection selection = LabelSelection::of(label, threshold);
+        const auto make = [](double, const Context&) -> MedialAxis { throw InvalidOption("an image is its own grid"); };
+        const auto verify = [&](const Complex& axis, const MedialClaims& claims, const Context& context) {
+          return verifier.verify(axis, claims, selection, {}, context);
+        };
+        return certified(first, false, 0, make, verify, {{theta}, tolerance}, threads, std::move(progress));
+      },
+      nb::arg("first"), nb::arg("verifier"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("theta"),
+      nb::arg("tolerance").none(), nb::arg("threads"), nb::arg("progress").none());
+}
+
 }  // namespace
 
 void bind_medial_axis(nb::module_& m) {
-  m.def(
-      "moved_grids",
-      [](double grid_shift) {
-        nb::list grids;
-        for (const MovedGrid& grid : moved_grids(grid_shift)) grids.append(nb::make_tuple(grid.shift, grid.as_it_was));
-        return grids;
-      },
-      nb::arg("grid_shift"));
   // Columns hold numbers, and blum.ROLES is indexed by them.
   static_assert([] {
     std::size_t number = 0;
@@ -115,6 +157,7 @@ void bind_medial_axis(nb::module_& m) {
   bind_options<MedialAxisOptions>(m);
   bind_struct<MedialAxisReport>(m);
   bind_axis(m);
+  bind_certified(m);
   m.def("medial_counts", [](const Complex& axis) { return dict_of(count(CompleteAxis(axis).get())); }, nb::arg("axis"));
   m.def(
       "medial_problem", [](const Complex& axis) { return problem_of_medial(CompleteAxis(axis).get()); },

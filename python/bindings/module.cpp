@@ -33,6 +33,8 @@ void translate(const std::exception_ptr& thrown, void* /*payload*/) {
     raise("InvalidImage", error);
   } catch (const InvalidOption& error) {
     raise("InvalidOption", error);
+  } catch (const NotCertified& error) {
+    raise("NotCertified", error);
   } catch (const OutOfMemory& error) {
     raise("OutOfMemory", error);
   } catch (const DeviceError& error) {

@@ -31,6 +31,7 @@ from ._errors import (
     InvalidImage,
     InvalidMesh,
     InvalidOption,
+    NotCertified,
     OutOfMemory,
 )
 from ._extend import ExtendedAxis, extend_axis
@@ -136,6 +137,7 @@ __all__ = [
     "NearPrimitives",
     "NearSamples",
     "NestedComplex",
+    "NotCertified",
     "OrientedMesh",
     "OutOfMemory",
     "Penetration",

@@ -25,6 +25,10 @@ class InvalidOption(Error, ValueError):
     """An argument out of its range, or arguments that exclude each other."""
 
 
+class NotCertified(Error, RuntimeError):
+    """An axis that is not certified, where one that is was asked for; the text says all that does not hold."""
+
+
 class OutOfMemory(Error, MemoryError):
     """The memory that a call needs is not there; the text says how much it asked for."""
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, Unpack, cast
 
@@ -13,7 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import PathLike, Real, integer, number, optional_number
 from ._certificate import ShapeVerifier
-from ._errors import InputWarning
+from ._errors import InputWarning, NotCertified
 from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
@@ -21,14 +20,6 @@ from ._mesh import MeshOrVertices, as_mesh
 from ._options import default_of, takes
 from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
-
-
-@dataclass(frozen=True)
-class OtherGrids:
-    """How an axis is made anew on another grid."""
-
-    grid_shift: float  # of the first one
-    on: Callable[[float, int, Progress], _core.MedialAxis]  # a shift, threads, progress
 
 
 class MedialAxis:
@@ -40,10 +31,10 @@ class MedialAxis:
     True
     """
 
-    def __init__(self, core: _core.MedialAxis, origin: Origin, grids: OtherGrids | None = None) -> None:
+    def __init__(self, core: _core.MedialAxis, origin: Origin, options: dict[str, Any] | None = None) -> None:
         self._core = core
         self._origin = origin
-        self._grids = grids
+        self._options = {} if options is None else options  # of a mesh: to make it again on another grid
         #: The smallest angle that can be asked for, degrees.
         self.least_theta: float = core.least_theta
         #: The largest angle that can be asked for, degrees.
@@ -66,24 +57,21 @@ class MedialAxis:
         return MedialComplex._of(cut(angle), EVERYTHING, self._origin_at(angle))
 
     def _origin_at(self, angle: float) -> Origin:
-        report = self.report
-        is_image = isinstance(self._origin.shape, Image)
-        return replace(
-            self._origin,
-            theta=angle,
-            spacing=min((body.spacing for body in report.bodies), default=None),
-            solid_rule=report.rule,
-            grid=report.grid,
-            site_ids="voxels" if is_image else "features",
-        )
+        return _origin_of(self._origin, self.report, angle)
 
     def certified(
-        self, theta: Real = 60.0, *, tolerance: Real | None = None, threads: int = 0, progress: Progress = False
+        self,
+        theta: Real = 60.0,
+        *,
+        tolerance: Real | None = None,
+        allow_uncertified: bool = False,
+        threads: int = 0,
+        progress: Progress = False,
     ) -> MedialComplex:
-        """The axis at theta as `blum medial` writes it, with its certificate: look whether that holds.
+        """The axis at theta as `blum medial` writes it: with its certificate, which holds.
 
         With its borders where they belong and few vertices; where that is not certified, simpler: with borders at the
-        cells of the grid, then with all vertices; then on a grid that is moved a little. A warning tells what failed.
+        cells of the grid, then with all vertices; then on a grid that is moved a little. A warning says what failed.
 
         Parameters
         ----------
@@ -91,62 +79,48 @@ class MedialAxis:
             As for :meth:`simplify`.
         tolerance : float, optional
             As for :meth:`MedialComplex.decimate`; 0 keeps all vertices, and borders at the cells.
+        allow_uncertified : bool
+            Give the best axis even where it is not certified, with a warning: look at `.certificate`.
+
+        Raises
+        ------
+        NotCertified
+            Where no form is certified.
 
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).certified(60)
         >>> axis.certificate.holds, axis.counts["sheets"]
         (True, 12)
         """
-        most = optional_number(tolerance, "tolerance")
-        assert self._origin.shape is not None  # medial_axis() says what it is of
-        verifier = ShapeVerifier(self._origin.shape)
-        found, failed = self._first_certified(theta, most, verifier, threads, progress)
-        if not found.certificate.holds and self._grids is not None and self.report.topology_matches:
-            for shift, as_it_was in _core.moved_grids(self._grids.grid_shift):
-                moved = MedialAxis(self._grids.on(shift, threads, progress), self._origin)
-                again, failed_there = moved._first_certified(theta, most, verifier, threads, progress)
-                if again.certificate.holds:
-                    text = f"{as_it_was}at theta {float(theta):g} {found.certificate.mismatches[0]}"
-                    failed = [text, *failed_there]
-                    found = again
-                    break
-        if not found.certificate.holds:
-            failed = [f"NOT certified: at theta {float(theta):g}: {found.certificate.mismatches[0]}"]
-        for sentence in failed:
-            warnings.warn(sentence, InputWarning, stacklevel=2)
-        return found
-
-    def _first_certified(
-        self, theta: Real, tolerance: float | None, verifier: ShapeVerifier, threads: int, progress: Progress
-    ) -> tuple[MedialComplex, list[str]]:
-        """The first form that is certified, or the last one, and why those before it are not."""
-        failed: list[str] = []
-        for is_fitted, most, without in self._core.forms(tolerance):
-            if is_fitted and most is not None:
-                found = self._lean(theta, most, threads, progress)
-            else:
-                found = self.simplify(theta, fit=is_fitted)
-                if most is not None:
-                    lean = found.decimate(most, threads=threads, progress=progress)
-                    found = lean if len(lean.vertices) < len(found.vertices) else found
-            found._verifier = verifier
-            holds = found.certificate.holds
-            found._verifier = None
-            if holds:
-                break
-            failed.append(f"at theta {float(theta):g} {without}{found.certificate.mismatches[0]}")
-        return found, failed
-
-    def _lean(self, theta: Real, tolerance: float, threads: int, progress: Progress) -> MedialComplex:
-        """The same as `simplify(theta, fit=True).decimate(tolerance)`, but for insides of sheets, in less time."""
-        angle = number(theta, "theta")
+        angle, most = number(theta, "theta"), optional_number(tolerance, "tolerance")
+        shape = self._origin.shape
+        assert shape is not None  # medial_axis() says what it is of
+        count = integer(threads, "threads")
+        verifier = ShapeVerifier(shape)
         with reporting(progress) as report:
-            core, deviation, before = self._core.lean(angle, tolerance, integer(threads, "threads"), report)
-        origin = self._origin_at(angle)
-        found = MedialComplex._of(core, EVERYTHING, origin)
-        if len(found.vertices) == before:
-            return found
-        return MedialComplex._of(core, EVERYTHING, replace(origin, deviation=deviation))
+            if isinstance(shape, Image):
+                label, threshold = self._origin.label, self._origin.threshold
+                made = _core.certified_axis_of_image(
+                    self._core, verifier._of_image(), label, threshold, angle, most, count, report
+                )
+            else:
+                of_mesh = verifier._of_mesh(None)
+                made = _core.certified_axis_of_mesh(
+                    self._core, of_mesh, shape._arrays, self._options, angle, most, count, report
+                )
+        core, deviation, of_grid, certificate, mismatches, told = made
+        for _code, text in told:
+            warnings.warn(text, InputWarning, stacklevel=2)
+        if mismatches:
+            text = "NOT certified: " + "; ".join(mismatches)
+            if not allow_uncertified:
+                raise NotCertified(text)
+            warnings.warn(text, InputWarning, stacklevel=2)
+        found = MedialComplex._of(
+            core, EVERYTHING, replace(_origin_of(self._origin, of_grid, angle), deviation=deviation)
+        )
+        found.__dict__["certificate"] = certificate
+        return found
 
     @takes("AxisGraphOptions")
     def graph(self, theta: Real = 60.0, **options: Unpack[AxisGraphOptions]) -> AxisGraph:
@@ -177,6 +151,17 @@ class MedialAxis:
     def __repr__(self) -> str:
         components, tunnels, voids = self.report.solid_betti
         return f"MedialAxis(components={components}, tunnels={tunnels}, voids={voids}, rule={self.report.rule!r})"
+
+
+def _origin_of(origin: Origin, report: MedialAxisReport, angle: float) -> Origin:
+    return replace(
+        origin,
+        theta=angle,
+        spacing=min((body.spacing for body in report.bodies), default=None),
+        solid_rule=report.rule,
+        grid=report.grid,
+        site_ids="voxels" if isinstance(origin.shape, Image) else "features",
+    )
 
 
 @takes("MedialAxisOptions", "spacing")
@@ -233,15 +218,9 @@ def medial_axis(
     mesh = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=weld)
     given = {**options, "spacing": spacing}
 
-    def on_grid(shift: float, threads: int, progress: Progress) -> _core.MedialAxis:
-        with reporting(progress) as report:
-            return _core.medial_axis_of_mesh(mesh._arrays, {**given, "grid_shift": shift}, threads, report)
-
-    grids = OtherGrids(float(options.get("grid_shift", default_of("MedialAxisOptions", "grid_shift"))), on_grid)
-
     with reporting(progress) as report:
         core = _core.medial_axis_of_mesh(mesh._arrays, given, count, report)
-    axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), grids)
+    axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), given)
     turned = axis.report.reversed_shells
     if turned:
         text = (

@@ -153,7 +153,6 @@ class MedialComplex(MedialColumns):
     def _take(self, core: _CoreComplex, has: dict[str, bool], origin: Origin) -> None:
         self._core = core
         self._origin = origin
-        self._verifier: ShapeVerifier | None = None  # of the shape, where others were certified against it
         #: Which attributes the complex has: radii, footprints, angles, sites, labels (roles and sheets).
         self.has = dict(has)
         #: The axes of all angles, where a file that was read holds them (:meth:`MedialAxis.write`).
@@ -192,7 +191,7 @@ class MedialComplex(MedialColumns):
         shape = self._origin.shape
         if shape is None:
             raise InvalidOption("what this axis was made from is not known here: use blum.certify(axis, shape)")
-        verifier = self._verifier or ShapeVerifier(shape)
+        verifier = ShapeVerifier(shape)
         return verifier.certified(claim_of(self), label=self._origin.label, threshold=self._origin.threshold)
 
     def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "blum/certified/certified_axis.hpp"
 #include "blum/complex/medial_columns.hpp"
-#include "blum/io/certified_axis.hpp"
 #include "support/exact_axes.hpp"
 #include "support/medial_check.hpp"
 

@@ -1,7 +1,5 @@
 """Proves that medial axes of the Python package are those of the tool, are certified, and that a wrong axis is not."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -95,33 +93,39 @@ def test_defaults_are_those_of_the_tool(plate, tmp_path):
     assert (tmp_path / "ours.npz").read_bytes() == (tmp_path / "axis.npz").read_bytes()
 
 
-def test_a_simpler_form_takes_the_place_of_one_that_is_not_certified(axis, monkeypatch):
-    forms = axis._core.forms(None)
-    assert [is_fitted for is_fitted, _, _ in forms] == [True, False, False]
-    assert forms[0][1] == forms[1][1] == pytest.approx(0.25 * axis.report.bodies[0].spacing)
-    judged = []
-
-    def third_holds(piece):
-        if not any(piece is other for other in judged):
-            judged.append(piece)
-        return SimpleNamespace(holds=len(judged) == 3, mismatches=["something is wrong"])
-
-    monkeypatch.setattr(blum.MedialComplex, "certificate", property(third_holds))
-    with pytest.warns(blum.InputWarning) as told:
-        found = axis.certified(60)
-    assert [str(warning.message) for warning in told] == [
-        "at theta 60 borders of sheets stay at the cells of the grid: elsewhere, something is wrong",
-        "at theta 60 the axis keeps all vertices: with fewer, something is wrong",
-    ]
-    assert np.array_equal(found.vertices, axis.simplify(60).vertices)
+def test_certified_axes_have_a_certificate_that_holds(axis, plate):
+    found = axis.certified(60)
+    assert found.certificate.holds
+    assert found.certificate == blum.certify(found, plate)
+    whole = axis.certified(60, tolerance=0)
+    assert np.array_equal(whole.vertices, axis.simplify(60).vertices)
+    with pytest.raises(blum.InvalidOption, match="tolerance"):
+        axis.certified(60, tolerance=-1)
 
 
-def test_what_no_form_of_is_certified_is_warned_of(axis, monkeypatch):
-    fails = SimpleNamespace(holds=False, mismatches=["something is wrong"])
-    monkeypatch.setattr(blum.MedialComplex, "certificate", property(lambda piece: fails))
-    monkeypatch.setattr(axis, "_grids", None)
-    with pytest.warns(blum.InputWarning, match="NOT certified: at theta 60: something is wrong"):
-        assert not axis.certified(60).certificate.holds
+def block_with_needle():
+    """A cube with a square hole through it, far too narrow for its slant: no model opens it, and no axis is around it."""
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
+    rings = [(square, z) for z in (0, 1)]
+    rings += [((0.37 + 0.2 * z, 0.41 + 0.3 * z) + 1e-9 * (square - 0.5), z) for z in (0, 1)]
+    vertices = [(x, y, z) for ring, z in rings for x, y in ring]
+    faces = []
+    for k in range(4):
+        n = (k + 1) % 4
+        faces += [(k, n, 4 + n, 4 + k), (8 + n, 8 + k, 12 + k, 12 + n)]
+        faces += [(n, k, 8 + k, 8 + n), (4 + k, 4 + n, 12 + n, 12 + k)]
+    return blum.Mesh(vertices, [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
+
+
+def test_an_axis_that_is_not_certified_is_refused_unless_allowed():
+    axis = blum.medial_axis(block_with_needle(), resolution=8, max_resolution=8)
+    assert not axis.report.topology_matches
+    with pytest.raises(blum.NotCertified, match="NOT certified: at theta 60: ") as refused:
+        axis.certified(60)
+    assert isinstance(refused.value, RuntimeError)
+    with pytest.warns(blum.InputWarning, match="NOT certified: at theta 60: "):
+        found = axis.certified(60, allow_uncertified=True)
+    assert not found.certificate.holds and len(found.vertices) > 0
 
 
 def test_one_verifier_certifies_many_axes_as_each_alone(axis, plate, tmp_path):

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "blum/io/axis_solid.hpp"
+#include "blum/certified/axis_solid.hpp"
 #include "blum/io/medial_io.hpp"
 #include "common/solid_input.hpp"
 

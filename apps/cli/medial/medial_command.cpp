@@ -1,25 +1,23 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "blum/axis/decimate.hpp"
 #include "blum/axis/extend_axis.hpp"
-#include "blum/axis/prune_sheets.hpp"
 #include "blum/certificate/certificate.hpp"
+#include "blum/certified/certified_axis.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/field/smooth_surface.hpp"
-#include "blum/io/certified_axis.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/draft.hpp"
 #include "blum/io/extended_io.hpp"
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/axis_forms.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "commands.hpp"
 #include "common/common_options.hpp"
@@ -163,29 +161,6 @@ fs::path with_theta(const fs::path& path, double theta) {
   return name;
 }
 
-std::string advice(const std::vector<ModelFailure>& failures) {
-  const bool has_needle = std::any_of(failures.begin(), failures.end(), [](const ModelFailure& failure) {
-    return failure.obstacle == ModelObstacle::slanted_needle;
-  });
-  return has_needle ? "fill the narrow holes, or turn the part so that they run along an axis"
-                    : "raise --max-resolution, or mend the mesh there";
-}
-
-/// Where the model of a solid does not pass, and what there is to do about it.
-std::vector<std::string> shortfalls(const MedialAxisReport& report) {
-  std::vector<std::string> out;
-  for (std::size_t b = 0; b < report.bodies.size(); ++b) {
-    const BodyReport& body = report.bodies[b];
-    if (body.topology_matches) continue;
-    const Vec3d at = 0.5 * (body.failures.front().low + body.failures.front().high);
-    out.push_back("the model of " + (report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : "the solid") +
-                  " at voxels of side " + rounded_text(body.spacing) + " does not pass in " +
-                  plural(body.failures.size(), "place", "places") + ", the first one at " + vector_text(at) + " (" +
-                  std::string(to_string(body.failures.front().obstacle)) + "): " + advice(body.failures));
-  }
-  return out;
-}
-
 /// The side of a mesh's voxels that the options ask for.
 double asked_spacing(const SolidInput& input, const MedialAxisOptions& options) {
   const Vec3d size = bounds(input.mesh.mesh).size();
@@ -270,17 +245,11 @@ Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, con
   return extended_json(made.report, run.extended.back().name());
 }
 
-MedialMetadata metadata_of(const Request& r, const SolidInput& input, const LabelSelection& selection,
-                           const MedialAxisReport& report, double theta) {
-  MedialMetadata metadata;
+/// What a file says of its axis besides how that was made.
+MedialMetadata for_file(MedialMetadata metadata, const Request& r, const SolidInput& input,
+                        const LabelSelection& selection) {
   metadata.source = r.input.filename().string();
   metadata.version = BLUM_VERSION;
-  metadata.site_ids = input.kind == InputKind::image ? SiteIds::voxels : SiteIds::features;
-  metadata.theta = theta;
-  metadata.lambda = r.options.lambda;
-  metadata.spacing = report.bodies.front().spacing;
-  metadata.solid_rule = to_string(report.rule);
-  metadata.grid = report.grid;
   record(selection, r.weld, r.smooth ? InputKind::image : input.kind, metadata);
   if (r.smooth) metadata.smooth = SmoothSurfaceOptions{}.iterations;
   return metadata;
@@ -296,60 +265,57 @@ struct AskedSolid {
   Json smooth;  ///< how its surface was made smooth; null where it was not
 };
 
-/// Writes an axis to the last draft, reads it again and certifies it.
-Certificate write_and_certify(MedialRun& run, const Request& r, const SolidVerifier& verifier,
-                              const LabelSelection& selection, const MedialAxis& axis, const Complex& complex,
-                              const MedialMetadata& metadata, const Context& context) {
-  Stopwatch watch;
-  const fs::path& path = run.drafts.back().path();
-  if (r.nested) {
-    write_medial(path, complex, axis.nested(context), axis.least_theta(), metadata, context);
-  } else {
-    write_medial(path, complex, metadata, context);
-  }
-  run.phases.push_back({"write", watch.lap()});
-  MedialFile written = read_axis(path);
-  if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
-    written.metadata.solid_rule = metadata.solid_rule;
-    written.metadata.grid = metadata.grid;
-  }
-  Certificate certificate = verifier.certificate_of(written, selection, context);
-  run.phases.push_back({"certificate", watch.lap()});
-  return certificate;
-}
+/// Axes in files that have not their names yet. Of each grid its own: the best may not be the last.
+class AxisDrafts {
+ public:
+  AxisDrafts(const Request& r, const AskedSolid& solid, const Context& context)
+      : r_(r), solid_(solid), context_(context) {}
 
-/// The forms that an axis is written in. @param pruned  whether it is a given one without some of its sheets.
-std::vector<AxisForm> forms_of(const Request& r, const MedialAxisReport& report, bool pruned) {
-  std::vector<AxisForm> forms = axis_forms(report, r.simplify);
-  if (pruned) std::erase_if(forms, [](const AxisForm& form) { return form.is_fitted; });
-  return forms;
-}
-
-/// Writes and certifies an axis at one angle: the first of its forms that is certified, or else the last.
-void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxis& axis, const Complex* pruned,
-              double theta, const fs::path& name, Json& axes, const Context& context) {
-  const SolidInput& input = solid.input;
-  const MedialAxisReport& report = axis.report();
-  MedialMetadata metadata = metadata_of(r, input, solid.selection, report, theta);
-  run.drafts.emplace_back(name);
-  const auto make = [&](const AxisForm& form) {
+  /// Writes an axis, reads it again and certifies what was read.
+  Certificate certify(const AxisCandidate& axis) {
     Stopwatch watch;
-    DecimatedAxis lean =
-        pruned != nullptr ? decimate(*pruned, form, context) : axis_in_form(axis, theta, form, context);
-    const bool is_lean = lean.axis.positions.size() < lean.vertices_before;
-    metadata.deviation = is_lean ? std::optional(lean.deviation) : std::nullopt;
-    run.phases.push_back({"simplify", watch.lap()});
-    return lean;
-  };
-  const auto certify = [&](const DecimatedAxis& made) {
-    return write_and_certify(run, r, solid.verifier, solid.selection, axis, made.axis, metadata, context);
-  };
-  const CertifiedAxis made = first_certified(forms_of(r, report, pruned != nullptr), make, certify);
-  const Certificate& certificate = made.certificate;
-  for (const std::string& warning : made.warnings) {
-    run.warnings.push_back("at theta " + rounded_text(theta) + " " + warning);
+    const MedialMetadata metadata = for_file(axis.metadata, r_, solid_.input, solid_.selection);
+    const fs::path& path = draft_of(axis.grid_shift, *metadata.theta).path();
+    if (r_.nested) {
+      write_medial(path, axis.axis.axis, axis.whole->nested(context_), axis.whole->least_theta(), metadata, context_);
+    } else {
+      write_medial(path, axis.axis.axis, metadata, context_);
+    }
+    axis.phases.push_back({"write", watch.lap()});
+    MedialFile written = read_axis(path);
+    if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
+      written.metadata.solid_rule = metadata.solid_rule;
+      written.metadata.grid = metadata.grid;
+    }
+    Certificate certificate = solid_.verifier.certificate_of(written, solid_.selection, context_);
+    axis.phases.push_back({"certificate", watch.lap()});
+    return certificate;
   }
-  run.is_kept.push_back((certificate.holds() && report.topology_matches) || r.allow_uncertified);
+
+  /// The last one that was certified there.
+  Draft& draft_of(double grid_shift, double theta) {
+    const fs::path name = r_.thetas.size() == 1 ? solid_.output : with_theta(solid_.output, theta);
+    return drafts_.try_emplace({grid_shift, theta}, name).first->second;
+  }
+
+ private:
+  const Request& r_;
+  const AskedSolid& solid_;
+  const Context& context_;
+  std::map<std::pair<double, double>, Draft> drafts_;
+};
+
+/// Adds an axis at one angle.
+void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const CertifiedAxis& made, bool model_passes,
+              Draft&& draft, Json& axes, const Context& context) {
+  const SolidInput& input = solid.input;
+  const Certificate& certificate = made.certificate;
+  const MedialMetadata metadata = for_file(made.metadata, r, input, solid.selection);
+  const double theta = *metadata.theta;
+  run.drafts.push_back(std::move(draft));
+  const fs::path& name = run.drafts.back().name();
+  for (const Warning& warning : made.warnings) run.warnings.push_back(warning.text);
+  run.is_kept.push_back((certificate.holds() && model_passes) || r.allow_uncertified);
   const MedialCounts counts = count(made.axis.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   if (metadata.deviation) {
@@ -365,9 +331,6 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const M
                   {"extended", add_extended(run, r, input, made.axis.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate, r.nested)}});
   add_certificate(run.table, certificate, r.nested);
-  for (const std::string& mismatch : certificate.mismatches) {
-    run.mismatches.push_back("at theta " + rounded_text(theta) + ": " + mismatch);
-  }
 }
 
 MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, const Context& context) {
@@ -393,56 +356,37 @@ SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSele
   return out;
 }
 
-/// The axes of a solid on one grid. @return  whether its model passes.
-bool add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
+/// The axes of a solid at all angles.
+void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
               const Context& context) {
-  const MedialAxis axis = make_axis(solid.input, options, context);
-  const MedialAxisReport& report = axis.report();
-  run.phases.insert(run.phases.end(), report.phases.begin(), report.phases.end());
-  Json json = {{"smooth", solid.smooth}, {"grid_shift", options.grid_shift}};
+  const bool is_mesh = solid.input.kind == InputKind::mesh;
+  AxisDrafts drafts(r, solid, context);
+  const auto make = [&](double shift) {
+    MedialAxisOptions moved = options;
+    moved.grid_shift = shift;
+    return std::make_shared<const MedialAxis>(make_axis(solid.input, moved, context));
+  };
+  const auto certify = [&](const AxisCandidate& axis) { return drafts.certify(axis); };
+  const CertifiedAxes made =
+      certified_axes({options.grid_shift, is_mesh, make}, certify, {r.thetas, r.simplify, r.prunes_sheets}, context);
+  run.phases.insert(run.phases.end(), made.phases.begin(), made.phases.end());
+  Json json = {{"smooth", solid.smooth}, {"grid_shift", made.grid_shift}};
   if (solid.label) {
     json["label"] = *solid.label;
     run.table.add("label", std::to_string(*solid.label));
   }
-  const bool is_mesh = solid.input.kind == InputKind::mesh;
-  add_report(run, report, is_mesh ? std::optional(asked_spacing(solid.input, options)) : std::nullopt, json);
-  for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
+  for (const Warning& warning : made.warnings) run.warnings.push_back(warning.text);
+  add_report(run, made.report, is_mesh ? std::optional(asked_spacing(solid.input, options)) : std::nullopt, json);
+  const std::vector<std::string> problems = model_problems(made.report, "--max-resolution");
+  run.mismatches.insert(run.mismatches.end(), problems.begin(), problems.end());
+  run.mismatches.insert(run.mismatches.end(), made.mismatches.begin(), made.mismatches.end());
   Json axes = Json::array();
-  Complex whole;
-  if (r.prunes_sheets) whole = axis.simplify(0, context);
-  for (const double theta : r.thetas) {
-    const fs::path name = r.thetas.size() == 1 ? solid.output : with_theta(solid.output, theta);
-    Stopwatch watch;
-    // From one angle to the next, so that what is left is nested.
-    if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
-    run.phases.push_back({"simplify", watch.lap()});
-    add_axis(run, r, solid, axis, r.prunes_sheets ? &whole : nullptr, theta, name, axes, context);
+  for (const CertifiedAxis& axis : made.axes) {
+    add_axis(run, r, solid, axis, made.report.topology_matches,
+             std::move(drafts.draft_of(made.grid_shift, *axis.metadata.theta)), axes, context);
   }
   json["axes"] = axes;
   run.solids.push_back(json);
-  return report.topology_matches;
-}
-
-/// Parts much thinner than a voxel may lie badly in one grid, and well in the next one: where an axis is not certified,
-/// the grid is moved, and what has the fewest failures is taken.
-void add_on_best_grid(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
-                      const Context& context) {
-  MedialRun best;
-  const bool model_passes = add_axes(best, r, solid, options, context);
-  const bool can_move = model_passes && solid.input.kind == InputKind::mesh;
-  const std::string reason = best.mismatches.empty() ? "" : best.mismatches.front();
-  for (const MovedGrid& grid : moved_grids(options.grid_shift)) {
-    if (!can_move || best.mismatches.empty()) break;
-    MedialAxisOptions moved = options;
-    moved.grid_shift = grid.shift;
-    MedialRun next;
-    next.warnings.push_back(grid.as_it_was + reason);
-    const bool is_better = add_axes(next, r, solid, moved, context) && next.mismatches.size() < best.mismatches.size();
-    if (is_better) std::swap(best, next);
-    // What was in vain took its time, too.
-    run.phases.insert(run.phases.end(), next.phases.begin(), next.phases.end());
-  }
-  run.add(std::move(best));
 }
 
 void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const LabelSelection& selection,
@@ -459,7 +403,7 @@ void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const 
   }
   const SolidInput& input = r.smooth ? surface : given;
   const SolidVerifier verifier(input);
-  add_on_best_grid(run, r, {input, verifier, selection, label, output, surface.json}, options, context);
+  add_axes(run, r, {input, verifier, selection, label, output, surface.json}, options, context);
 }
 
 std::vector<fs::path> outputs_of(const Request& r) {

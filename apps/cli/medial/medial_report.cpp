@@ -216,13 +216,6 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 
 }  // namespace
 
-NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std::string& rest)
-    : std::runtime_error([&] {
-        std::string all;
-        for (const std::string& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch;
-        return "NOT certified: " + all + rest;
-      }()) {}
-
 Json certificate_json(const Certificate& c, bool has_nested) {
   Json json = {{"certified", c.holds()}};
   json.update(to_json(c));

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "blum/certificate/certificate.hpp"
+#include "blum/certified/verify_axis.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/io/verify_medial.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "common/solid_input.hpp"
 #include "common/summary.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "blum/core/phase_timer.hpp"
@@ -22,22 +21,6 @@ struct MedialRun {
   std::vector<std::string> warnings;
   std::vector<std::string> mismatches;
   TextTable table;
-
-  /// Takes over what another one gathered.
-  void add(MedialRun&& part) {
-    for (const Json& solid : part.solids) solids.push_back(solid);
-    phases.insert(phases.end(), part.phases.begin(), part.phases.end());
-    const auto take = [](auto& all, auto& some) {
-      for (auto&& one : some) all.push_back(std::move(one));
-    };
-    take(drafts, part.drafts);
-    take(graphs, part.graphs);
-    take(extended, part.extended);
-    is_kept.insert(is_kept.end(), part.is_kept.begin(), part.is_kept.end());
-    take(warnings, part.warnings);
-    take(mismatches, part.mismatches);
-    table.add(part.table);
-  }
 };
 
 }  // namespace blum::cli

@@ -1,15 +1,12 @@
 #include "voronoi/voronoi_axis.hpp"
 
-#include <array>
 #include <utility>
 
 #include "blum/axis/axis_graph.hpp"
 #include "blum/axis/collapse_axis.hpp"
-#include "blum/axis/decimate.hpp"
-#include "blum/io/certified_axis.hpp"
+#include "blum/certified/certified_axis.hpp"
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/axis_forms.hpp"
 #include "commands.hpp"
 #include "common/common_options.hpp"
 #include "common/options.hpp"
@@ -56,14 +53,6 @@ MedialMetadata metadata_of(const VoronoiAxisOptions& options, const fs::path& so
   return out;
 }
 
-/// With few vertices, if that is certified, or with all.
-std::vector<AxisForm> forms_of(const VoronoiAxisOptions& options) {
-  std::vector<AxisForm> out;
-  if (options.simplify > 0) out.push_back({false, options.simplify, "its vertices all stay"});
-  out.emplace_back();
-  return out;
-}
-
 Json add_graph(VoronoiAxis& out, const Complex& axis, const SolidInput& input, const VoronoiAxisOptions& options,
                const MedialMetadata& metadata, const Context& context) {
   if (!options.graph) return nullptr;
@@ -85,31 +74,26 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
                               const Context& context) {
   VoronoiAxis out;
   Stopwatch watch;
-  const Complex whole = collapse_axis(walls, options.theta, context);
+  Complex whole = collapse_axis(walls, options.theta, context);
   out.phases.push_back({"collapse", watch.lap()});
-  MedialMetadata metadata = metadata_of(options, source, weld);
   out.drafts.emplace_back(output);
-  const auto make = [&](const AxisForm& form) {
-    DecimatedAxis lean = decimate(whole, form, context);
-    const bool is_lean = lean.axis.positions.size() < lean.vertices_before;
-    metadata.deviation = is_lean ? std::optional(lean.deviation) : std::nullopt;
-    out.phases.push_back({"simplify", watch.lap()});
-    return lean;
-  };
   const SolidVerifier verifier(input);
-  const auto certify = [&](const DecimatedAxis& made) {
+  const auto certify = [&](const AxisCandidate& axis) {
+    Stopwatch writing;
     const fs::path& draft = out.drafts.front().path();
-    write_medial(draft, made.axis, metadata, context);
-    out.phases.push_back({"write", watch.lap()});
+    write_medial(draft, axis.axis.axis, axis.metadata, context);
+    axis.phases.push_back({"write", writing.lap()});
     MedialFile written = read_axis(draft);
-    written.metadata.solid_rule = metadata.solid_rule;  // .obj and .ma say nothing of it
+    written.metadata.solid_rule = axis.metadata.solid_rule;  // .obj and .ma say nothing of it
     Certificate certificate = verifier.certificate_of(written, {}, context);
-    out.phases.push_back({"certificate", watch.lap()});
+    axis.phases.push_back({"certificate", writing.lap()});
     return certificate;
   };
-  const CertifiedAxis made = first_certified(forms_of(options), make, certify);
+  const CertifiedAxis made = certified_axis(std::move(whole), metadata_of(options, source, weld), options.simplify,
+                                            certify, out.phases, context);
+  const MedialMetadata& metadata = made.metadata;
   const MedialCounts counts = count(made.axis.axis);
-  out.warnings = made.warnings;
+  for (const Warning& warning : made.warnings) out.warnings.push_back(warning.text);
   out.mismatches = made.certificate.mismatches;
   out.table.add("axis", counts_text(counts, true));
   if (metadata.deviation) {

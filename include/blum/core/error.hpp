@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace blum {
 
@@ -64,6 +66,23 @@ class FileError : public Error {
 class FormatError : public FileError {
  public:
   using FileError::FileError;
+};
+
+/// An axis that is not certified, where one that is was asked for. what() names all that does not hold.
+class NotCertified : public Error {
+ public:
+  /// @param mismatches  why not, one sentence each.  @param rest  goes on after them.
+  explicit NotCertified(std::vector<std::string> mismatches, const std::string& rest = "")
+      : Error("NOT certified: " + joined(mismatches) + rest), mismatches_(std::move(mismatches)) {}
+  [[nodiscard]] const std::vector<std::string>& mismatches() const { return mismatches_; }
+
+ private:
+  static std::string joined(const std::vector<std::string>& mismatches) {
+    std::string all;
+    for (const std::string& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch;
+    return all;
+  }
+  std::vector<std::string> mismatches_;
 };
 
 }  // namespace blum

@@ -197,4 +197,8 @@ void write_extended(const std::filesystem::path& path, const Complex& surface, c
 constinit const formats::ExtendedAxisCode formats::extended_as_complex{write_as_complex};
 constinit const formats::ExtendedAxisCode formats::extended_stl{write_stl};
 
+MedialClaims claims_of(const MedialFile& file) {
+  return {file.metadata, file.has_radii, file.has_footprints, file.has_sites, file.has_angles, file.has_labels};
+}
+
 }  // namespace blum

@@ -19,7 +19,6 @@
 #include "blum/complex/medial_columns.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/grid/image_generators.hpp"
-#include "blum/medial_axis/axis_forms.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
@@ -64,7 +63,7 @@ Complex axis_of(const TriangleMesh& mesh, double theta, int resolution = 64) {
   options.resolution = resolution;
   options.least_theta = theta;
   const MedialAxis axis = medial_axis(mesh, options);
-  return axis_in_form(axis, theta, axis_forms(axis.report(), std::nullopt).front()).axis;
+  return axis.lean(theta, 0.25 * axis.report().bodies.front().spacing).axis;
 }
 
 Vec3d normal_of(const Complex& complex, std::size_t t) {

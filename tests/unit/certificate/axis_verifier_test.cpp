@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "blum/axis/decimate.hpp"
+#include "blum/certified/verify_axis.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/error.hpp"
 #include "blum/grid/image_generators.hpp"
 #include "blum/grid/selected_voxels.hpp"
-#include "blum/io/verify_medial.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "blum/axis/decimate.hpp"
+#include "blum/certified/verify_axis.hpp"
 #include "blum/core/random.hpp"
 #include "blum/geometry/bvh.hpp"
-#include "blum/io/verify_medial.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/medial_rows.hpp"

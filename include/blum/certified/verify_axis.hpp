@@ -10,17 +10,18 @@
 
 #include "blum/certificate/axis_verifier.hpp"
 #include "blum/certificate/certificate.hpp"
+#include "blum/certified/medial_metadata.hpp"
+#include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
-#include "blum/io/medial_io.hpp"
 
 namespace blum {
 
-/// What a file says of its axis.
+/// What a file, or who made it, says of an axis.
 struct MedialClaims {
   MedialMetadata metadata;
   bool has_radii = true;
@@ -29,7 +30,6 @@ struct MedialClaims {
   bool has_angles = true;
   bool has_labels = true;
 };
-[[nodiscard]] MedialClaims claims_of(const MedialFile& file);
 
 /// A mesh bounds no polyhedron, so that the solid of its axis is known by voxels, and the axis's file does not say
 /// which.

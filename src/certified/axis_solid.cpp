@@ -1,4 +1,4 @@
-#include "blum/io/axis_solid.hpp"
+#include "blum/certified/axis_solid.hpp"
 
 #include "blum/core/exact_text.hpp"
 

@@ -1,6 +1,6 @@
 // Options of a solid beside what its axis says of it: what is used, and what is warned of in which words.
 
-#include "blum/io/axis_solid.hpp"
+#include "blum/certified/axis_solid.hpp"
 
 #include <gtest/gtest.h>
 

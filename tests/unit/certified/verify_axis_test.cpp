@@ -1,6 +1,6 @@
 // Proves that what is said of an axis is held against its solid: false rules, sides of voxels and missing attributes
 // are refused, and what is true is not.
-#include "blum/io/verify_medial.hpp"
+#include "blum/certified/verify_axis.hpp"
 
 #include <gtest/gtest.h>
 

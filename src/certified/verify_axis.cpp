@@ -1,4 +1,4 @@
-#include "blum/io/verify_medial.hpp"
+#include "blum/certified/verify_axis.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,10 +96,6 @@ Certificate with_claims(Certificate certificate, const Complex& axis, const Medi
 }
 
 }  // namespace
-
-MedialClaims claims_of(const MedialFile& file) {
-  return {file.metadata, file.has_radii, file.has_footprints, file.has_sites, file.has_angles, file.has_labels};
-}
 
 std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found, const GridSpec* image_grid) {
   std::vector<std::string> out;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "blum/io/medial_io.hpp"
+#include "blum/certified/medial_metadata.hpp"
 
 namespace blum {
 

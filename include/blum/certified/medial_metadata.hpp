@@ -1,0 +1,61 @@
+// Blum: what is known of a medial axis besides its complex. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "blum/core/describe.hpp"
+#include "blum/field/field.hpp"
+#include "blum/grid/grid_spec.hpp"
+
+namespace blum {
+
+/// What a file of a medial axis says besides the complex; what it does not know stays unset.
+struct MedialMetadata {
+  std::string source = {};   ///< where the solid came from, for example a file name
+  std::string version = {};  ///< Blum's; written where the axis has all columns of MedialView
+  SiteIds site_ids = SiteIds::features;
+  std::optional<double> theta = {};    ///< degrees
+  std::optional<double> lambda = {};   ///< mesh units
+  std::optional<double> spacing = {};  ///< smallest side of a voxel, mesh units
+  /// DecimatedAxis::deviation, >= 0, mesh units; unset where no vertices were taken out.
+  std::optional<double> deviation = {};
+  /// What the topology is against: "polyhedron", "winding" or "voxels" (SolidRule).
+  std::string solid_rule = {};
+  std::optional<GridSpec> grid = {};  ///< voxel centres, where the solid is only known as voxels (SolidRule::winding)
+  // Of the solid's file: which voxels of an image, at most one of two (neither: all that are not 0), and how a mesh was
+  // welded.
+  std::optional<std::int64_t> label = {};  ///< those of this value
+  std::optional<double> threshold = {};    ///< those of this value or more, in image values
+  std::optional<double> weld = {};  ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format
+  /// Images: the solid is what the smooth surface of its voxels bounds, with SmoothSurfaceOptions::iterations; unset:
+  /// the union of their boxes.
+  std::optional<int> smooth = {};
+};
+
+template <>
+struct Description<MedialMetadata> {
+  static constexpr std::string_view name = "MedialMetadata";
+  static constexpr std::string_view doc = "What a file of a medial axis says besides the complex";
+  static constexpr std::tuple members{
+      Member{"source", &MedialMetadata::source, "", "where the solid came from, for example a file name"},
+      Member{"version", &MedialMetadata::version, "", "of the Blum that wrote it"},
+      Member{"site_ids", &MedialMetadata::site_ids, "", "what sites count"},
+      Member{"theta", &MedialMetadata::theta, "degrees", "angle of the axis"},
+      Member{"lambda", &MedialMetadata::lambda, "mesh units", "MedialAxisOptions::lambda"},
+      Member{"spacing", &MedialMetadata::spacing, "mesh units", "smallest side of a voxel"},
+      Member{"deviation", &MedialMetadata::deviation, "mesh units",
+             "how far it is at most from the axis with all vertices"},
+      Member{"solid_rule", &MedialMetadata::solid_rule, "", "what the topology is against"},
+      Member{"grid", &MedialMetadata::grid, "", "voxel centres"},
+      Member{"label", &MedialMetadata::label, "", "of the voxels of an image"},
+      Member{"threshold", &MedialMetadata::threshold, "", "least value of the voxels of an image"},
+      Member{"weld", &MedialMetadata::weld, "mesh units", "how the vertices of a mesh were merged"},
+      Member{"smooth", &MedialMetadata::smooth, "", "of the voxels of an image: iterations of their smooth surface"},
+  };
+};
+
+}  // namespace blum
