@@ -41,7 +41,7 @@ def axes(solids, tmp_path_factory):
     """Axes of the box in every format, with all vertices, of the torus, and of the open box."""
     folder = tmp_path_factory.mktemp("axes")
     for end in FORMATS:
-        run("medial", solids / "box.obj", "-o", folder / f"box.{end}", "--resolution", 16, "--simplify", 0)
+        run("medial", solids / "box.obj", "-o", folder / f"box.{end}", "--resolution", 16, "--decimate", 0)
     run("medial", solids / "torus.obj", "-o", folder / "torus.npz", "--resolution", 40)
     run("medial", solids / "open.obj", "-o", folder / "open.npz", "--resolution", 16, warns=True)
     return folder

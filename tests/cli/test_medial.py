@@ -12,7 +12,7 @@ from tool import BLUM, FORMATS, names, run, run_json
 
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
-COARSE = ["--resolution", 8, "--max-resolution", 8, "--simplify", 0]
+COARSE = ["--resolution", 8, "--max-resolution", 8, "--decimate", 0]
 WHY_NOT = "loops of the axis run around 0 of the 1 tunnel"  # of the block with a needle
 
 
@@ -91,7 +91,7 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
 
 def test_angles_give_a_file_each_and_nested_axes(solids, tmp_path):
     summary = run_json(
-        "medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 16, "--theta", "100,20,60.5", "--simplify", 0
+        "medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 16, "--theta", "100,20,60.5", "--decimate", 0
     )
     files = ["b-theta100.npz", "b-theta20.npz", "b-theta60.5.npz"]
     assert names(tmp_path) == sorted(files)
@@ -111,7 +111,7 @@ def test_simplify_takes_vertices_out_within_its_tolerance(solids, tmp_path):
     triangles = {}
     for tolerance in (None, 0, 0.05):
         name = tmp_path / f"{tolerance}.npz"
-        given = [] if tolerance is None else ["--simplify", tolerance]
+        given = [] if tolerance is None else ["--decimate", tolerance]
         axis = axis_of(run_json("medial", solids / "box.obj", "-o", name, "--resolution", 32, *given))
         facts = run_json("info", name)
         run("verify", solids / "box.obj", name)
@@ -121,8 +121,8 @@ def test_simplify_takes_vertices_out_within_its_tolerance(solids, tmp_path):
         triangles[tolerance] = axis["counts"]["triangles"]
         assert axis["vertices_before"] >= axis["counts"]["vertices"]
     assert triangles[0] > 10 * triangles[None] and triangles[None] >= triangles[0.05]
-    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--nested", "--simplify", 1, status=2)
-    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--simplify", -1, status=2)
+    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--nested", "--decimate", 1, status=2)
+    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--decimate", -1, status=2)
 
 
 def test_several_labels_give_a_file_each(solids, tmp_path):
@@ -166,7 +166,7 @@ def test_sites_of_images_are_voxels_that_are_not_selected(tmp_path):
 
 
 def test_lambda_leaves_out_what_is_thin(solids, axes, tmp_path):
-    options = ["--resolution", 16, "--simplify", 0, "--lambda", 0.5]
+    options = ["--resolution", 16, "--decimate", 0, "--lambda", 0.5]
     few = axis_of(run_json("medial", solids / "box.obj", "-o", tmp_path / "b.npz", *options))
     assert few["certificate"]["certified"]
     assert 0 < few["counts"]["vertices"] < len(np.load(axes / "box.npz")["vertices"])
@@ -325,7 +325,7 @@ def test_threads_do_not_change_a_byte(solids, tmp_path, end):
 
 def test_old_output_is_replaced(solids, axes, tmp_path):
     (tmp_path / "b.npz").write_bytes(b"old")
-    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 16, "--simplify", 0)
+    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 16, "--decimate", 0)
     assert (tmp_path / "b.npz").read_bytes() == (axes / "box.npz").read_bytes()
 
 

@@ -129,7 +129,7 @@ def test_nested_axes(tmp_path, solids):
     run("medial", solids / "box.obj", "-o", tmp_path / "box.npz", "--theta", 10, "--nested", "--resolution", 24)
     assert "all from 10 degrees on" in run("info", tmp_path / "box.npz")[0]
     assert run_json("info", tmp_path / "box.npz")["nested_theta"] == 10
-    whole = ["--resolution", 24, "--simplify", 0]
+    whole = ["--resolution", 24, "--decimate", 0]
     run("medial", solids / "box.obj", "-o", tmp_path / "cut.npz", "--theta", "10,100", *whole)
     run("verify", solids / "box.obj", tmp_path / "box.npz")
     run("view", tmp_path / "box.npz", "-o", tmp_path / "page.html")

@@ -224,7 +224,7 @@ def test_medial_axes_of_angles_in_every_format(parts, tmp_path, extension):
     mesh, triangles = parts / "bracket.ply", []
     for theta in (0, 60, 120):
         name = tmp_path / f"axis{theta}.{extension}"
-        options = ("--theta", theta, "--simplify", 0.02, "--resolution", 4, "--graph", tmp_path / f"axis{theta}.json")
+        options = ("--theta", theta, "--decimate", 0.02, "--resolution", 4, "--graph", tmp_path / f"axis{theta}.json")
         axis = run_json("voronoi", mesh, "-o", name, "--medial", *options)["axis"]
         assert axis["theta"] == theta and 0 < axis["deviation"] <= 0.02
         assert axis["vertices_before"] > axis["counts"]["vertices"]
@@ -241,7 +241,7 @@ def test_what_medial_axes_refuse(parts, tmp_path):
     for bad in ("-1", "181", "nan", "x"):
         run("voronoi", box, "-o", out, "--medial", "--theta", bad, status=2)
     for bad in ("-1", "nan", "inf"):
-        run("voronoi", box, "-o", out, "--medial", "--simplify", bad, status=2)
+        run("voronoi", box, "-o", out, "--medial", "--decimate", bad, status=2)
     run("voronoi", box, "-o", tmp_path / "out.glb", "--medial", status=2)
     run("voronoi", box, "-o", out, "--medial", "--graph", out, status=2)
     assert not out.exists()

@@ -52,7 +52,7 @@ Exit status 3: the axis could not be certified, and no file was written.)";
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> theta, prune, simplify, threshold, weld, threads, graph, extend, extend_length;
+  std::optional<std::string> theta, prune, decimate, threshold, weld, threads, graph, extend, extend_length;
   OptionTexts<MedialAxisOptions> options;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
@@ -70,7 +70,7 @@ struct Request {
   MedialAxisOptions options;
   std::vector<double> thetas{60};  ///< rising where sheets are pruned
   bool prunes_sheets = false;
-  std::optional<double> simplify;  ///< mesh units; a quarter of a voxel where it is not set
+  std::optional<double> decimate;  ///< mesh units; a quarter of a voxel where it is not set
   Selections selections;
   std::optional<double> weld;
   bool allow_uncertified = false;
@@ -119,11 +119,11 @@ Request parse(const Arguments& a) {
   if (r.nested && r.thetas.size() > 1) {
     throw UsageError("--nested keeps the axes of all angles from --theta on in one file: give one angle");
   }
-  if (a.simplify) r.simplify = parse_non_negative("--simplify", *a.simplify);
-  if (r.nested && r.simplify.value_or(0) > 0) {
-    throw UsageError("--nested keeps all vertices, as axes of several angles share them: leave --simplify out");
+  if (a.decimate) r.decimate = parse_non_negative("--decimate", *a.decimate);
+  if (r.nested && r.decimate.value_or(0) > 0) {
+    throw UsageError("--nested keeps all vertices, as axes of several angles share them: leave --decimate out");
   }
-  if (r.nested) r.simplify = 0;
+  if (r.nested) r.decimate = 0;
   exclude(r.nested, "--nested", r.prunes_sheets, "--prune", "sheets that go whole have no order to keep");
   if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
   // Sheets are pruned whole, so they must be whole first.
@@ -319,8 +319,8 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
   const MedialCounts counts = count(made.axis.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   if (metadata.deviation) {
-    run.table.add("simplified", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
-                                    rounded_text(made.axis.deviation));
+    run.table.add("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
+                                   rounded_text(made.axis.deviation));
   }
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
@@ -368,7 +368,7 @@ void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
   };
   const auto certify = [&](const AxisCandidate& axis) { return drafts.certify(axis); };
   const CertifiedAxes made =
-      certified_axes({options.grid_shift, is_mesh, make}, certify, {r.thetas, r.simplify, r.prunes_sheets}, context);
+      certified_axes({options.grid_shift, is_mesh, make}, certify, {r.thetas, r.decimate, r.prunes_sheets}, context);
   run.phases.insert(run.phases.end(), made.phases.begin(), made.phases.end());
   Json json = {{"smooth", solid.smooth}, {"grid_shift", made.grid_shift}};
   if (solid.label) {
@@ -516,8 +516,8 @@ void add_medial_command(const CommandLine& line) {
   };
   text("--theta", a->theta, "DEG",
        "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) give a "
-       "file each, nested but for what --simplify moves");
-  text("--simplify", a->simplify, "TOL",
+       "file each, nested but for what --decimate moves");
+  text("--decimate", a->decimate, "TOL",
        "Fewer triangles, at most TOL mesh units away (default: a quarter of a voxel); 0 keeps all");
   text("--prune", a->prune, "sheets", "Drop whole sheets of at most --theta instead of cutting them there");
   a->options.add_to(command, "", {"least_theta", "greatest_theta"});

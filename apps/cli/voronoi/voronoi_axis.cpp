@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 void VoronoiAxisTexts::add_to(const Command& command) {
   add_text_option(command, "--theta", theta, "DEG",
                   "With --medial: keep where footprints are seen more than DEG apart (default 1), and what joins that");
-  add_text_option(command, "--simplify", simplify, "TOL",
+  add_text_option(command, "--decimate", decimate, "TOL",
                   "With --medial: fewer triangles, at most TOL mesh units away (default 0: all)");
   add_graph_option(command, graph,
                    "Its regions, walls, seams and junctions as a graph; with --medial its sheets, seams, curves and "
@@ -29,13 +29,13 @@ void VoronoiAxisTexts::add_to(const Command& command) {
 
 std::string VoronoiAxisTexts::given() const {
   if (theta) return "--theta";
-  return simplify ? "--simplify" : "";
+  return decimate ? "--decimate" : "";
 }
 
 VoronoiAxisOptions parse_axis_options(const VoronoiAxisTexts& texts) {
   VoronoiAxisOptions out;
   if (texts.theta) out.theta = parse_angle("--theta", *texts.theta);
-  if (texts.simplify) out.simplify = parse_non_negative("--simplify", *texts.simplify);
+  if (texts.decimate) out.decimate = parse_non_negative("--decimate", *texts.decimate);
   out.graph = parse_graph(texts.graph);
   return out;
 }
@@ -89,7 +89,7 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
     axis.phases.push_back({"certificate", writing.lap()});
     return certificate;
   };
-  const CertifiedAxis made = certified_axis(std::move(whole), metadata_of(options, source, weld), options.simplify,
+  const CertifiedAxis made = certified_axis(std::move(whole), metadata_of(options, source, weld), options.decimate,
                                             certify, out.phases, context);
   const MedialMetadata& metadata = made.metadata;
   const MedialCounts counts = count(made.axis.axis);
@@ -97,8 +97,8 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
   out.mismatches = made.certificate.mismatches;
   out.table.add("axis", counts_text(counts, true));
   if (metadata.deviation) {
-    out.table.add("simplified", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
-                                    rounded_text(made.axis.deviation));
+    out.table.add("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
+                                   rounded_text(made.axis.deviation));
   }
   out.json = {{"theta", options.theta},
               {"counts", counts_json(counts, true)},

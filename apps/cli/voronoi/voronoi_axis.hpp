@@ -15,9 +15,9 @@
 
 namespace blum::cli {
 
-/// --theta, --simplify and, for all parts, --graph.
+/// --theta, --decimate and, for all parts, --graph.
 struct VoronoiAxisTexts {
-  std::optional<std::string> theta, simplify, graph;
+  std::optional<std::string> theta, decimate, graph;
 
   void add_to(const Command& command);
   /// The first one that is given and for medial axes alone; empty where none is.
@@ -26,7 +26,7 @@ struct VoronoiAxisTexts {
 
 struct VoronoiAxisOptions {
   double theta = 1;     ///< degrees; faces bent by rounding to 32 bits are seen at less
-  double simplify = 0;  ///< mesh units; 0 keeps all vertices
+  double decimate = 0;  ///< mesh units; 0 keeps all vertices
   std::optional<std::filesystem::path> graph;
 };
 

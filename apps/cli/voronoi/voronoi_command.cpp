@@ -42,7 +42,7 @@ constexpr const char* examples = R"(Examples:
   blum voronoi part.stl -o part.vtp                for ParaView: walls and surface, with the sites on both sides
   blum voronoi part.stl -o walls.ply --walls       what lies between regions, without the surface
   blum voronoi part.stl -o axis.vtp --medial       the medial axis: walls with two footprints
-  blum voronoi part.stl -o axis.vtp --medial --theta 60 --simplify 0.01    where these are 60 degrees apart; fewer triangles
+  blum voronoi part.stl -o axis.vtp --medial --theta 60 --decimate 0.01    where these are 60 degrees apart; fewer triangles
   blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
   blum voronoi part.stl -o part.vtp --tolerance 0.1    nowhere more than 0.1 mesh units off the exact walls
   blum voronoi scan.stl -o scan.vtp --clean 0.001 --cleaned clean.ply    of the mesh without needles, which is written, too

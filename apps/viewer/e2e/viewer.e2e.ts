@@ -18,7 +18,7 @@ beforeAll(async () => {
   blum("make", "balls_image", "--count", "3", "-o", "balls.nrrd");
   blum("field", "balls.nrrd", "-o", "balls-field.npz");
   blum("medial", "bracket.ply", "-o", "axis.npz", "--theta", "10", "--nested", "--resolution", "64");
-  blum("medial", "bracket.ply", "-o", "cut.npz", "--theta", thetas.join(","), "--resolution", "64", "--simplify", "0");
+  blum("medial", "bracket.ply", "-o", "cut.npz", "--theta", thetas.join(","), "--resolution", "64", "--decimate", "0");
   blum("view", "bracket.ply", "field.npz", "axis.npz", "-o", "all.html");
   browser = await launch();
 });
@@ -199,7 +199,7 @@ describe("a page in a file", () => {
     await page.close();
   });
 
-  it.each(thetas)("theta %d shows what blum medial --simplify 0 writes for it", async (theta) => {
+  it.each(thetas)("theta %d shows what blum medial --decimate 0 writes for it", async (theta) => {
     const { page } = await open(browser, fileUrl("all.html"));
     const field = page.getByLabel("Theta, as a number");
     await field.fill(String(theta));
