@@ -134,7 +134,7 @@ void bind_updates(nb::class_<ProximityScene>& scene) {
         const RigidTransform where = place_of(place);
         check(where);
         return run({threads, std::move(progress)}, [&](const Context& context) {
-          const ObjectId added = self.add(view, {layers, meets, compare_self}, context);
+          const ObjectId added = self.add(view, {layers, meets, compare_self, {}}, context);
           self.update(added, where);
           return added.value;
         });

@@ -27,6 +27,17 @@ void check_distance(const char* what, double distance) {
   throw InvalidOption(std::string(what) + " is " + exact_text(distance) + ", but must be a number of at least 0");
 }
 
+/// Runs what may refuse a mesh or vertices for an object; messages then begin with its name, where it has one.
+template <class Change>
+void change_named(const std::string& name, const Change& change) {
+  if (name.empty()) return change();
+  try {
+    change();
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh("'" + name + "': " + error.what());
+  }
+}
+
 }  // namespace
 
 void check(const SceneOptions& options) {
@@ -105,8 +116,10 @@ ProximityScene& ProximityScene::operator=(ProximityScene&&) noexcept = default;
 ProximityScene::~ProximityScene() = default;
 
 ObjectId ProximityScene::add(const MeshView& mesh, const ObjectOptions& options, const Context& context) {
-  SceneObject object(mesh, options, context);
-  data_->objects.emplace_back(std::move(object));
+  change_named(options.name, [&] {
+    SceneObject object(mesh, options, context);
+    data_->objects.emplace_back(std::move(object));
+  });
   return ObjectId(static_cast<std::uint32_t>(data_->objects.size() - 1));
 }
 
@@ -115,14 +128,20 @@ void ProximityScene::remove(ObjectId object) {
   data_->objects[object.value].reset();
 }
 
+void ProximityScene::rename(ObjectId object, std::string name) {
+  data_->at(object).set_name(std::move(name));
+}
+
 void ProximityScene::update(ObjectId object, std::span<const Vec3d> vertices, const Context& context) {
-  data_->at(object).set_positions(vertices, context);
+  SceneObject& own = data_->at(object);
+  change_named(own.options().name, [&] { own.set_positions(vertices, context); });
 }
 void ProximityScene::update(ObjectId object, const RigidTransform& place) {
   data_->at(object).set_place(place);
 }
 void ProximityScene::update(ObjectId object, const MeshView& mesh, const Context& context) {
-  data_->at(object).set_mesh(mesh, context);
+  SceneObject& own = data_->at(object);
+  change_named(own.options().name, [&] { own.set_mesh(mesh, context); });
 }
 
 void ProximityScene::exclude(ObjectId first, ObjectId second, bool is_excluded) {

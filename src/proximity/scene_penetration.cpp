@@ -442,16 +442,12 @@ struct Surfaces {
   }
 };
 
-std::string name_of(ObjectId object) {
-  return "object " + std::to_string(object.value);
-}
-
 /// Adds the surface of a solid; without what lies in it twice, so that what two surfaces wind around twice is in both.
 void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
   TriangleMesh mesh{object.positions(), object.mesh().triangles};
-  if (is_self) check_faces_outwards(mesh, name_of(id));
+  if (is_self) check_faces_outwards(mesh, name_of(id, object));
   SolidSurface surface =
-      is_self ? SolidSurface{std::move(mesh), {}, {}} : winding_surface(std::move(mesh), name_of(id), context);
+      is_self ? SolidSurface{std::move(mesh), {}, {}} : winding_surface(std::move(mesh), name_of(id, object), context);
   if (surface.triangle_of.empty()) {
     surface.triangle_of.resize(surface.mesh.triangles.size());
     std::iota(surface.triangle_of.begin(), surface.triangle_of.end(), 0U);
@@ -675,9 +671,10 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
   timer.lap("surfaces");
   Overlap overlap = overlap_of(surfaces.mesh, context);
   if (!overlap.obstacle.empty()) {
-    check_is_closed(a.mesh(), name_of(first));
-    check_is_closed(b.mesh(), name_of(second));
-    throw InvalidMesh("what " + (is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second)) +
+    check_is_closed(a.mesh(), name_of(first, a));
+    check_is_closed(b.mesh(), name_of(second, b));
+    throw InvalidMesh("what " +
+                      (is_self ? "parts of " + name_of(first, a) : name_of(first, a) + " and " + name_of(second, b)) +
                       " have in common cannot be told: " + overlap.obstacle);
   }
   timer.lap("overlap");

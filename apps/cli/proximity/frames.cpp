@@ -94,7 +94,7 @@ class Sequence {
     if (query == "continuous") {
       if (k + 1 < arguments_.scene.size()) ask_continuous(k, out);
     } else if (query == "penetration") {
-      ask_penetration(k, out);
+      ask_penetration(out);
     } else if (query == "collide") {
       const bool is_near = within_.value_or(0) > 0;
       tell(is_near ? scene_.closer_than(*within_, context_) : scene_.collisions(context_),
@@ -112,24 +112,25 @@ class Sequence {
     next_.reset();
     const bool is_same = difference(mesh_, next).empty();
     mesh_ = std::move(next);
+    const std::string& file = arguments_.scene[k];
     if (scene_.size() == 0) {
       ObjectOptions options;
       options.self = true;
+      options.name = file;
       object_ = scene_.add(mesh_, options, context_);
-    } else if (is_same) {
+      return;
+    }
+    scene_.rename(object_, file);
+    if (is_same) {
       scene_.update(object_, mesh_.vertices, context_);
     } else {
       scene_.update(object_, mesh_, context_);
     }
   }
 
-  void ask_penetration(std::size_t k, Frame& out) {
-    try {
-      for (const ScenePenetration& part : all_penetrations(scene_, true, penetration_, context_, out.phases)) {
-        out.add(pair_json("penetration", part.part.deep_point, part.part.surface_point, part.part.depth), limit_);
-      }
-    } catch (const InvalidMesh& error) {
-      throw InvalidMesh(with_names(error.what(), {arguments_.scene[k]}));
+  void ask_penetration(Frame& out) {
+    for (const ScenePenetration& part : all_penetrations(scene_, true, penetration_, context_, out.phases)) {
+      out.add(pair_json("penetration", part.part.deep_point, part.part.surface_point, part.part.depth), limit_);
     }
   }
 

@@ -99,9 +99,6 @@ struct ScenePenetration {
 /// A point, where coordinates that are rounding beside a size (mesh units) read 0.
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
 
-/// A message of the library, with the names of files in place of "object 0" and so on.
-[[nodiscard]] std::string with_names(std::string message, const std::vector<std::string>& files);
-
 /// The most pairs that are written: --limit, or more than there can be. @throws UsageError.
 [[nodiscard]] std::size_t read_limit(const ProximityArguments& a);
 

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/primitives.hpp"
 #include "blum/io/mesh_io.hpp"
@@ -88,31 +87,20 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
   ObjectOptions options;
   options.self = a.self;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    try {
-      scene.add(meshes[k], options, context);
-    } catch (const InvalidMesh& error) {
-      throw InvalidMesh("'" + a.scene[k] + "': " + error.what());
-    }
+    options.name = a.scene[k];
+    scene.add(meshes[k], options, context);
   }
   return scene;
 }
 
 void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  try {
-    answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh(with_names(error.what(), a.scene));
-  }
+  answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
   answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
   for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
 }
 
 void ask_signed(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  try {
-    answer.found = signed_separations(scene, answer.views(), a.penetration.read(), context);
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh(with_names(error.what(), a.scene));
-  }
+  answer.found = signed_separations(scene, answer.views(), a.penetration.read(), context);
 }
 
 ProximityPairs ask(const ProximityScene& scene, const std::string& query, std::optional<double> within,

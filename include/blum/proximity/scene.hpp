@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -24,22 +25,24 @@
 
 namespace blum {
 
-/// What an object is compared with. Two objects are compared where each is in a layer that the other one meets, and
-/// they are not excluded (ProximityScene::exclude).
+/// How messages call an object, and what it is compared with. Two objects are compared where each is in a layer that
+/// the other one meets, and they are not excluded (ProximityScene::exclude).
 struct ObjectOptions {
   std::uint32_t layers = 1;          ///< the layers that the object is in, a bit for each
   std::uint32_t meets = 0xffffffff;  ///< the layers whose objects it is compared with
   bool self = false;                 ///< whether it is compared with itself
+  std::string name = {};             ///< what messages call it, such as the name of its file; empty: "object 3"
 };
 
 template <>
 struct Description<ObjectOptions> {
   static constexpr std::string_view name = "ObjectOptions";
-  static constexpr std::string_view doc = "What an object of a scene is compared with";
+  static constexpr std::string_view doc = "What an object of a scene is called, and compared with";
   static constexpr std::tuple members{
       Member{"layers", &ObjectOptions::layers, "bits", "the layers that the object is in, a bit for each"},
       Member{"meets", &ObjectOptions::meets, "bits", "the layers whose objects it is compared with"},
       Member{"self", &ObjectOptions::self, "", "whether it is compared with itself"},
+      Member{"name", &ObjectOptions::name, "", "what messages call it; empty: its number"},
   };
 };
 
@@ -118,6 +121,8 @@ struct ProximityPairs {
 /// An object compared with itself: primitives that share a vertex are left out, unless said otherwise; vertices in one
 /// place are one vertex, so that a mesh need not be welded.
 ///
+/// Messages of errors call an object by its name, in quotes; without one, "object 3".
+///
 /// Queries may run on many threads at once, updates not beside them. All throw Cancelled; InvalidOption for an object
 /// that is not there; InvalidMesh where more than 2^29 pairs of primitives lie on each other or next to it, as of heaps
 /// of equal triangles, of which all pairs would have to be looked at.
@@ -135,6 +140,8 @@ class ProximityScene {
   /// Cost: about 0.3 microseconds per primitive.
   ObjectId add(const MeshView& mesh, const ObjectOptions& options = {}, const Context& context = {});
   void remove(ObjectId object);
+  /// Another name for an object, by which messages call it: see ObjectOptions::name.
+  void rename(ObjectId object, std::string name);
 
   /// New positions of the vertices of an object, before its transform: as many as it has.
   /// @throws InvalidMesh; Cancelled, after which the object must be updated again. Cost: a fifth of add().
