@@ -129,9 +129,11 @@ class Sequence {
   }
 
   void ask_penetration(Frame& out) {
-    for (const ScenePenetration& part : all_penetrations(scene_, true, penetration_, context_, out.phases)) {
-      out.add(pair_json("penetration", part.part.deep_point, part.part.surface_point, part.part.depth), limit_);
+    const Penetrations found = scene_.penetrations(penetration_, context_);
+    for (const Penetration& part : found.parts) {
+      out.add(pair_json("penetration", part.deep_point, part.surface_point, part.depth), limit_);
     }
+    out.phases.insert(out.phases.end(), found.phases.begin(), found.phases.end());
   }
 
   /// @throws FormatError where the next frame is another mesh, unless such steps are skipped.

@@ -65,30 +65,10 @@ void run_scene_query(const ProximityArguments& a);
 /// Any query with --frames: the files are those of one object, one after the other.
 void run_frames(const ProximityArguments& a);
 
-/// A part of what two objects of a scene have in common.
-struct ScenePenetration {
-  ObjectId first;
-  ObjectId second;
-  Penetration part;
-};
-
-/// Those of all pairs of objects, and with `is_self` of each with itself.
-[[nodiscard]] std::vector<ScenePenetration> all_penetrations(const ProximityScene& scene, bool is_self,
-                                                             const PenetrationOptions& options, const Context& context,
-                                                             std::vector<PhaseTime>& phases);
-
-/// A part as a pair: of the points that are told of it, with the depth as a negative distance.
-[[nodiscard]] PrimitivePair pair_of(const ScenePenetration& penetration);
-
-/// For each two objects (and with self those that are asked for themselves) the closest pair or, of solids that lie in
-/// each other, the deepest part as pair_of() tells it. @param meshes  of the objects. @throws as ProximityScene.
-[[nodiscard]] ProximityPairs signed_separations(const ProximityScene& scene, std::span<const MeshView> meshes,
-                                                const PenetrationOptions& options, const Context& context);
-
 /// What files of pairs tell of parts beside their pairs: depth_bound, direction, area, volume, deep_object.
-[[nodiscard]] Columns columns_of(std::span<const ScenePenetration> penetrations);
+[[nodiscard]] Columns columns_of(std::span<const Penetration> penetrations);
 
-[[nodiscard]] Json json_of(const ScenePenetration& penetration);
+[[nodiscard]] Json penetration_json(const Penetration& part);
 
 /// Names of files: the last parts of their paths, as many as it takes to tell different paths apart.
 [[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& files);

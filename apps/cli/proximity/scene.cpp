@@ -52,8 +52,8 @@ struct Answer {
   std::vector<TriangleMesh> meshes;
   std::optional<double> within;
   ProximityPairs found;
-  std::vector<ScenePenetration> parts;  ///< of --query penetration: what `found` tells
-  std::vector<std::string> names;       ///< of the objects
+  std::vector<Penetration> parts;  ///< of --query penetration: what `found` tells
+  std::vector<std::string> names;  ///< of the objects
   PhaseSummary spent;
   int threads = 0;
   std::size_t limit = 0;
@@ -93,22 +93,24 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
   return scene;
 }
 
-void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
-  answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
-  for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
-}
-
-void ask_signed(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  answer.found = signed_separations(scene, answer.views(), a.penetration.read(), context);
-}
-
-ProximityPairs ask(const ProximityScene& scene, const std::string& query, std::optional<double> within,
-                   const Context& context) {
-  const double most = within.value_or(std::numeric_limits<double>::infinity());
-  if (query == "separation") return scene.separation(most, context);
-  if (query == "nbody") return scene.closest_primitives(most, context);
-  return within.value_or(0) > 0 ? scene.closer_than(*within, context) : scene.collisions(context);
+void ask(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
+  const double most = answer.within.value_or(std::numeric_limits<double>::infinity());
+  ProximityPairs& found = answer.found;
+  if (a.query == "penetration") {
+    Penetrations told = scene.penetrations(a.penetration.read(), context);
+    answer.parts = std::move(told.parts);
+    for (const Penetration& part : answer.parts) found.pairs.push_back(deepest_pair(part));
+    found.report.object_pairs = told.object_pairs;
+    found.report.phases = std::move(told.phases);
+  } else if (a.query == "signed") {
+    found = scene.signed_separations(a.penetration.read(), context);
+  } else if (a.query == "separation") {
+    found = scene.separation(most, context);
+  } else if (a.query == "nbody") {
+    found = scene.closest_primitives(most, context);
+  } else {
+    found = answer.within.value_or(0) > 0 ? scene.closer_than(*answer.within, context) : scene.collisions(context);
+  }
 }
 
 FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
@@ -145,7 +147,7 @@ Json closest_json(const Answer& answer) {
 
 Json json_of(const ProximityArguments& a, const Answer& answer) {
   Json parts = Json::array();
-  for (const ScenePenetration& part : answer.parts) parts.push_back(json_of(part));
+  for (const Penetration& part : answer.parts) parts.push_back(penetration_json(part));
   return answer_json("proximity", {{"query", a.query},
                                    {"objects", objects_json(a, answer)},
                                    {"self", a.self},
@@ -204,7 +206,7 @@ std::string object_text(const Answer& answer, const PrimitivePair& pair) {
 void add_penetrations(const Answer& answer, TextTable& table) {
   const double size = largest(answer.meshes);
   for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {
-    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k].part, size));
+    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k], size));
   }
   if (answer.parts.size() > most_rows) {
     table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more; --json FILE tells all");
@@ -267,7 +269,7 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
 void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
   const std::span<const PrimitivePair> pairs = answer.found.pairs;
   const std::size_t count = std::min(pairs.size(), answer.limit);
-  const std::span<const ScenePenetration> parts = answer.parts;
+  const std::span<const Penetration> parts = answer.parts;
   const Columns more = a.query == "penetration" ? columns_of(parts.first(count)) : Columns();
   write_proximity_pairs(*a.output, pairs.first(count), answer.views(), metadata_of(a, answer), more, context);
 }
@@ -296,13 +298,7 @@ void run_scene_query(const ProximityArguments& a) {
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
   phases.push_back({"build", watch.lap()});
-  if (a.query == "penetration") {
-    ask_penetration(scene, a, context, answer);
-  } else if (a.query == "signed") {
-    ask_signed(scene, a, context, answer);
-  } else {
-    answer.found = ask(scene, a.query, answer.within, context);
-  }
+  ask(scene, a, context, answer);
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {

@@ -110,6 +110,10 @@ struct ProximityPairs {
   ProximityReport report;
 };
 
+/// A part of what two solids have in common as a pair: its deepest point and the closest one to it of the other
+/// surface, in the order of the objects, with the depth as a negative distance.
+[[nodiscard]] PrimitivePair deepest_pair(const Penetration& part);
+
 /// Meshes that move, deform and change, and what is close among them. A scene keeps copies of the meshes, and a
 /// hierarchy over each.
 ///
@@ -204,11 +208,23 @@ class ProximityScene {
   [[nodiscard]] Penetrations penetration(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
 
+  /// The same of all pairs of objects that are compared: by rising (first, second) object, the parts of each pair as
+  /// penetration() has them, to the byte.
+  /// @throws as penetration(): for any object of a pair, also where the boxes of both are apart.
+  /// Cost: that of penetration() for each pair whose boxes meet; else 0.3 microseconds for each triangle of an object,
+  /// once. Progress is that of the pairs.
+  [[nodiscard]] Penetrations penetrations(const PenetrationOptions& options = {}, const Context& context = {}) const;
+
   /// The distance of two solids where they are apart; 0 where they touch; minus the largest depth where they have more
   /// in common. Mesh units. As penetration(); surfaces whose boxes are apart may be open. Infinite of an object with
   /// itself that has no two primitives without a common vertex.
   [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
+  /// The same of all pairs of objects that are compared: the pairs of separation(), where those of solids that have
+  /// something in common are the deepest_pair() of their deepest part, with a negative distance.
+  /// @throws as signed_separation(). Cost: that of separation(), and of penetration() for each pair whose boxes meet.
+  [[nodiscard]] ProximityPairs signed_separations(const PenetrationOptions& options = {},
+                                                  const Context& context = {}) const;
 
  private:
   struct Data;

@@ -50,6 +50,8 @@ TEST(SceneOfNames, CallsObjectsByThemInMessages) {
     };
     starts(called + " is not closed", [&] { static_cast<void>(scene.penetration(first, second)); });
     starts(called + " is not closed", [&] { static_cast<void>(scene.penetration(second, second)); });
+    starts(called + " is not closed", [&] { static_cast<void>(scene.penetrations()); });
+    starts(called + " is not closed", [&] { static_cast<void>(scene.signed_separations()); });
     starts(before + "a coordinate is beyond", [&] { scene.update(second, huge.vertices); });
     starts(before + "a coordinate is beyond", [&] { scene.update(second, huge); });
     starts(before + "the object has 8 vertices, but is updated with 7",
