@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "blum/complex/columns.hpp"
@@ -37,6 +38,37 @@ struct ProximityArguments {
   ReportOptions report;
 };
 
+/// What is asked of a scene, whatever the query.
+struct SceneQuestion {
+  std::optional<double> within;
+  PenetrationOptions penetration;
+};
+
+/// What a query of a scene found.
+struct SceneFound {
+  ProximityPairs pairs = {};
+  std::vector<Penetration> parts = {};  ///< of penetration: what the pairs are of
+  std::string_view kind = "closest";    ///< what the viewer calls the pairs
+};
+
+/// All that the tool knows of a query: another one is a row of scene_queries.cpp.
+struct SceneQuery {
+  std::string_view name;
+  std::string_view doc;  ///< for --help
+  bool takes_within = false;
+  bool takes_culling = false;
+  bool takes_depth = false;  ///< whether options of penetration are for it
+  bool takes_frames = true;
+  bool has_rows = false;  ///< whether what is printed has a row for each pair, and not for the closest one alone
+  /// nullptr: objects move, and answers are no pairs.
+  SceneFound (*ask)(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) = nullptr;
+};
+
+[[nodiscard]] std::span<const SceneQuery> scene_queries();
+
+/// @throws UsageError that names all of them.
+[[nodiscard]] const SceneQuery& scene_query(const std::string& name);
+
 /// --query continuous: two files are a mesh at the start and the end of a motion; with --to as run_moving_scene().
 void run_continuous_query(const ProximityArguments& a);
 
@@ -59,11 +91,11 @@ struct MovingMesh {
 /// What is asked of options by --query continuous, whatever moves. @throws UsageError.
 void check_continuous_options(const ProximityArguments& a);
 
-/// --query separation, signed, nbody, collide or penetration: each file is an object.
-void run_scene_query(const ProximityArguments& a);
+/// Any query but continuous: each file is an object.
+void run_scene_query(const ProximityArguments& a, const SceneQuery& query);
 
 /// Any query with --frames: the files are those of one object, one after the other.
-void run_frames(const ProximityArguments& a);
+void run_frames(const ProximityArguments& a, const SceneQuery& query);
 
 /// What files of pairs tell of parts beside their pairs: depth_bound, direction, area, volume, deep_object.
 [[nodiscard]] Columns columns_of(std::span<const Penetration> penetrations);

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,21 +28,19 @@ namespace fs = std::filesystem;
 /// Rows of the table that separation prints.
 constexpr std::size_t most_rows = 20;
 
-void check(const ProximityArguments& a) {
+void check(const ProximityArguments& a, const SceneQuery& query) {
   if (a.scene.size() == 1 && !a.self) {
     throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
   }
-  const bool is_penetration = a.query == "penetration";
   if (const auto names = a.impact.given(); !names.empty()) {
     throw UsageError(names.front() + " is for --query continuous alone");
   }
-  const bool is_signed = a.query == "signed";
-  if (const auto names = a.penetration.given(); !is_penetration && !is_signed && !names.empty()) {
+  if (const auto names = a.penetration.given(); !query.takes_depth && !names.empty()) {
     throw UsageError(names.front() + " is for --query penetration and signed alone");
   }
-  if ((is_penetration || is_signed) && a.within) throw UsageError("--within is not for --query " + a.query);
-  if (const auto names = a.culling.given(); is_penetration && !names.empty()) {
-    throw UsageError(names.front() + " is not for --query penetration");
+  if (!query.takes_within && a.within) throw UsageError("--within is not for --query " + a.query);
+  if (const auto names = a.culling.given(); !query.takes_culling && !names.empty()) {
+    throw UsageError(names.front() + " is not for --query " + a.query);
   }
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
 }
@@ -50,9 +48,10 @@ void check(const ProximityArguments& a) {
 /// The objects of a scene, and what was asked of them.
 struct Answer {
   std::vector<TriangleMesh> meshes;
-  std::optional<double> within;
+  SceneQuestion asked;
   ProximityPairs found;
   std::vector<Penetration> parts;  ///< of --query penetration: what `found` tells
+  std::string_view kind;           ///< of the pairs
   std::vector<std::string> names;  ///< of the objects
   PhaseSummary spent;
   int threads = 0;
@@ -93,29 +92,9 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
   return scene;
 }
 
-void ask(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  const double most = answer.within.value_or(std::numeric_limits<double>::infinity());
-  ProximityPairs& found = answer.found;
-  if (a.query == "penetration") {
-    Penetrations told = scene.penetrations(a.penetration.read(), context);
-    answer.parts = std::move(told.parts);
-    for (const Penetration& part : answer.parts) found.pairs.push_back(deepest_pair(part));
-    found.report.object_pairs = told.object_pairs;
-    found.report.phases = std::move(told.phases);
-  } else if (a.query == "signed") {
-    found = scene.signed_separations(a.penetration.read(), context);
-  } else if (a.query == "separation") {
-    found = scene.separation(most, context);
-  } else if (a.query == "nbody") {
-    found = scene.closest_primitives(most, context);
-  } else {
-    found = answer.within.value_or(0) > 0 ? scene.closer_than(*answer.within, context) : scene.collisions(context);
-  }
-}
-
 FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
   FileMetadata out{{"content", "pairs of primitives"}, {"blum_version", BLUM_VERSION}, {"query", a.query}};
-  if (answer.within) out.emplace_back("within", exact_text(*answer.within));
+  if (answer.asked.within) out.emplace_back("within", exact_text(*answer.asked.within));
   out.emplace_back("self", a.self ? "true" : "false");
   for (std::size_t k = 0; k < a.scene.size(); ++k) {
     out.emplace_back("object_" + std::to_string(k), answer.names[k]);
@@ -151,7 +130,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
   return answer_json("proximity", {{"query", a.query},
                                    {"objects", objects_json(a, answer)},
                                    {"self", a.self},
-                                   {"within", to_json(answer.within)},
+                                   {"within", to_json(answer.asked.within)},
                                    {"object_pairs", answer.found.report.object_pairs},
                                    {"pairs", answer.found.pairs.size()},
                                    {"min_distance", to_json(answer.min_distance())},
@@ -236,28 +215,28 @@ std::string scene_text(const Answer& answer) {
          (others > 0 ? ", " + plural(others, "segment or point", "segments and points") : "");
 }
 
-std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
-  if (a.query == "penetration") {
+std::string pairs_text(const Answer& answer) {
+  if (answer.kind == "penetration") {
     return answer.parts.empty() ? "none: nothing lies in anything else"
                                 : plural(answer.parts.size(), "part in common", "parts in common");
   }
-  const bool meet = a.query == "collide" && answer.within.value_or(0) == 0;
+  const bool meet = answer.kind == "collision";
   return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
-         (answer.within && !meet ? " within " + rounded_text(*answer.within) : "");
+         (answer.asked.within && !meet ? " within " + rounded_text(*answer.asked.within) : "");
 }
 
-std::string text_of(const ProximityArguments& a, const Answer& answer) {
+std::string text_of(const ProximityArguments& a, const SceneQuery& query, const Answer& answer) {
   TextTable table;
   table.add("scene", scene_text(answer));
-  table.add("pairs", pairs_text(a, answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
-  if (a.query == "penetration") {
+  table.add("pairs", pairs_text(answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
+  if (answer.kind == "penetration") {
     add_penetrations(answer, table);
-  } else if (a.query == "separation" || a.query == "signed") {
+  } else if (query.has_rows) {
     add_separations(answer, table);
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
     table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
   }
-  if (a.query != "penetration")
+  if (answer.kind != "penetration")
     table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
                            count_text(answer.found.report.candidates) + " candidates in " +
                            plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
@@ -270,19 +249,20 @@ void write(const ProximityArguments& a, const Answer& answer, const Context& con
   const std::span<const PrimitivePair> pairs = answer.found.pairs;
   const std::size_t count = std::min(pairs.size(), answer.limit);
   const std::span<const Penetration> parts = answer.parts;
-  const Columns more = a.query == "penetration" ? columns_of(parts.first(count)) : Columns();
+  const Columns more = answer.kind == "penetration" ? columns_of(parts.first(count)) : Columns();
   write_proximity_pairs(*a.output, pairs.first(count), answer.views(), metadata_of(a, answer), more, context);
 }
 
 }  // namespace
 
-void run_scene_query(const ProximityArguments& a) {
-  check(a);
+void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
+  check(a, query);
   Answer answer;
   const SceneOptions culling = a.culling.read();
   check(culling);
-  check(a.penetration.read());
-  if (a.within) answer.within = parse_non_negative("--within", *a.within);
+  answer.asked.penetration = a.penetration.read();
+  check(answer.asked.penetration);
+  if (a.within) answer.asked.within = parse_non_negative("--within", *a.within);
   answer.limit = read_limit(a);
   answer.names = told_apart(a.scene);
   const std::optional<double> weld = parse_weld(a.weld);
@@ -298,7 +278,10 @@ void run_scene_query(const ProximityArguments& a) {
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
   phases.push_back({"build", watch.lap()});
-  ask(scene, a, context, answer);
+  SceneFound found = query.ask(scene, answer.asked, context);
+  answer.found = std::move(found.pairs);
+  answer.parts = std::move(found.parts);
+  answer.kind = found.kind;
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {
@@ -308,7 +291,7 @@ void run_scene_query(const ProximityArguments& a) {
   progress.clear();
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);
-  report(a.report, json_of(a, answer), text_of(a, answer));
+  report(a.report, json_of(a, answer), text_of(a, query, answer));
 }
 
 }  // namespace blum::cli
