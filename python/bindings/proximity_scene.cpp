@@ -129,20 +129,27 @@ void bind_updates(nb::class_<ProximityScene>& scene) {
   scene.def(
       "add",
       [](ProximityScene& self, const MeshArrays& mesh, std::uint32_t layers, std::uint32_t meets, bool compare_self,
-         const PlaceIn& place, int threads, nb::object progress) {
+         std::string name, const PlaceIn& place, int threads, nb::object progress) {
         const MeshView view = mesh.view();
+        const ObjectOptions options{layers, meets, compare_self, std::move(name)};
         const RigidTransform where = place_of(place);
         check(where);
         return run({threads, std::move(progress)}, [&](const Context& context) {
-          const ObjectId added = self.add(view, {layers, meets, compare_self}, context);
+          const ObjectId added = self.add(view, options, context);
           self.update(added, where);
           return added.value;
         });
       },
-      nb::arg("mesh"), nb::arg("layers"), nb::arg("meets"), nb::arg("compare_self"), nb::arg("place").noconvert(),
-      nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("mesh"), nb::arg("layers"), nb::arg("meets"), nb::arg("compare_self"), nb::arg("name"),
+      nb::arg("place").noconvert(), nb::arg("threads"), nb::arg("progress").none());
   scene.def(
       "remove", [](ProximityScene& self, std::uint32_t object) { self.remove(ObjectId(object)); }, nb::arg("object"));
+  scene.def(
+      "rename",
+      [](ProximityScene& self, std::uint32_t object, std::string name) {
+        self.rename(ObjectId(object), std::move(name));
+      },
+      nb::arg("object"), nb::arg("name"));
   scene.def(
       "set_mesh",
       [](ProximityScene& self, std::uint32_t object, const MeshArrays& mesh, int threads, nb::object progress) {
@@ -219,14 +226,15 @@ nb::tuple vector_out(const Vec3d& p) {
   return nb::make_tuple(p.x, p.y, p.z);
 }
 
-/// (depth, depth_bound, direction, deep_point, surface_point, is_first_deep, deep_triangle, surface_triangle, area,
-/// volume, curves) of each part.
+/// (objects, depth, depth_bound, direction, deep_point, surface_point, is_first_deep, deep_triangle, surface_triangle,
+/// area, volume, curves) of each part.
 nb::list parts_out(Penetrations found) {
   nb::list out;
   for (Penetration& part : found.parts) {
     nb::list curves;
     for (std::vector<Vec3d>& curve : part.curves) curves.append(handed_over<double>(std::move(curve), 3));
-    out.append(nb::make_tuple(part.depth, part.depth_bound, vector_out(part.direction), vector_out(part.deep_point),
+    out.append(nb::make_tuple(nb::make_tuple(part.first_object.value, part.second_object.value), part.depth,
+                              part.depth_bound, vector_out(part.direction), vector_out(part.deep_point),
                               vector_out(part.surface_point), part.is_first_deep, part.deep_triangle,
                               part.surface_triangle, nb::make_tuple(part.area[0], part.area[1]), part.volume, curves));
   }
@@ -265,10 +273,7 @@ nb::tuple collisions_out(const SceneCollisions& found) {
                         handed_over<double>(std::move(edge_edge_time)), found.box_pairs, found.exact_tests);
 }
 
-/// An object, and where its vertices and its place are at the end.
-using MotionIn = std::tuple<std::uint32_t, std::optional<PointsIn>, std::optional<PlaceIn>>;
-
-void bind_motions(nb::class_<ProximityScene>& scene) {
+void bind_solids(nb::class_<ProximityScene>& scene) {
   scene.def(
       "penetration",
       [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
@@ -289,6 +294,29 @@ void bind_motions(nb::class_<ProximityScene>& scene) {
         });
       },
       nb::arg("first"), nb::arg("second"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "penetrations",
+      [](const ProximityScene& self, const nb::dict& given, int threads, nb::object progress) {
+        const auto options = options_from<PenetrationOptions>(given);
+        return parts_out(run({threads, std::move(progress)},
+                             [&](const Context& context) { return self.penetrations(options, context); }));
+      },
+      nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "signed_separations",
+      [](const ProximityScene& self, const nb::dict& given, int threads, nb::object progress) {
+        const auto options = options_from<PenetrationOptions>(given);
+        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return with_features(self, self.signed_separations(options, context), context);
+        }));
+      },
+      nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+/// An object, and where its vertices and its place are at the end.
+using MotionIn = std::tuple<std::uint32_t, std::optional<PointsIn>, std::optional<PlaceIn>>;
+
+void bind_motions(nb::class_<ProximityScene>& scene) {
   scene.def(
       "continuous",
       [](const ProximityScene& self, const std::vector<MotionIn>& given_motions, const nb::dict& given, int threads,
@@ -319,6 +347,7 @@ void bind_proximity_scene(nb::module_& m) {
       nb::arg("options"));
   bind_updates(scene);
   bind_queries(scene);
+  bind_solids(scene);
   bind_motions(scene);
   m.def(
       "closest_rotation",

@@ -36,7 +36,7 @@ class ProximityPairs:
 
     object: IntArray  #: (n, 2): the objects
     primitive: IntArray  #: (n, 2): the primitive of each: a triangle, or behind these a segment, then a point
-    distance: FloatArray  #: (n,): mesh units; 0 just where they meet
+    distance: FloatArray  #: (n,): mesh units; 0 just where they meet; negative in signed separations
     point: FloatArray  #: (n, 2, 3): the closest points; where they meet, a point near both
     feature: IntArray  #: (n, 2, 3): the one, two or three vertices of each mesh that the point lies on, padded with -1
     culling: str  #: what left out pairs that cannot count: "bvh" or "voronoi"
@@ -82,6 +82,7 @@ class ProximityPairs:
 class Penetration:
     """A connected part of what two solids have in common."""
 
+    object: tuple[int, int]  #: the two solids; twice the same of one that is compared with itself
     depth: float  #: mesh units: the distance of deep_point from surface_point
     depth_bound: float  #: what the depth is at most, for certain but for rounding
     direction: FloatArray  #: (3,): where the first object is to be moved by the depth, to bring deep_point out

@@ -21,6 +21,7 @@ from ._arguments import (
     integer,
     matrix,
     number,
+    text,
     triple,
     truth,
 )
@@ -73,6 +74,7 @@ class ProximityScene:
         layers: Integer = 1,
         meets: Integer = _ALL_LAYERS,
         compare_self: bool = False,
+        name: str = "",
         transform: Any = None,
         threads: int = 0,
         progress: Progress = False,
@@ -89,14 +91,17 @@ class ProximityScene:
             other one meets.
         compare_self : bool
             Whether it is compared with itself: primitives that share no vertex. (In C++ `ObjectOptions::self`.)
+        name : str
+            What messages call it. Without one they say "object 3".
         transform : see :meth:`update`
         """
         own = as_mesh(mesh)
         options = _layers(layers, "layers"), _layers(meets, "meets"), truth(compare_self, "compare_self")
+        called = text(name, "name")
         place = _place(np.eye(4) if transform is None else transform)
         count = integer(threads, "threads")
         with self._alone(progress) as report:
-            added: int = self._scene.add(own._arrays, *options, place, count, report)
+            added: int = self._scene.add(own._arrays, *options, called, place, count, report)
             self._count += 1
         return added
 
@@ -106,6 +111,12 @@ class ProximityScene:
         with self._alone():
             self._scene.remove(which)
             self._count -= 1
+
+    def rename(self, index: Integer, name: str) -> None:
+        """Gives an object another name, by which messages call it."""
+        which, called = _object(index, "index"), text(name, "name")
+        with self._alone():
+            self._scene.rename(which, called)
 
     def update(
         self,
@@ -268,6 +279,47 @@ class ProximityScene:
         with self._alone(progress) as report:
             distance: float = self._scene.signed_separation(first, second, dict(options), count, report)
         return distance
+
+    @takes("PenetrationOptions")
+    def penetrations(
+        self, *, threads: int = 0, progress: Progress = False, **options: Unpack[PenetrationOptions]
+    ) -> list[Penetration]:
+        """What each two solids that are compared have in common: the parts that :meth:`penetration` tells of each pair,
+        by rising pair of objects. What makes an object a solid is looked at once.
+
+        Parameters
+        ----------
+        **options
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> places = [[0, 0, 0], [0.75, 0, 0], [1.25, 0, 0]]
+        >>> boxes = [scene.add((box.vertices + at, box.triangles)) for at in places]
+        >>> [(part.object, part.depth) for part in scene.penetrations()]
+        [((0, 1), 0.25), ((1, 2), 0.5)]
+        >>> scene.signed_separations().distance.tolist()
+        [-0.25, 0.25, -0.5]
+        """
+        count = integer(threads, "threads")
+        with self._alone(progress) as report:
+            found = self._scene.penetrations(dict(options), count, report)
+        return [_penetration(*part) for part in found]
+
+    @takes("PenetrationOptions")
+    def signed_separations(
+        self, *, threads: int = 0, progress: Progress = False, **options: Unpack[PenetrationOptions]
+    ) -> ProximityPairs:
+        """How far each two solids that are compared are apart, or less the depth where they have something in common:
+        the pairs of :meth:`separation`, of which those that overlap are the deepest point of their deepest part and the
+        closest one to it of the other surface, with a negative distance. Its `closest` is then the deepest.
+
+        Parameters
+        ----------
+        **options
+        """
+        count = integer(threads, "threads")
+        with self._alone(progress) as report:
+            return ProximityPairs(*self._scene.signed_separations(dict(options), count, report))
 
     @takes("ImpactOptions")
     def continuous(
@@ -444,9 +496,16 @@ def _scene_of(meshes: MeshLike | Sequence[MeshLike], compare_self: bool | None, 
 
 
 def _penetration(
-    depth: float, bound: float, direction: Any, deep: Any, surface: Any, is_first: bool, *rest: Any
+    objects: tuple[int, int],
+    depth: float,
+    bound: float,
+    direction: Any,
+    deep: Any,
+    surface: Any,
+    is_first: bool,
+    *rest: Any,
 ) -> Penetration:
-    return Penetration(depth, bound, np.array(direction), np.array(deep), np.array(surface), is_first, *rest)
+    return Penetration(objects, depth, bound, np.array(direction), np.array(deep), np.array(surface), is_first, *rest)
 
 
 def _motions_of(motions: Any) -> list[tuple[Any, Any]]:

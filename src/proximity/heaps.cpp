@@ -34,7 +34,7 @@ void check_neighbours(const ObjectPair& objects) {
   const std::vector<std::uint32_t> count = primitives_at_vertices(objects);
   const auto most = std::max_element(count.begin(), count.end());
   if (most == count.end() || pairs_among(*most) <= most_candidates) return;
-  throw InvalidMesh("object " + std::to_string(objects.first().value) + ": " + std::to_string(*most) +
+  throw InvalidMesh(name_of(objects.first(), objects.a()) + ": " + std::to_string(*most) +
                     " primitives meet at vertex " + std::to_string(most - count.begin()) + ", which are more than " +
                     std::to_string(most_candidates) + " pairs: take duplicates away");
 }

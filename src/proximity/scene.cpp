@@ -1,6 +1,7 @@
 #include "blum/proximity/scene.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
@@ -22,9 +23,22 @@ using detail::ObjectPair;
 using detail::SceneObject;
 using detail::TwoObjects;
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
 void check_distance(const char* what, double distance) {
   if (distance >= 0) return;
   throw InvalidOption(std::string(what) + " is " + exact_text(distance) + ", but must be a number of at least 0");
+}
+
+/// Runs what may refuse a mesh or vertices for an object; messages then begin with its name, where it has one.
+template <class Change>
+void change_named(const std::string& name, const Change& change) {
+  if (name.empty()) return change();
+  try {
+    change();
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh("'" + name + "': " + error.what());
+  }
 }
 
 }  // namespace
@@ -49,6 +63,10 @@ struct ProximityScene::Data {
   [[nodiscard]] SceneObject& at(ObjectId object) {
     static_cast<void>(std::as_const(*this).at(object));
     return *objects[object.value];
+  }
+
+  [[nodiscard]] TwoObjects two(ObjectId first, ObjectId second) const {
+    return {first, &at(first), second, &at(second)};
   }
 
   [[nodiscard]] bool are_compared(std::uint32_t a, std::uint32_t b) const {
@@ -105,8 +123,10 @@ ProximityScene& ProximityScene::operator=(ProximityScene&&) noexcept = default;
 ProximityScene::~ProximityScene() = default;
 
 ObjectId ProximityScene::add(const MeshView& mesh, const ObjectOptions& options, const Context& context) {
-  SceneObject object(mesh, options, context);
-  data_->objects.emplace_back(std::move(object));
+  change_named(options.name, [&] {
+    SceneObject object(mesh, options, context);
+    data_->objects.emplace_back(std::move(object));
+  });
   return ObjectId(static_cast<std::uint32_t>(data_->objects.size() - 1));
 }
 
@@ -115,14 +135,20 @@ void ProximityScene::remove(ObjectId object) {
   data_->objects[object.value].reset();
 }
 
+void ProximityScene::rename(ObjectId object, std::string name) {
+  data_->at(object).set_name(std::move(name));
+}
+
 void ProximityScene::update(ObjectId object, std::span<const Vec3d> vertices, const Context& context) {
-  data_->at(object).set_positions(vertices, context);
+  SceneObject& own = data_->at(object);
+  change_named(own.options().name, [&] { own.set_positions(vertices, context); });
 }
 void ProximityScene::update(ObjectId object, const RigidTransform& place) {
   data_->at(object).set_place(place);
 }
 void ProximityScene::update(ObjectId object, const MeshView& mesh, const Context& context) {
-  data_->at(object).set_mesh(mesh, context);
+  SceneObject& own = data_->at(object);
+  change_named(own.options().name, [&] { own.set_mesh(mesh, context); });
 }
 
 void ProximityScene::exclude(ObjectId first, ObjectId second, bool is_excluded) {
@@ -237,26 +263,56 @@ SceneCollisions ProximityScene::continuous(std::span<const ObjectMotion> motions
   check(options);
   detail::SceneMotion motion(data_->objects.size());
   for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one, context);
-  return motion.collisions(data_->compared(std::numeric_limits<double>::infinity(), context), options, context);
+  return motion.collisions(data_->compared(infinite, context), options, context);
 }
 
 Penetrations ProximityScene::penetration(ObjectId first, ObjectId second, const PenetrationOptions& options,
                                          const Context& context) const {
-  return detail::penetrations(first, data_->at(first), second, data_->at(second), options, context);
+  const TwoObjects two = data_->two(first, second);
+  Penetrations out;
+  out.object_pairs = 1;
+  out.parts = std::move(detail::penetrations({&two, 1}, options, context, out.phases).front());
+  return out;
+}
+
+Penetrations ProximityScene::penetrations(const PenetrationOptions& options, const Context& context) const {
+  Penetrations out;
+  const std::vector<TwoObjects> pairs = data_->compared(infinite, context);
+  out.object_pairs = pairs.size();
+  for (std::vector<Penetration>& parts : detail::penetrations(pairs, options, context, out.phases)) {
+    out.parts.insert(out.parts.end(), std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
+  }
+  return out;
 }
 
 double ProximityScene::signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options,
                                          const Context& context) const {
   check(options);
-  const Box3 a = data_->at(first).bounds();
-  const Box3 b = data_->at(second).bounds();
-  const auto apart = separation(first, second, std::numeric_limits<double>::infinity(), context);
-  if (first != second && apart && apart->between.distance > 0 && detail::box_gap(a, b) > 0) {
-    return apart->between.distance;
-  }
+  const auto closest = separation(first, second, infinite, context);
+  const double apart = closest ? closest->between.distance : infinite;
+  if (closest && detail::are_apart(data_->two(first, second))) return apart;
   const Penetrations found = penetration(first, second, options, context);
-  if (!found.parts.empty()) return -found.parts.front().depth;
-  return apart ? apart->between.distance : std::numeric_limits<double>::infinity();
+  return found.parts.empty() ? apart : -found.parts.front().depth;
+}
+
+ProximityPairs ProximityScene::signed_separations(const PenetrationOptions& options, const Context& context) const {
+  check(options);
+  ProximityPairs out = separation(infinite, context);
+  std::vector<TwoObjects> close;
+  for (const PrimitivePair& pair : out.pairs) {
+    const TwoObjects two = data_->two(pair.first_object, pair.second_object);
+    if (!detail::are_apart(two)) close.push_back(two);
+  }
+  auto parts = detail::penetrations(close, options, context, out.report.phases);
+  std::size_t next = 0;
+  for (PrimitivePair& pair : out.pairs) {
+    const bool is_close =
+        next < close.size() && pair.first_object == close[next].first && pair.second_object == close[next].second;
+    if (!is_close) continue;
+    if (!parts[next].empty()) pair = deepest_pair(parts[next].front());
+    ++next;
+  }
+  return out;
 }
 
 }  // namespace blum

@@ -46,7 +46,7 @@ void check_end(const SceneObject& object, const ObjectMotion& motion, const Cont
   try {
     object.check_positions(motion.vertices, context);
   } catch (const InvalidMesh& error) {
-    throw InvalidMesh("object " + std::to_string(motion.object.value) + " at the end: " + error.what());
+    throw InvalidMesh(name_of(motion.object, object) + " at the end: " + error.what());
   }
 }
 
@@ -63,7 +63,7 @@ Box3 box_around(std::span<const Vec3d> start, std::span<const Vec3d> end, const 
 
 void SceneMotion::add(const SceneObject& object, const ObjectMotion& motion, const Context& context) {
   std::optional<std::vector<Vec3d>>& end = ends_[motion.object.value];
-  if (end) throw InvalidOption("object " + std::to_string(motion.object.value) + " is given two motions");
+  if (end) throw InvalidOption(name_of(motion.object, object) + " is given two motions");
   if (motion.place) check(*motion.place);
   if (!motion.vertices.empty()) check_end(object, motion, context);
   const std::span<const Vec3d> vertices = motion.vertices.empty() ? object.mesh().vertices : motion.vertices;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
@@ -66,8 +67,8 @@ void check(const MeshView& mesh) {
 
 }  // namespace
 
-SceneObject::SceneObject(const MeshView& mesh, const ObjectOptions& options, const Context& context)
-    : options_(options) {
+SceneObject::SceneObject(const MeshView& mesh, ObjectOptions options, const Context& context)
+    : options_(std::move(options)) {
   set_mesh(mesh, context);
 }
 
@@ -146,6 +147,11 @@ std::vector<Vec3d> SceneObject::positions(std::span<const Vec3d> vertices, const
 
 std::vector<std::uint32_t> SceneObject::clusters() const {
   return is_placed_ ? weld_clusters(positions()) : weld_clusters(mesh_.vertices);
+}
+
+std::string name_of(ObjectId id, const SceneObject& object) {
+  const std::string& name = object.options().name;
+  return name.empty() ? "object " + std::to_string(id.value) : "'" + name + "'";
 }
 
 }  // namespace detail

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -18,13 +20,14 @@ namespace blum::detail {
 /// A mesh, where it is, and a hierarchy over it.
 class SceneObject {
  public:
-  SceneObject(const MeshView& mesh, const ObjectOptions& options, const Context& context);
+  SceneObject(const MeshView& mesh, ObjectOptions options, const Context& context);
 
   void set_positions(std::span<const Vec3d> vertices, const Context& context);
   /// @throws as it does, for vertices that it would not take.
   void check_positions(std::span<const Vec3d> vertices, const Context& context) const;
   void set_place(const RigidTransform& place);
   void set_mesh(const MeshView& mesh, const Context& context);
+  void set_name(std::string name) { options_.name = std::move(name); }
 
   [[nodiscard]] const ObjectOptions& options() const { return options_; }
   [[nodiscard]] const OrientedBvh& bvh() const { return *bvh_; }
@@ -57,5 +60,8 @@ class SceneObject {
   bool is_placed_ = false;
   std::optional<OrientedBvh> bvh_;
 };
+
+/// What messages call an object: "'arm.ply'", or "object 3" where it has no name.
+[[nodiscard]] std::string name_of(ObjectId id, const SceneObject& object);
 
 }  // namespace blum::detail

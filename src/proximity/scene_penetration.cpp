@@ -12,6 +12,7 @@
 #include <queue>
 #include <set>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -434,30 +435,48 @@ struct Surfaces {
 
   [[nodiscard]] bool is_of_first(std::uint32_t triangle) const { return triangle < of_first; }
 
-  void add(const TriangleMesh& surface, const std::vector<std::uint32_t>& triangle) {
+  void add(const SolidSurface& surface) {
     const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), surface.vertices.begin(), surface.vertices.end());
-    for (const auto& [a, b, c] : surface.triangles) mesh.triangles.push_back({base + a, base + b, base + c});
-    triangle_of.insert(triangle_of.end(), triangle.begin(), triangle.end());
+    mesh.vertices.insert(mesh.vertices.end(), surface.mesh.vertices.begin(), surface.mesh.vertices.end());
+    for (const auto& [a, b, c] : surface.mesh.triangles) mesh.triangles.push_back({base + a, base + b, base + c});
+    triangle_of.insert(triangle_of.end(), surface.triangle_of.begin(), surface.triangle_of.end());
   }
 };
 
-std::string name_of(ObjectId object) {
-  return "object " + std::to_string(object.value);
-}
+/// The surfaces of the objects of a scene, each made once.
+class SolidSurfaces {
+ public:
+  explicit SolidSurfaces(const Context& context) : context_(&context) {}
 
-/// Adds the surface of a solid; without what lies in it twice, so that what two surfaces wind around twice is in both.
-void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
-  TriangleMesh mesh{object.positions(), object.mesh().triangles};
-  if (is_self) check_faces_outwards(mesh, name_of(id));
-  SolidSurface surface =
-      is_self ? SolidSurface{std::move(mesh), {}, {}} : winding_surface(std::move(mesh), name_of(id), context);
-  if (surface.triangle_of.empty()) {
+  /// Without what lies in it twice, so that what two surfaces wind around twice is in both.
+  /// @throws InvalidMesh; Cancelled.
+  const SolidSurface& of(ObjectId id, const SceneObject& object) {
+    const auto [at, is_new] = made_.try_emplace(id);
+    if (is_new) {
+      at->second = winding_surface(mesh_of(object), name_of(id, object), *context_);
+      number_triangles(at->second);
+    }
+    return at->second;
+  }
+  /// As it is. @throws InvalidMesh.
+  static SolidSurface with_itself(ObjectId id, const SceneObject& object) {
+    SolidSurface out{mesh_of(object), {}, {}};
+    check_faces_outwards(out.mesh, name_of(id, object));
+    number_triangles(out);
+    return out;
+  }
+
+ private:
+  static TriangleMesh mesh_of(const SceneObject& object) { return {object.positions(), object.mesh().triangles}; }
+  static void number_triangles(SolidSurface& surface) {
+    if (!surface.triangle_of.empty()) return;
     surface.triangle_of.resize(surface.mesh.triangles.size());
     std::iota(surface.triangle_of.begin(), surface.triangle_of.end(), 0U);
   }
-  out.add(surface.mesh, surface.triangle_of);
-}
+
+  const Context* context_;
+  std::map<ObjectId, SolidSurface> made_;
+};
 
 /// One connected part of what solids have in common.
 class Body {
@@ -660,46 +679,116 @@ std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& ov
   });
 }
 
-}  // namespace
+/// @throws InvalidMesh that says why the parts of two objects cannot be told.
+[[noreturn]] void refuse(const TwoObjects& two, const std::string& obstacle) {
+  const std::string first = name_of(two.first, *two.a);
+  const std::string second = name_of(two.second, *two.b);
+  check_is_closed(two.a->mesh(), first);
+  check_is_closed(two.b->mesh(), second);
+  throw InvalidMesh("what " + (two.first == two.second ? "parts of " + first : first + " and " + second) +
+                    " have in common cannot be told: " + obstacle);
+}
 
-Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second, const SceneObject& b,
-                          const PenetrationOptions& options, const Context& context) {
-  check(options);
-  const bool is_self = first == second;
-  Penetrations out;
-  PhaseTimer timer(out.phases);
+/// The deepest first. @throws InvalidMesh; Cancelled.
+std::vector<Penetration> parts_of(const TwoObjects& two, SolidSurfaces& solids, double tolerance,
+                                  const Context& context, std::vector<PhaseTime>& phases) {
+  const bool is_self = two.first == two.second;
+  PhaseTimer timer(phases);
   Surfaces surfaces;
-  add_surface(a, first, is_self, context, surfaces);
-  surfaces.of_first = surfaces.mesh.triangles.size();
-  if (!is_self) add_surface(b, second, is_self, context, surfaces);
+  if (is_self) {
+    surfaces.add(SolidSurfaces::with_itself(two.first, *two.a));
+    surfaces.of_first = surfaces.mesh.triangles.size();
+  } else {
+    const SolidSurface& first = solids.of(two.first, *two.a);
+    const SolidSurface& second = solids.of(two.second, *two.b);
+    if (are_apart(two)) {
+      timer.lap("surfaces");
+      return {};
+    }
+    surfaces.add(first);
+    surfaces.of_first = surfaces.mesh.triangles.size();
+    surfaces.add(second);
+  }
   timer.lap("surfaces");
   Overlap overlap = overlap_of(surfaces.mesh, context);
-  if (!overlap.obstacle.empty()) {
-    check_is_closed(a.mesh(), name_of(first));
-    check_is_closed(b.mesh(), name_of(second));
-    throw InvalidMesh("what " + (is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second)) +
-                      " have in common cannot be told: " + overlap.obstacle);
-  }
+  if (!overlap.obstacle.empty()) refuse(two, overlap.obstacle);
   timer.lap("overlap");
   std::map<std::uint32_t, std::vector<std::uint32_t>> bodies;
   for (std::uint32_t t = 0; t < overlap.body_of.size(); ++t) bodies[overlap.body_of[t]].push_back(t);
   share_out_common_faces(surfaces, is_self, overlap);
   const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self);
+  std::vector<Penetration> parts;
   for (const auto& [body, triangles] : bodies) {
     throw_if_cancelled(context);
-    out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.depth_tolerance, context));
+    parts.push_back(Body(surfaces, overlap, labels, triangles).measure(tolerance, context));
+    parts.back().first_object = two.first;
+    parts.back().second_object = two.second;
   }
   // Parts come in the order of their smallest triangles; equally deep ones stay in it.
-  std::vector<std::size_t> order(out.parts.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::vector<std::size_t> order(parts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
-    return std::pair(-out.parts[x].depth, x) < std::pair(-out.parts[y].depth, y);
+    return std::pair(-parts[x].depth, x) < std::pair(-parts[y].depth, y);
   });
   std::vector<Penetration> sorted;
-  for (const std::size_t k : order) sorted.push_back(std::move(out.parts[k]));
-  out.parts = std::move(sorted);
+  for (const std::size_t k : order) sorted.push_back(std::move(parts[k]));
   timer.lap("depths");
+  return sorted;
+}
+
+/// Adds seconds to the phase of the same name.
+void add(const std::vector<PhaseTime>& from, std::vector<PhaseTime>& to) {
+  for (const PhaseTime& one : from) {
+    const auto same =
+        std::find_if(to.begin(), to.end(), [&](const PhaseTime& other) { return other.phase == one.phase; });
+    if (same != to.end()) same->seconds += one.seconds;
+  }
+}
+
+}  // namespace
+
+bool are_apart(const TwoObjects& two) {
+  return two.first != two.second && box_gap(two.a->bounds(), two.b->bounds()) > 0;
+}
+
+std::vector<std::vector<Penetration>> penetrations(std::span<const TwoObjects> pairs, const PenetrationOptions& options,
+                                                   const Context& context, std::vector<PhaseTime>& phases) {
+  check(options);
+  std::vector<PhaseTime> spent{{"surfaces", 0}, {"overlap", 0}, {"depths", 0}};
+  Context of_pair = context;
+  const bool shows_pairs = context.progress && pairs.size() > 1;
+  if (shows_pairs) of_pair.progress = {};
+  SolidSurfaces solids(of_pair);
+  std::vector<std::vector<Penetration>> out;
+  for (const TwoObjects& two : pairs) {
+    throw_if_cancelled(context);
+    std::vector<PhaseTime> more;
+    out.push_back(parts_of(two, solids, options.depth_tolerance, of_pair, more));
+    add(more, spent);
+    if (shows_pairs) {
+      context.progress(static_cast<double>(out.size()) / static_cast<double>(pairs.size()), "penetration");
+    }
+  }
+  if (!pairs.empty()) phases.insert(phases.end(), spent.begin(), spent.end());
   return out;
 }
 
 }  // namespace blum::detail
+
+namespace blum {
+
+PrimitivePair deepest_pair(const Penetration& part) {
+  constexpr TriangleFeature inside{SiteKind::face, 0};
+  PrimitivePair out{part.first_object,
+                    part.second_object,
+                    part.deep_triangle,
+                    part.surface_triangle,
+                    {-part.depth, part.deep_point, part.surface_point, inside, inside}};
+  if (!part.is_first_deep) {
+    std::swap(out.first, out.second);
+    std::swap(out.between.first_point, out.between.second_point);
+  }
+  return out;
+}
+
+}  // namespace blum

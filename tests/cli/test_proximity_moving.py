@@ -269,7 +269,7 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([*two, fallen, plate, plate], 2, "--to names 3 files, but 2 objects are given"),
         ([*two, plate, fallen], 1, f"'{plate}': it has 8 vertices, not 2,562 as '{ball}': frames of one motion have"),
         ([*two, fallen, tmp_path / "other.ply"], 1, "other.ply': its triangles, segments or points name other vertices"),
-        ([*two, fallen, tmp_path / "far.obj"], 1, "object 1 at the end: a coordinate is beyond 1e70"),
+        ([*two, fallen, tmp_path / "far.obj"], 1, f"'{plate}' at the end: a coordinate is beyond 1e70"),
         ([tmp_path / "far.obj", "--self", "-o", out, "--to", plate], 1, "far.obj': a coordinate is beyond 1e70"),
         ([*two, fallen, tmp_path / "absent.ply"], 1, "absent.ply"),
         ([ball, "-o", out, "--to", fallen], 2, "give --self, or the files of more objects"),

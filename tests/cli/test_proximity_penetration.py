@@ -82,6 +82,45 @@ def test_says_what_was_wrong_with_solids(folder, tmp_path):
     assert "--depth-tolerance" in run("proximity", *two, "--depth-tolerance", "0.1", status=2)[1]
 
 
+def test_messages_call_objects_by_their_files(folder, tmp_path):
+    box = blum.generate("box")
+    open_mesh = blum.Mesh(box.vertices + [0.2, 0.1, 0.1], np.asarray(box.triangles)[1:])
+    open_mesh.write(tmp_path / "object 0.ply")  # a name that could be a number
+    blum.Mesh(box.vertices, np.asarray(box.triangles)[:, ::-1]).write(tmp_path / "inward.ply")
+    blum.Mesh(box.vertices, np.repeat(np.asarray(box.triangles)[:1], 40000, axis=0)).write(tmp_path / "heap.ply")
+    first, odd, inward, heap = folder / "box.ply", *(tmp_path / f"{name}.ply" for name in ("object 0", "inward", "heap"))
+    for arguments, wanted in (
+        ([first, odd, "--query", "penetration"], f"'{odd}' is not closed"),
+        ([first, odd, "--query", "signed"], f"'{odd}' is not closed"),
+        ([first, inward, "--query", "penetration"], f"'{inward}' faces inwards"),
+        ([first, heap, "--self"], f"'{heap}': 40000 primitives meet at vertex"),
+        ([first, odd, "--frames", "--self", "--query", "penetration"], f"'{odd}' is not closed"),
+    ):
+        assert run("proximity", *arguments, status=1)[1].startswith(f"blum: error: {wanted}"), arguments
+
+
+def test_all_pairs_are_those_of_the_library(folder, tmp_path):
+    box = blum.read_mesh(folder / "box.ply")
+    blum.Mesh(box.vertices + [0.25, 0.5, 0.125], box.triangles).write(tmp_path / "beside.ply")
+    files = [folder / "box.ply", folder / "ball.ply", tmp_path / "beside.ply", folder / "frame3.ply"]
+    scene = blum.ProximityScene()
+    for file in files:
+        scene.add(blum.read_mesh(file), compare_self=True)
+    told = run_json("proximity", *files, "--query", "penetration", "--self")["penetrations"]
+    found = scene.penetrations()
+    assert len(told) == len(found) > 5
+    for one, part in zip(told, found, strict=True):
+        assert tuple(one["object"]) == part.object and one["depth"] == part.depth and one["volume"] == part.volume
+        assert one["deep_object"] == part.object[0 if part.is_first_deep else 1]
+        assert one["deep_point"] == part.deep_point.tolist() and one["deep_triangle"] == part.deep_triangle
+        assert one["curves"] == [curve.tolist() for curve in part.curves]
+    run("proximity", *files, "--query", "signed", "--self", "-o", tmp_path / "pairs.npz")
+    signed = scene.signed_separations()
+    with np.load(tmp_path / "pairs.npz") as file:
+        for name in ("object", "primitive", "distance", "point", "feature"):
+            assert file[name].tolist() == getattr(signed, name).tolist(), name
+
+
 def test_signed_is_one_number_for_each_two_solids(folder, tmp_path):
     ball = blum.read_mesh(folder / "ball.ply")
     blum.Mesh(ball.vertices + [5, 0, 0], ball.triangles).write(tmp_path / "far.ply")

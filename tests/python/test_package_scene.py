@@ -1,6 +1,7 @@
 """Proves that what the package says of scenes is what comparing all pairs of triangles says, through updates and in any
 kind of array, and that wrong arguments are refused by name."""
 
+import dataclasses
 import threading
 
 import numpy as np
@@ -339,6 +340,10 @@ def scene_of_two():
         (lambda s: s.add(soup(1, 1), layers=-1), ValueError, "layers is -1"),
         (lambda s: s.add(soup(1, 1), meets=2**32), ValueError, "meets is 4294967296"),
         (lambda s: s.add(soup(1, 1), layers=1.0), TypeError, "layers must be an integer"),
+        (lambda s: s.add(soup(1, 1), name=3), TypeError, "name must be a text"),
+        (lambda s: s.add(([[0, 0, 1e71], [0, 0, 0]], [[0, 1, 1]]), name="far"), ValueError, "'far': a coordinate is"),
+        (lambda s: s.rename(0, None), TypeError, "name must be a text"),
+        (lambda s: s.rename(2, "a"), ValueError, "no object 2"),
         (lambda s: s.add(soup(1, 1), compare_self="no"), TypeError, "compare_self must be True or False"),
         (lambda s: s.add(soup(1, 1), transform="x"), TypeError, "transform"),
         (lambda s: s.add(soup(1, 1), transform=np.eye(3)), ValueError, r"transform has the shape \(3, 3\)"),
@@ -458,6 +463,70 @@ def test_signed_separation_changes_its_sign_at_contact():
         scene.update(1, vertices)
         assert np.sign(scene.signed_separation(0, 1)) == sign
         assert bool(scene.penetration(0, 1)) == (sign < 0)
+
+
+def scene_of_solids():
+    """Boxes and balls of which some overlap, one of them in two parts with itself."""
+    scene, (box, ball) = blum.ProximityScene(), (blum.generate("box"), blum.generate("sphere", radius=0.5, frequency=4))
+    two = np.vstack([box.vertices, box.vertices + np.array([0.4, 0.2, 0.3])])
+    twice = two, np.vstack([box.triangles, np.asarray(box.triangles) + len(box.vertices)])
+    for mesh, at in (box, [0, 0, 0]), (ball, [0.1, 0, 0.9]), (ball, [5, 0, 0]), (twice, [0.3, 0.6, 0.7]):
+        scene.add(mesh, compare_self=mesh is twice, transform=(IDENTITY, at))
+    return scene, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3), (3, 3)]
+
+
+def test_all_solids_are_told_as_pair_by_pair():
+    scene, pairs = scene_of_solids()
+    wanted = [part for pair in pairs for part in scene.penetration(*pair, depth_tolerance=0.1)]
+    found = scene.penetrations(depth_tolerance=0.1)
+    assert len(found) == len(wanted) > 3
+    for one, other in zip(found, wanted, strict=True):
+        for field in dataclasses.fields(blum.Penetration):
+            mine, its = getattr(one, field.name), getattr(other, field.name)
+            if field.name == "curves":
+                assert [curve.tolist() for curve in mine] == [curve.tolist() for curve in its]
+            else:
+                assert np.array_equal(mine, its), field.name
+    assert [part.object for part in found] == sorted(part.object for part in found)
+    signed = scene.signed_separations(depth_tolerance=0.1)
+    assert list(map(tuple, signed.object.tolist())) == pairs
+    assert signed.distance.tolist() == [scene.signed_separation(*pair, depth_tolerance=0.1) for pair in pairs]
+    apart = scene.separation()
+    for k, pair in enumerate(signed):
+        if pair.distance >= 0:
+            assert pair.primitive == apart[k].primitive and np.array_equal(pair.point, apart[k].point)
+            continue
+        part = next(part for part in wanted if part.object == pair.object)
+        points = [part.deep_point, part.surface_point]
+        assert np.array_equal(pair.point, points if part.is_first_deep else points[::-1])
+        assert (pair.feature >= 0).all()  # inside of triangles
+    assert signed.closest.distance == -max(part.depth for part in found)
+
+
+def test_all_solids_take_what_pairs_take():
+    scene, _ = scene_of_solids()
+    told = []
+    scene.penetrations(progress=lambda fraction, phase: told.append((fraction, phase)))
+    assert told[-1] == (1, "penetration") and told == sorted(told)
+    box = blum.generate("box")
+    cup = scene.add((box.vertices + np.array([0, 30, 0]), np.asarray(box.triangles)[1:]), name="cup")
+    assert len(scene.signed_separations()) == 11  # its box is apart from all
+    for call in (scene.penetrations, lambda: scene.penetration(0, cup)):
+        with pytest.raises(blum.InvalidMesh, match=r"^'cup' is not closed"):
+            call()
+    scene.rename(cup, "bowl")
+    with pytest.raises(blum.InvalidMesh, match=r"^'bowl' is not closed"):
+        scene.penetrations()
+    scene.rename(cup, "")
+    with pytest.raises(blum.InvalidMesh, match=r"^object 4 is not closed"):
+        scene.penetrations()
+    for call in (scene.penetrations, scene.signed_separations):
+        with pytest.raises(blum.InvalidOption, match="depth_tolerance"):
+            call(depth_tolerance=0)
+        with pytest.raises(TypeError, match="depth"):
+            call(depth=1)
+    empty = blum.ProximityScene()
+    assert empty.penetrations() == [] and len(empty.signed_separations()) == 0
 
 
 def test_continuous_collisions_of_objects():

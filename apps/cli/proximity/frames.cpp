@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +26,7 @@ void check(const ProximityArguments& a) {
   if (a.output) check_extension("--output", *a.output, {".json"});
 }
 
-Json pair_json(const char* kind, const Vec3d& first, const Vec3d& second, double distance) {
+Json pair_json(const std::string& kind, const Vec3d& first, const Vec3d& second, double distance) {
   return {{"kind", kind}, {"points", {to_json(first), to_json(second)}}, {"distance", distance}};
 }
 
@@ -44,12 +43,19 @@ struct Frame {
   }
 };
 
-void tell(const ProximityPairs& found, const char* kind, std::size_t limit, Frame& out) {
-  for (const PrimitivePair& pair : found.pairs) {
-    const TriangleDistance& between = pair.between;
-    out.add(pair_json(kind, between.first_point, between.second_point, between.distance), limit);
+void tell(const SceneFound& found, std::size_t limit, Frame& out) {
+  const std::string kind(found.kind);
+  for (const Penetration& part : found.parts) {
+    out.add(pair_json(kind, part.deep_point, part.surface_point, part.depth), limit);
   }
-  out.phases.insert(out.phases.end(), found.report.phases.begin(), found.report.phases.end());
+  if (found.parts.empty()) {
+    for (const PrimitivePair& pair : found.pairs.pairs) {
+      const TriangleDistance& between = pair.between;
+      out.add(pair_json(kind, between.first_point, between.second_point, between.distance), limit);
+    }
+  }
+  const auto& phases = found.pairs.report.phases;
+  out.phases.insert(out.phases.end(), phases.begin(), phases.end());
 }
 
 /// Features that meet on the way to the next frame, by the way of one of their vertices until they do.
@@ -73,15 +79,16 @@ void tell(const SceneCollisions& found, const TriangleMesh& from, std::span<cons
 /// One object, frame after frame.
 class Sequence {
  public:
-  Sequence(const ProximityArguments& a, const Context& context)
+  Sequence(const ProximityArguments& a, const SceneQuery& query, const Context& context)
       : arguments_(a),
+        query_(query),
         context_(context),
         impact_(a.impact.read()),
-        penetration_(a.penetration.read()),
         weld_(parse_weld(a.weld)),
         limit_(read_limit(a)),
         scene_(a.culling.read()) {
-    if (a.within) within_ = parse_non_negative("--within", *a.within);
+    if (a.within) asked_.within = parse_non_negative("--within", *a.within);
+    asked_.penetration = a.penetration.read();
   }
 
   Frame frame(std::size_t k) {
@@ -89,19 +96,10 @@ class Sequence {
     Stopwatch watch;
     move_to(k);
     out.phases.push_back({"boxes", watch.lap()});
-    const std::string& query = arguments_.query;
-    const double most = within_.value_or(std::numeric_limits<double>::infinity());
-    if (query == "continuous") {
-      if (k + 1 < arguments_.scene.size()) ask_continuous(k, out);
-    } else if (query == "penetration") {
-      ask_penetration(k, out);
-    } else if (query == "collide") {
-      const bool is_near = within_.value_or(0) > 0;
-      tell(is_near ? scene_.closer_than(*within_, context_) : scene_.collisions(context_),
-           is_near ? "closest" : "collision", limit_, out);
-    } else {
-      tell(query == "nbody" ? scene_.closest_primitives(most, context_) : scene_.separation(most, context_), "closest",
-           limit_, out);
+    if (query_.ask != nullptr) {
+      tell(query_.ask(scene_, asked_, context_), limit_, out);
+    } else if (k + 1 < arguments_.scene.size()) {
+      ask_continuous(k, out);
     }
     return out;
   }
@@ -112,24 +110,19 @@ class Sequence {
     next_.reset();
     const bool is_same = difference(mesh_, next).empty();
     mesh_ = std::move(next);
+    const std::string& file = arguments_.scene[k];
     if (scene_.size() == 0) {
       ObjectOptions options;
       options.self = true;
+      options.name = file;
       object_ = scene_.add(mesh_, options, context_);
-    } else if (is_same) {
+      return;
+    }
+    scene_.rename(object_, file);
+    if (is_same) {
       scene_.update(object_, mesh_.vertices, context_);
     } else {
       scene_.update(object_, mesh_, context_);
-    }
-  }
-
-  void ask_penetration(std::size_t k, Frame& out) {
-    try {
-      for (const ScenePenetration& part : all_penetrations(scene_, true, penetration_, context_, out.phases)) {
-        out.add(pair_json("penetration", part.part.deep_point, part.part.surface_point, part.part.depth), limit_);
-      }
-    } catch (const InvalidMesh& error) {
-      throw InvalidMesh(with_names(error.what(), {arguments_.scene[k]}));
     }
   }
 
@@ -151,10 +144,10 @@ class Sequence {
   }
 
   const ProximityArguments& arguments_;
+  const SceneQuery& query_;
   const Context& context_;
   ImpactOptions impact_;
-  PenetrationOptions penetration_;
-  std::optional<double> within_;
+  SceneQuestion asked_;
   std::optional<double> weld_;
   std::size_t limit_;
   ProximityScene scene_;
@@ -247,7 +240,7 @@ void write(const ProximityArguments& a, Answer& answer) {
 
 }  // namespace
 
-void run_frames(const ProximityArguments& a) {
+void run_frames(const ProximityArguments& a, const SceneQuery& query) {
   check(a);
   check(a.impact.read());
   check(a.penetration.read());
@@ -260,7 +253,7 @@ void run_frames(const ProximityArguments& a) {
   const Interrupt interrupt;
   Context context = make_context(threads, progress, interrupt);
   const auto show = std::exchange(context.progress, {});
-  Sequence sequence(a, context);
+  Sequence sequence(a, query, context);
   Answer answer;
   for (std::size_t k = 0; k < a.scene.size(); ++k) {
     throw_if_cancelled(context);

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/io/collision_io.hpp"
 #include "blum/proximity/scene.hpp"
@@ -63,11 +62,8 @@ ProximityScene scene_of(const std::vector<MovingMesh>& meshes, const ProximityAr
   ObjectOptions options;
   options.self = a.self;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    try {
-      scene.add(meshes[k].start, options, context);
-    } catch (const InvalidMesh& error) {
-      throw InvalidMesh("'" + a.scene[k] + "': " + error.what());
-    }
+    options.name = a.scene[k];
+    scene.add(meshes[k].start, options, context);
   }
   return scene;
 }

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 #include <memory>
 #include <string>
 
@@ -36,30 +34,39 @@ constexpr const char* examples = R"(Examples:
   blum proximity cloth*.ply --frames --self --query continuous -o pairs.json
                                          what meets between any frame and the next; blum view shows it)";
 
-struct Query {
-  const char* name;
-  void (*run)(const ProximityArguments&);
-};
-constexpr std::array queries{Query{"separation", run_scene_query},  Query{"signed", run_scene_query},
-                             Query{"nbody", run_scene_query},       Query{"collide", run_scene_query},
-                             Query{"penetration", run_scene_query}, Query{"continuous", run_continuous_query}};
+/// "separation: the closest pair of ...; signed: ...".
+std::string queries_text() {
+  std::string out;
+  for (const SceneQuery& query : scene_queries()) {
+    out += (out.empty() ? "" : "; ") + std::string(query.name) + ": " + std::string(query.doc);
+  }
+  return out;
+}
+
+/// The queries that culling is for, as help begins with them.
+std::string culling_text() {
+  std::string out;
+  for (const SceneQuery& query : scene_queries()) {
+    if (query.takes_culling) out += (out.empty() ? "" : ", ") + std::string(query.name);
+  }
+  return out + ": ";
+}
 
 void run(const ProximityArguments& a) {
-  const auto* const query =
-      std::find_if(queries.begin(), queries.end(), [&](const Query& one) { return a.query == one.name; });
-  if (query == queries.end()) {
-    throw UsageError("--query is '" + a.query +
-                     "', but must be separation, signed, nbody, collide, penetration or continuous");
-  }
+  const SceneQuery& query = scene_query(a.query);
   if (!a.ends.empty() && a.ends.front().starts_with('-')) {
     throw UsageError("--to names no file: '" + a.ends.front() + "' follows it; name one for each SCENE");
   }
   if (a.skip_changed && !(a.frames && a.query == "continuous")) {
     throw UsageError("--skip-changed is for --frames with --query continuous alone");
   }
-  if (a.frames && a.query == "signed") throw UsageError("--query signed is for several objects, not for --frames");
+  if (a.frames && !query.takes_frames) {
+    throw UsageError("--query " + a.query + " is for several objects, not for --frames");
+  }
   if (!a.ends.empty() && a.query != "continuous") throw UsageError("--to is for --query continuous alone");
-  (a.frames ? run_frames : query->run)(a);
+  if (a.frames) return run_frames(a, query);
+  if (query.ask == nullptr) return run_continuous_query(a);
+  run_scene_query(a, query);
 }
 
 }  // namespace
@@ -72,15 +79,7 @@ void add_proximity_command(const CommandLine& line) {
                   "Objects, a file for each; with --query continuous two frames of one, or with --to objects: " +
                       extensions_help({FileContent::mesh}, FileAccess::read))
       .required();
-  command
-      .add_option(
-          "--query", a->query,
-          "separation: the closest pair of each two objects (default); signed: the same of solids, or minus the "
-          "depth where they overlap; nbody: for each primitive (triangle, "
-          "segment or point) the closest one; collide: all pairs that meet; penetration: what solids have in "
-          "common, and how deep they lie in each other; continuous: what of a mesh, or with --to of objects, "
-          "meets between two frames")
-      .type_name("QUERY");
+  command.add_option("--query", a->query, queries_text()).type_name("QUERY");
   command
       .add_option("--to", a->ends,
                   "continuous: where the objects are at the end, a file for each SCENE, in the same order; one that "
@@ -106,7 +105,7 @@ void add_proximity_command(const CommandLine& line) {
   add_text_option(command, "--limit", a->limit, "N",
                   "Write at most N pairs, of --frames of each frame; all are counted (default: all)");
   add_weld_option(command, a->weld);
-  a->culling.add_to(command, "separation, signed, nbody, collide: ");
+  a->culling.add_to(command, culling_text());
   a->penetration.add_to(command, "penetration, signed: ");
   a->impact.add_to(command, "continuous: ");
   add_threads_option(command, a->threads);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "blum/complex/columns.hpp"
@@ -37,6 +38,37 @@ struct ProximityArguments {
   ReportOptions report;
 };
 
+/// What is asked of a scene, whatever the query.
+struct SceneQuestion {
+  std::optional<double> within;
+  PenetrationOptions penetration;
+};
+
+/// What a query of a scene found.
+struct SceneFound {
+  ProximityPairs pairs = {};
+  std::vector<Penetration> parts = {};  ///< of penetration: what the pairs are of
+  std::string_view kind = "closest";    ///< what the viewer calls the pairs
+};
+
+/// All that the tool knows of a query: another one is a row of scene_queries.cpp.
+struct SceneQuery {
+  std::string_view name;
+  std::string_view doc;  ///< for --help
+  bool takes_within = false;
+  bool takes_culling = false;
+  bool takes_depth = false;  ///< whether options of penetration are for it
+  bool takes_frames = true;
+  bool has_rows = false;  ///< whether what is printed has a row for each pair, and not for the closest one alone
+  /// nullptr: objects move, and answers are no pairs.
+  SceneFound (*ask)(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) = nullptr;
+};
+
+[[nodiscard]] std::span<const SceneQuery> scene_queries();
+
+/// @throws UsageError that names all of them.
+[[nodiscard]] const SceneQuery& scene_query(const std::string& name);
+
 /// --query continuous: two files are a mesh at the start and the end of a motion; with --to as run_moving_scene().
 void run_continuous_query(const ProximityArguments& a);
 
@@ -59,36 +91,16 @@ struct MovingMesh {
 /// What is asked of options by --query continuous, whatever moves. @throws UsageError.
 void check_continuous_options(const ProximityArguments& a);
 
-/// --query separation, signed, nbody, collide or penetration: each file is an object.
-void run_scene_query(const ProximityArguments& a);
+/// Any query but continuous: each file is an object.
+void run_scene_query(const ProximityArguments& a, const SceneQuery& query);
 
 /// Any query with --frames: the files are those of one object, one after the other.
-void run_frames(const ProximityArguments& a);
-
-/// A part of what two objects of a scene have in common.
-struct ScenePenetration {
-  ObjectId first;
-  ObjectId second;
-  Penetration part;
-};
-
-/// Those of all pairs of objects, and with `is_self` of each with itself.
-[[nodiscard]] std::vector<ScenePenetration> all_penetrations(const ProximityScene& scene, bool is_self,
-                                                             const PenetrationOptions& options, const Context& context,
-                                                             std::vector<PhaseTime>& phases);
-
-/// A part as a pair: of the points that are told of it, with the depth as a negative distance.
-[[nodiscard]] PrimitivePair pair_of(const ScenePenetration& penetration);
-
-/// For each two objects (and with self those that are asked for themselves) the closest pair or, of solids that lie in
-/// each other, the deepest part as pair_of() tells it. @param meshes  of the objects. @throws as ProximityScene.
-[[nodiscard]] ProximityPairs signed_separations(const ProximityScene& scene, std::span<const MeshView> meshes,
-                                                const PenetrationOptions& options, const Context& context);
+void run_frames(const ProximityArguments& a, const SceneQuery& query);
 
 /// What files of pairs tell of parts beside their pairs: depth_bound, direction, area, volume, deep_object.
-[[nodiscard]] Columns columns_of(std::span<const ScenePenetration> penetrations);
+[[nodiscard]] Columns columns_of(std::span<const Penetration> penetrations);
 
-[[nodiscard]] Json json_of(const ScenePenetration& penetration);
+[[nodiscard]] Json penetration_json(const Penetration& part);
 
 /// Names of files: the last parts of their paths, as many as it takes to tell different paths apart.
 [[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& files);
@@ -98,9 +110,6 @@ struct ScenePenetration {
 
 /// A point, where coordinates that are rounding beside a size (mesh units) read 0.
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
-
-/// A message of the library, with the names of files in place of "object 0" and so on.
-[[nodiscard]] std::string with_names(std::string message, const std::vector<std::string>& files);
 
 /// The most pairs that are written: --limit, or more than there can be. @throws UsageError.
 [[nodiscard]] std::size_t read_limit(const ProximityArguments& a);

@@ -2,14 +2,13 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/primitives.hpp"
 #include "blum/io/mesh_io.hpp"
@@ -29,21 +28,19 @@ namespace fs = std::filesystem;
 /// Rows of the table that separation prints.
 constexpr std::size_t most_rows = 20;
 
-void check(const ProximityArguments& a) {
+void check(const ProximityArguments& a, const SceneQuery& query) {
   if (a.scene.size() == 1 && !a.self) {
     throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
   }
-  const bool is_penetration = a.query == "penetration";
   if (const auto names = a.impact.given(); !names.empty()) {
     throw UsageError(names.front() + " is for --query continuous alone");
   }
-  const bool is_signed = a.query == "signed";
-  if (const auto names = a.penetration.given(); !is_penetration && !is_signed && !names.empty()) {
+  if (const auto names = a.penetration.given(); !query.takes_depth && !names.empty()) {
     throw UsageError(names.front() + " is for --query penetration and signed alone");
   }
-  if ((is_penetration || is_signed) && a.within) throw UsageError("--within is not for --query " + a.query);
-  if (const auto names = a.culling.given(); is_penetration && !names.empty()) {
-    throw UsageError(names.front() + " is not for --query penetration");
+  if (!query.takes_within && a.within) throw UsageError("--within is not for --query " + a.query);
+  if (const auto names = a.culling.given(); !query.takes_culling && !names.empty()) {
+    throw UsageError(names.front() + " is not for --query " + a.query);
   }
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
 }
@@ -51,10 +48,11 @@ void check(const ProximityArguments& a) {
 /// The objects of a scene, and what was asked of them.
 struct Answer {
   std::vector<TriangleMesh> meshes;
-  std::optional<double> within;
+  SceneQuestion asked;
   ProximityPairs found;
-  std::vector<ScenePenetration> parts;  ///< of --query penetration: what `found` tells
-  std::vector<std::string> names;       ///< of the objects
+  std::vector<Penetration> parts;  ///< of --query penetration: what `found` tells
+  std::string_view kind;           ///< of the pairs
+  std::vector<std::string> names;  ///< of the objects
   PhaseSummary spent;
   int threads = 0;
   std::size_t limit = 0;
@@ -88,44 +86,15 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
   ObjectOptions options;
   options.self = a.self;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    try {
-      scene.add(meshes[k], options, context);
-    } catch (const InvalidMesh& error) {
-      throw InvalidMesh("'" + a.scene[k] + "': " + error.what());
-    }
+    options.name = a.scene[k];
+    scene.add(meshes[k], options, context);
   }
   return scene;
 }
 
-void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  try {
-    answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh(with_names(error.what(), a.scene));
-  }
-  answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
-  for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
-}
-
-void ask_signed(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  try {
-    answer.found = signed_separations(scene, answer.views(), a.penetration.read(), context);
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh(with_names(error.what(), a.scene));
-  }
-}
-
-ProximityPairs ask(const ProximityScene& scene, const std::string& query, std::optional<double> within,
-                   const Context& context) {
-  const double most = within.value_or(std::numeric_limits<double>::infinity());
-  if (query == "separation") return scene.separation(most, context);
-  if (query == "nbody") return scene.closest_primitives(most, context);
-  return within.value_or(0) > 0 ? scene.closer_than(*within, context) : scene.collisions(context);
-}
-
 FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
   FileMetadata out{{"content", "pairs of primitives"}, {"blum_version", BLUM_VERSION}, {"query", a.query}};
-  if (answer.within) out.emplace_back("within", exact_text(*answer.within));
+  if (answer.asked.within) out.emplace_back("within", exact_text(*answer.asked.within));
   out.emplace_back("self", a.self ? "true" : "false");
   for (std::size_t k = 0; k < a.scene.size(); ++k) {
     out.emplace_back("object_" + std::to_string(k), answer.names[k]);
@@ -157,11 +126,11 @@ Json closest_json(const Answer& answer) {
 
 Json json_of(const ProximityArguments& a, const Answer& answer) {
   Json parts = Json::array();
-  for (const ScenePenetration& part : answer.parts) parts.push_back(json_of(part));
+  for (const Penetration& part : answer.parts) parts.push_back(penetration_json(part));
   return answer_json("proximity", {{"query", a.query},
                                    {"objects", objects_json(a, answer)},
                                    {"self", a.self},
-                                   {"within", to_json(answer.within)},
+                                   {"within", to_json(answer.asked.within)},
                                    {"object_pairs", answer.found.report.object_pairs},
                                    {"pairs", answer.found.pairs.size()},
                                    {"min_distance", to_json(answer.min_distance())},
@@ -216,7 +185,7 @@ std::string object_text(const Answer& answer, const PrimitivePair& pair) {
 void add_penetrations(const Answer& answer, TextTable& table) {
   const double size = largest(answer.meshes);
   for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {
-    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k].part, size));
+    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k], size));
   }
   if (answer.parts.size() > most_rows) {
     table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more; --json FILE tells all");
@@ -246,28 +215,28 @@ std::string scene_text(const Answer& answer) {
          (others > 0 ? ", " + plural(others, "segment or point", "segments and points") : "");
 }
 
-std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
-  if (a.query == "penetration") {
+std::string pairs_text(const Answer& answer) {
+  if (answer.kind == "penetration") {
     return answer.parts.empty() ? "none: nothing lies in anything else"
                                 : plural(answer.parts.size(), "part in common", "parts in common");
   }
-  const bool meet = a.query == "collide" && answer.within.value_or(0) == 0;
+  const bool meet = answer.kind == "collision";
   return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
-         (answer.within && !meet ? " within " + rounded_text(*answer.within) : "");
+         (answer.asked.within && !meet ? " within " + rounded_text(*answer.asked.within) : "");
 }
 
-std::string text_of(const ProximityArguments& a, const Answer& answer) {
+std::string text_of(const ProximityArguments& a, const SceneQuery& query, const Answer& answer) {
   TextTable table;
   table.add("scene", scene_text(answer));
-  table.add("pairs", pairs_text(a, answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
-  if (a.query == "penetration") {
+  table.add("pairs", pairs_text(answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
+  if (answer.kind == "penetration") {
     add_penetrations(answer, table);
-  } else if (a.query == "separation" || a.query == "signed") {
+  } else if (query.has_rows) {
     add_separations(answer, table);
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
     table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
   }
-  if (a.query != "penetration")
+  if (answer.kind != "penetration")
     table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
                            count_text(answer.found.report.candidates) + " candidates in " +
                            plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
@@ -279,20 +248,21 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
 void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
   const std::span<const PrimitivePair> pairs = answer.found.pairs;
   const std::size_t count = std::min(pairs.size(), answer.limit);
-  const std::span<const ScenePenetration> parts = answer.parts;
-  const Columns more = a.query == "penetration" ? columns_of(parts.first(count)) : Columns();
+  const std::span<const Penetration> parts = answer.parts;
+  const Columns more = answer.kind == "penetration" ? columns_of(parts.first(count)) : Columns();
   write_proximity_pairs(*a.output, pairs.first(count), answer.views(), metadata_of(a, answer), more, context);
 }
 
 }  // namespace
 
-void run_scene_query(const ProximityArguments& a) {
-  check(a);
+void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
+  check(a, query);
   Answer answer;
   const SceneOptions culling = a.culling.read();
   check(culling);
-  check(a.penetration.read());
-  if (a.within) answer.within = parse_non_negative("--within", *a.within);
+  answer.asked.penetration = a.penetration.read();
+  check(answer.asked.penetration);
+  if (a.within) answer.asked.within = parse_non_negative("--within", *a.within);
   answer.limit = read_limit(a);
   answer.names = told_apart(a.scene);
   const std::optional<double> weld = parse_weld(a.weld);
@@ -308,13 +278,10 @@ void run_scene_query(const ProximityArguments& a) {
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
   phases.push_back({"build", watch.lap()});
-  if (a.query == "penetration") {
-    ask_penetration(scene, a, context, answer);
-  } else if (a.query == "signed") {
-    ask_signed(scene, a, context, answer);
-  } else {
-    answer.found = ask(scene, a.query, answer.within, context);
-  }
+  SceneFound found = query.ask(scene, answer.asked, context);
+  answer.found = std::move(found.pairs);
+  answer.parts = std::move(found.parts);
+  answer.kind = found.kind;
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {
@@ -324,7 +291,7 @@ void run_scene_query(const ProximityArguments& a) {
   progress.clear();
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);
-  report(a.report, json_of(a, answer), text_of(a, answer));
+  report(a.report, json_of(a, answer), text_of(a, query, answer));
 }
 
 }  // namespace blum::cli

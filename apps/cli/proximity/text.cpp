@@ -69,23 +69,6 @@ std::string objects_text(const std::vector<std::string>& names, ObjectId first, 
   return names[first.value] + ", " + (first == second ? "itself" : names[second.value]);
 }
 
-std::string with_names(std::string message, const std::vector<std::string>& files) {
-  static const std::string word = "object ";
-  constexpr const char* digits = "0123456789";
-  for (std::size_t at = message.find(word); at != std::string::npos; at = message.find(word, at)) {
-    const std::size_t number = at + word.size();
-    const std::size_t end = std::min(message.find_first_not_of(digits, number), message.size());
-    at = end;
-    if (end == number || end - number > 9) continue;
-    const std::size_t object = std::stoul(message.substr(number, end - number));
-    if (object >= files.size()) continue;
-    const std::string name = "'" + files[object] + "'";
-    message.replace(number - word.size(), end - (number - word.size()), name);
-    at = number - word.size() + name.size();
-  }
-  return message;
-}
-
 std::size_t read_limit(const ProximityArguments& a) {
   constexpr std::int64_t most = std::int64_t{1} << 40;
   return a.limit ? static_cast<std::size_t>(parse_integer("--limit", *a.limit, 0, most)) : most;

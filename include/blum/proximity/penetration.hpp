@@ -11,6 +11,7 @@
 #include "blum/core/describe.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/proximity/motion.hpp"
 
 namespace blum {
 
@@ -40,6 +41,8 @@ void check(const PenetrationOptions& options);
 /// apart: moving by it brings the deepest point to the other part, and others may still be inside; nor does it count
 /// what of the surfaces is not in the part. Where surfaces coincide, it is that of moving one by next to nothing.
 struct Penetration {
+  ObjectId first_object;
+  ObjectId second_object;
   double depth = 0;        ///< mesh units; that of deep_point and surface_point
   double depth_bound = 0;  ///< what it is at most: a bound for certain, but for rounding
   /// Of length 1: where the first object is to be moved, by `depth`, to bring the deepest point to the surface.
@@ -57,9 +60,10 @@ struct Penetration {
   std::vector<std::vector<Vec3d>> curves;
 };
 
-/// What two solids have in common, in its connected parts, the deepest first.
+/// What solids have in common, in its connected parts, of each pair the deepest first.
 struct Penetrations {
   std::vector<Penetration> parts;
+  std::size_t object_pairs = 0;  ///< compared; an object with itself is one
   std::vector<PhaseTime> phases;
 };
 
