@@ -32,7 +32,7 @@ struct SolidInput {
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
 
 /// What there is to say of an input: how many vertices were joined, and triangles reversed.
-[[nodiscard]] std::vector<std::string> warnings_of(const SolidInput& input);
+[[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);
 
 [[nodiscard]] std::string reversed_shells_text(std::size_t count);
 

@@ -77,12 +77,12 @@ Json answer_json(std::string_view command, const Json& facts) {
 }
 
 void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
-                   const std::vector<std::string>& warnings, const Json& outputs) {
+                   const std::vector<Warning>& warnings, const Json& outputs) {
   answer["seconds"] = spent.seconds;
   answer["total_seconds"] = spent.total;
   answer["peak_memory_bytes"] = peak_memory();
   answer["threads"] = thread_count(context);
-  answer["warnings"] = warnings;
+  answer["warnings"] = to_json(warnings);
   answer["outputs"] = outputs;
 }
 
@@ -101,9 +101,13 @@ void report(const ReportOptions& options, const Json& json, const std::string& t
   if (!options.quiet && !options.json_to_stdout()) print(text);
 }
 
-void warn(const std::vector<std::string>& warnings) {
+void warn(const std::vector<Warning>& warnings) {
+  for (const Warning& warning : warnings) warn_of(warning.text);
+}
+
+void warn_of(const std::string& text) {
   std::fflush(stdout);
-  for (const std::string& warning : warnings) std::fprintf(stderr, "blum: warning: %s\n", warning.c_str());
+  std::fprintf(stderr, "blum: warning: %s\n", text.c_str());
 }
 
 void print(std::string_view text) {

@@ -118,7 +118,7 @@ struct Run {
   std::vector<fs::path> outputs;
   std::optional<fs::path> removed;       ///< sites of a field that was replaced by one without
   std::vector<fs::path> removed_second;  ///< likewise what was of order 2
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   TextTable table;
   bool names_device = false;  ///< one other than the CPU was asked for, which `auto` may be, too
   void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
@@ -210,26 +210,32 @@ double coarsest_step(const GridSpec& grid) {
 }
 
 /// What deserves a look although the field was made as asked.
-std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& s, const MeshView& mesh,
-                                     const Orientation& facts) {
+std::vector<Warning> warnings_of(const Field& field, const FieldStatistics& s, const MeshView& mesh,
+                                 const Orientation& facts) {
   if (field.sign_rule == SignRule::none) return {};
   if (facts.closed && facts.oriented && !facts.outward) {
     if (facts.signed_volume < 0) {
-      return {"the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"};
+      return {
+          {WarningCode::facing,
+           "the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"}};
     }
     // Shells that cross have no depth that would tell which way they must face; winding numbers join them.
     if (field.sign_rule == SignRule::normals || !SelfIntersectionSearch().finds_any(mesh)) {
       return {
-          "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
-          "says more of its shells"};
+          {WarningCode::facing,
+           "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
+           "says more of its shells"}};
     }
   }
   if (s.inside_nodes > 0) return {};
   if (facts.inconsistent_edges > 0) {
-    return {"no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
-            " between triangles that face different ways, so that their winding numbers cancel; orient the mesh first"};
+    return {{WarningCode::nothing_inside,
+             "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
+                 " between triangles that face different ways, so that their winding numbers cancel; orient the mesh "
+                 "first"}};
   }
-  return {"no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"};
+  return {{WarningCode::nothing_inside,
+           "no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"}};
 }
 
 void finish(const Request& request, Run& run, const GridSpec& grid, const Context& context) {
@@ -251,7 +257,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                                           {"peak_memory_bytes", peak_memory()},
                                           {"threads", thread_count(context)},
                                           {"thread_backend", thread_backend()},
-                                          {"warnings", run.warnings},
+                                          {"warnings", to_json(run.warnings)},
                                           {"outputs", outputs},
                                           {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)},
                                           {"removed_second", removed_second}});
@@ -334,7 +340,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   progress.clear();
   add_field(run, field, statistics, files_of_field(r.output, r.options.sites, r.options.order), nullptr);
   run.warnings = warnings_of(field, statistics, mesh, facts);
-  if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
+  if (is_welded_away(file)) run.warnings.emplace_back(WarningCode::other_vertices, welded_away_text(file));
   finish(r, run, grid, context);
 }
 

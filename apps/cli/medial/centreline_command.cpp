@@ -114,12 +114,13 @@ Json brief_json(const Centreline& line) {
           {"homotopy", line.homotopy}};
 }
 
-std::vector<std::string> warnings_of(const Centrelines& lines, const GridSpec& grid) {
-  std::vector<std::string> warnings;
+std::vector<Warning> warnings_of(const Centrelines& lines, const GridSpec& grid) {
+  std::vector<Warning> warnings;
   if (std::count(grid.size.begin(), grid.size.end(), 1) > 0) {
     warnings.emplace_back(
-        "the image has a single layer, which is a plate as thick as a voxel: lengths and radii are not those of a "
-        "picture in the plane");
+        WarningCode::single_layer,
+        "the image has a single layer, which is a plate as thick as a voxel: lengths and radii are not "
+        "those of a picture in the plane");
   }
   std::size_t left_out = 0;
   for (const Centreline& line : lines.labels) {
@@ -127,17 +128,21 @@ std::vector<std::string> warnings_of(const Centrelines& lines, const GridSpec& g
     if (warnings.size() == most_warnings) {
       ++left_out;
     } else if (line.voxels == 0) {
-      warnings.push_back(line.label ? "no voxel has the label " + std::to_string(*line.label)
-                                    : "no voxel reaches the threshold");
+      warnings.emplace_back(WarningCode::nothing_found, line.label
+                                                            ? "no voxel has the label " + std::to_string(*line.label)
+                                                            : "no voxel reaches the threshold");
     } else {
-      warnings.push_back((line.label ? "label " + std::to_string(*line.label) + ": " : "") + line.homotopy);
+      warnings.emplace_back(WarningCode::other_topology,
+                            (line.label ? "label " + std::to_string(*line.label) + ": " : "") + line.homotopy);
     }
   }
   if (left_out > 0) {
-    warnings.push_back(plural(left_out, "more label has", "more labels have") +
-                       " no voxels, or another topology than their curves: the JSON tells");
+    warnings.emplace_back(WarningCode::other_topology,
+                          plural(left_out, "more label has", "more labels have") +
+                              " no voxels, or another topology than their curves: the JSON tells");
   }
-  if (lines.labels.empty()) warnings.emplace_back("the image has no voxels of these labels");
+  if (lines.labels.empty())
+    warnings.emplace_back(WarningCode::nothing_found, "the image has no voxels of these labels");
   return warnings;
 }
 
@@ -196,7 +201,7 @@ void run(const Arguments& a) {
   phases.push_back({"write", watch.lap()});
   progress.clear();
 
-  const std::vector<std::string> warnings = warnings_of(lines, image.grid);
+  const std::vector<Warning> warnings = warnings_of(lines, image.grid);
   const PhaseSummary spent = summarize(phases);
   Json briefs = Json::array();
   for (const Centreline& line : lines.labels) briefs.push_back(brief_json(line));

@@ -234,8 +234,10 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
                               (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts beside them" : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
-  if (report.reversed_shells > 0) run.warnings.push_back(reversed_shells_text(report.reversed_shells));
-  if (report.rule == SolidRule::winding) run.warnings.push_back(report.reason + ", as voxels");
+  if (report.reversed_shells > 0)
+    run.warnings.emplace_back(WarningCode::reversed_shells, reversed_shells_text(report.reversed_shells));
+  if (report.rule == SolidRule::winding)
+    run.warnings.emplace_back(WarningCode::solid_of_voxels, report.reason + ", as voxels");
 }
 
 /// Writes the graph of an axis, where it is asked for; null where not.
@@ -264,8 +266,9 @@ Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, con
   write_extended(run.extended.back().path(), made.surface, metadata, context);
   run.phases.push_back({"extend", watch.lap()});
   run.table.add("extended", extended_text(made.report));
-  for (const std::string& warning : extended_warnings(made.report)) {
-    run.warnings.push_back("at theta " + rounded_text(metadata.theta.value_or(0)) + " " + warning);
+  for (const Warning& warning : extended_warnings(made.report)) {
+    const std::string angle = rounded_text(metadata.theta.value_or(0));
+    run.warnings.emplace_back(warning.code, "at theta " + angle + " " + warning.text);
   }
   return extended_json(made.report, run.extended.back().name());
 }
@@ -347,7 +350,7 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const M
   const CertifiedAxis made = first_certified(forms_of(r, report, pruned != nullptr), make, certify);
   const Certificate& certificate = made.certificate;
   for (const std::string& warning : made.warnings) {
-    run.warnings.push_back("at theta " + rounded_text(theta) + " " + warning);
+    run.warnings.emplace_back(WarningCode::form_not_certified, "at theta " + rounded_text(theta) + " " + warning);
   }
   run.is_kept.push_back((certificate.holds() && report.topology_matches) || r.allow_uncertified);
   const MedialCounts counts = count(made.axis.axis);
@@ -436,7 +439,7 @@ void add_on_best_grid(MedialRun& run, const Request& r, const AskedSolid& solid,
     MedialAxisOptions moved = options;
     moved.grid_shift = grid.shift;
     MedialRun next;
-    next.warnings.push_back(grid.as_it_was + reason);
+    next.warnings.emplace_back(WarningCode::grid_moved, grid.as_it_was + reason);
     const bool is_better = add_axes(next, r, solid, moved, context) && next.mismatches.size() < best.mismatches.size();
     if (is_better) std::swap(best, next);
     // What was in vain took its time, too.
@@ -510,7 +513,7 @@ void finish(const Request& r, MedialRun& run, const SolidInput& input, bool is_c
                                            {"peak_memory_bytes", peak_memory()},
                                            {"threads", thread_count(context)},
                                            {"thread_backend", thread_backend()},
-                                           {"warnings", run.warnings},
+                                           {"warnings", to_json(run.warnings)},
                                            {"outputs", outputs}});
   run.table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(r.report, json, input.text + run.table.text());
@@ -537,7 +540,7 @@ void run(const Arguments& arguments) {
   MedialRun run;
   Stopwatch watch;
   const SolidInput input = load_solid(r.input, r.weld);
-  for (const std::string& warning : warnings_of(input)) run.warnings.push_back(warning);
+  run.warnings = warnings_of(input);
   run.phases.push_back({"read", watch.lap()});
   const std::vector<LabelSelection> selections = r.selections.all();
   for (std::size_t s = 0; s < selections.size(); ++s) {

@@ -55,7 +55,7 @@ void run(const Arguments& a) {
   phases.push_back({"clean", watch.lap()});
   input.reversed_triangles = cleaned.report.reversed_triangles;
   input.reversed_shells = cleaned.report.reversed_shells;
-  std::vector<std::string> warnings = warnings_of(input);
+  std::vector<Warning> warnings = warnings_of(input);
   add_left_out_warning(input.mesh.mesh, warnings);
   write_mesh(output, cleaned.mesh);
   phases.push_back({"write", watch.lap()});

@@ -163,23 +163,25 @@ struct Facts {
 };
 
 /// What keeps all of a mesh from having a thickness, or a meaningful one.
-std::vector<std::string> thickness_warnings(const MeshView& solid) {
+std::vector<Warning> thickness_warnings(const MeshView& solid) {
   const Orientation found = orientation(solid, SiteTable(solid));
   const auto edges = [](std::size_t count) { return plural(count, "edge", "edges"); };
   if (found.boundary_edges > 0) {
-    return {"the mesh is open (" + edges(found.boundary_edges) +
-            " with one triangle): behind a hole there is no thickness, or one too large; --weld joins vertices"};
+    return {{WarningCode::open_mesh,
+             "the mesh is open (" + edges(found.boundary_edges) +
+                 " with one triangle): behind a hole there is no thickness, or one too large; --weld joins vertices"}};
   }
   if (found.inconsistent_edges > 0) {
-    return {"triangles face different ways (" + edges(found.inconsistent_edges) +
-            "): where they face inwards, thickness is measured outside of the solid"};
+    return {{WarningCode::facing, "triangles face different ways (" + edges(found.inconsistent_edges) +
+                                      "): where they face inwards, thickness is measured outside of the solid"}};
   }
   if (found.closed && !found.outward) {
     return {
-        found.signed_volume < 0
-            ? "triangles face into the solid, so that thickness is measured outside of it; turn them around"
-            : "shells lie in or cross each other and face the same way, or have no volume: thickness may be that of "
-              "one of them alone"};
+        {WarningCode::facing,
+         found.signed_volume < 0
+             ? "triangles face into the solid, so that thickness is measured outside of it; turn them around"
+             : "shells lie in or cross each other and face the same way, or have no volume: thickness may be that of "
+               "one of them alone"}};
   }
   return {};
 }
@@ -238,11 +240,12 @@ void run(const Arguments& a) {
     json["sign_rule"] = to_string(map.sign_rule);
     json["sign_reason"] = map.sign_reason;
   }
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   if (asked.thickness) warnings = thickness_warnings(target.mesh);
   if (facts.texels == facts.without) {
-    warnings.emplace_back(asked.thickness ? "no texel has a thickness"
-                                          : "nothing lies within the distance of any texel");
+    warnings.emplace_back(WarningCode::nothing_found, asked.thickness
+                                                          ? "no texel has a thickness"
+                                                          : "nothing lies within the distance of any texel");
   }
   Json written = Json::array();
   for (const fs::path& output : asked.outputs) written.push_back(output.string());

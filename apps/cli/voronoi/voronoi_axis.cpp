@@ -109,7 +109,7 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
   };
   const CertifiedAxis made = first_certified(forms_of(options), make, certify);
   const MedialCounts counts = count(made.axis.axis);
-  out.warnings = made.warnings;
+  for (const std::string& text : made.warnings) out.warnings.emplace_back(WarningCode::form_not_certified, text);
   out.mismatches = made.certificate.mismatches;
   out.table.add("axis", counts_text(counts, true));
   if (metadata.deviation) {

@@ -254,7 +254,7 @@ struct Prepared {
 
 /// The solid of the mesh that was read, cleaned where that is asked for; its surface takes the mesh's place, and is
 /// written where it has numbers of its own.
-Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<std::string>& warnings,
+Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<Warning>& warnings,
                  const Context& context) {
   const auto make = [&]() -> Prepared {
     const TriangleMesh& mesh = input.mesh.mesh;
@@ -272,8 +272,11 @@ Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::v
                         "': the mesh crosses itself, and a medial axis is verified against the mesh that it is of: "
                         "give --cleaned FILE for that without the crossings, too");
     }
-    warnings.push_back(out.solid.reason());
-    if (!a.cleaned) warnings.emplace_back("triangles are those without the crossings: --cleaned FILE writes them");
+    warnings.emplace_back(WarningCode::crossings_removed, out.solid.reason());
+    if (!a.cleaned) {
+      warnings.emplace_back(WarningCode::crossings_removed,
+                            "triangles are those without the crossings: --cleaned FILE writes them");
+    }
   }
   input.mesh.mesh = out.solid.surface().mesh;
   if (a.cleaned) write_mesh(*a.cleaned, input.mesh.mesh);
@@ -289,11 +292,11 @@ void run(const Arguments& a) {
   Stopwatch watch;
   SolidInput input = read_mesh_input(path, r.weld);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  std::vector<std::string> left_out;
+  std::vector<Warning> left_out;
   const Prepared prepared = prepare(a, r, input, left_out, context);
   const std::optional<CleanReport>& cleaning = prepared.cleaning;
   phases.push_back({cleaning ? "clean" : "solid", watch.lap()});
-  std::vector<std::string> warnings = warnings_of(input);
+  std::vector<Warning> warnings = warnings_of(input);
   warnings.insert(warnings.end(), left_out.begin(), left_out.end());
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
   VoronoiComplex made = of_file(path, [&] { return voronoi_complex(prepared.solid, r.options, context); });
