@@ -4,6 +4,7 @@
 
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/solid/solid_warnings.hpp"
 #include "common/input_facts.hpp"
 #include "common/options.hpp"
 #include "common/progress.hpp"
@@ -62,21 +63,10 @@ std::vector<Warning> warnings_of(const SolidInput& input) {
   if (input.weld && input.weld->before != input.weld->after) {
     all.emplace_back(WarningCode::other_vertices, weld_text(*input.weld));
   }
-  if (input.reversed_triangles > 0) {
-    all.emplace_back(WarningCode::reversed_shells,
-                     plural(input.reversed_triangles, "triangle faces", "triangles face") +
-                         " another way than the others around, and " +
-                         (input.reversed_triangles == 1 ? "was" : "were") + " reversed");
-  }
-  if (input.reversed_shells > 0) {
-    all.emplace_back(WarningCode::reversed_shells, reversed_shells_text(input.reversed_shells));
+  for (Warning& warning : reversal_warnings(input.reversed_triangles, input.reversed_shells)) {
+    all.push_back(std::move(warning));
   }
   return all;
-}
-
-std::string reversed_shells_text(std::size_t count) {
-  return plural(count, "shell faces", "shells face") + " the wrong way and " + (count == 1 ? "was" : "were") +
-         " reversed";
 }
 
 }  // namespace blum::cli

@@ -34,8 +34,6 @@ struct SolidInput {
 /// What there is to say of an input: how many vertices were joined, and triangles reversed.
 [[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);
 
-[[nodiscard]] std::string reversed_shells_text(std::size_t count);
-
 /// What make() makes of a file; of a mesh that it does not take, the error names the file. @throws InvalidMesh.
 template <class Make>
 [[nodiscard]] auto of_file(const std::filesystem::path& path, const Make& make) {

@@ -36,10 +36,6 @@ std::string size_text(const GridSpec& grid) {
   return std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " + std::to_string(grid.size[2]);
 }
 
-std::string plural(std::uint64_t count, std::string_view one, std::string_view many) {
-  return count_text(count) + " " + std::string(count == 1 ? one : many);
-}
-
 std::string percentiles_text(std::span<const double> percents, std::span<const double> values) {
   std::string out;
   for (std::size_t k = 0; k < values.size(); ++k) {

@@ -11,6 +11,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/core/warning.hpp"
 #include "blum/field/field.hpp"
@@ -37,8 +38,6 @@ class Stopwatch {
 [[nodiscard]] std::string bytes_text(double bytes);
 [[nodiscard]] std::string vector_text(const Vec3d& v);
 [[nodiscard]] std::string size_text(const GridSpec& grid);
-/// "1 edge", "2 edges".
-[[nodiscard]] std::string plural(std::uint64_t count, std::string_view one, std::string_view many);
 /// "1 % below 0.2, 5 % below 0.3, ...".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);
 

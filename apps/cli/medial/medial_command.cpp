@@ -229,15 +229,13 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   }
   json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
   json.update(to_json(report));
-  json.erase("seconds");  // those of all solids are told together
+  json.erase("seconds");   // those of all solids are told together
+  json.erase("warnings");  // likewise
   run.table.add("solid", betti_text(report.betti) + " (" + report.reason + ")");
   run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
                               (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts beside them" : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
-  if (report.reversed_shells > 0)
-    run.warnings.emplace_back(WarningCode::reversed_shells, reversed_shells_text(report.reversed_shells));
-  if (report.rule == SolidRule::winding)
-    run.warnings.emplace_back(WarningCode::solid_of_voxels, report.reason + ", as voxels");
+  run.warnings.insert(run.warnings.end(), report.warnings.begin(), report.warnings.end());
 }
 
 /// Writes the graph of an axis, where it is asked for; null where not.
@@ -266,7 +264,7 @@ Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, con
   write_extended(run.extended.back().path(), made.surface, metadata, context);
   run.phases.push_back({"extend", watch.lap()});
   run.table.add("extended", extended_text(made.report));
-  for (const Warning& warning : extended_warnings(made.report)) {
+  for (const Warning& warning : made.warnings) {
     const std::string angle = rounded_text(metadata.theta.value_or(0));
     run.warnings.emplace_back(warning.code, "at theta " + angle + " " + warning.text);
   }

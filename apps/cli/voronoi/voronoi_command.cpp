@@ -16,6 +16,7 @@
 #include "blum/io/voronoi_io.hpp"
 #include "blum/solid/clean_mesh.hpp"
 #include "blum/solid/solid.hpp"
+#include "blum/solid/solid_warnings.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
@@ -272,10 +273,9 @@ Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::v
                         "': the mesh crosses itself, and a medial axis is verified against the mesh that it is of: "
                         "give --cleaned FILE for that without the crossings, too");
     }
-    warnings.emplace_back(WarningCode::crossings_removed, out.solid.reason());
-    if (!a.cleaned) {
-      warnings.emplace_back(WarningCode::crossings_removed,
-                            "triangles are those without the crossings: --cleaned FILE writes them");
+    for (Warning& warning : crossing_warnings(out.solid)) {
+      if (!a.cleaned) warning.text += ": --cleaned FILE writes it";
+      warnings.push_back(std::move(warning));
     }
   }
   input.mesh.mesh = out.solid.surface().mesh;

@@ -66,7 +66,7 @@ struct Warning {
 
 template <>
 struct Description<Warning> {
-  static constexpr std::string_view name = "Warning";
+  static constexpr std::string_view name = "ResultWarning";  // as Python's own Warning is another thing
   static constexpr std::string_view doc = "One thing that a result warns of";
   static constexpr std::tuple members{
       Member{"code", &Warning::code, "", "what it is about"},
