@@ -15,6 +15,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/solid/clean_mesh.hpp"
 #include "blum/solid/oriented_mesh.hpp"
+#include "blum/solid/solid_warnings.hpp"
 #include "call.hpp"
 #include "images.hpp"
 #include "structs.hpp"
@@ -113,6 +114,7 @@ void bind_solid(nb::module_& m) {
       .def_prop_ro("rule", [](const Solid& solid) { return std::string(to_string(solid.rule())); })
       .def_prop_ro("reason", &Solid::reason)
       .def_prop_ro("problem", &Solid::problem)
+      .def_prop_ro("warnings", [](const Solid& solid) { return result_of(solid_warnings(solid)); })
       .def_prop_ro("surface", [](const Solid& solid) { return arrays_of(solid.surface().mesh); })
       .def_prop_ro("betti", [](const Solid& solid) { return nb::cast(solid.betti()); })
       .def_prop_ro("bodies", &bodies_of)

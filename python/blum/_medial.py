@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,14 +12,14 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import PathLike, Real, integer, number, optional_number
 from ._certificate import ShapeVerifier
-from ._errors import InputWarning
 from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
 from ._mesh import MeshOrVertices, as_mesh
 from ._options import default_of, takes
 from ._progress import Progress, reporting
-from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
+from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport, WarningCode
+from ._warn import warn, warn_all
 
 
 @dataclass(frozen=True)
@@ -107,20 +106,21 @@ class MedialAxis:
                 again, failed_there = moved._first_certified(theta, most, verifier, threads, progress)
                 if again.certificate.holds:
                     text = f"{as_it_was}at theta {float(theta):g} {found.certificate.mismatches[0]}"
-                    failed = [text, *failed_there]
+                    failed = [(text, "grid-moved"), *failed_there]
                     found = again
                     break
         if not found.certificate.holds:
-            failed = [f"NOT certified: at theta {float(theta):g}: {found.certificate.mismatches[0]}"]
-        for sentence in failed:
-            warnings.warn(sentence, InputWarning, stacklevel=2)
+            text = f"NOT certified: at theta {float(theta):g}: {found.certificate.mismatches[0]}"
+            failed = [(text, "form-not-certified")]
+        for sentence, code in failed:
+            warn(sentence, code)
         return found
 
     def _first_certified(
         self, theta: Real, tolerance: float | None, verifier: ShapeVerifier, threads: int, progress: Progress
-    ) -> tuple[MedialComplex, list[str]]:
+    ) -> tuple[MedialComplex, list[tuple[str, WarningCode]]]:
         """The first form that is certified, or the last one, and why those before it are not."""
-        failed: list[str] = []
+        failed: list[tuple[str, WarningCode]] = []
         for is_fitted, most, without in self._core.forms(tolerance):
             if is_fitted and most is not None:
                 found = self._lean(theta, most, threads, progress)
@@ -134,7 +134,8 @@ class MedialAxis:
             found._verifier = None
             if holds:
                 break
-            failed.append(f"at theta {float(theta):g} {without}{found.certificate.mismatches[0]}")
+            text = f"at theta {float(theta):g} {without}{found.certificate.mismatches[0]}"
+            failed.append((text, "form-not-certified"))
         return found, failed
 
     def _lean(self, theta: Real, tolerance: float, threads: int, progress: Progress) -> MedialComplex:
@@ -242,12 +243,5 @@ def medial_axis(
     with reporting(progress) as report:
         core = _core.medial_axis_of_mesh(mesh._arrays, given, count, report)
     axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), grids)
-    turned = axis.report.reversed_shells
-    if turned:
-        text = (
-            f"{turned} shell{'s' if turned > 1 else ''} faced the solid, and {'were' if turned > 1 else 'was'} reversed"
-        )
-        warnings.warn(text, InputWarning, stacklevel=2)
-    if axis.report.rule == "winding":
-        warnings.warn(f"{axis.report.reason}, as voxels", InputWarning, stacklevel=2)
+    warn_all(axis.report.warnings)
     return axis

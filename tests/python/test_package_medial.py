@@ -113,6 +113,7 @@ def test_a_simpler_form_takes_the_place_of_one_that_is_not_certified(axis, monke
         "at theta 60 borders of sheets stay at the cells of the grid: elsewhere, something is wrong",
         "at theta 60 the axis keeps all vertices: with fewer, something is wrong",
     ]
+    assert {warning.message.code for warning in told} == {"form-not-certified"}
     assert np.array_equal(found.vertices, axis.simplify(60).vertices)
 
 
