@@ -54,7 +54,8 @@ std::vector<std::uint8_t> inside(const Solid& solid, std::span<const Vec3d> poin
 template <class Shape>
 nb::tuple cleaned(const Call& call, const Shape& shape, double tolerance) {
   const CleanedMesh out = run(call, [&](const Context& context) { return clean_mesh(shape, tolerance, context); });
-  return nb::make_tuple(arrays_of(out.mesh), handed_over<std::uint32_t>(out.vertex_of), to_python(out.report));
+  return nb::make_tuple(arrays_of(out.mesh), handed_over<std::uint32_t>(out.vertex_of), to_python(out.report),
+                        to_python(out.warnings));
 }
 
 /// (mesh, vertex_of, report).

@@ -4,7 +4,6 @@
 
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
-#include "blum/solid/solid_warnings.hpp"
 #include "common/input_facts.hpp"
 #include "common/options.hpp"
 #include "common/progress.hpp"
@@ -62,9 +61,6 @@ std::vector<Warning> warnings_of(const SolidInput& input) {
   std::vector<Warning> all;
   if (input.weld && input.weld->before != input.weld->after) {
     all.emplace_back(WarningCode::other_vertices, weld_text(*input.weld));
-  }
-  for (Warning& warning : reversal_warnings(input.reversed_triangles, input.reversed_shells)) {
-    all.push_back(std::move(warning));
   }
   return all;
 }

@@ -33,13 +33,6 @@ Json cleaning_json(const CleanReport& done, double tolerance) {
   return out;
 }
 
-void add_left_out_warning(const MeshView& mesh, std::vector<Warning>& warnings) {
-  if (mesh.segments.empty() && mesh.points.empty()) return;
-  warnings.emplace_back(WarningCode::left_out, plural(mesh.segments.size(), "segment", "segments") + " and " +
-                                                   plural(mesh.points.size(), "point", "points") +
-                                                   " beside the triangles were left out");
-}
-
 void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   if (file.extension() != ".stl") return;
   const auto is_single = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };

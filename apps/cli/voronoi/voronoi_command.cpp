@@ -261,12 +261,11 @@ Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::v
     const TriangleMesh& mesh = input.mesh.mesh;
     if (!r.clean) return {Solid::of(mesh, context), std::nullopt};
     CleanedMesh cleaned = clean_mesh(mesh, *r.clean, context);
-    add_left_out_warning(mesh, warnings);
+    warnings = std::move(cleaned.warnings);
     return {std::move(cleaned.solid), cleaned.report};
   };
   Prepared out = of_file(a.input, make);
-  input.reversed_triangles = out.cleaning ? out.cleaning->reversed_triangles : out.solid.reversed_triangles();
-  input.reversed_shells = out.cleaning ? out.cleaning->reversed_shells : out.solid.reversed_shells();
+  if (!out.cleaning) warnings = reversal_warnings(out.solid.reversed_triangles(), out.solid.reversed_shells());
   if (out.solid.resolved()) {
     if (a.medial && a.output && !a.cleaned) {
       throw InvalidMesh("'" + a.input +
@@ -292,12 +291,12 @@ void run(const Arguments& a) {
   Stopwatch watch;
   SolidInput input = read_mesh_input(path, r.weld);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  std::vector<Warning> left_out;
-  const Prepared prepared = prepare(a, r, input, left_out, context);
+  std::vector<Warning> changes;
+  const Prepared prepared = prepare(a, r, input, changes, context);
   const std::optional<CleanReport>& cleaning = prepared.cleaning;
   phases.push_back({cleaning ? "clean" : "solid", watch.lap()});
   std::vector<Warning> warnings = warnings_of(input);
-  warnings.insert(warnings.end(), left_out.begin(), left_out.end());
+  warnings.insert(warnings.end(), changes.begin(), changes.end());
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
   VoronoiComplex made = of_file(path, [&] { return voronoi_complex(prepared.solid, r.options, context); });
   const VoronoiReport& found = made.report;
@@ -332,8 +331,8 @@ void run(const Arguments& a) {
   progress.clear();
   const PhaseSummary spent = summarize(phases);
   Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
-  facts["reversed_triangles"] = input.reversed_triangles;
-  facts["reversed_shells"] = input.reversed_shells;
+  facts["reversed_triangles"] = cleaning ? cleaning->reversed_triangles : prepared.solid.reversed_triangles();
+  facts["reversed_shells"] = cleaning ? cleaning->reversed_shells : prepared.solid.reversed_shells();
   facts["cleaning"] = cleaning ? cleaning_json(*cleaning, *r.clean) : Json(nullptr);
   facts.update(to_json(found));
   facts.erase("seconds");  // the run's, below, hold them
