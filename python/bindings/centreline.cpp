@@ -65,7 +65,8 @@ void bind_centreline(nb::module_& m) {
         Complex complex = complex_of(lines);
         nb::list parts;
         for (Centreline& line : lines.labels) parts.append(parts_of(line));
-        return nb::make_tuple(std::move(parts), nb::cast(std::move(complex)), seconds_of(lines.phases));
+        return nb::make_tuple(std::move(parts), nb::cast(std::move(complex)), seconds_of(lines.phases),
+                              to_python(lines.warnings));
       },
       nb::arg("image"), nb::arg("labels").none(), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }

@@ -55,10 +55,10 @@ void bind_certificate(nb::module_& m) {
       "solid_of_axis",
       [](const nb::dict& metadata, bool is_image, std::optional<std::int64_t> label, std::optional<double> threshold,
          std::optional<double> weld) {
-        const auto& [selection, warning] =
+        const auto& [selection, warnings] =
             solid_of_axis({label, threshold, weld}, is_image, options_from<MedialMetadata>(metadata), "the axis",
                           OptionStyle::python);
-        return std::tuple{selection.label, selection.threshold, selection.weld, warning};
+        return nb::make_tuple(selection.label, selection.threshold, selection.weld, result_of(warnings));
       },
       nb::arg("metadata"), nb::arg("is_image"), nb::arg("label").none(), nb::arg("threshold").none(),
       nb::arg("weld").none());

@@ -23,7 +23,7 @@ void bind_extend_axis(nb::module_& m) {
         ExtendedAxis out = run({threads, std::move(progress)}, [&](const Context& context) {
           return extend_axis(axis, mesh.view(), options, context);
         });
-        return nb::make_tuple(std::move(out.surface), to_python(out.report));
+        return nb::make_tuple(std::move(out.surface), to_python(out.report), to_python(out.warnings));
       },
       nb::arg("axis"), nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   m.def(

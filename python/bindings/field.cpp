@@ -11,6 +11,7 @@
 #include "bindings.hpp"
 #include "blum/core/device.hpp"
 #include "blum/field/field.hpp"
+#include "blum/field/field_warnings.hpp"
 #include "blum/field/interpolate.hpp"
 #include "blum/field/zero_surface.hpp"
 #include "call.hpp"
@@ -180,6 +181,14 @@ void bind_field(nb::module_& m) {
       },
       nb::arg("mesh"), nb::arg("grid"), nb::arg("objects").none(), nb::arg("options"), nb::arg("threads"),
       nb::arg("device"), nb::arg("progress").none());
+  m.def(
+      "field_warnings",
+      [](const Field& field, const MeshArrays& mesh, int threads) {
+        const MeshView view = mesh.view();
+        return result_of(
+            run({threads, nb::none()}, [&](const Context& context) { return field_warnings(field, view, context); }));
+      },
+      nb::arg("field"), nb::arg("mesh"), nb::arg("threads"));
 }
 
 }  // namespace blum::python

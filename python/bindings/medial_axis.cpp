@@ -85,7 +85,7 @@ using MakeAxis = FunctionRef<MedialAxis(double shift, const Context& context)>;
 using VerifyAxis = FunctionRef<Certificate(const Complex& axis, const MedialClaims& claims, const Context& context)>;
 
 /// certified_axes() at one angle, from an axis of all angles that is there: the complex, how far it is at most from
-/// that with all vertices (None: it has all), its report, its certificate, mismatches and warnings (codes and texts).
+/// that with all vertices (None: it has all), its report, its certificate, mismatches and warnings.
 nb::tuple certified(const MedialAxis& first, bool may_move, double grid_shift, MakeAxis make, VerifyAxis verify,
                     const CertifiedAxisOptions& options, int threads, nb::object progress) {
   CertifiedAxes made = run({threads, std::move(progress)}, [&](const Context& context) {
@@ -97,13 +97,10 @@ nb::tuple certified(const MedialAxis& first, bool may_move, double grid_shift, M
     return certified_axes({grid_shift, may_move, on_grid}, certify, options, context);
   });
   CertifiedAxis& axis = made.axes.front();
-  nb::list warnings;
-  for (const auto* const all : {&made.warnings, &axis.warnings}) {
-    for (const Warning& warning : *all)
-      warnings.append(nb::make_tuple(std::string(to_string(warning.code)), warning.text));
-  }
+  std::vector<Warning>& warnings = made.warnings;
+  warnings.insert(warnings.end(), axis.warnings.begin(), axis.warnings.end());
   return nb::make_tuple(std::move(axis.axis.axis), axis.metadata.deviation, result_of(made.report),
-                        result_of(axis.certificate), made.mismatches, warnings);
+                        result_of(axis.certificate), made.mismatches, result_of(warnings));
 }
 
 void bind_certified(nb::module_& m) {

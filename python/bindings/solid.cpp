@@ -15,6 +15,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/solid/clean_mesh.hpp"
 #include "blum/solid/oriented_mesh.hpp"
+#include "blum/solid/solid_warnings.hpp"
 #include "call.hpp"
 #include "images.hpp"
 #include "structs.hpp"
@@ -53,7 +54,8 @@ std::vector<std::uint8_t> inside(const Solid& solid, std::span<const Vec3d> poin
 template <class Shape>
 nb::tuple cleaned(const Call& call, const Shape& shape, double tolerance) {
   const CleanedMesh out = run(call, [&](const Context& context) { return clean_mesh(shape, tolerance, context); });
-  return nb::make_tuple(arrays_of(out.mesh), handed_over<std::uint32_t>(out.vertex_of), to_python(out.report));
+  return nb::make_tuple(arrays_of(out.mesh), handed_over<std::uint32_t>(out.vertex_of), to_python(out.report),
+                        to_python(out.warnings));
 }
 
 /// (mesh, vertex_of, report).
@@ -113,6 +115,7 @@ void bind_solid(nb::module_& m) {
       .def_prop_ro("rule", [](const Solid& solid) { return std::string(to_string(solid.rule())); })
       .def_prop_ro("reason", &Solid::reason)
       .def_prop_ro("problem", &Solid::problem)
+      .def_prop_ro("warnings", [](const Solid& solid) { return result_of(solid_warnings(solid)); })
       .def_prop_ro("surface", [](const Solid& solid) { return arrays_of(solid.surface().mesh); })
       .def_prop_ro("betti", [](const Solid& solid) { return nb::cast(solid.betti()); })
       .def_prop_ro("bodies", &bodies_of)

@@ -56,6 +56,7 @@ nb::dict dict_of(SurfaceMap found) {
   out["sign_rule"] = std::string(to_string(map.sign_rule));
   out["sign_reason"] = map.sign_reason;
   out["seconds"] = seconds_of(map.phases);
+  out["warnings"] = to_python(map.warnings);
   out["_handle"] = owner;
   return out;
 }
@@ -218,6 +219,14 @@ void bind_surface_map(nb::module_& m) {
         }));
       },
       nb::arg("solid"), nb::arg("points").none(), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "thickness_warnings",
+      [](const MeshArrays& solid, int threads) {
+        const MeshView view = solid.view();
+        return result_of(
+            run({threads, nb::none()}, [&](const Context& context) { return thickness_warnings(view, context); }));
+      },
+      nb::arg("solid"), nb::arg("threads"));
 }
 
 }  // namespace blum::python

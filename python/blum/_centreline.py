@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Unpack
@@ -12,12 +11,13 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, Integer, integer, label_of
 from ._complex import Complex
-from ._errors import InputWarning, InvalidOption
+from ._errors import InvalidOption
 from ._image import as_image
 from ._mesh import Betti, betti_of
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import CentrelineNodeKind, CentrelineOptions
+from ._warn import warn_all
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,15 +158,11 @@ def centreline(
     wanted = None if labels is None else [label_of(label, "labels") for label in labels]
     source = as_image(image, spacing, origin, direction)
     with reporting(progress) as report:
-        parts, edges, seconds = _core.centreline(
+        parts, edges, seconds, found = _core.centreline(
             source._arrays, wanted, dict(options), integer(threads, "threads"), report
         )
     lines = tuple(_line(*each) for each in parts)
-    absent = [line.label for line in lines if line.voxels == 0]
-    if absent or not lines:
-        text = f"no voxel has the label {absent[0]}" if absent and absent[0] is not None else "no voxel is selected"
-        more = f", nor {len(absent) - 1} more of those asked for" if len(absent) > 1 else ""
-        warnings.warn(text + more, InputWarning, stacklevel=2)
+    warn_all(found)
     return Centrelines(lines, Complex._from_core(edges), seconds)
 
 

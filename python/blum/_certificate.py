@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Unpack, cast
@@ -13,12 +12,12 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number
 from ._complex import Complex
-from ._errors import InputWarning
 from ._grid import Grid
 from ._image import Image, as_image, is_image
 from ._mesh import MeshOrVertices, as_mesh
 from ._progress import Progress, reporting
 from ._structs import Certificate, CertificateOptions, MeshSolidRule
+from ._warn import warn_all
 
 
 @dataclass(frozen=True)
@@ -82,15 +81,14 @@ class ShapeVerifier:
         asked |= {"balls": has["radii"], **checks}
         count = integer(threads, "threads")
         said = _claims(claim, grid, "voxels" if self._is_image else "features")
-        chosen, least, merged, warning = _core.solid_of_axis(
+        chosen, least, merged, found_out = _core.solid_of_axis(
             said,
             self._is_image,
             None if label is None else label_of(label, "label"),
             optional_number(threshold, "threshold"),
             optional_number(self._weld, "weld"),
         )
-        if warning:
-            warnings.warn(warning, InputWarning, stacklevel=3)
+        warn_all(found_out)
         found: Certificate
         core = claim.complex._core
         if self._is_image:

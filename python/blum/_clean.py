@@ -13,6 +13,7 @@ from ._mesh import Mesh, MeshLike, as_mesh, mesh_of_arrays
 from ._progress import Progress, reporting
 from ._solid import Solid
 from ._structs import CleanReport
+from ._warn import warn_all
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +60,12 @@ def clean_mesh(
     most, count = number(tolerance, "tolerance"), integer(threads, "threads")
     if isinstance(mesh, Solid):
         with reporting(progress) as report:
-            arrays, vertex_of, done = _core.clean_solid(mesh._core, most, count, report)
+            arrays, vertex_of, done, found = _core.clean_solid(mesh._core, most, count, report)
     else:
         given = as_mesh(mesh, weld=weld)
         with reporting(progress) as report:
-            arrays, vertex_of, done = _core.clean_mesh(given._arrays, most, count, report)
+            arrays, vertex_of, done, found = _core.clean_mesh(given._arrays, most, count, report)
+    warn_all(found)
     return CleanedMesh(mesh_of_arrays(arrays), vertex_of, done)
 
 

@@ -8,6 +8,11 @@ class Error(Exception):
 class InputWarning(UserWarning):
     """An input that can be used, but looks as if something else were meant: `warnings.filterwarnings` silences it."""
 
+    def __init__(self, text: str = "", code: str = "") -> None:
+        super().__init__(text)
+        #: What it is about, in one word that stays while texts change, such as "facing"; empty where it has none.
+        self.code = code
+
 
 class InvalidMesh(Error, ValueError):
     """A mesh that cannot be used: nothing in it, coordinates that are not finite, indices out of range."""

@@ -18,6 +18,7 @@ from ._mesh import Mesh, MeshOrVertices
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ExtendOptions, ExtendReport
+from ._warn import warn_all
 
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
@@ -120,7 +121,10 @@ def extend_axis(
     if own is None:
         raise InvalidOption("what this axis was made from is no mesh that is known here: use extend_axis(axis, mesh)")
     with reporting(progress) as report:
-        core, told = _core.extend_axis(axis._core, own._arrays, dict(options), integer(threads, "threads"), report)
+        core, told, found = _core.extend_axis(
+            axis._core, own._arrays, dict(options), integer(threads, "threads"), report
+        )
+    warn_all(found)
     origin = getattr(axis, "_origin", None)
     known = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
     return ExtendedAxis._of(core, told, known)

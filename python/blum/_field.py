@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import threading
-import warnings
 from pathlib import Path
 from typing import Any, Literal, Unpack, cast, overload
 
@@ -28,13 +27,13 @@ from ._arguments import (
     points_and_shape,
     source_name,
 )
-from ._errors import InputWarning
 from ._grid import Grid, grid_for, mask_array
 from ._image import as_image
 from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import FieldOptions, VoxelTopology
+from ._warn import warn_all
 
 
 class Field:
@@ -356,15 +355,8 @@ def distance_field(
             device_name(device),
             report,
         )
-    field = Field._of(core, shape, shape.source)
-    if field.sign_rule != "none" and not field.distance.min() < 0:
-        warnings.warn(
-            "no node is inside: the shape encloses nothing, faces inwards, lies elsewhere than the grid, or is too "
-            "thin for it (sign='none' makes a field without signs)",
-            InputWarning,
-            stacklevel=2,
-        )
-    return field
+    warn_all(_core.field_warnings(core, shape._arrays, integer(threads, "threads")))
+    return Field._of(core, shape, shape.source)
 
 
 @takes("FieldOptions")

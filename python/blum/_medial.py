@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, Unpack, cast
@@ -12,7 +11,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import PathLike, Real, integer, number, optional_number
 from ._certificate import ShapeVerifier
-from ._errors import InputWarning, NotCertified
+from ._errors import NotCertified
 from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
@@ -20,6 +19,7 @@ from ._mesh import MeshOrVertices, as_mesh
 from ._options import default_of, takes
 from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
+from ._warn import warn, warn_all
 
 
 class MedialAxis:
@@ -109,13 +109,12 @@ class MedialAxis:
                     self._core, of_mesh, shape._arrays, self._options, angle, most, count, report
                 )
         core, deviation, of_grid, certificate, mismatches, told = made
-        for _code, text in told:
-            warnings.warn(text, InputWarning, stacklevel=2)
+        warn_all(told)
         if mismatches:
             text = "NOT certified: " + "; ".join(mismatches)
             if not allow_uncertified:
                 raise NotCertified(text)
-            warnings.warn(text, InputWarning, stacklevel=2)
+            warn(text, "not-certified")
         found = MedialComplex._of(
             core, EVERYTHING, replace(_origin_of(self._origin, of_grid, angle), deviation=deviation)
         )
@@ -221,12 +220,5 @@ def medial_axis(
     with reporting(progress) as report:
         core = _core.medial_axis_of_mesh(mesh._arrays, given, count, report)
     axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), given)
-    turned = axis.report.reversed_shells
-    if turned:
-        text = (
-            f"{turned} shell{'s' if turned > 1 else ''} faced the solid, and {'were' if turned > 1 else 'was'} reversed"
-        )
-        warnings.warn(text, InputWarning, stacklevel=2)
-    if axis.report.rule == "winding":
-        warnings.warn(f"{axis.report.reason}, as voxels", InputWarning, stacklevel=2)
+    warn_all(axis.report.warnings)
     return axis

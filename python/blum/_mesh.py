@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -29,10 +28,11 @@ from ._arguments import (
     points_and_shape,
     source_name,
 )
-from ._errors import InputWarning, InvalidMesh
+from ._errors import InvalidMesh
 from ._mesh_like import MeshioLike, Open3DLike, Open3DTensorLike, PyVistaLike, TrimeshLike
 from ._progress import Progress, reporting
 from ._structs import Bounds, Topology
+from ._warn import warn
 
 Betti = tuple[int, int, int]
 
@@ -234,7 +234,7 @@ def _tell_of_seams(mesh: Mesh, name: str) -> None:
     if len(welded.vertices) == len(mesh.vertices) or topology(mesh).closed or not topology(welded).closed:
         return
     text = f"the {name} is open only where equal vertices are apart, as along texture seams: weld=0 merges them"
-    warnings.warn(text, InputWarning, stacklevel=4)
+    warn(text, "other-vertices")
 
 
 def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:

@@ -38,6 +38,7 @@ from ._structs import (
     SurfaceMapStatistics,
     ThicknessOptions,
 )
+from ._warn import warn_all
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +140,7 @@ def read_surface_map(path: PathLike) -> SurfaceMap:
     ('ray-thickness', Mesh(8 vertices, 12 triangles))
     """
     mesh, found = _core.read_surface_map(existing_file(path))
-    return SurfaceMap(**found, mesh=mesh_of_arrays(mesh), _others=None)
+    return _map(found, mesh_of_arrays(mesh), None)
 
 
 @takes("SurfaceMapOptions")
@@ -177,7 +178,7 @@ def surface_distance_map(
         found = _core.surface_distance_map(
             of._arrays, joined._arrays, dict(options), integer(threads, "threads"), report
         )
-    return SurfaceMap(**found, mesh=of, _others=parts)
+    return _map(found, of, parts)
 
 
 @takes("SurfaceMapOptions")
@@ -254,7 +255,13 @@ class SurfaceMapper:
         """The map of the meshes as they are now."""
         with reporting(progress) as report:
             found = self._mapper.map(integer(threads, "threads"), report)
-        return SurfaceMap(**found, mesh=self._target)
+        return _map(found, self._target)
+
+
+def _map(found: dict[str, Any], mesh: Mesh, others: tuple[Mesh, ...] | None = ()) -> SurfaceMap:
+    """A map of the library, with what it warns of."""
+    warn_all(found.pop("warnings"))
+    return SurfaceMap(**found, mesh=mesh, _others=others)
 
 
 def _places(coordinates: Any, width: int, height: int) -> FloatArray:
@@ -290,7 +297,7 @@ def self_distance_map(
     of = as_mesh(target, name="target", weld=weld)
     with reporting(progress) as report:
         found = _core.self_distance_map(of._arrays, dict(options), integer(threads, "threads"), report)
-    return SurfaceMap(**found, mesh=of)
+    return _map(found, of)
 
 
 @takes("SurfaceMapOptions", "sign")
@@ -323,7 +330,7 @@ def thickness_map(
     meaning = {"kind": kind, "separation": separation}
     with reporting(progress) as report:
         found = _core.thickness_map(of._arrays, dict(options), meaning, integer(threads, "threads"), report)
-    return SurfaceMap(**found, mesh=of)
+    return _map(found, of)
 
 
 @dataclass(frozen=True, eq=False)
@@ -375,6 +382,7 @@ def thickness(
     rows, shape = (None, (len(of.triangles),)) if points is None else points_and_shape(points, "points")
     with reporting(progress) as report:
         found = _core.thickness(of._arrays, rows, dict(options), integer(threads, "threads"), report)
+    warn_all(_core.thickness_warnings(of._arrays, integer(threads, "threads")))
     values, opposite, triangle = found
     return Thickness(values.reshape(shape), opposite.reshape((*shape, 3)), triangle.reshape(shape))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -13,13 +12,14 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, IntArray, PathLike, Real, integer, number
 from ._complex import Complex, core_arguments
-from ._errors import InputWarning, InvalidOption
+from ._errors import InvalidOption
 from ._medial_complex import EVERYTHING, MedialComplex, Origin
 from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
 from ._solid import Solid
 from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport, VoronoiSite
+from ._warn import warn
 
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
@@ -216,12 +216,9 @@ def voronoi_complex(
         solid = mesh._core
     else:
         solid = _core.solid_of_mesh(as_mesh(mesh, triangles)._arrays, count, None)
-        if solid.resolved is not None:
-            warnings.warn(
-                f"{solid.reason}; sites are those of the surface without the crossings, Solid(mesh).surface",
-                InputWarning,
-                stacklevel=3,
-            )
+        for warning in solid.warnings:
+            is_crossing = warning.code == "crossings-removed"
+            warn(warning.text + (": Solid(mesh).surface" if is_crossing else ""), warning.code)
     with reporting(progress) as report:
         core, told = _core.voronoi_complex(solid, dict(options), count, report)
     return VoronoiComplex._of(core, told, options.get("part", "all"), mesh_of_arrays(solid.surface))

@@ -333,6 +333,13 @@ class AxisExtender {
     const auto is_new_triangle = out.triangle_columns.add<std::int32_t>(std::string(extended_columns::extended));
     for (std::size_t t = old_triangles; t < is_new_triangle.size(); ++t) is_new_triangle[t] = 1;
     count();
+    const ExtendReport& report = out_.report;
+    if (!(report.open_length > 0)) return;
+    out_.warnings.emplace_back(
+        WarningCode::not_extended,
+        "rims " + rounded_text(report.open_length) + " long, of " + rounded_text(report.rim_length) +
+            " in all, are not extended: nothing is near, or triangles would fold back or leave the "
+            "solid");
   }
 
   void count() {

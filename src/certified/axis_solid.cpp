@@ -33,7 +33,9 @@ AxisSolid solid_of_axis(const SolidSelection& given, bool is_image, const Medial
   if (given_text.empty()) return {recorded, {}};
   const std::string recorded_text = selection_text(recorded, is_image, style);
   if (recorded_text.empty() || is_same(given, recorded, is_image)) return {given, {}};
-  return {given, axis + " was made with " + recorded_text + "; " + given_text + " is used, as it was given"};
+  return {given,
+          {{WarningCode::other_solid,
+            axis + " was made with " + recorded_text + "; " + given_text + " is used, as it was given"}}};
 }
 
 }  // namespace blum

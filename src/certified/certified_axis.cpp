@@ -139,7 +139,10 @@ void check(const CertifiedAxisOptions& options) {
 CertifiedAxis the_only(CertifiedAxes axes) {
   if (!axes.holds()) throw NotCertified(std::move(axes.mismatches));
   CertifiedAxis out = std::move(axes.axes.front());
-  out.warnings.insert(out.warnings.begin(), axes.warnings.begin(), axes.warnings.end());
+  std::vector<Warning> all = std::move(axes.warnings);
+  all.insert(all.end(), axes.report.warnings.begin(), axes.report.warnings.end());
+  all.insert(all.end(), out.warnings.begin(), out.warnings.end());
+  out.warnings = std::move(all);
   return out;
 }
 

@@ -25,6 +25,7 @@
 #include "blum/core/parts.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/solid/solid_warnings.hpp"
 #include "medial_axis/cells/voxelize.hpp"
 #include "medial_axis/fit/contract_points.hpp"
 #include "medial_axis/fit/fit_axis.hpp"
@@ -384,6 +385,10 @@ class MedialAxisBuilder {
     report().rule = solid.rule();
     report().reason = solid.reason();
     report().reversed_shells = solid.reversed_shells();
+    report().warnings = reversal_warnings(0, solid.reversed_shells());
+    if (solid.rule() == SolidRule::winding) {
+      report().warnings.emplace_back(WarningCode::solid_of_voxels, solid.reason() + ", as voxels");
+    }
     check_place(solid.box());
     check_lengths(solid.box());
     if (solid.rule() == SolidRule::voxels) {

@@ -9,10 +9,12 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 #include "blum/solid/oriented_mesh.hpp"
 #include "blum/solid/solid.hpp"
+#include "blum/solid/solid_warnings.hpp"
 #include "solid/clean/mesh_cleaner.hpp"
 #include "solid/clean/shrinking_surface.hpp"
 
@@ -195,6 +197,24 @@ CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& cont
   return {std::move(mesh), std::move(vertex_of), report, std::move(cleaned)};
 }
 
+namespace {
+
+/// Sides of flat triangles are turned before anything crosses there.
+CleanedMesh clean_without_flat(const MeshView& all, double tolerance, const Context& context) {
+  const OrientedMesh oriented = oriented_mesh(all, context);
+  std::size_t flips = 0;
+  const std::vector<Triangle> triangles = without_flat_triangles(oriented.mesh, flips);
+  const MeshView surface{all.vertices, triangles, {}, {}};
+  CleanedMesh out = clean_mesh(Solid::of(surface, context), tolerance, context);
+  out.report.reversed_triangles = oriented.reversed_triangles;
+  out.report.reversed_shells = oriented.reversed_shells;
+  out.report.smallest_height_before = smallest_height(all);
+  out.report.flips += flips;
+  return out;
+}
+
+}  // namespace
+
 CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context) {
   validate(mesh);
   if (mesh.triangles.empty()) throw InvalidMesh(std::string(mesh_problem::no_triangles));
@@ -202,17 +222,14 @@ CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& co
   check_tolerance(all, tolerance);
   check_coordinates(all);
   check_corners(all);
-  if (!has_flat_triangles(all)) return clean_mesh(Solid::of(all, context), tolerance, context);
-  // Sides of flat triangles are turned before anything crosses there.
-  const OrientedMesh oriented = oriented_mesh(all, context);
-  std::size_t flips = 0;
-  const std::vector<Triangle> triangles = without_flat_triangles(oriented.mesh, flips);
-  const MeshView surface{mesh.vertices, triangles, {}, {}};
-  CleanedMesh out = clean_mesh(Solid::of(surface, context), tolerance, context);
-  out.report.reversed_triangles = oriented.reversed_triangles;
-  out.report.reversed_shells = oriented.reversed_shells;
-  out.report.smallest_height_before = smallest_height(all);
-  out.report.flips += flips;
+  CleanedMesh out = has_flat_triangles(all) ? clean_without_flat(all, tolerance, context)
+                                            : clean_mesh(Solid::of(all, context), tolerance, context);
+  out.warnings = reversal_warnings(out.report.reversed_triangles, out.report.reversed_shells);
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    out.warnings.emplace_back(WarningCode::left_out, plural(mesh.segments.size(), "segment", "segments") + " and " +
+                                                         plural(mesh.points.size(), "point", "points") +
+                                                         " beside the triangles were left out");
+  }
   return out;
 }
 

@@ -133,6 +133,11 @@ SurfaceMap empty_map(std::shared_ptr<const SurfaceAtlas> atlas, SurfaceQuantity 
   return out;
 }
 
+void warn_of_nothing(SurfaceMap& map, const char* text) {
+  if (std::any_of(map.site.begin(), map.site.end(), [](SiteId site) { return site.has_value(); })) return;
+  map.warnings.emplace_back(WarningCode::nothing_found, text);
+}
+
 void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceValue& value) {
   const Vec3d way = value.closest - point;
   map.distance[texel] = static_cast<float>(value.distance);

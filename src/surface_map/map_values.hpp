@@ -64,6 +64,10 @@ using ValueAt = FunctionRef<SurfaceValue(const Vec3d& point, TriangleId triangle
 /// Fills texels, what they sum up to, and vertices with such values.
 void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context);
 
+/// Adds a warning where no texel has a value. @param text  of it.
+void warn_of_nothing(SurfaceMap& map, const char* text);
+inline constexpr const char* nothing_lies_within = "nothing lies within the distance of any texel";
+
 /// Fills `error`. @param may_jump  whether distances may change their sign off the other mesh.
 void bound_errors(SurfaceMap& map, const MeshView& mesh, bool may_jump, const Context& context);
 

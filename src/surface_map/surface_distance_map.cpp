@@ -176,6 +176,7 @@ SurfaceMap SurfaceMapper::map(const Context& context) const {
   timer.lap("errors");
   out.sign_rule = data_->query->sign_rule();
   out.sign_reason = data_->query->sign_reason();
+  surface::warn_of_nothing(out, surface::nothing_lies_within);
   return out;
 }
 
@@ -216,6 +217,7 @@ SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& op
   timer.lap("texels");
   surface::bound_errors(out, target, false, context);
   timer.lap("errors");
+  surface::warn_of_nothing(out, surface::nothing_lies_within);
   return out;
 }
 

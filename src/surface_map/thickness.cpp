@@ -10,10 +10,12 @@
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/core/scale.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
 #include "surface_map/facing_surface.hpp"
 #include "surface_map/map_values.hpp"
 
@@ -196,6 +198,25 @@ void check_solid(const MeshView& solid) {
   if (solid.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so there is no solid to be thick");
 }
 
+std::vector<Warning> warnings_of(const Orientation& found) {
+  const auto edges = [](std::size_t count) { return plural(count, "edge", "edges"); };
+  if (found.boundary_edges > 0) {
+    return {{WarningCode::open_mesh,
+             "the mesh is open (" + edges(found.boundary_edges) +
+                 " with one triangle): behind a hole there is no thickness, or one too large; welding joins vertices"}};
+  }
+  if (found.inconsistent_edges > 0) {
+    return {{WarningCode::facing, "triangles face different ways (" + edges(found.inconsistent_edges) +
+                                      "): where they face inwards, thickness is measured outside of the solid"}};
+  }
+  if (!found.closed || found.outward) return {};
+  return {{WarningCode::facing,
+           found.signed_volume < 0
+               ? "triangles face into the solid, so that thickness is measured outside of it; turn them around"
+               : "shells lie in or cross each other and face the same way, or have no volume: thickness may be that of "
+                 "one of them alone"}};
+}
+
 }  // namespace
 
 std::vector<Thickness> thickness(const MeshView& solid, std::span<const Vec3d> points, const ThicknessOptions& options,
@@ -252,7 +273,13 @@ SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map, co
   };
   surface::fill(out, solid, order, value_at, context);
   timer.lap("texels");
+  out.warnings = warnings_of(orientation(solid, search.sites()));
+  surface::warn_of_nothing(out, "no texel has a thickness");
   return out;
+}
+
+std::vector<Warning> thickness_warnings(const MeshView& solid, const Context& context) {
+  return warnings_of(orientation(solid, SiteTable(solid, context)));
 }
 
 }  // namespace blum

@@ -100,4 +100,4 @@ def test_meshes_are_refused_and_help_has_examples(tmp_path):
 def test_images_of_one_layer_are_warned_of(tmp_path):
     np.save(tmp_path / "ring.npy", np.ones((1, 20, 30), dtype=np.uint8))
     lines = run_json("centreline", tmp_path / "ring.npy", "-o", tmp_path / "g.json", warns=True)
-    assert any("single layer" in warning for warning in lines["warnings"])
+    assert any("single layer" in warning["text"] for warning in lines["warnings"])

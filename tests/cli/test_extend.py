@@ -89,7 +89,7 @@ def test_a_short_length_is_told(plate, tmp_path):
     )
     told = summary["solids"][0]["axes"][0]["extended"]
     assert told["not_reached"] == told["rim_vertices"] > 0 and told["triangles"] == 0
-    assert any("are not extended" in warning for warning in summary["warnings"])
+    assert any("are not extended" in warning["text"] for warning in summary["warnings"])
     out, _ = run(
         "medial", plate, "-o", tmp_path / "a.vtp", "--theta", 110, "--resolution", 60, "--extend", tmp_path / "s.ply"
     )

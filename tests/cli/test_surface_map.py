@@ -58,7 +58,7 @@ def test_maps_of_nothing_are_told(shapes, tmp_path):
     far = run_json(
         "surface-map", shapes / "torus.ply", tmp_path / "far.ply", "-o", tmp_path / "m.png", "--within", 0.01, warns=True
     )
-    assert far["smallest"] is None and "nothing lies within" in far["warnings"][0]
+    assert far["smallest"] is None and "nothing lies within" in far["warnings"][0]["text"]
 
 
 def test_all_formats_at_once(shapes, tmp_path):
@@ -110,15 +110,18 @@ def test_meshes_without_an_inside_are_warned_of(shapes, tmp_path):
         lines = [f"v {x} {y} {z}" for x, y, z in corners] + ["f " + " ".join(str(v + 1) for v in face) for face in faces]
         (tmp_path / name).write_text("\n".join(lines) + "\n")
         words = ("surface-map", tmp_path / name, "-o", tmp_path / "map.npz", "--thickness", "ray", "--texel", 0.1)
-        return run_json(*words, warns=True)["warnings"]
+        warning = run_json(*words, warns=True)["warnings"][0]
+        return warning["code"], warning["text"]
 
     assert run_json("surface-map", shapes / "plate.ply", "-o", tmp_path / "m.npz", "--thickness", "ray")["warnings"] == []
-    assert "the mesh is open (4 edges" in box("open.obj", quads[:-1])[0]
-    assert "face different ways (4 edges)" in box("turned.obj", [*quads[:-1], quads[-1][::-1]])[0]
-    assert "face into the solid" in box("inwards.obj", [quad[::-1] for quad in quads])[0]
+    code, text = box("open.obj", quads[:-1])
+    assert code == "open-mesh" and "the mesh is open (4 edges" in text
+    code, text = box("turned.obj", [*quads[:-1], quads[-1][::-1]])
+    assert code == "facing" and "face different ways (4 edges)" in text
+    assert "face into the solid" in box("inwards.obj", [quad[::-1] for quad in quads])[1]
     corners += [(0.25 + x / 2, 0.25 + y / 2, 0.25 + z / 2) for x, y, z in corners]
     inner = [tuple(v + 8 for v in quad) for quad in quads]
-    assert "lie in or cross each other" in box("nested.obj", quads + inner)[0]
+    assert "lie in or cross each other" in box("nested.obj", quads + inner)[1]
     hollow = [quad[::-1] for quad in inner]
     words = ("surface-map", tmp_path / "hollow.obj", "-o", tmp_path / "map.npz", "--thickness", "ray", "--texel", 0.1)
     lines = [f"v {x} {y} {z}" for x, y, z in corners]

@@ -309,7 +309,9 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(parts, tmp_pat
 def test_what_faces_the_wrong_way_is_turned(solids, tmp_path):
     found = run_json("voronoi", solids / "inverted.obj", warns=True)
     assert found["certified"] and found["reversed_shells"] == 1 and found["reversed_triangles"] == 0
-    assert found["warnings"] == ["1 shell faces the wrong way and was reversed"]
+    assert found["warnings"] == [
+        {"code": "reversed-shells", "text": "1 shell faces the wrong way and was reversed"}
+    ]
     run("make", "box", "-o", tmp_path / "box.obj")
     text = (tmp_path / "box.obj").read_text()
     first = re.search(r"^f (\d+) (\d+) (\d+)$", text, re.MULTILINE)
@@ -420,10 +422,10 @@ def test_a_mesh_that_crosses_itself(tmp_path):
     crossing, mesh, axis = tmp_path / "crossing.obj", tmp_path / "apart.ply", tmp_path / "axis.vtp"
     crossing.write_text("\n".join(lines), "utf-8")
     facts = run_json("voronoi", crossing, "-o", tmp_path / "walls.vtp", "--cleaned", mesh, warns=True)
-    assert facts["certified"] and any("resolved exactly" in warning for warning in facts["warnings"])
+    assert facts["certified"] and any("resolved exactly" in warning["text"] for warning in facts["warnings"])
     assert run_json("info", mesh)["betti"] == [1, 0, 0]
     assert "--cleaned" in run("voronoi", crossing, "--medial", "-o", axis, status=1)[1]
     run("voronoi", crossing, "--medial", "-o", axis, "--cleaned", mesh, warns=True)
     run("verify", mesh, axis)
-    assert any("--cleaned" in warning for warning in run_json("voronoi", crossing, warns=True)["warnings"])
+    assert any("--cleaned" in warning["text"] for warning in run_json("voronoi", crossing, warns=True)["warnings"])
 

@@ -73,7 +73,9 @@ def test_what_faces_the_wrong_way_is_turned():
     assert (found.reversed_triangles, found.reversed_shells) == (1, 1)
     assert found.mesh.triangles.shape == triangles.shape and blum.topology(found.mesh).betti == (1, 4, 0)
     assert blum.voronoi_complex(found.mesh).report.certified
-    assert blum.voronoi_complex((part.vertices, triangles)).report.certified
-    assert blum.clean_mesh((part.vertices, triangles), 1e-6).report.reversed_triangles == 1
+    with pytest.warns(blum.InputWarning, match="1 triangle faces another way") as told:
+        assert blum.voronoi_complex((part.vertices, triangles)).report.certified
+        assert blum.clean_mesh((part.vertices, triangles), 1e-6).report.reversed_triangles == 1
+    assert [warning.message.code for warning in told] == 2 * ["reversed-shells"]
     with pytest.raises(blum.InvalidMesh, match="not closed"):
         blum.oriented_mesh((part.vertices, triangles[1:]))

@@ -35,7 +35,9 @@ def test_the_surface_spans_the_plate(plate, axis):
 
 
 def test_options_and_what_is_refused(axis):
-    short = axis.extend(max_length=0.3)
+    with pytest.warns(blum.InputWarning, match="^rims .* are not extended") as told:
+        short = axis.extend(max_length=0.3)
+    assert told[0].message.code == "not-extended"
     assert short.report.not_reached == short.report.rim_vertices > 0 == short.report.triangles
     with pytest.raises(blum.InvalidOption, match="max_length"):
         axis.extend(max_length=0)

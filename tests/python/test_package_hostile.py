@@ -242,12 +242,29 @@ def test_numbers_that_are_too_large_and_lists_that_are_ragged_are_named(box):
 
 
 def test_what_looks_wrong_is_warned_of(box):
-    with pytest.warns(blum.InputWarning, match="no node is inside"):
-        blum.distance_field(box.vertices, box.triangles[:, ::-1], resolution=8)
-    with pytest.warns(blum.InputWarning, match="open"):
-        blum.medial_axis(box.vertices, box.triangles[1:], resolution=16)
-    with pytest.warns(blum.InputWarning, match="1 shell faced the solid, and was reversed"):
-        blum.medial_axis(box.vertices, box.triangles[:, ::-1], resolution=16)
+    def code_of(call, *arguments, match, **options):
+        with pytest.warns(blum.InputWarning, match=match) as told:
+            call(*arguments, **options)
+        assert all(warning.filename == __file__ for warning in told)
+        return told[0].message.code
+
+    inwards, opened = (box.vertices, box.triangles[:, ::-1]), (box.vertices, box.triangles[1:])
+    assert code_of(blum.distance_field, *inwards, resolution=8, match="inside out") == "facing"
+    elsewhere = blum.Grid((9, 9, 9), 1, (2, 2, 2))
+    assert code_of(blum.distance_field, box, grid=elsewhere, match="no node is inside") == "nothing-inside"
+    assert code_of(blum.medial_axis, *opened, resolution=16, match="open.*as voxels") == "solid-of-voxels"
+    reversal = "1 shell faces the wrong way and was reversed"
+    assert code_of(blum.medial_axis, *inwards, resolution=16, match=reversal) == "reversed-shells"
+    assert code_of(blum.voronoi_complex, *inwards, match=reversal) == "reversed-shells"
+    assert code_of(blum.thickness_map, opened, texel=0.2, match="the mesh is open") == "open-mesh"
+    assert code_of(blum.thickness, inwards, match="face into the solid") == "facing"
+    far = blum.generate("sphere", radius=9)
+    nothing = "nothing lies within"
+    assert code_of(blum.surface_distance_map, box, far, texel=0.2, max_distance=1, match=nothing) == "nothing-found"
+    plate = np.ones((1, 9, 9), dtype=bool)
+    assert code_of(blum.centreline, plate, match="single layer") == "single-layer"
+    again = pickle.loads(pickle.dumps(blum.InputWarning("text", "facing")))
+    assert (str(again), again.code, blum.InputWarning("text").code) == ("text", "facing", "")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         blum.distance_field(box, resolution=8)

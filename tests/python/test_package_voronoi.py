@@ -178,8 +178,9 @@ def test_where_a_mesh_crosses_itself_the_diagram_is_that_of_its_solid():
     triangles = np.concatenate([box.triangles, box.triangles + len(box.vertices)])
     solid = blum.Solid(vertices, triangles)
     assert solid.problem == "" and blum.topology(solid.surface).betti == (1, 0, 0)
-    with pytest.warns(blum.InputWarning, match="without the crossings"):
+    with pytest.warns(blum.InputWarning, match=r"without the crossings: Solid\(mesh\)\.surface") as told:
         warned = blum.voronoi_complex(vertices, triangles)
+    assert [warning.message.code for warning in told] == ["crossings-removed"]
     found = blum.voronoi_complex(solid)
     assert found.report.certified and np.array_equal(found.triangle_sites, warned.triangle_sites)
     cleaned = blum.clean_mesh(solid, 1e-6)

@@ -57,21 +57,12 @@ Selections parse_selections(const std::vector<std::string>& labels, const std::o
   return out;
 }
 
-std::vector<std::string> warnings_of(const SolidInput& input) {
-  std::vector<std::string> all;
-  if (input.weld && input.weld->before != input.weld->after) all.push_back(weld_text(*input.weld));
-  if (input.reversed_triangles > 0) {
-    all.push_back(plural(input.reversed_triangles, "triangle faces", "triangles face") +
-                  " another way than the others around, and " + (input.reversed_triangles == 1 ? "was" : "were") +
-                  " reversed");
+std::vector<Warning> warnings_of(const SolidInput& input) {
+  std::vector<Warning> all;
+  if (input.weld && input.weld->before != input.weld->after) {
+    all.emplace_back(WarningCode::other_vertices, weld_text(*input.weld));
   }
-  if (input.reversed_shells > 0) all.push_back(reversed_shells_text(input.reversed_shells));
   return all;
-}
-
-std::string reversed_shells_text(std::size_t count) {
-  return plural(count, "shell faces", "shells face") + " the wrong way and " + (count == 1 ? "was" : "were") +
-         " reversed";
 }
 
 }  // namespace blum::cli

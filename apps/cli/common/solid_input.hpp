@@ -21,8 +21,7 @@ struct SolidInput {
   InputKind kind = InputKind::mesh;
   MeshFile mesh;
   VoxelImage image;
-  std::optional<WeldFacts> weld;                            ///< where vertices within a tolerance above 0 were joined
-  std::size_t reversed_triangles = 0, reversed_shells = 0;  ///< in the solid
+  std::optional<WeldFacts> weld;  ///< where vertices within a tolerance above 0 were joined
   Json json;
   std::string text;
 };
@@ -31,10 +30,8 @@ struct SolidInput {
 /// @throws FileError for fields and for what cannot be read; InvalidMesh, InvalidImage.
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
 
-/// What there is to say of an input: how many vertices were joined, and triangles reversed.
-[[nodiscard]] std::vector<std::string> warnings_of(const SolidInput& input);
-
-[[nodiscard]] std::string reversed_shells_text(std::size_t count);
+/// What there is to say of an input as it was read: how many vertices were joined.
+[[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);
 
 /// What make() makes of a file; of a mesh that it does not take, the error names the file. @throws InvalidMesh.
 template <class Make>

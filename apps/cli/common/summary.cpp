@@ -36,10 +36,6 @@ std::string size_text(const GridSpec& grid) {
   return std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " + std::to_string(grid.size[2]);
 }
 
-std::string plural(std::uint64_t count, std::string_view one, std::string_view many) {
-  return count_text(count) + " " + std::string(count == 1 ? one : many);
-}
-
 std::string percentiles_text(std::span<const double> percents, std::span<const double> values) {
   std::string out;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -77,12 +73,12 @@ Json answer_json(std::string_view command, const Json& facts) {
 }
 
 void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
-                   const std::vector<std::string>& warnings, const Json& outputs) {
+                   const std::vector<Warning>& warnings, const Json& outputs) {
   answer["seconds"] = spent.seconds;
   answer["total_seconds"] = spent.total;
   answer["peak_memory_bytes"] = peak_memory();
   answer["threads"] = thread_count(context);
-  answer["warnings"] = warnings;
+  answer["warnings"] = to_json(warnings);
   answer["outputs"] = outputs;
 }
 
@@ -101,9 +97,13 @@ void report(const ReportOptions& options, const Json& json, const std::string& t
   if (!options.quiet && !options.json_to_stdout()) print(text);
 }
 
-void warn(const std::vector<std::string>& warnings) {
+void warn(const std::vector<Warning>& warnings) {
+  for (const Warning& warning : warnings) warn_of(warning.text);
+}
+
+void warn_of(const std::string& text) {
   std::fflush(stdout);
-  for (const std::string& warning : warnings) std::fprintf(stderr, "blum: warning: %s\n", warning.c_str());
+  std::fprintf(stderr, "blum: warning: %s\n", text.c_str());
 }
 
 void print(std::string_view text) {

@@ -11,7 +11,9 @@
 
 #include "blum/core/context.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "common/described.hpp"
@@ -36,8 +38,6 @@ class Stopwatch {
 [[nodiscard]] std::string bytes_text(double bytes);
 [[nodiscard]] std::string vector_text(const Vec3d& v);
 [[nodiscard]] std::string size_text(const GridSpec& grid);
-/// "1 edge", "2 edges".
-[[nodiscard]] std::string plural(std::uint64_t count, std::string_view one, std::string_view many);
 /// "1 % below 0.2, 5 % below 0.3, ...".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);
 
@@ -68,7 +68,7 @@ class TextTable {
 
 /// Adds what answers end with: how long the run took, its memory and threads, warnings, and the files written.
 void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
-                   const std::vector<std::string>& warnings, const Json& outputs);
+                   const std::vector<Warning>& warnings, const Json& outputs);
 
 /// Where a command's summary goes.
 struct ReportOptions {
@@ -83,8 +83,10 @@ struct ReportOptions {
 /// @throws FileError.
 void report(const ReportOptions& options, const Json& json, const std::string& text);
 
-/// Writes each as a line "blum: warning: ..." to stderr.
-void warn(const std::vector<std::string>& warnings);
+/// Writes the text of each as a line "blum: warning: ..." to stderr.
+void warn(const std::vector<Warning>& warnings);
+/// Likewise what is no fact of a result.
+void warn_of(const std::string& text);
 
 /// @throws FileError when stdout does not take what is written to it.
 void print(std::string_view text);

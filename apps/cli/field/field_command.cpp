@@ -11,7 +11,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/field/field.hpp"
-#include "blum/geometry/self_intersections.hpp"
+#include "blum/field/field_warnings.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
@@ -118,7 +118,7 @@ struct Run {
   std::vector<fs::path> outputs;
   std::optional<fs::path> removed;       ///< sites of a field that was replaced by one without
   std::vector<fs::path> removed_second;  ///< likewise what was of order 2
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   TextTable table;
   bool names_device = false;  ///< one other than the CPU was asked for, which `auto` may be, too
   void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
@@ -209,29 +209,6 @@ double coarsest_step(const GridSpec& grid) {
   return step > 0 ? step : grid.spacing.x;
 }
 
-/// What deserves a look although the field was made as asked.
-std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& s, const MeshView& mesh,
-                                     const Orientation& facts) {
-  if (field.sign_rule == SignRule::none) return {};
-  if (facts.closed && facts.oriented && !facts.outward) {
-    if (facts.signed_volume < 0) {
-      return {"the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"};
-    }
-    // Shells that cross have no depth that would tell which way they must face; winding numbers join them.
-    if (field.sign_rule == SignRule::normals || !SelfIntersectionSearch().finds_any(mesh)) {
-      return {
-          "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
-          "says more of its shells"};
-    }
-  }
-  if (s.inside_nodes > 0) return {};
-  if (facts.inconsistent_edges > 0) {
-    return {"no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
-            " between triangles that face different ways, so that their winding numbers cancel; orient the mesh first"};
-  }
-  return {"no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"};
-}
-
 void finish(const Request& request, Run& run, const GridSpec& grid, const Context& context) {
   const PhaseSummary spent = summarize(run.phases);
   const double nodes = static_cast<double>(grid.node_count()) * static_cast<double>(run.fields.size());
@@ -251,7 +228,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                                           {"peak_memory_bytes", peak_memory()},
                                           {"threads", thread_count(context)},
                                           {"thread_backend", thread_backend()},
-                                          {"warnings", run.warnings},
+                                          {"warnings", to_json(run.warnings)},
                                           {"outputs", outputs},
                                           {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)},
                                           {"removed_second", removed_second}});
@@ -333,8 +310,8 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("write", watch.lap());
   progress.clear();
   add_field(run, field, statistics, files_of_field(r.output, r.options.sites, r.options.order), nullptr);
-  run.warnings = warnings_of(field, statistics, mesh, facts);
-  if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
+  run.warnings = field_warnings(field, mesh, facts, context);
+  if (is_welded_away(file)) run.warnings.emplace_back(WarningCode::other_vertices, welded_away_text(file));
   finish(r, run, grid, context);
 }
 

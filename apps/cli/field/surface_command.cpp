@@ -126,8 +126,8 @@ void run_level(const Arguments& a) {
   write_mesh(output, surface);
   progress.clear();
 
-  std::vector<std::string> warnings;
-  if (!reason.empty()) warnings.push_back(reason);
+  std::vector<Warning> warnings;
+  if (!reason.empty()) warnings.emplace_back(WarningCode::nothing_found, reason);
   const double write_seconds = watch.lap();
   const Json json = answer_json(
       "surface", {{"field", input.string()},
@@ -138,7 +138,7 @@ void run_level(const Arguments& a) {
                   {"total_seconds", read_seconds + surface_seconds + write_seconds},
                   {"peak_memory_bytes", peak_memory()},
                   {"threads", thread_count(context)},
-                  {"warnings", warnings},
+                  {"warnings", to_json(warnings)},
                   {"outputs", {output.string()}}});
   TextTable table;
   table.add("field", input.string() + ": " + size_text(field.grid) + " nodes");

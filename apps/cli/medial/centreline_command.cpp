@@ -31,7 +31,6 @@ constexpr const char* examples = R"(Examples:
   blum centreline cells.nrrd -o cells.csv --label 2,7-9    a row for each branch of four labels)";
 
 constexpr std::uint64_t most_labels = 1000000;
-constexpr std::size_t most_warnings = 5;
 
 struct Arguments {
   std::string image;
@@ -92,6 +91,7 @@ Centrelines lines_of(const VoxelImage& image, const std::optional<Labels>& label
   Centrelines lines = centreline(image, labels->all, options, context);
   std::erase_if(lines.labels,
                 [&](const Centreline& line) { return line.voxels == 0 && labels->of_ranges.contains(*line.label); });
+  lines.warnings = centreline_warnings(lines, image.grid);
   return lines;
 }
 
@@ -112,33 +112,6 @@ Json brief_json(const Centreline& line) {
           {"graph_betti", to_json(line.graph_betti)},
           {"homotopy_kept", line.homotopy_kept},
           {"homotopy", line.homotopy}};
-}
-
-std::vector<std::string> warnings_of(const Centrelines& lines, const GridSpec& grid) {
-  std::vector<std::string> warnings;
-  if (std::count(grid.size.begin(), grid.size.end(), 1) > 0) {
-    warnings.emplace_back(
-        "the image has a single layer, which is a plate as thick as a voxel: lengths and radii are not those of a "
-        "picture in the plane");
-  }
-  std::size_t left_out = 0;
-  for (const Centreline& line : lines.labels) {
-    if (line.voxels > 0 && line.homotopy_kept) continue;
-    if (warnings.size() == most_warnings) {
-      ++left_out;
-    } else if (line.voxels == 0) {
-      warnings.push_back(line.label ? "no voxel has the label " + std::to_string(*line.label)
-                                    : "no voxel reaches the threshold");
-    } else {
-      warnings.push_back((line.label ? "label " + std::to_string(*line.label) + ": " : "") + line.homotopy);
-    }
-  }
-  if (left_out > 0) {
-    warnings.push_back(plural(left_out, "more label has", "more labels have") +
-                       " no voxels, or another topology than their curves: the JSON tells");
-  }
-  if (lines.labels.empty()) warnings.emplace_back("the image has no voxels of these labels");
-  return warnings;
 }
 
 void add_lines(TextTable& table, const Centrelines& lines) {
@@ -196,21 +169,20 @@ void run(const Arguments& a) {
   phases.push_back({"write", watch.lap()});
   progress.clear();
 
-  const std::vector<std::string> warnings = warnings_of(lines, image.grid);
   const PhaseSummary spent = summarize(phases);
   Json briefs = Json::array();
   for (const Centreline& line : lines.labels) briefs.push_back(brief_json(line));
   Json json = answer_json(
       "centreline",
       {{"image", input.string()}, {"grid", to_json(image.grid)}, {"spur", options.spur}, {"labels", briefs}});
-  add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
+  add_run_facts(json, spent, context, lines.warnings, Json::array({output.string()}));
   TextTable table;
   table.add("image", input.string() + ": " + size_text(image.grid) + " voxels");
   add_lines(table, lines);
   table.add("wrote", output.string());
   table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(a.report, json, table.text());
-  if (!a.report.quiet) warn(warnings);
+  if (!a.report.quiet) warn(lines.warnings);
 }
 
 }  // namespace

@@ -49,12 +49,6 @@ std::string extended_text(const ExtendReport& report) {
   return text;
 }
 
-std::vector<std::string> extended_warnings(const ExtendReport& report) {
-  if (!(report.open_length > 0)) return {};
-  return {"of rims " + rounded_text(report.rim_length) + " long, " + rounded_text(report.open_length) +
-          " are not extended: nothing is near, or triangles would fold back or leave the solid"};
-}
-
 Json extended_json(const ExtendReport& report, const fs::path& file) {
   Json json{{"file", file.string()}};
   json.update(to_json(report));

@@ -21,8 +21,6 @@ void add_extend_options(const Command& command, std::optional<std::string>& exte
 
 /// "from an area of 4,671 to 5,000: 13 triangles; ..."
 [[nodiscard]] std::string extended_text(const ExtendReport& report);
-/// What is not as it was asked for, each as the end of a sentence.
-[[nodiscard]] std::vector<std::string> extended_warnings(const ExtendReport& report);
 /// The report. @param file  its name.
 [[nodiscard]] Json extended_json(const ExtendReport& report, const std::filesystem::path& file);
 

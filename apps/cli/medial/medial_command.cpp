@@ -204,13 +204,13 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   }
   json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
   json.update(to_json(report));
-  json.erase("seconds");  // those of all solids are told together
+  json.erase("seconds");   // those of all solids are told together
+  json.erase("warnings");  // likewise
   run.table.add("solid", betti_text(report.betti) + " (" + report.reason + ")");
   run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
                               (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts beside them" : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
-  if (report.reversed_shells > 0) run.warnings.push_back(reversed_shells_text(report.reversed_shells));
-  if (report.rule == SolidRule::winding) run.warnings.push_back(report.reason + ", as voxels");
+  run.warnings.insert(run.warnings.end(), report.warnings.begin(), report.warnings.end());
 }
 
 /// Writes the graph of an axis, where it is asked for; null where not.
@@ -239,8 +239,9 @@ Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, con
   write_extended(run.extended.back().path(), made.surface, metadata, context);
   run.phases.push_back({"extend", watch.lap()});
   run.table.add("extended", extended_text(made.report));
-  for (const std::string& warning : extended_warnings(made.report)) {
-    run.warnings.push_back("at theta " + rounded_text(metadata.theta.value_or(0)) + " " + warning);
+  for (const Warning& warning : made.warnings) {
+    const std::string angle = rounded_text(metadata.theta.value_or(0));
+    run.warnings.emplace_back(warning.code, "at theta " + angle + " " + warning.text);
   }
   return extended_json(made.report, run.extended.back().name());
 }
@@ -314,7 +315,7 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
   const double theta = *metadata.theta;
   run.drafts.push_back(std::move(draft));
   const fs::path& name = run.drafts.back().name();
-  for (const Warning& warning : made.warnings) run.warnings.push_back(warning.text);
+  run.warnings.insert(run.warnings.end(), made.warnings.begin(), made.warnings.end());
   run.is_kept.push_back((certificate.holds() && model_passes) || r.allow_uncertified);
   const MedialCounts counts = count(made.axis.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
@@ -375,7 +376,7 @@ void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
     json["label"] = *solid.label;
     run.table.add("label", std::to_string(*solid.label));
   }
-  for (const Warning& warning : made.warnings) run.warnings.push_back(warning.text);
+  run.warnings.insert(run.warnings.end(), made.warnings.begin(), made.warnings.end());
   add_report(run, made.report, is_mesh ? std::optional(asked_spacing(solid.input, options)) : std::nullopt, json);
   const std::vector<std::string> problems = model_problems(made.report, "--max-resolution");
   run.mismatches.insert(run.mismatches.end(), problems.begin(), problems.end());
@@ -454,7 +455,7 @@ void finish(const Request& r, MedialRun& run, const SolidInput& input, bool is_c
                                            {"peak_memory_bytes", peak_memory()},
                                            {"threads", thread_count(context)},
                                            {"thread_backend", thread_backend()},
-                                           {"warnings", run.warnings},
+                                           {"warnings", to_json(run.warnings)},
                                            {"outputs", outputs}});
   run.table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(r.report, json, input.text + run.table.text());
@@ -481,7 +482,7 @@ void run(const Arguments& arguments) {
   MedialRun run;
   Stopwatch watch;
   const SolidInput input = load_solid(r.input, r.weld);
-  for (const std::string& warning : warnings_of(input)) run.warnings.push_back(warning);
+  run.warnings = warnings_of(input);
   run.phases.push_back({"read", watch.lap()});
   const std::vector<LabelSelection> selections = r.selections.all();
   for (std::size_t s = 0; s < selections.size(); ++s) {

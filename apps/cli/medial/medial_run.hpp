@@ -18,7 +18,7 @@ struct MedialRun {
   std::vector<Draft> graphs;    ///< of each draft, where graphs are asked for
   std::vector<Draft> extended;  ///< of each draft, where extended axes are asked for
   std::vector<bool> is_kept;    ///< of each draft: whether it becomes a file
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   std::vector<std::string> mismatches;
   TextTable table;
 };

@@ -136,12 +136,12 @@ void run(const Arguments& a) {
   table.add("grid", size_text(grid) + " nodes, spacing " + rounded_text(grid.spacing.x));
   Json json = answer_json("reconstruct",
                           {{"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}}, {"grid", to_json(grid)}});
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   // Before anything is written, as it may fail.
   if (r.input) {
     const InputKind kind = input_kind(*r.input);
-    const auto& [selection, warning] = solid_of_axis(r.given, kind, file.metadata, r.axis);
-    if (!warning.empty()) warnings.push_back(warning);
+    const auto [selection, found] = solid_of_axis(r.given, kind, file.metadata, r.axis);
+    warnings = found;
     const SolidInput input = load_solid(*r.input, selection.weld);
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
     const Certificate certificate = SolidVerifier(input).certificate_of(file, voxels, context);
@@ -177,7 +177,7 @@ void run(const Arguments& a) {
     json["outputs"].push_back(output.string());
     table.add("wrote", output.string());
   }
-  json["warnings"] = warnings;
+  json["warnings"] = to_json(warnings);
   report(a.report, json, table.text());
   if (!a.report.quiet) warn(warnings);
 }

@@ -67,18 +67,18 @@ class Verifier {
   void verify(const fs::path& axis) {
     MedialFile file = read_axis(axis);
     if (smooth_ && !file.metadata.smooth) file.metadata.smooth = SmoothSurfaceOptions{}.iterations;
-    const auto& [selection, warning] = solid_of_axis(given_, kind_, file.metadata, axis);
+    auto [selection, warnings] = solid_of_axis(given_, kind_, file.metadata, axis);
     const SolidInput& solid = load(selection.weld);
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
     const Certificate certificate = verifier_->certificate_of(file, voxels, context_);
-    Json warnings = Json::array();
-    if (!warning.empty()) add_warning(warning, warnings);
     if (solid.weld && solid.weld->lost > 0) {
       // Nobody asked here for what the file says.
       const std::string asked = given_.weld ? std::string() : "as '" + axis.string() + "' asks, ";
-      if (!given_.weld || solid.weld->before != solid.weld->after)
-        add_warning(asked + weld_text(*solid.weld), warnings);
+      if (!given_.weld || solid.weld->before != solid.weld->after) {
+        warnings.emplace_back(WarningCode::other_vertices, asked + weld_text(*solid.weld));
+      }
     }
+    warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
     const MedialCounts counts = count(file.complex);
     table_.add("axis", axis.string() + ": " + counts_text(counts, file.has_labels));
     add_certificate(table_, certificate, file.nested.has_value());
@@ -86,7 +86,7 @@ class Verifier {
         answer_json("verify", {{"input", solid.json},
                                {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},
                                {"certificate", certificate_json(certificate, file.nested.has_value())},
-                               {"warnings", warnings}}));
+                               {"warnings", to_json(warnings)}}));
     if (!certificate.holds()) {
       std::vector<std::string> mismatches = other_source(path_, file.metadata);
       mismatches.insert(mismatches.end(), certificate.mismatches.begin(), certificate.mismatches.end());
@@ -98,7 +98,7 @@ class Verifier {
   [[nodiscard]] std::string text() const { return solid_->text + table_.text(); }
   /// An object for one axis, an array for several.
   [[nodiscard]] Json json() const { return results_.size() == 1 ? results_.front() : results_; }
-  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+  [[nodiscard]] const std::vector<Warning>& warnings() const { return warnings_; }
 
   /// @throws NotCertified where an axis is not.
   void check() const {
@@ -117,11 +117,6 @@ class Verifier {
     std::vector<std::string> mismatches;
     std::string advice;
   };
-
-  void add_warning(const std::string& warning, Json& of_axis) {
-    of_axis.push_back(warning);
-    warnings_.push_back(warning);
-  }
 
   /// The mesh or image, read again only where another axis is of one that was welded otherwise.
   const SolidInput& load(const std::optional<double>& weld) {
@@ -144,7 +139,7 @@ class Verifier {
   std::optional<double> weld_;
   TextTable table_;
   Json results_ = Json::array();
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
   std::vector<Failure> failures_;
 };
 

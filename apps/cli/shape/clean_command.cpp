@@ -49,14 +49,12 @@ void run(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
-  SolidInput input = load_solid(path, weld);
+  const SolidInput input = load_solid(path, weld);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const CleanedMesh cleaned = of_file(path, [&] { return clean_mesh(input.mesh.mesh, tolerance, context); });
   phases.push_back({"clean", watch.lap()});
-  input.reversed_triangles = cleaned.report.reversed_triangles;
-  input.reversed_shells = cleaned.report.reversed_shells;
-  std::vector<std::string> warnings = warnings_of(input);
-  add_left_out_warning(input.mesh.mesh, warnings);
+  std::vector<Warning> warnings = warnings_of(input);
+  warnings.insert(warnings.end(), cleaned.warnings.begin(), cleaned.warnings.end());
   write_mesh(output, cleaned.mesh);
   phases.push_back({"write", watch.lap()});
   add_rounding_warning(output, cleaned.mesh, warnings);

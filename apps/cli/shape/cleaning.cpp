@@ -33,22 +33,15 @@ Json cleaning_json(const CleanReport& done, double tolerance) {
   return out;
 }
 
-void add_left_out_warning(const MeshView& mesh, std::vector<std::string>& warnings) {
-  if (mesh.segments.empty() && mesh.points.empty()) return;
-  warnings.push_back(plural(mesh.segments.size(), "segment", "segments") + " and " +
-                     plural(mesh.points.size(), "point", "points") + " beside the triangles were left out");
-}
-
-void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh,
-                          std::vector<std::string>& warnings) {
+void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   if (file.extension() != ".stl") return;
   const auto is_single = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
   const bool is_kept = std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                                    [&](const Vec3d& p) { return is_single(p.x) && is_single(p.y) && is_single(p.z); });
   if (is_kept) return;
-  warnings.push_back("'" + file.string() +
-                     "' holds coordinates in single precision, so that what was checked need not hold of it: write "
-                     ".ply, .obj or .off");
+  warnings.emplace_back(WarningCode::rounded, "'" + file.string() +
+                                                  "' holds coordinates in single precision, so that what was checked "
+                                                  "need not hold of it: write .ply, .obj or .off");
 }
 
 }  // namespace blum::cli

@@ -16,11 +16,7 @@ void add_cleaning(const CleanReport& done, double tolerance, TextTable& table);
 /// The same as JSON.
 [[nodiscard]] Json cleaning_json(const CleanReport& done, double tolerance);
 
-/// Warns of what cleaning leaves out beside triangles. @param mesh  before.
-void add_left_out_warning(const MeshView& mesh, std::vector<std::string>& warnings);
-
 /// Warns where a file that holds single precision does not hold a mesh as it was checked.
-void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh,
-                          std::vector<std::string>& warnings);
+void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh, std::vector<Warning>& warnings);
 
 }  // namespace blum::cli

@@ -243,7 +243,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   TextTable table = topology_table(a.input, file, facts, contacts, repaired);
   if (a.model) json["model"] = add_model(a, file.mesh, context, table);
   progress.clear();
-  if (is_welded_away(file) && !a.report.quiet) warn({welded_away_text(file)});
+  if (is_welded_away(file) && !a.report.quiet) warn({{WarningCode::other_vertices, welded_away_text(file)}});
   report(a.report, answer_json("info", json), table.text());
 }
 

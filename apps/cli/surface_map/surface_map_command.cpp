@@ -9,7 +9,6 @@
 
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/geometry/topology.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/surface_map_io.hpp"
@@ -162,28 +161,6 @@ struct Facts {
   }
 };
 
-/// What keeps all of a mesh from having a thickness, or a meaningful one.
-std::vector<std::string> thickness_warnings(const MeshView& solid) {
-  const Orientation found = orientation(solid, SiteTable(solid));
-  const auto edges = [](std::size_t count) { return plural(count, "edge", "edges"); };
-  if (found.boundary_edges > 0) {
-    return {"the mesh is open (" + edges(found.boundary_edges) +
-            " with one triangle): behind a hole there is no thickness, or one too large; --weld joins vertices"};
-  }
-  if (found.inconsistent_edges > 0) {
-    return {"triangles face different ways (" + edges(found.inconsistent_edges) +
-            "): where they face inwards, thickness is measured outside of the solid"};
-  }
-  if (found.closed && !found.outward) {
-    return {
-        found.signed_volume < 0
-            ? "triangles face into the solid, so that thickness is measured outside of it; turn them around"
-            : "shells lie in or cross each other and face the same way, or have no volume: thickness may be that of "
-              "one of them alone"};
-  }
-  return {};
-}
-
 void run(const Arguments& a) {
   const Request asked = read(a);
   const std::optional<double> weld = parse_weld(a.weld);
@@ -238,15 +215,9 @@ void run(const Arguments& a) {
     json["sign_rule"] = to_string(map.sign_rule);
     json["sign_reason"] = map.sign_reason;
   }
-  std::vector<std::string> warnings;
-  if (asked.thickness) warnings = thickness_warnings(target.mesh);
-  if (facts.texels == facts.without) {
-    warnings.emplace_back(asked.thickness ? "no texel has a thickness"
-                                          : "nothing lies within the distance of any texel");
-  }
   Json written = Json::array();
   for (const fs::path& output : asked.outputs) written.push_back(output.string());
-  add_run_facts(json, spent, context, warnings, written);
+  add_run_facts(json, spent, context, map.warnings, written);
   TextTable table;
   table.add("target", a.target + ": " + plural(target.mesh.triangles.size(), "triangle", "triangles"));
   table.add("map", quantity + ", " + std::to_string(map.atlas->width) + " x " + std::to_string(map.atlas->height) +
@@ -265,7 +236,7 @@ void run(const Arguments& a) {
   }
   for (const fs::path& output : asked.outputs) table.add("wrote", output.string());
   table.add("time", spent.text);
-  if (!a.report.quiet) warn(warnings);
+  if (!a.report.quiet) warn(map.warnings);
   report(a.report, json, table.text());
 }
 

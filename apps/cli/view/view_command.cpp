@@ -62,7 +62,7 @@ void open_browser(const std::string& url) {
   char* const arguments[] = {program.data(), address.data(), nullptr};
   pid_t child = 0;
   if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
-    warn({"no browser could be opened (xdg-open is not there): open " + url});
+    warn_of("no browser could be opened (xdg-open is not there): open " + url);
   }
 }
 
@@ -100,7 +100,7 @@ void run(const Arguments& a) {
   }();
   progress.clear();
   if (scene.problems.size() == a.inputs.size()) throw FileError(join_words(scene.problems));
-  warn(scene.problems);
+  for (const std::string& problem : scene.problems) warn_of(problem);
   if (a.output) {
     write_page(*a.output, scene);
     if (!a.quiet) print("wrote " + *a.output + ": " + shown_text(scene) + "\n");

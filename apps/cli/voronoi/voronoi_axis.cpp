@@ -93,7 +93,7 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
                                             certify, out.phases, context);
   const MedialMetadata& metadata = made.metadata;
   const MedialCounts counts = count(made.axis.axis);
-  for (const Warning& warning : made.warnings) out.warnings.push_back(warning.text);
+  out.warnings = made.warnings;
   out.mismatches = made.certificate.mismatches;
   out.table.add("axis", counts_text(counts, true));
   if (metadata.deviation) {

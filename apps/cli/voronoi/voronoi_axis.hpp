@@ -39,7 +39,7 @@ struct VoronoiAxis {
   Json json;                  ///< counts, deviation, graph, certificate
   TextTable table;
   std::vector<std::string> mismatches;  ///< why it is not certified
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   std::vector<PhaseTime> phases;
 };
 

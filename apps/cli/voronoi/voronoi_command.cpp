@@ -16,6 +16,7 @@
 #include "blum/io/voronoi_io.hpp"
 #include "blum/solid/clean_mesh.hpp"
 #include "blum/solid/solid.hpp"
+#include "blum/solid/solid_warnings.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
@@ -254,26 +255,27 @@ struct Prepared {
 
 /// The solid of the mesh that was read, cleaned where that is asked for; its surface takes the mesh's place, and is
 /// written where it has numbers of its own.
-Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<std::string>& warnings,
+Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<Warning>& warnings,
                  const Context& context) {
   const auto make = [&]() -> Prepared {
     const TriangleMesh& mesh = input.mesh.mesh;
     if (!r.clean) return {Solid::of(mesh, context), std::nullopt};
     CleanedMesh cleaned = clean_mesh(mesh, *r.clean, context);
-    add_left_out_warning(mesh, warnings);
+    warnings = std::move(cleaned.warnings);
     return {std::move(cleaned.solid), cleaned.report};
   };
   Prepared out = of_file(a.input, make);
-  input.reversed_triangles = out.cleaning ? out.cleaning->reversed_triangles : out.solid.reversed_triangles();
-  input.reversed_shells = out.cleaning ? out.cleaning->reversed_shells : out.solid.reversed_shells();
+  if (!out.cleaning) warnings = reversal_warnings(out.solid.reversed_triangles(), out.solid.reversed_shells());
   if (out.solid.resolved()) {
     if (a.medial && a.output && !a.cleaned) {
       throw InvalidMesh("'" + a.input +
                         "': the mesh crosses itself, and a medial axis is verified against the mesh that it is of: "
                         "give --cleaned FILE for that without the crossings, too");
     }
-    warnings.push_back(out.solid.reason());
-    if (!a.cleaned) warnings.emplace_back("triangles are those without the crossings: --cleaned FILE writes them");
+    for (Warning& warning : crossing_warnings(out.solid)) {
+      if (!a.cleaned) warning.text += ": --cleaned FILE writes it";
+      warnings.push_back(std::move(warning));
+    }
   }
   input.mesh.mesh = out.solid.surface().mesh;
   if (a.cleaned) write_mesh(*a.cleaned, input.mesh.mesh);
@@ -289,12 +291,12 @@ void run(const Arguments& a) {
   Stopwatch watch;
   SolidInput input = read_mesh_input(path, r.weld);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  std::vector<std::string> left_out;
-  const Prepared prepared = prepare(a, r, input, left_out, context);
+  std::vector<Warning> changes;
+  const Prepared prepared = prepare(a, r, input, changes, context);
   const std::optional<CleanReport>& cleaning = prepared.cleaning;
   phases.push_back({cleaning ? "clean" : "solid", watch.lap()});
-  std::vector<std::string> warnings = warnings_of(input);
-  warnings.insert(warnings.end(), left_out.begin(), left_out.end());
+  std::vector<Warning> warnings = warnings_of(input);
+  warnings.insert(warnings.end(), changes.begin(), changes.end());
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
   VoronoiComplex made = of_file(path, [&] { return voronoi_complex(prepared.solid, r.options, context); });
   const VoronoiReport& found = made.report;
@@ -329,8 +331,8 @@ void run(const Arguments& a) {
   progress.clear();
   const PhaseSummary spent = summarize(phases);
   Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
-  facts["reversed_triangles"] = input.reversed_triangles;
-  facts["reversed_shells"] = input.reversed_shells;
+  facts["reversed_triangles"] = cleaning ? cleaning->reversed_triangles : prepared.solid.reversed_triangles();
+  facts["reversed_shells"] = cleaning ? cleaning->reversed_shells : prepared.solid.reversed_shells();
   facts["cleaning"] = cleaning ? cleaning_json(*cleaning, *r.clean) : Json(nullptr);
   facts.update(to_json(found));
   facts.erase("seconds");  // the run's, below, hold them

@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/solid/solid.hpp"
 
@@ -97,6 +99,7 @@ struct ExtendedAxis {
   /// axis: those of no triangle. Columns are those of extended_columns.
   Complex surface;
   ExtendReport report;
+  std::vector<Warning> warnings;  ///< that rims are not extended (WarningCode::not_extended)
 };
 
 /// The sheets of a medial axis, continued from their rims to the surface of the solid: the middle surface of a part

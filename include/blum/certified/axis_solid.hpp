@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "blum/certified/medial_metadata.hpp"
+#include "blum/core/warning.hpp"
 
 namespace blum {
 
@@ -21,7 +23,7 @@ enum class OptionStyle : std::uint8_t { command_line, python };
 
 struct AxisSolid {
   SolidSelection selection;
-  std::string warning;  ///< one sentence where the axis says otherwise; empty where nothing contradicts
+  std::vector<Warning> warnings;  ///< WarningCode::other_solid where the axis says otherwise
 };
 
 /// The solid of an axis: as options say where they are given, else as the axis says. A label or threshold replaces both

@@ -15,6 +15,7 @@ namespace blum {
 /// What a warning is about, for programs that act on it: texts may change, codes stay.
 enum class WarningCode : std::uint8_t {
   form_not_certified,  ///< an axis in a better form was not certified
+  not_certified,       ///< a result is not certified
   grid_moved,          ///< an axis was certified on a grid that was moved by a part of a voxel, not on the first one
   reversed_shells,     ///< shells or triangles faced the wrong way and were reversed
   solid_of_voxels,     ///< a mesh bounds no polyhedron, so that its solid is known as voxels
@@ -38,6 +39,7 @@ struct Description<WarningCode> {
   static constexpr std::string_view name = "WarningCode";
   static constexpr std::array values{
       NamedValue{WarningCode::form_not_certified, "form-not-certified"},
+      NamedValue{WarningCode::not_certified, "not-certified"},
       NamedValue{WarningCode::grid_moved, "grid-moved"},
       NamedValue{WarningCode::reversed_shells, "reversed-shells"},
       NamedValue{WarningCode::solid_of_voxels, "solid-of-voxels"},
@@ -66,7 +68,7 @@ struct Warning {
 
 template <>
 struct Description<Warning> {
-  static constexpr std::string_view name = "Warning";
+  static constexpr std::string_view name = "ResultWarning";  // as Python's own Warning is another thing
   static constexpr std::string_view doc = "One thing that a result warns of";
   static constexpr std::tuple members{
       Member{"code", &Warning::code, "", "what it is about"},

@@ -16,6 +16,8 @@
 #include "blum/core/describe.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/core/warning.hpp"
+#include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
 
@@ -127,6 +129,7 @@ struct Description<Centreline> {
 struct Centrelines {
   std::vector<Centreline> labels;  ///< by rising label
   std::vector<PhaseTime> phases;
+  std::vector<Warning> warnings;  ///< centreline_warnings() of them
 };
 
 /// The centreline of each label of an image, as a graph of curves.
@@ -149,6 +152,11 @@ struct Centrelines {
 /// Those of some labels, in this order. options.selection is not looked at.
 [[nodiscard]] Centrelines centreline(const VoxelImageView& image, std::span<const std::int64_t> labels,
                                      const CentrelineOptions& options = {}, const Context& context = {});
+
+/// What deserves a look in the centrelines of an image with this grid: that it has a single layer of voxels
+/// (WarningCode::single_layer), which labels have none (WarningCode::nothing_found), or another topology than their
+/// curves (WarningCode::other_topology). At most six: the last one counts those that are not named.
+[[nodiscard]] std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpec& grid);
 
 /// All branches as edges from point to point, for files. Columns of vertices: `radius`; of edges: `label` (int64; 0
 /// where there is none) and `branch` (int32, counted over all labels), `length`, `mean_radius` and `min_radius` of it.

@@ -18,6 +18,7 @@
 #include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/phase_timer.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
@@ -112,6 +113,7 @@ struct MedialAxisReport {
   GridSpec grid;                    ///< voxel centres: of the first body, or of the image
   std::vector<BodyReport> bodies;
   std::vector<PhaseTime> phases;  ///< seconds
+  std::vector<Warning> warnings;  ///< that shells were reversed, or that the solid is known as voxels
 };
 
 template <>
@@ -129,6 +131,7 @@ struct Description<MedialAxisReport> {
       Member{"grid", &MedialAxisReport::grid, "", "voxel centres: of the first body, or of the image"},
       Member{"bodies", &MedialAxisReport::bodies, "", "one for each connected part of the solid"},
       Member{"seconds", &MedialAxisReport::phases, "s", "wall-clock, of each phase"},
+      Member{"warnings", &MedialAxisReport::warnings, "", "whether the solid is not quite what was given"},
   };
 };
 

@@ -10,6 +10,7 @@
 #include "blum/core/betti_numbers.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/solid/solid.hpp"
 
@@ -64,7 +65,8 @@ struct CleanedMesh {
       mesh;  ///< its vertices are some of the input's, in their order, behind them those where it crossed itself
   std::vector<std::uint32_t> vertex_of;  ///< of each vertex, in the input; rising; or SolidBody::no_vertex
   CleanReport report;
-  Solid solid;  ///< that the mesh bounds, as it was found when the result was checked
+  Solid solid;                         ///< that the mesh bounds, as it was found when the result was checked
+  std::vector<Warning> warnings = {};  ///< of a mesh: what was reversed (reversal_warnings()) or left out
 };
 
 /// A closed mesh without needles and vertices that it can do without, within a tolerance: what to do before

@@ -18,6 +18,7 @@
 #include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/surface_map/surface_atlas.hpp"
@@ -98,6 +99,9 @@ struct SurfaceMap {
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;        ///< one sentence: why this rule
   std::vector<PhaseTime> phases;  ///< where time went
+  /// That no texel has a value (WarningCode::nothing_found); of thickness, thickness_warnings() before it. None of maps
+  /// from files.
+  std::vector<Warning> warnings;
 
   /// A texel with the smallest distance; nullopt where no texel has one.
   [[nodiscard]] std::optional<std::size_t> closest_texel() const;

@@ -13,6 +13,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/surface_map/surface_distance_map.hpp"
 
@@ -85,5 +86,10 @@ struct Thickness {
 /// The same as a texture over the surface. Of the map's options, `sign` is not looked at.
 [[nodiscard]] SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map = {},
                                        const ThicknessOptions& options = {}, const Context& context = {});
+
+/// What keeps all of a mesh from having a thickness, or a meaningful one: that it is open (WarningCode::open_mesh), or
+/// does not face outwards everywhere (WarningCode::facing). At most one.
+/// @param solid  must pass validate(solid). Cost: that of orientation() and a table of sites.
+[[nodiscard]] std::vector<Warning> thickness_warnings(const MeshView& solid, const Context& context = {});
 
 }  // namespace blum

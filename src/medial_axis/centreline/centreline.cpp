@@ -387,6 +387,7 @@ Centrelines run_all(const VoxelImageView& image, const std::vector<Task>& tasks,
   });
   if (!small.empty()) times.timer.lap("small labels");
   out.phases = std::move(times.phases);
+  out.warnings = centreline_warnings(out, image.grid);
   return out;
 }
 

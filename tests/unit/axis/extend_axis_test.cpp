@@ -136,6 +136,7 @@ TEST(ExtendAxis, CoversAPlateUpToItsCorners) {
   EXPECT_EQ(made.report.reached_border, made.report.rim_vertices);
   EXPECT_EQ(made.report.open_length, 0);
   EXPECT_NEAR(made.report.rim_length, 292, 6);
+  EXPECT_TRUE(made.warnings.empty());
   const Box3 box = box_of(made.surface);
   EXPECT_LT(length(box.lower - Vec3d{0, 0, 0}) + length(box.upper - Vec3d{100, 50, 0}), 1e-9);
 }
@@ -321,6 +322,9 @@ TEST(ExtendAxis, SaysWhatItDidNotReach) {
   EXPECT_EQ(made.report.triangles, 0U);
   EXPECT_EQ(made.report.open_length, made.report.rim_length);
   EXPECT_GT(made.report.rim_length, 50);
+  ASSERT_EQ(made.warnings.size(), 1U);
+  EXPECT_EQ(made.warnings[0].code, WarningCode::not_extended);
+  EXPECT_TRUE(made.warnings[0].text.starts_with("rims ")) << made.warnings[0].text;
 }
 
 TEST(ExtendAxis, IsTheSameForAnyNumberOfThreads) {

@@ -20,7 +20,7 @@ TEST(AxisSolid, WhatTheAxisSaysIsUsedWhereNothingIsGiven) {
   axis.weld = 0.5;
   EXPECT_EQ(of_image({}, axis).selection.label, 3);
   EXPECT_EQ(solid_of_axis({}, false, axis, "a", OptionStyle::python).selection.weld, 0.5);
-  EXPECT_EQ(of_image({}, axis).warning, "");
+  EXPECT_TRUE(of_image({}, axis).warnings.empty());
 }
 
 TEST(AxisSolid, OptionsGoFirstAndContradictionsAreWarnedOf) {
@@ -30,27 +30,27 @@ TEST(AxisSolid, OptionsGoFirstAndContradictionsAreWarnedOf) {
   EXPECT_FALSE(used.label);
   EXPECT_EQ(used.threshold, 2.5);
   EXPECT_EQ(warning, "the axis was made with label=3; threshold=2.5 is used, as it was given");
-  EXPECT_EQ(of_image({.label = 3}, axis).warning, "");
-  EXPECT_EQ(of_image({.label = 1}, {}).warning, "") << "the axis says nothing";
+  EXPECT_TRUE(of_image({.label = 3}, axis).warnings.empty());
+  EXPECT_TRUE(of_image({.label = 1}, {}).warnings.empty()) << "the axis says nothing";
 }
 
 TEST(AxisSolid, NumbersAreComparedAndNotTheirTexts) {
   MedialMetadata axis;
   axis.threshold = 1;
   const double close = 1 + std::numeric_limits<double>::epsilon();
-  EXPECT_NE(of_image({.threshold = close}, axis).warning, "");
+  EXPECT_FALSE(of_image({.threshold = close}, axis).warnings.empty());
 }
 
 TEST(AxisSolid, EachInputIsAskedForItsOwnOptions) {
   MedialMetadata axis;
   axis.label = 3;
   axis.weld = 1e-6;
-  EXPECT_EQ(of_image({.weld = 0.0}, axis).warning, "");
+  EXPECT_TRUE(of_image({.weld = 0.0}, axis).warnings.empty());
   EXPECT_EQ(of_image({.weld = 0.0}, axis).selection.label, 3);
-  EXPECT_EQ(solid_of_axis({.label = 1}, false, axis, "a", OptionStyle::python).warning, "");
-  EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "'a.npz'", OptionStyle::command_line).warning,
+  EXPECT_TRUE(solid_of_axis({.label = 1}, false, axis, "a", OptionStyle::python).warnings.empty());
+  EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "'a.npz'", OptionStyle::command_line).warnings.front().text,
             "'a.npz' was made with --weld 1e-06; --weld is used, as it was given");
-  EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "the axis", OptionStyle::python).warning,
+  EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "the axis", OptionStyle::python).warnings.front().text,
             "the axis was made with weld=1e-06; weld=0 is used, as it was given");
 }
 

@@ -319,6 +319,33 @@ TEST(Centreline, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(Centreline, WarnsOfWhatIsNotThere) {
+  const VoxelImage image = image_of({4, 4, 4}, [](const Vec3d&) { return 1; });
+  EXPECT_TRUE(centreline(image).warnings.empty());
+  const std::vector<std::int64_t> labels{1, 5};
+  EXPECT_EQ(centreline(image, labels).warnings,
+            (std::vector<Warning>{{WarningCode::nothing_found, "no voxel has the label 5"}}));
+  EXPECT_EQ(centreline(image, {.selection = LabelSelection::at_least(2)}).warnings,
+            (std::vector<Warning>{{WarningCode::nothing_found, "no voxel reaches the threshold"}}));
+  EXPECT_EQ(centreline(image_of({4, 4, 4}, [](const Vec3d&) { return 0; })).warnings,
+            (std::vector<Warning>{{WarningCode::nothing_found, "no voxel is selected"}}));
+  const std::vector<Warning> flat = centreline(image_of({4, 4, 1}, [](const Vec3d&) { return 1; })).warnings;
+  ASSERT_EQ(flat.size(), 1U);
+  EXPECT_EQ(flat[0].code, WarningCode::single_layer);
+}
+
+TEST(Centreline, WarnsOfFiveLabelsAndCountsTheOthers) {
+  Centrelines lines;
+  for (int label = 1; label <= 7; ++label) {
+    lines.labels.push_back({.label = label, .voxels = 9, .homotopy_kept = label == 1, .homotopy = "not kept"});
+  }
+  const GridSpec grid{{0, 0, 0}, {1, 1, 1}, {4, 4, 4}, {}};
+  const std::vector<Warning> found = centreline_warnings(lines, grid);
+  ASSERT_EQ(found.size(), 6U);
+  EXPECT_EQ(found[0], (Warning{WarningCode::other_topology, "label 2: not kept"}));
+  EXPECT_TRUE(found[5].text.starts_with("1 more label has no voxels, or another topology")) << found[5].text;
+}
+
 TEST(Centreline, RefusesWhatMakesNoSense) {
   VoxelImage image = image_of({4, 4, 4}, [](const Vec3d&) { return 1; });
   CentrelineOptions options;

@@ -42,6 +42,21 @@ TEST(MedialAxis, ASolidIsPassedOnInsteadOfItsMeshOrImage) {
   expect_same(medial_axis(Solid::of(image, selection)), medial_axis(image, {.selection = selection}));
 }
 
+TEST(MedialAxis, WarnsOfWhatIsNotQuiteTheMesh) {
+  const TriangleMesh box = make_box({});
+  const MedialAxisOptions options{.resolution = 12};
+  EXPECT_TRUE(medial_axis(box, options).report().warnings.empty());
+  TriangleMesh inwards = box;
+  inwards.triangles = reversed_triangles(box.triangles);
+  EXPECT_EQ(medial_axis(inwards, options).report().warnings,
+            (std::vector<Warning>{{WarningCode::reversed_shells, "1 shell faces the wrong way and was reversed"}}));
+  TriangleMesh open = box;
+  open.triangles.pop_back();
+  const MedialAxis axis = medial_axis(open, options);
+  EXPECT_EQ(axis.report().warnings,
+            (std::vector<Warning>{{WarningCode::solid_of_voxels, axis.report().reason + ", as voxels"}}));
+}
+
 /// What medial_axis() says of a mesh that has no interior.
 std::string refusal_of(const TriangleMesh& mesh) {
   try {

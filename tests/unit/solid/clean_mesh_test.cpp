@@ -327,6 +327,12 @@ TEST(CleanMesh, TurnsWhatFacesTheWrongWay) {
   const CleanedMesh out = clean_mesh(inwards, 0.001);
   EXPECT_EQ(out.report.reversed_shells, 1U);
   EXPECT_EQ(out.report.reversed_triangles, 1U);
+  EXPECT_TRUE(want.warnings.empty());
+  ASSERT_EQ(out.warnings.size(), 2U);
+  EXPECT_EQ(out.warnings[0].code, WarningCode::reversed_shells);
+  inwards.segments = {{0, 1}};
+  EXPECT_EQ(clean_mesh(inwards, 0.001).warnings.back(),
+            (Warning{WarningCode::left_out, "1 segment and 0 points beside the triangles were left out"}));
   EXPECT_EQ(out.report.betti, want.report.betti);
   EXPECT_EQ(out.mesh.triangles.size(), want.mesh.triangles.size());
 }

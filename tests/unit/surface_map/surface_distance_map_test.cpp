@@ -223,6 +223,16 @@ TEST(SurfaceDistanceMap, AnswersWhatIsClose) {
                    .has_value());
 }
 
+TEST(SurfaceDistanceMap, WarnsWhereNothingIsClose) {
+  const TriangleMesh box = test::box_between({0, 0, 0}, {1, 1, 1});
+  const std::vector<Warning> nothing{{WarningCode::nothing_found, "nothing lies within the distance of any texel"}};
+  const TriangleMesh distant = test::moved(box, 1, {3, 0, 0});
+  EXPECT_EQ(surface_distance_map(box, distant, {.texel = 0.5, .max_distance = 1}).warnings, nothing);
+  EXPECT_TRUE(surface_distance_map(box, distant, {.texel = 0.5, .max_distance = 3}).warnings.empty());
+  EXPECT_EQ(self_distance_map(box, {.texel = 0.5, .max_distance = 0}).warnings, nothing);
+  EXPECT_TRUE(self_distance_map(box, {.texel = 0.5}).warnings.empty());
+}
+
 TEST(SelfDistanceMap, LeavesOutNeighbours) {
   const TriangleMesh target = make_organic({.frequency = 5});
   const SurfaceMap map = self_distance_map(target, {.texel = 0.05});

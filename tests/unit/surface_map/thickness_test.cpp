@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -208,6 +210,35 @@ TEST(BallThickness, LooksPastTrianglesWithoutArea) {
     const std::vector<Thickness> found = thickness(plate, at, {.kind = ThicknessKind::ball, .separation = separation});
     EXPECT_NEAR(found[0].thickness, 0.5, 1e-9);
   }
+}
+
+TEST(Thickness, WarnsOfMeshesWithoutAnInside) {
+  const TriangleMesh box = test::box_between({0, 0, 0}, {4, 4, 4});
+  EXPECT_TRUE(thickness_warnings(box).empty());
+  EXPECT_TRUE(thickness_map(box, {.texel = 1}).warnings.empty());
+  const auto expect = [](const TriangleMesh& mesh, WarningCode code, const std::string& words) {
+    const std::vector<Warning> found = thickness_warnings(mesh);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].code, code);
+    EXPECT_TRUE(found[0].text.starts_with(words)) << found[0].text;
+    EXPECT_EQ(thickness_map(mesh, {.texel = 1}).warnings.front(), found[0]);
+  };
+  TriangleMesh mesh = box;
+  mesh.triangles.pop_back();
+  expect(mesh, WarningCode::open_mesh, "the mesh is open (3 edges with one triangle)");
+  mesh = box;
+  std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+  expect(mesh, WarningCode::facing, "triangles face different ways (3 edges)");
+  mesh.triangles = reversed_triangles(box.triangles);
+  expect(mesh, WarningCode::facing, "triangles face into the solid");
+  mesh = box;
+  append(mesh, test::box_between({1, 1, 1}, {3, 3, 3}));
+  expect(mesh, WarningCode::facing, "shells lie in or cross each other");
+  mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const std::vector<Warning> found = thickness_map(mesh, {.texel = 1}).warnings;
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1], (Warning{WarningCode::nothing_found, "no texel has a thickness"}));
 }
 
 TEST(ThicknessMap, HoldsThicknesses) {

@@ -1,0 +1,51 @@
+#include "blum/field/field_warnings.hpp"
+
+#include <algorithm>
+
+#include "blum/core/plural.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/sites.hpp"
+
+namespace blum {
+namespace {
+
+std::vector<Warning> facing_warnings(const Field& field, const MeshView& mesh, const Orientation& facts,
+                                     const Context& context) {
+  if (!facts.closed || !facts.oriented || facts.outward) return {};
+  if (facts.signed_volume < 0) {
+    return {{WarningCode::facing,
+             "the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"}};
+  }
+  // Shells that cross have no depth that would tell which way they must face; winding numbers join them.
+  const Context quiet{.threads = context.threads, .cancel = context.cancel};
+  if (field.sign_rule != SignRule::normals && SelfIntersectionSearch().finds_any(mesh, quiet)) return {};
+  return {{WarningCode::facing,
+           "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
+           "says more of its shells"}};
+}
+
+}  // namespace
+
+std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, const Orientation& facts,
+                                    const Context& context) {
+  if (field.sign_rule == SignRule::none) return {};
+  std::vector<Warning> facing = facing_warnings(field, mesh, facts, context);
+  if (!facing.empty()) return facing;
+  if (std::any_of(field.distance.begin(), field.distance.end(), [](float distance) { return distance < 0; })) return {};
+  if (facts.inconsistent_edges > 0) {
+    return {{WarningCode::nothing_inside,
+             "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
+                 " between triangles that face different ways, so that their winding numbers cancel; orient the mesh "
+                 "first"}};
+  }
+  return {{WarningCode::nothing_inside,
+           "no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"}};
+}
+
+std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, const Context& context) {
+  if (field.sign_rule == SignRule::none) return {};
+  validate(mesh);
+  return field_warnings(field, mesh, orientation(mesh, SiteTable(mesh, context)), context);
+}
+
+}  // namespace blum
