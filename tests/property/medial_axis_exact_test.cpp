@@ -82,7 +82,7 @@ TEST_P(SlowExactAxes, AreNextToWhatTheToolWrites) {
     const ExactAxis exact = known.make(theta, fineness);
     const CertifiedAxis made = certified_axis(axis, exact.solid, theta);
     EXPECT_TRUE(made.certificate.holds());
-    EXPECT_TRUE(made.warnings.empty()) << made.warnings.front();
+    EXPECT_TRUE(made.warnings.empty()) << made.warnings.front().text;
     const Complex& found = made.axis.axis;
     expect_next_to(part_of(found, MedialRole::curve), exact.axis, voxel, 0.99);
     for (const auto& [role, name, lines] :

@@ -104,7 +104,7 @@ def test_certified_axes_have_a_certificate_that_holds(axis, plate):
 
 
 def block_with_needle():
-    """A cube with a square hole through it, far too narrow for its slant: no model opens it, and no axis is around it."""
+    """A cube with a square hole through it, far too narrow for its slant: no model opens it."""
     square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
     rings = [(square, z) for z in (0, 1)]
     rings += [((0.37 + 0.2 * z, 0.41 + 0.3 * z) + 1e-9 * (square - 0.5), z) for z in (0, 1)]

@@ -26,10 +26,10 @@ TEST(AxisSolid, WhatTheAxisSaysIsUsedWhereNothingIsGiven) {
 TEST(AxisSolid, OptionsGoFirstAndContradictionsAreWarnedOf) {
   MedialMetadata axis;
   axis.label = 3;
-  const auto [used, warning] = of_image({.threshold = 2.5}, axis);
+  const auto [used, warnings] = of_image({.threshold = 2.5}, axis);
   EXPECT_FALSE(used.label);
   EXPECT_EQ(used.threshold, 2.5);
-  EXPECT_EQ(warning, "the axis was made with label=3; threshold=2.5 is used, as it was given");
+  EXPECT_EQ(warnings.front().text, "the axis was made with label=3; threshold=2.5 is used, as it was given");
   EXPECT_TRUE(of_image({.label = 3}, axis).warnings.empty());
   EXPECT_TRUE(of_image({.label = 1}, {}).warnings.empty()) << "the axis says nothing";
 }
