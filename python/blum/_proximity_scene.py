@@ -417,18 +417,18 @@ def closest_primitives(
 def collisions(
     meshes: MeshLike | Sequence[MeshLike],
     *,
-    within: Real = 0.0,
+    max_distance: Real = 0.0,
     compare_self: bool | None = None,
     threads: int = 0,
     progress: Progress = False,
 ) -> ProximityPairs:
     """All pairs of primitives (triangles, segments, points) of one or several meshes that meet, or that are no further
-    apart than `within`; exact.
+    apart than `max_distance`; exact.
 
     Parameters
     ----------
     meshes : anything that stands for a mesh, or a list of these
-    within : float
+    max_distance : float
         In mesh units. With 0, primitives that share a vertex are told where they have more in common than that; else
         they are left out.
     compare_self : bool, optional
@@ -440,12 +440,12 @@ def collisions(
     >>> bool(blum.collisions([box, moved])), bool(blum.collisions(box))
     (True, False)
     """
-    distance = number(within, "within")
+    distance = number(max_distance, "max_distance")
     scene = _scene_of(meshes, compare_self, threads)
     if distance == 0:
         return scene.collisions(threads=threads, progress=progress)
     if not distance > 0:
-        raise InvalidOption(f"within is {distance}, but must be a number of at least 0")
+        raise InvalidOption(f"max_distance is {distance}, but must be a number of at least 0")
     return scene.closer_than(distance, threads=threads, progress=progress)
 
 

@@ -166,7 +166,7 @@ def test_what_is_no_motion_is_refused(frames):
         ([start, end, "--self", "-o", frames / "p.obj"], 2, "the extension must be .npz"),
         ([start, end, "--self", "-o", start], 2, ""),
         ([start, end, "--self", "-o", out, "--tolerance", "2"], 2, "tolerance"),
-        ([start, end, "--self", "-o", out, "--within", "2"], 2, "--min-separation says how close"),
+        ([start, end, "--self", "-o", out, "--max-distance", "2"], 2, "--min-separation says how close"),
         ([start, frames / "absent.obj", "--self", "-o", out], 1, "absent.obj"),
     ]:
         assert message in run("proximity", *arguments, "--query", "continuous", status=status)[1]

@@ -276,7 +276,7 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([*two, fallen, plate, "-o", tmp_path / "p.obj"], 2, ""),
         ([ball, plate, "-o", tmp_path / "p.obj", "--to", fallen, plate], 2, "must be .npz, .csv, .json or .vtp"),
         ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),
-        ([*two, fallen, plate, "--within", "1"], 2, "--min-separation says how close"),
+        ([*two, fallen, plate, "--max-distance", "1"], 2, "--min-separation says how close"),
         ([*two, fallen, plate, "--culling", "bvh"], 2, "--culling is not for --query continuous"),
         ([*two, fallen, plate, "--depth-tolerance", "0.1"], 2, "--depth-tolerance is for --query penetration and signed alone"),
         ([*two, fallen, plate, "--tolerance", "0"], 2, "tolerance"),

@@ -73,7 +73,7 @@ def test_says_what_was_wrong_with_solids(folder, tmp_path):
     assert "is not closed" in run("proximity", *files, "--query", "penetration", status=1)[1]
     two = folder / "box.ply", folder / "ball.ply"
     for more, status, word in (
-        (["--within", "1"], 2, "--within"),
+        (["--max-distance", "1"], 2, "--max-distance"),
         (["--culling", "bvh"], 2, "--culling"),
         (["--depth-tolerance", "0"], 2, "--depth-tolerance"),
         (["--tolerance", "0.1"], 2, "--tolerance"),
@@ -141,7 +141,7 @@ def test_signed_is_one_number_for_each_two_solids(folder, tmp_path):
     assert answer["min_distance"] == answer["closest"]["distance"] < 0 and answer["pairs"] == 6
     text, _ = run("proximity", *files, "--query", "signed")
     assert text.count("they overlap, from") == 2
-    for more in (["--within", 1], ["--frames", "--self"], ["--to", *files]):
+    for more in (["--max-distance", 1], ["--frames", "--self"], ["--to", *files]):
         assert more[0] in run("proximity", *files, "--query", "signed", *more, status=2)[1]
 
 

@@ -16,12 +16,12 @@ blum = pytest.importorskip("blum")
 
 QUERIES = [
     ("separation", [], lambda scene: scene.separation()),
-    ("separation", ["--within", "0.3"], lambda scene: scene.separation(max_distance=0.3)),
+    ("separation", ["--max-distance", "0.3"], lambda scene: scene.separation(max_distance=0.3)),
     ("nbody", ["--self"], lambda scene: scene.closest_primitives()),
-    ("nbody", ["--within", "0.05"], lambda scene: scene.closest_primitives(0.05)),
+    ("nbody", ["--max-distance", "0.05"], lambda scene: scene.closest_primitives(0.05)),
     ("collide", ["--self"], lambda scene: scene.collisions()),
-    ("collide", ["--within", "0"], lambda scene: scene.collisions()),
-    ("collide", ["--self", "--within", "5e-2"], lambda scene: scene.closer_than(0.05)),
+    ("collide", ["--max-distance", "0"], lambda scene: scene.collisions()),
+    ("collide", ["--self", "--max-distance", "5e-2"], lambda scene: scene.closer_than(0.05)),
 ]
 
 
@@ -114,16 +114,16 @@ def test_every_format_holds_what_python_says(objects, tmp_path, query, options, 
     assert types == {"object": "i4", "primitive": "i4", "distance": "f8", "point": "f8", "feature": "i4"}
     metadata = json.loads(str(read_npz(tmp_path / "p.npz")["metadata"]))
     typed = read_json(tmp_path / "p.json")["metadata"]
-    within = [float(options[k + 1]) for k, word in enumerate(options) if word == "--within"]
-    assert typed["self"] is ("--self" in options) and [typed[key] for key in ("within",) if key in typed] == within
-    assert metadata == {**typed, **{key: metadata[key] for key in ("self", "within") if key in metadata}}
+    within = [float(options[k + 1]) for k, word in enumerate(options) if word == "--max-distance"]
+    assert typed["self"] is ("--self" in options) and [typed[key] for key in ("max_distance",) if key in typed] == within
+    assert metadata == {**typed, **{key: metadata[key] for key in ("self", "max_distance") if key in metadata}}
     assert metadata["query"] == query and metadata["object_2"] == "soup.obj"
     assert metadata["self"] == ("true" if "--self" in options else "false")
 
 
 def test_pairs_are_no_field(objects, tmp_path):
     pairs = tmp_path / "p.npz"
-    run("proximity", *objects, "--query", "collide", "--within", "1", "-o", pairs)
+    run("proximity", *objects, "--query", "collide", "--max-distance", "1", "-o", pairs)
     for command in (["info", pairs], ["view", pairs, "-o", tmp_path / "page.html"]):
         assert "it holds pairs of primitives" in run(*command, status=1)[1]
     run("proximity", objects[0], "--self", "--to", objects[0], "--query", "continuous", "-o", pairs)
@@ -133,7 +133,7 @@ def test_pairs_are_no_field(objects, tmp_path):
 @pytest.mark.parametrize("extension", READERS)
 def test_no_pairs_are_a_file_too(objects, tmp_path, extension):
     output = tmp_path / f"p.{extension}"
-    answer = run_json("proximity", objects[0], objects[2], "--query", "nbody", "--within", "1e-3", "-o", output)
+    answer = run_json("proximity", objects[0], objects[2], "--query", "nbody", "--max-distance", "1e-3", "-o", output)
     assert [answer["pairs"], answer["min_distance"], answer["closest"]] == [0, None, None]
     found = READERS[extension](output)
     assert {name: found[name].shape for name in ("object", "distance", "point", "feature")} == {
@@ -146,8 +146,8 @@ def test_separation_is_told_in_words_and_facts(objects):
     assert "3 objects, 1,160 triangles, 2 segments and points" in out and "3 pairs" in out
     assert "torus.ply, moved.ply  they meet, near (" in out
     assert f"torus.ply, soup.obj   {scene.separation(0, 2).distance:.6g}, from (" in out
-    answer = run_json("proximity", *objects, "--within", "0")
-    assert answer["query"] == "separation" and answer["within"] == 0 and answer["self"] is False
+    answer = run_json("proximity", *objects, "--max-distance", "0")
+    assert answer["query"] == "separation" and answer["max_distance"] == 0 and answer["self"] is False
     assert [one["triangles"] for one in answer["objects"]] == [576, 576, 8]
     assert [one["segments"] for one in answer["objects"]] == [0, 0, 2]
     assert answer["objects"][0]["file"] == str(objects[0]) and answer["pairs"] == 1 and answer["outputs"] == []
@@ -168,7 +168,7 @@ def test_files_do_not_depend_on_threads(objects, tmp_path):
         files = []
         for threads in (1, 2, 7):
             output = tmp_path / f"{threads}.{extension}"
-            run("proximity", *objects, "--self", "--query", "collide", "--within", "0.1", "-o", output, "--threads",
+            run("proximity", *objects, "--self", "--query", "collide", "--max-distance", "0.1", "-o", output, "--threads",
                 threads)  # fmt: skip
             files.append(output.read_bytes())
         assert files[0] == files[1] == files[2]
@@ -194,10 +194,10 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
         ([torus], 2, "give --self, or the files of more objects"),
         ([torus, "--query", "nbody", "-o", out], 2, "give --self"),
         ([torus, moved, "--query", "near"], 2, "must be separation, signed, nbody, collide, penetration or continuous"),
-        ([torus, moved, "--within", "-0.5"], 2, "--within '-0.5': must not be negative"),
-        ([torus, moved, "--within", "nan"], 2, "--within 'nan'"),
-        ([torus, moved, "--within", "inf"], 2, "--within 'inf'"),
-        ([torus, moved, "--within", "near"], 2, "is not a number"),
+        ([torus, moved, "--max-distance", "-0.5"], 2, "--max-distance '-0.5': must not be negative"),
+        ([torus, moved, "--max-distance", "nan"], 2, "--max-distance 'nan'"),
+        ([torus, moved, "--max-distance", "inf"], 2, "--max-distance 'inf'"),
+        ([torus, moved, "--max-distance", "near"], 2, "is not a number"),
         ([torus, moved, "--tolerance", "0.1"], 2, "--tolerance is for --query continuous alone"),
         ([torus, moved, "--min-separation", "0.1"], 2, "--min-separation is for --query continuous alone"),
         ([torus, moved, "--culling", "octree"], 2, "--culling"),

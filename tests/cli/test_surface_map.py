@@ -49,14 +49,14 @@ def test_thickness_and_self(shapes, tmp_path):
     assert ray["quantity"] == "ray-thickness" and ray["largest_error"] is None
     ball = run_json("surface-map", shapes / "plate.ply", "-o", tmp_path / "ball.vtp", "--thickness", "ball")
     assert np.isclose(ball["largest"]["distance"], 0.5, atol=1e-5)
-    own = run_json("surface-map", shapes / "torus.ply", "-o", tmp_path / "own.npz", "--self", "--within", 0.05)
+    own = run_json("surface-map", shapes / "torus.ply", "-o", tmp_path / "own.npz", "--self", "--max-distance", 0.05)
     assert own["quantity"] == "self-distance" and own["without_value"] > 0
 
 
 def test_maps_of_nothing_are_told(shapes, tmp_path):
     run("make", "sphere", "--radius", 0.2, "-o", tmp_path / "far.ply")
     far = run_json(
-        "surface-map", shapes / "torus.ply", tmp_path / "far.ply", "-o", tmp_path / "m.png", "--within", 0.01, warns=True
+        "surface-map", shapes / "torus.ply", tmp_path / "far.ply", "-o", tmp_path / "m.png", "--max-distance", 0.01, warns=True
     )
     assert far["smallest"] is None and "nothing lies within" in far["warnings"][0]["text"]
 
@@ -82,7 +82,7 @@ def test_what_is_wrong_is_said(shapes, tmp_path):
         ((plate, sphere, "-o", out, "--range", "2"), "two numbers"),
         ((plate, sphere, "-o", out, "--range", "2,1"), "less"),
         ((plate, sphere, "-o", out, "--texel", 0), "--texel"),
-        ((plate, sphere, "-o", out, "--within", -1), "--within"),
+        ((plate, sphere, "-o", out, "--max-distance", -1), "--max-distance"),
         ((plate, sphere, "-o", tmp_path / "map.obj"), "extension"),
         ((plate, sphere, "-o", plate), "plate.ply"),
     ):

@@ -16,7 +16,7 @@ def maps(tmp_path_factory):
     texel = ["--texel", 0.1]
     pair = ["surface-map", folder / "box.obj", folder / "ball.ply", *texel]
     run(*pair, "-o", folder / "signed.npz", "--sign", "auto", "--units", "mm")
-    run(*pair, "-o", folder / "near.npz", "--within", 0.1)
+    run(*pair, "-o", folder / "near.npz", "--max-distance", 0.1)
     run("surface-map", folder / "box.obj", *texel, "-o", folder / "ray.npz", "--thickness", "ray")
     return folder
 
@@ -52,7 +52,7 @@ def test_a_page_holds_a_map_exactly(maps, tmp_path, name):
 
 def test_a_map_without_any_value_is_shown(maps, tmp_path):
     run("make", "sphere", "-o", tmp_path / "far.ply", "--radius", 50)
-    run("surface-map", maps / "box.obj", tmp_path / "far.ply", "-o", tmp_path / "none.npz", "--within", 1, warns=True)
+    run("surface-map", maps / "box.obj", tmp_path / "far.ply", "-o", tmp_path / "none.npz", "--max-distance", 1, warns=True)
     run("view", tmp_path / "none.npz", "-o", tmp_path / "page.html")
     item = scene_of_page(tmp_path / "page.html").header["items"][0]
     assert item["range"] is None and ["values", "none within reach"] in item["facts"]

@@ -229,7 +229,7 @@ def test_self_comparison_leaves_neighbours_out():
     assert len(blum.collisions(strip)) == 0
     folded = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.9, 0]], [[0, 1, 2], [0, 1, 3]]
     assert blum.collisions(folded).primitive.tolist() == [[0, 1]]
-    assert len(blum.collisions(folded, within=1)) == 0, "they share vertices"
+    assert len(blum.collisions(folded, max_distance=1)) == 0, "they share vertices"
 
 
 def test_what_a_mesh_has_in_common_with_itself_is_where_it_crosses_or_touches_itself():
@@ -248,7 +248,7 @@ def test_verbs_in_one_call_are_those_of_scenes():
         (blum.closest_primitives([a, b]), scene.closest_primitives()),
         (blum.closest_primitives((blum.Mesh(*a), blum.Mesh(*b)), max_distance=0.1), scene.closest_primitives(0.1)),
         (blum.collisions([a, b], threads=1), scene.collisions()),
-        (blum.collisions([a, b], within=np.float32(0.25)), scene.closer_than(0.25)),
+        (blum.collisions([a, b], max_distance=np.float32(0.25)), scene.closer_than(0.25)),
     ]:
         assert 0 < len(found) == len(wanted)
         for name in ("object", "primitive", "distance", "point", "feature"):
@@ -367,8 +367,8 @@ def scene_of_two():
         (lambda _: blum.ProximityScene(culling="octree"), ValueError, "culling is 'octree'"),
         (lambda _: blum.ProximityScene(cell_size=0), ValueError, "cell_size"),
         (lambda _: blum.ProximityScene(cells=2), TypeError, "cells"),
-        (lambda _: blum.collisions([], within=1), ValueError, "no mesh"),
-        (lambda _: blum.collisions(soup(1, 1), within=-1), ValueError, "within is -1"),
+        (lambda _: blum.collisions([], max_distance=1), ValueError, "no mesh"),
+        (lambda _: blum.collisions(soup(1, 1), max_distance=-1), ValueError, "max_distance is -1"),
         (lambda _: blum.collisions([soup(1, 1), 3]), TypeError, r"meshes\[1\] is a int"),
         (lambda _: blum.separation(soup(1, 1), None), TypeError, "b is a NoneType"),
         (lambda _: blum.triangle_distances(np.zeros((1, 3, 3)), np.zeros((2, 3, 3))), ValueError, "as many"),

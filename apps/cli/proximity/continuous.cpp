@@ -129,7 +129,8 @@ MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end, std::opt
 }
 
 void check_continuous_options(const ProximityArguments& a) {
-  if (a.within) throw UsageError("--within is not for --query continuous: --min-separation says how close is told");
+  if (a.max_distance)
+    throw UsageError("--max-distance is not for --query continuous: --min-separation says how close is told");
   if (const auto names = a.culling.given(); !names.empty()) {
     throw UsageError(names.front() + " is not for --query continuous");
   }

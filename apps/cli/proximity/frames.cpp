@@ -87,7 +87,7 @@ class Sequence {
         weld_(parse_weld(a.weld)),
         limit_(read_limit(a)),
         scene_(a.culling.read()) {
-    if (a.within) asked_.within = parse_non_negative("--within", *a.within);
+    if (a.max_distance) asked_.max_distance = parse_non_negative("--max-distance", *a.max_distance);
     asked_.penetration = a.penetration.read();
   }
 

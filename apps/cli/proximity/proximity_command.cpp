@@ -13,13 +13,13 @@ namespace {
 constexpr const char* examples = R"(Examples:
   blum proximity arm.ply table.ply       how far they are apart, and where
   blum proximity *.stl -o pairs.csv      the same for all pairs of files
-  blum proximity cloth.ply --self --query nbody --within 0.01 -o pairs.vtp
+  blum proximity cloth.ply --self --query nbody --max-distance 0.01 -o pairs.vtp
                                          for each triangle the closest one, within 0.01, that shares no vertex with it
   blum proximity a.ply b.ply --query collide
                                          how many triangles meet
   blum proximity a.ply b.ply --query collide -o pairs.npz
                                          all pairs of triangles that meet
-  blum proximity a.ply b.ply --query collide --within 0.01 -o pairs.npz
+  blum proximity a.ply b.ply --query collide --max-distance 0.01 -o pairs.npz
                                          all pairs no further apart than 0.01
   blum proximity a.ply b.ply c.ply --query signed
                                          how far each two solids are apart, or minus the depth where they overlap
@@ -92,7 +92,7 @@ void add_proximity_command(const CommandLine& line) {
   command.add_flag("--skip-changed", a->skip_changed,
                    "continuous with --frames: leave out steps between frames of different triangles or vertices, and "
                    "tell which, instead of an error");
-  add_text_option(command, "--within", a->within, "D",
+  add_text_option(command, "--max-distance", a->max_distance, "D",
                   "separation, nbody: only pairs no further apart than D, mesh units (default: all); collide: all of "
                   "these instead of those that meet");
   add_text_option(

@@ -27,7 +27,7 @@ struct ProximityArguments {
   bool self = false;
   bool frames = false;        ///< whether files are frames of one object
   bool skip_changed = false;  ///< of frames and continuous: goes on where a frame is another mesh than the one before
-  std::optional<std::string> within;
+  std::optional<std::string> max_distance;
   std::optional<std::string> limit;  ///< the most pairs that are written
   std::optional<std::string> weld;
   std::optional<std::string> output;
@@ -40,7 +40,7 @@ struct ProximityArguments {
 
 /// What is asked of a scene, whatever the query.
 struct SceneQuestion {
-  std::optional<double> within;
+  std::optional<double> max_distance;
   PenetrationOptions penetration;
 };
 
@@ -55,7 +55,7 @@ struct SceneFound {
 struct SceneQuery {
   std::string_view name;
   std::string_view doc;  ///< for --help
-  bool takes_within = false;
+  bool takes_max_distance = false;
   bool takes_culling = false;
   bool takes_depth = false;  ///< whether options of penetration are for it
   bool takes_frames = true;

@@ -38,7 +38,7 @@ void check(const ProximityArguments& a, const SceneQuery& query) {
   if (const auto names = a.penetration.given(); !query.takes_depth && !names.empty()) {
     throw UsageError(names.front() + " is for --query penetration and signed alone");
   }
-  if (!query.takes_within && a.within) throw UsageError("--within is not for --query " + a.query);
+  if (!query.takes_max_distance && a.max_distance) throw UsageError("--max-distance is not for --query " + a.query);
   if (const auto names = a.culling.given(); !query.takes_culling && !names.empty()) {
     throw UsageError(names.front() + " is not for --query " + a.query);
   }
@@ -94,7 +94,7 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
 
 FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
   FileMetadata out{{"content", "pairs of primitives"}, {"blum_version", BLUM_VERSION}, {"query", a.query}};
-  if (answer.asked.within) out.emplace_back("within", exact_text(*answer.asked.within));
+  if (answer.asked.max_distance) out.emplace_back("max_distance", exact_text(*answer.asked.max_distance));
   out.emplace_back("self", a.self ? "true" : "false");
   for (std::size_t k = 0; k < a.scene.size(); ++k) {
     out.emplace_back("object_" + std::to_string(k), answer.names[k]);
@@ -130,7 +130,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
   return answer_json("proximity", {{"query", a.query},
                                    {"objects", objects_json(a, answer)},
                                    {"self", a.self},
-                                   {"within", to_json(answer.asked.within)},
+                                   {"max_distance", to_json(answer.asked.max_distance)},
                                    {"object_pairs", answer.found.report.object_pairs},
                                    {"pairs", answer.found.pairs.size()},
                                    {"min_distance", to_json(answer.min_distance())},
@@ -222,7 +222,7 @@ std::string pairs_text(const Answer& answer) {
   }
   const bool meet = answer.kind == "collision";
   return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
-         (answer.asked.within && !meet ? " within " + rounded_text(*answer.asked.within) : "");
+         (answer.asked.max_distance && !meet ? " within " + rounded_text(*answer.asked.max_distance) : "");
 }
 
 std::string text_of(const ProximityArguments& a, const SceneQuery& query, const Answer& answer) {
@@ -262,7 +262,7 @@ void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
   check(culling);
   answer.asked.penetration = a.penetration.read();
   check(answer.asked.penetration);
-  if (a.within) answer.asked.within = parse_non_negative("--within", *a.within);
+  if (a.max_distance) answer.asked.max_distance = parse_non_negative("--max-distance", *a.max_distance);
   answer.limit = read_limit(a);
   answer.names = told_apart(a.scene);
   const std::optional<double> weld = parse_weld(a.weld);

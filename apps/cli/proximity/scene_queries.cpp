@@ -13,7 +13,7 @@ namespace blum::cli {
 namespace {
 
 double most(const SceneQuestion& asked) {
-  return asked.within.value_or(std::numeric_limits<double>::infinity());
+  return asked.max_distance.value_or(std::numeric_limits<double>::infinity());
 }
 
 SceneFound ask_separation(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
@@ -29,7 +29,7 @@ SceneFound ask_nbody(const ProximityScene& scene, const SceneQuestion& asked, co
 }
 
 SceneFound ask_collide(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
-  if (asked.within.value_or(0) > 0) return {.pairs = scene.closer_than(*asked.within, context)};
+  if (asked.max_distance.value_or(0) > 0) return {.pairs = scene.closer_than(*asked.max_distance, context)};
   return {.pairs = scene.collisions(context), .kind = "collision"};
 }
 
@@ -45,7 +45,7 @@ SceneFound ask_penetration(const ProximityScene& scene, const SceneQuestion& ask
 constexpr std::array queries{
     SceneQuery{.name = "separation",
                .doc = "the closest pair of each two objects (default)",
-               .takes_within = true,
+               .takes_max_distance = true,
                .takes_culling = true,
                .has_rows = true,
                .ask = ask_separation},
@@ -58,12 +58,12 @@ constexpr std::array queries{
                .ask = ask_signed},
     SceneQuery{.name = "nbody",
                .doc = "for each primitive (triangle, segment or point) the closest one",
-               .takes_within = true,
+               .takes_max_distance = true,
                .takes_culling = true,
                .ask = ask_nbody},
     SceneQuery{.name = "collide",
                .doc = "all pairs that meet",
-               .takes_within = true,
+               .takes_max_distance = true,
                .takes_culling = true,
                .ask = ask_collide},
     SceneQuery{.name = "penetration",

@@ -33,13 +33,13 @@ constexpr const char* examples = R"(Examples:
   blum surface-map part.stl housing.stl -o clearance.glb --units mm      clearance between parts, as a texture
   blum surface-map scan.ply design.stl -o deviation.png --sign auto      deviation, negative inside of the design
   blum surface-map part.stl -o thickness.vtp --thickness ray             how thick a solid is, straight inwards
-  blum surface-map cloth.obj -o close.npz --self --within 2              to triangles that share no vertex)";
+  blum surface-map cloth.obj -o close.npz --self --max-distance 2              to triangles that share no vertex)";
 
 struct Arguments {
   std::string target;
   std::vector<std::string> others, outputs;
   bool self = false;
-  std::optional<std::string> thickness, separation, within, texel, sign, range, weld, threads;
+  std::optional<std::string> thickness, separation, max_distance, texel, sign, range, weld, threads;
   std::string units;
   ReportOptions report;
 };
@@ -78,7 +78,7 @@ Request read(const Arguments& a) {
   check_kind(a);
   Request out;
   if (a.texel) out.map.texel = parse_positive("--texel", *a.texel);
-  if (a.within) out.map.max_distance = parse_non_negative("--within", *a.within);
+  if (a.max_distance) out.map.max_distance = parse_non_negative("--max-distance", *a.max_distance);
   if (a.sign) out.map.sign = parse_enum<SignMode>("--sign", *a.sign);
   if (a.thickness) {
     out.thickness.emplace();
@@ -263,7 +263,7 @@ void add_surface_map_command(const CommandLine& line) {
                   "Of balls: triangles that are turned by less do not end them (default 30)");
   add_text_option(command, "--texel", a->texel, "H",
                   "Side of a texel on the surface, in mesh units (default: about a million texels)");
-  add_text_option(command, "--within", a->within, "D", "Look for nothing further than this, in mesh units");
+  add_text_option(command, "--max-distance", a->max_distance, "D", "Look for nothing further than this, in mesh units");
   add_text_option(command, "--sign", a->sign, "SIGN",
                   "How signs are found: auto, normals, winding or none (default none); negative inside of OTHER");
   add_text_option(command, "--range", a->range, "LOW,HIGH",

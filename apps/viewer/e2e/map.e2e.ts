@@ -13,7 +13,7 @@ beforeAll(async () => {
   blum("make", "bracket", "-o", "bracket.ply");
   blum("make", "sphere", "-o", "ball.ply", "--radius", "0.7", "--frequency", "8");
   blum("surface-map", "bracket.ply", "ball.ply", "-o", "map.npz", "--texel", "0.03", "--units", "mm");
-  blum("surface-map", "bracket.ply", "ball.ply", "-o", "near.npz", "--texel", "0.03", "--within", "1");
+  blum("surface-map", "bracket.ply", "ball.ply", "-o", "near.npz", "--texel", "0.03", "--max-distance", "1");
   blum("surface-map", "bracket.ply", "--thickness", "ray", "-o", "thick.npz", "--texel", "0.03");
   blum("view", "map.npz", "ball.ply", "-o", "map.html");
   blum("view", "near.npz", "-o", "near.html");

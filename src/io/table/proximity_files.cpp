@@ -102,7 +102,7 @@ class PairColumns {
 };
 
 /// Metadata that are numbers, true or false in .json.
-constexpr std::array<std::string_view, 2> typed_keys{"within", "self"};
+constexpr std::array<std::string_view, 2> typed_keys{"max_distance", "self"};
 
 using tables::made_column;
 using tables::TableColumn;
