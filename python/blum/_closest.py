@@ -21,7 +21,7 @@ from ._structs import ClosestPointOptions
 class ClosestPoints:
     """What :func:`closest_points` finds; all arrays have the shape of the queries without the last axis."""
 
-    points: FloatArray  #: (..., 3): on the mesh; the query itself where nothing is within max_distance
+    closest: FloatArray  #: (..., 3): on the mesh; the query itself where nothing is within max_distance
     distance: FloatArray  #: mesh units, negative inside when signed; infinite where nothing is within max_distance
     site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
     triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
@@ -39,7 +39,7 @@ class NearPrimitives:
     primitive: IntArray  #: (n,): the triangles of the mesh, then its segments, then its points, counted in one row
     site: IntArray  #: (n,): that the closest point of the primitive lies on, see :class:`Sites`
     distance: FloatArray  #: (n,): mesh units, without sign
-    points: FloatArray  #: (n, 3): the closest point of the primitive
+    closest: FloatArray  #: (n, 3): the closest point of the primitive
 
     def __repr__(self) -> str:
         return f"NearPrimitives({len(self.primitive):,} of {len(self.first) - 1:,} queries)"
@@ -57,7 +57,7 @@ class ClosestPointQuery:
 
     >>> import blum
     >>> query = blum.ClosestPointQuery(blum.generate("box"))
-    >>> query([[0, 0, 5]]).points.tolist()
+    >>> query([[0, 0, 5]]).closest.tolist()
     [[0.0, 0.0, 0.5]]
     """
 

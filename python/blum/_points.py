@@ -27,7 +27,7 @@ class SignedDistances:
     #: on the surface, where rounding would tell, and where nothing is within max_distance. On the medial axis one of
     #: several directions.
     gradient: FloatArray
-    point: FloatArray  #: (..., 3): the closest point of the mesh
+    closest: FloatArray  #: (..., 3): the closest point of the mesh
     site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
     triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
     _mesh: Mesh = field(repr=False)
@@ -36,7 +36,7 @@ class SignedDistances:
     def barycentric(self) -> FloatArray:
         """(..., 3): weights of the triangle's corners, of which the closest point is the mean; not a number where there
         is no triangle. Computed when first asked for, with the mesh's vertices as they are then."""
-        rows, shape = points_and_shape(self.point, "points")
+        rows, shape = points_and_shape(self.closest, "points")
         site, triangle = (np.ascontiguousarray(ids.reshape(-1)) for ids in (self.site, self.triangle))
         weights: FloatArray = _core.barycentric(self._mesh._arrays, rows, site, triangle)
         return weights.reshape((*shape, 3))
@@ -73,12 +73,12 @@ def signed_distance(
     of = as_mesh(mesh, weld=weld)
     rows, shape = points_and_shape(points, "points")
     found = closest_points(of, rows, threads=threads, progress=progress, **options)
-    closest, distance = np.ascontiguousarray(found.points), np.ascontiguousarray(found.distance)
+    closest, distance = np.ascontiguousarray(found.closest), np.ascontiguousarray(found.distance)
     gradient: FloatArray = _core.gradients(rows, closest, distance)
     return SignedDistances(
         found.distance.reshape(shape),
         gradient.reshape((*shape, 3)),
-        found.points.reshape((*shape, 3)),
+        found.closest.reshape((*shape, 3)),
         found.site.reshape(shape),
         found.triangle.reshape(shape),
         of,

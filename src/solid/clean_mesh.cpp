@@ -101,15 +101,6 @@ std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& 
   return given;
 }
 
-/// @throws InvalidMesh where a solid is no polyhedron whose surface is a manifold apart from itself.
-void check(const Solid& solid) {
-  if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
-  std::string problem = problem_of_places(solid.surface().mesh);
-  if (!problem.empty() && solid.resolved()) problem = mesh_problem::touches_when_resolved;
-  if (problem.empty()) problem = solid.problem();
-  if (!problem.empty()) throw InvalidMesh(problem);
-}
-
 double smallest_height(const MeshView& mesh) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -165,7 +156,7 @@ std::size_t count_named(const MeshView& mesh) {
 
 CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& context) {
   const TriangleMesh& surface = solid.surface().mesh;
-  check(solid);
+  check_manifold(solid);
   check_corners(surface);
   check_tolerance(surface, tolerance);
   check_coordinates(surface);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -233,6 +234,14 @@ bool Solid::inside(const Vec3d& p) const {
   if (data_->mesh.rule == SolidRule::voxels) return is_in_voxels(data_->voxels, data_->grid, p);
   std::call_once(data_->locates, [&] { data_->location.emplace(data_->mesh); });
   return data_->location->contains(p);
+}
+
+void check_manifold(const Solid& solid) {
+  if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
+  std::string problem = problem_of_places(solid.surface().mesh);
+  if (!problem.empty() && solid.resolved()) problem = mesh_problem::touches_when_resolved;
+  if (problem.empty()) problem = solid.problem();
+  if (!problem.empty()) throw InvalidMesh(problem);
 }
 
 }  // namespace blum

@@ -60,20 +60,13 @@ void check_distance(const MeshView& mesh) {
   throw InvalidMesh(std::string(problem));
 }
 
-void throw_if_any(const std::string& problem) {
-  if (!problem.empty()) throw InvalidMesh(problem);
-}
-
 /// @throws InvalidMesh where a solid is no polyhedron, or its surface meets itself.
 void check(const Solid& solid) {
   if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
   const MeshView surface = solid.surface().mesh;
   if (!surface.segments.empty() || !surface.points.empty()) refuse(mesh_problem::more_than_triangles);
   check_distance(surface);
-  std::string places = problem_of_places(surface);
-  if (!places.empty() && solid.resolved()) places = mesh_problem::touches_when_resolved;
-  throw_if_any(places);
-  throw_if_any(solid.problem());
+  check_manifold(solid);
 }
 
 /// The volume inside, cubic mesh units.

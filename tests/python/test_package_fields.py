@@ -175,7 +175,7 @@ def test_signed_distances_agree_with_trimesh(torus):
     mesh = torus.to_trimesh()
     closest, distance, _ = trimesh.proximity.closest_point_naive(mesh, points)
     assert np.abs(np.abs(found.distance) - distance).max() < 1e-9
-    assert np.abs(found.points - closest).max() < 1e-6
+    assert np.abs(found.closest - closest).max() < 1e-6
     assert np.array_equal(found.distance < 0, blum.WindingNumber(torus).is_inside(points))
 
 

@@ -11,10 +11,10 @@ def test_signed_distances_are_those_of_closest_points():
     found = blum.signed_distance(mesh, queries)
     expected = blum.closest_points(mesh, queries)
     assert np.array_equal(found.distance, expected.distance) and np.array_equal(found.site, expected.site)
-    assert np.array_equal(found.point, expected.points) and np.array_equal(found.triangle, expected.triangle)
+    assert np.array_equal(found.closest, expected.closest) and np.array_equal(found.triangle, expected.triangle)
     assert found.gradient.shape == (40, 100, 3)
     assert np.allclose(np.linalg.norm(found.gradient, axis=-1), 1)
-    assert np.allclose(found.point + found.gradient * found.distance[..., None], queries)
+    assert np.allclose(found.closest + found.gradient * found.distance[..., None], queries)
     # The distance grows along the gradient, by as much as one goes.
     step = 1e-6
     there = blum.signed_distance(mesh, queries + step * found.gradient)
@@ -62,7 +62,7 @@ def test_weights_give_the_closest_points():
     found = blum.signed_distance(mesh, np.random.default_rng(6).normal(size=(20, 50, 3)))
     corners = mesh.vertices[mesh.triangles[found.triangle]]
     assert found.barycentric.shape == (20, 50, 3) and (found.barycentric >= 0).all()
-    assert np.allclose((corners * found.barycentric[..., None]).sum(-2), found.point, rtol=0, atol=1e-13)
+    assert np.allclose((corners * found.barycentric[..., None]).sum(-2), found.closest, rtol=0, atol=1e-13)
     wires = blum.Mesh([[0, 0, 0], [1, 0, 0]], segments=[[0, 1]])
     assert np.isnan(blum.signed_distance(wires, [[0, 0, 1.0]]).barycentric).all()
 
@@ -74,7 +74,7 @@ def test_near_primitives_are_those_of_each_query():
     few = query.nearest_primitives(points, 4)
     assert few.first.tolist() == list(range(0, 1201, 4)) and few.primitive.dtype == np.int32
     assert np.array_equal(few.distance[::4], np.abs(query(points).distance).ravel())
-    assert np.allclose(np.linalg.norm(few.points - np.repeat(points.reshape(-1, 3), 4, axis=0), axis=1), few.distance)
+    assert np.allclose(np.linalg.norm(few.closest - np.repeat(points.reshape(-1, 3), 4, axis=0), axis=1), few.distance)
     near = query.within(points, 0.7, threads=1)
     assert near.first[0] == 0 and near.first[-1] == len(near.primitive) == len(near.site) > 0
     assert near.distance.max() <= 0.7 and repr(near) == f"NearPrimitives({len(near.primitive):,} of 300 queries)"

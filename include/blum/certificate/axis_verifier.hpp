@@ -17,7 +17,7 @@ namespace blum {
 /// those of certify() and certify_topology(), byte for byte, in whatever order axes come.
 ///
 /// Many threads may use one verifier at once: what they need of the solid one of them makes, and the others wait.
-/// Memory: about 600 bytes for each triangle, or for each 4 x 4 x 4 voxels at the boundary, and up to 30 MB.
+/// Memory: about 400 bytes for each triangle, or for each 4 x 4 x 4 voxels at the boundary, and up to 30 MB.
 class AxisVerifier {
  public:
   /// The solid that a mesh bounds. @param mesh  its vertices and triangles must stay as they are while this lives.

@@ -19,7 +19,7 @@ namespace blum {
 ///          on, padded with -1; `metadata`, a JSON object.
 ///   .csv   a row for each pair: first_object, first_primitive, second_object, second_primitive, distance, first_x,
 ///          first_y, first_z, second_x, second_y, second_z, first_feature_0 to _2, second_feature_0 to _2.
-///   .json  an object with the metadata (within and self as numbers, true and false) and the lists of .npz.
+///   .json  an object with the metadata (max_distance and self as numbers, true and false) and the lists of .npz.
 ///   .vtp   VTK poly data: a line from the first to the second point of each pair, with cell data distance, object,
 ///          primitive, feature (six components); read_complex() reads them, too.
 ///
