@@ -5,7 +5,7 @@
 set -euo pipefail
 
 if [[ $1 == --time ]]; then
-  processor_seconds=1000  # of library and tool, without a compiler cache, on a server of 2023
+  processor_seconds=700  # of library and tool, without a compiler cache, on a server of 2023
   minutes=$((processor_seconds / 60 / $2 + 2))
   echo "demo: where nothing is built yet, this takes about $minutes minutes with $2 at a time, on older machines twice that"
   exit

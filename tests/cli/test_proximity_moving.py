@@ -278,7 +278,7 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),
         ([*two, fallen, plate, "--max-distance", "1"], 2, "--min-separation says how close"),
         ([*two, fallen, plate, "--culling", "bvh"], 2, "--culling is not for --query continuous"),
-        ([*two, fallen, plate, "--depth-tolerance", "0.1"], 2, "--depth-tolerance is for --query penetration and signed alone"),
+        ([*two, fallen, plate, "--depth-tolerance", "0.1"], 2, "--depth-tolerance is for --query signed and penetration alone"),
         ([*two, fallen, plate, "--tolerance", "0"], 2, "tolerance"),
         ([*two, fallen, plate, "--min-separation", "-1"], 2, "min"),
         ([*two, fallen, plate, "--frames", "--self"], 2, "--frames are those of one object"),

@@ -193,7 +193,7 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
     for arguments, status, message in [
         ([torus], 2, "give --self, or the files of more objects"),
         ([torus, "--query", "nbody", "-o", out], 2, "give --self"),
-        ([torus, moved, "--query", "near"], 2, "must be separation, signed, nbody, collide, penetration or continuous"),
+        ([torus, moved, "--query", "near"], 2, "--query is 'near', but must be separation, "),
         ([torus, moved, "--max-distance", "-0.5"], 2, "--max-distance '-0.5': must not be negative"),
         ([torus, moved, "--max-distance", "nan"], 2, "--max-distance 'nan'"),
         ([torus, moved, "--max-distance", "inf"], 2, "--max-distance 'inf'"),

@@ -135,7 +135,7 @@ void check_continuous_options(const ProximityArguments& a) {
     throw UsageError(names.front() + " is not for --query continuous");
   }
   if (const auto names = a.penetration.given(); !names.empty()) {
-    throw UsageError(names.front() + " is for --query penetration and signed alone");
+    throw UsageError(names.front() + " is for --query " + queries_that(&SceneQuery::takes_depth) + " alone");
   }
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }

@@ -43,15 +43,6 @@ std::string queries_text() {
   return out;
 }
 
-/// The queries that culling is for, as help begins with them.
-std::string culling_text() {
-  std::string out;
-  for (const SceneQuery& query : scene_queries()) {
-    if (query.takes_culling) out += (out.empty() ? "" : ", ") + std::string(query.name);
-  }
-  return out + ": ";
-}
-
 void run(const ProximityArguments& a) {
   const SceneQuery& query = scene_query(a.query);
   if (!a.ends.empty() && a.ends.front().starts_with('-')) {
@@ -93,8 +84,8 @@ void add_proximity_command(const CommandLine& line) {
                    "continuous with --frames: leave out steps between frames of different triangles or vertices, and "
                    "tell which, instead of an error");
   add_text_option(command, "--max-distance", a->max_distance, "D",
-                  "separation, nbody: only pairs no further apart than D, mesh units (default: all); collide: all of "
-                  "these instead of those that meet");
+                  queries_that(&SceneQuery::takes_max_distance) +
+                      ": only pairs no further apart than D, mesh units (default: all; of collide those that meet)");
   add_text_option(
       command, "-o,--output", a->output, "FILE",
       "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
@@ -105,8 +96,8 @@ void add_proximity_command(const CommandLine& line) {
   add_text_option(command, "--limit", a->limit, "N",
                   "Write at most N pairs, of --frames of each frame; all are counted (default: all)");
   add_weld_option(command, a->weld);
-  a->culling.add_to(command, culling_text());
-  a->penetration.add_to(command, "penetration, signed: ");
+  a->culling.add_to(command, queries_that(&SceneQuery::takes_culling) + ": ");
+  a->penetration.add_to(command, queries_that(&SceneQuery::takes_depth) + ": ");
   a->impact.add_to(command, "continuous: ");
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);

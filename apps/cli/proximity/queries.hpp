@@ -33,8 +33,8 @@ struct ProximityArguments {
   std::optional<std::string> output;
   std::optional<std::string> threads;
   OptionTexts<ImpactOptions> impact;            ///< of continuous collisions alone
-  OptionTexts<SceneOptions> culling;            ///< of separation, signed, nbody and collide
-  OptionTexts<PenetrationOptions> penetration;  ///< of penetration and signed alone
+  OptionTexts<SceneOptions> culling;            ///< of queries that take it
+  OptionTexts<PenetrationOptions> penetration;  ///< of queries that take depth
   ReportOptions report;
 };
 
@@ -65,6 +65,9 @@ struct SceneQuery {
 };
 
 [[nodiscard]] std::span<const SceneQuery> scene_queries();
+
+/// "separation and nbody": the names of queries that take something, for help and errors.
+[[nodiscard]] std::string queries_that(bool SceneQuery::* take);
 
 /// @throws UsageError that names all of them.
 [[nodiscard]] const SceneQuery& scene_query(const std::string& name);

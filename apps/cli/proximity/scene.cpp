@@ -36,7 +36,7 @@ void check(const ProximityArguments& a, const SceneQuery& query) {
     throw UsageError(names.front() + " is for --query continuous alone");
   }
   if (const auto names = a.penetration.given(); !query.takes_depth && !names.empty()) {
-    throw UsageError(names.front() + " is for --query penetration and signed alone");
+    throw UsageError(names.front() + " is for --query " + queries_that(&SceneQuery::takes_depth) + " alone");
   }
   if (!query.takes_max_distance && a.max_distance) throw UsageError("--max-distance is not for --query " + a.query);
   if (const auto names = a.culling.given(); !query.takes_culling && !names.empty()) {

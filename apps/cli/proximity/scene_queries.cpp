@@ -78,6 +78,14 @@ std::span<const SceneQuery> scene_queries() {
   return queries;
 }
 
+std::string queries_that(bool SceneQuery::* take) {
+  std::vector<std::string> names;
+  for (const SceneQuery& query : queries) {
+    if (query.*take) names.emplace_back(query.name);
+  }
+  return join_words(names);
+}
+
 const SceneQuery& scene_query(const std::string& name) {
   const auto* const query =
       std::find_if(queries.begin(), queries.end(), [&](const auto& one) { return one.name == name; });

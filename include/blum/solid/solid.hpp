@@ -165,8 +165,8 @@ class Solid {
   std::shared_ptr<const Data> data_;
 };
 
-/// @throws InvalidMesh where a solid is no polyhedron whose surface is a manifold apart from itself: vertices or edges of
-/// it have their places in common, or Solid::problem() is not empty. Cost: near-linear in the surface.
+/// @throws InvalidMesh where a solid is no polyhedron whose surface is a manifold apart from itself: vertices or edges
+/// of it have their places in common, or Solid::problem() is not empty. Cost: near-linear in the surface.
 void check_manifold(const Solid& solid);
 
 }  // namespace blum
