@@ -49,7 +49,7 @@ def main() -> None:
         f"{np.mean(found.distance < 0):.1%} of the way in an obstacle"
     )
     header = "x,y,z,clearance,closest x,closest y,closest z,triangle"
-    rows = np.column_stack([way, found.distance, found.points, found.triangle])
+    rows = np.column_stack([way, found.distance, found.closest, found.triangle])
     lines = [header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]
     output.write_text("\n".join(lines) + "\n")
     print(f"wrote {arguments.output}")
