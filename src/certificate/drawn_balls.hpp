@@ -1,4 +1,5 @@
-// Blum: balls from random points of a solid, for the verifier. SPDX-License-Identifier: Apache-2.0
+// Blum: balls that touch the surface of a solid, from random points of it, for the verifier.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>

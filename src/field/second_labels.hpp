@@ -1,4 +1,5 @@
-// Blum: which sites may be second at a node. SPDX-License-Identifier: Apache-2.0
+// Blum: which sites may be second at a node, and what the second order of a field is asked for.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Blum: a part of the Voronoi diagram in a square. SPDX-License-Identifier: Apache-2.0
+// Blum: reflex corners, and a part of the Voronoi diagram in a square. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>

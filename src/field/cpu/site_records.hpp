@@ -1,4 +1,4 @@
-// Blum: sites as the kernels see them. SPDX-License-Identifier: Apache-2.0
+// Blum: sites as the kernels see them, and hierarchies of their boxes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
