@@ -9,9 +9,9 @@
 #include "blum/geometry/self_intersections.hpp"
 #include "certificate/bounding_mesh.hpp"
 #include "certificate/checks.hpp"
-#include "certificate/lazy.hpp"
 #include "certificate/scaling.hpp"
 #include "certificate/shells.hpp"
+#include "certificate/solid_oracle.hpp"
 
 namespace blum {
 namespace {

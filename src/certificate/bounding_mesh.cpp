@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/core/random.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "certificate/scaling.hpp"
@@ -138,3 +139,22 @@ BoundingMesh::BoundingMesh(const MeshView& mesh, const Context& context) : mesh_
 }
 
 }  // namespace blum::verifier
+
+namespace blum {
+
+MeshSolidRule verifier::rule_of_polyhedron(bool is_resolved) {
+  return {SolidRule::polyhedron, is_resolved ? "the mesh is closed, and manifold once its crossings are resolved"
+                                             : "the mesh is closed, manifold and does not cross itself"};
+}
+
+MeshSolidRule solid_rule(const MeshView& mesh, const Context& context) {
+  validate(mesh);
+  try {
+    const verifier::BoundingMesh bounding(mesh, context);
+    return verifier::rule_of_polyhedron(bounding.is_resolved());
+  } catch (const verifier::NoPolyhedron& error) {
+    return {SolidRule::winding, error.reason()};
+  }
+}
+
+}  // namespace blum

@@ -2,16 +2,97 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "blum/certificate/axis_verifier.hpp"
 #include "blum/certificate/certificate.hpp"
+#include "blum/complex/components.hpp"
+#include "blum/complex/homology.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
 #include "certificate/checks.hpp"
 #include "certificate/homology/homology_check.hpp"
-#include "certificate/medial_check.hpp"
+
+namespace blum::verifier {
+namespace {
+
+using Edge = std::array<std::uint32_t, 2>;
+using Face = std::array<std::uint32_t, 3>;
+
+/// Cells in the order of the bodies that they are in, with corners counted within these, and where each body begins.
+template <class Corners>
+struct Sorted {
+  std::vector<Corners> cells;
+  std::vector<std::size_t> first;
+
+  [[nodiscard]] std::span<const Corners> in(std::uint32_t body) const {
+    return {cells.data() + first[body], first[body + 1] - first[body]};
+  }
+};
+
+template <class Corners>
+Sorted<Corners> sorted_by_body(std::span<const Corners> cells, const std::vector<std::uint32_t>& body_of,
+                               const std::vector<std::uint32_t>& number, std::uint32_t body_count) {
+  Sorted<Corners> sorted{std::vector<Corners>(cells.size()), std::vector<std::size_t>(body_count + 1, 0)};
+  for (const Corners& cell : cells) ++sorted.first[body_of[cell[0]] + 1];
+  for (std::uint32_t b = 0; b < body_count; ++b) sorted.first[b + 1] += sorted.first[b];
+  std::vector<std::size_t> next(sorted.first.begin(), sorted.first.end() - 1);
+  for (const Corners& cell : cells) {
+    Corners& own = sorted.cells[next[body_of[cell[0]]]++];
+    for (std::size_t k = 0; k < own.size(); ++k) own[k] = number[cell[k]];
+  }
+  return sorted;
+}
+
+/// Sorts the parts of an axis into bodies. @throws as homology().
+AxisParts parts_in_bodies(const ComplexView& axis, const std::vector<Location>& locations, std::uint32_t body_count,
+                          const Context& context) {
+  throw_if_cancelled(context);
+  AxisParts parts;
+  // Where bodies touch, a vertex may lie on both: the deepest one of those that are joined lies in one for certain.
+  std::vector<std::uint32_t> deepest = components(axis);
+  const std::vector<std::uint32_t> component = deepest;
+  for (std::uint32_t v = 0; v < component.size(); ++v) {
+    std::uint32_t& best = deepest[component[v]];
+    if (locations[v].depth > locations[best].depth) best = v;
+  }
+  parts.body_of.resize(axis.vertex_count);
+  std::vector<std::uint32_t> number(axis.vertex_count);
+  std::vector<std::uint32_t> count(body_count, 0);
+  for (std::uint32_t v = 0; v < component.size(); ++v) {
+    parts.body_of[v] = locations[deepest[component[v]]].body;
+    number[v] = count[parts.body_of[v]]++;
+  }
+  const auto edges = sorted_by_body<Edge>(axis.edges, parts.body_of, number, body_count);
+  const auto triangles = sorted_by_body<Face>(axis.triangles, parts.body_of, number, body_count);
+  for (std::uint32_t b = 0; b < body_count; ++b) {
+    parts.betti.push_back(count[b] == 0 ? BettiNumbers{0, 0, 0}
+                                        : homology({count[b], edges.in(b), triangles.in(b)}, context));
+  }
+  return parts;
+}
+
+/// Adds what cannot be so of what an axis says of itself, and takes it out: theta, lambda, spacing, deviation.
+/// @param diagonal  of the solid, as the caller knows it.
+void check_claims(CertificateOptions& options, double diagonal, std::vector<std::string>& mismatches) {
+  const auto check = [&](std::optional<double>& value, const char* what, double least, double most, const char* must) {
+    if (!value || (*value >= least && *value <= most)) return;
+    mismatches.push_back("the axis says that its " + std::string(what) + " is " + exact_text(*value) +
+                         ", but it must be " + must);
+    value.reset();
+  };
+  check(options.theta, "theta", 0, 180, "0 to 180 degrees");
+  // No two points of the solid are further apart than the diagonal.
+  check(options.lambda, "lambda", 0, diagonal, "at least 0, and no more than the diagonal of the solid");
+  check(options.spacing, "spacing", 1e-9 * diagonal, diagonal, "above 0, and no more than the diagonal of the solid");
+  check(options.deviation, "deviation", 0, diagonal, "at least 0, and no more than the diagonal of the solid");
+}
+
+}  // namespace
+}  // namespace blum::verifier
 
 namespace blum {
 namespace {

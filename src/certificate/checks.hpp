@@ -51,10 +51,6 @@ struct AxisParts {
   std::vector<BettiNumbers> betti;     ///< of what is in each body
 };
 
-/// Sorts the parts of an axis into bodies. @throws as homology().
-[[nodiscard]] AxisParts parts_in_bodies(const ComplexView& axis, const std::vector<Location>& locations,
-                                        std::uint32_t body_count, const Context& context);
-
 /// Where each vertex lies; nowhere in particular where it is not finite.
 [[nodiscard]] std::vector<Location> locate_vertices(const MedialView& axis, const SolidOracle& solid,
                                                     const Context& context);
@@ -90,9 +86,12 @@ struct EdgeWays {
                                       const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
                                       double factor, std::vector<std::string>& mismatches, const Context& context);
 
-/// Adds what cannot be so of what an axis says of itself, and takes it out: theta, lambda, spacing, deviation.
-/// @param diagonal  of the solid, as the caller knows it.
-void check_claims(CertificateOptions& options, double diagonal, std::vector<std::string>& mismatches);
+/// Looks at points of sheets and curves, and for what is missing, and adds what is wrong.
+/// @param body_of  of each vertex: see AxisParts.
+/// @param factor   lengths are this many times what the caller knows; those of the options are the caller's.
+[[nodiscard]] MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid,
+                                       const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
+                                       double factor, std::vector<std::string>& mismatches, const Context& context);
 
 /// @throws Cancelled.
 [[nodiscard]] BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid,

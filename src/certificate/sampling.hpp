@@ -6,14 +6,24 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "certificate/solid_oracle.hpp"
 
 namespace blum::verifier {
+
+/// Points of triangles, and all their corners, as SolidOracle::samples() gives them.
+/// @param groups  of each triangle; those of no_group are left out. Empty: all are taken.
+/// @throws Cancelled.
+[[nodiscard]] Samples samples_of_triangles(const MeshView& mesh, std::span<const std::uint32_t> groups, double step,
+                                           const Context& context);
 
 /// Points of triangles or edges, spread evenly over their size.
 class Spread {

@@ -7,8 +7,8 @@
 
 #include "blum/core/error.hpp"
 #include "blum/geometry/sites.hpp"
+#include "certificate/sampling.hpp"
 #include "certificate/solid_oracle.hpp"
-#include "certificate/triangle_samples.hpp"
 #include "certificate/triangle_search.hpp"
 #include "certificate/voxel_betti.hpp"
 #include "certificate/voxel_faces.hpp"

@@ -7,7 +7,6 @@
 #include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
-#include "certificate/exact_crossing.hpp"
 #include "certificate/segments.hpp"
 
 namespace blum::verifier {

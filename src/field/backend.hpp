@@ -13,7 +13,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/field_request.hpp"
 #include "field/image_request.hpp"
-#include "field/second_request.hpp"
+#include "field/second_labels.hpp"
 
 namespace blum {
 

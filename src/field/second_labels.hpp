@@ -1,4 +1,5 @@
-// Blum: which sites may be second at a node. SPDX-License-Identifier: Apache-2.0
+// Blum: which sites may be second at a node, and what the second order of a field is asked for.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -11,6 +12,7 @@
 #include "blum/field/field.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
 
 namespace blum {
 
@@ -49,5 +51,19 @@ class SecondLabels {
   for (const std::uint32_t label : a) found = found || label == b[0] || label == b[1] || label == b[2];
   return found;
 }
+
+/// A field of first order that is complete, its signs and sites included, and where the second order of it goes.
+struct SecondRequest {
+  GridSpec grid;
+  /// Half-width of the band, mesh units, finite; 0: the full grid.
+  double band = 0;
+  const SecondLabels* labels = nullptr;
+  const float* distance = nullptr;      ///< one per node, mesh units, of any sign
+  const std::uint32_t* site = nullptr;  ///< features; 0xffffffff beyond the band
+  float* distance2 = nullptr;           ///< one per node, mesh units
+  std::uint32_t* site2 = nullptr;       ///< features; 0xffffffff where there is none
+
+  [[nodiscard]] bool has_band() const { return band > 0; }
+};
 
 }  // namespace blum

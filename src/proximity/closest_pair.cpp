@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
-#include "proximity/heaps.hpp"
 #include "proximity/scene_pairs.hpp"
 
 namespace blum::detail {

@@ -150,4 +150,12 @@ void check_count(std::size_t pairs);
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
                 ProximityPairs& out);
 
+/// Says at once what a query would find after a minute.
+/// @param objects  an object with itself.
+/// @throws InvalidMesh where so many primitives share a vertex that they are more than most_candidates pairs.
+void check_neighbours(const ObjectPair& objects);
+
+/// @throws OutOfMemory where more than most_close_pairs pairs of equal triangles collide.
+void check_equal_triangles(const ObjectPair& objects);
+
 }  // namespace blum::detail

@@ -17,7 +17,6 @@
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
-#include "proximity/heaps.hpp"
 #include "proximity/scene_pairs.hpp"
 
 namespace blum::detail {

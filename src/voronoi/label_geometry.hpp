@@ -14,7 +14,6 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
-#include "voronoi/edges_of_vertices.hpp"
 #include "voronoi/site_labels.hpp"
 
 namespace blum::voronoi {
@@ -234,5 +233,20 @@ class LabelGeometry {
   /// Pairs of sites of which one is an edge or vertex of the other, both ways round, sorted.
   std::vector<std::array<std::uint32_t, 2>> neighbours_;
 };
+
+/// Of labels among which all are that are closest anywhere in the convex hull of some corners, those that are not ruled
+/// out there: a label is where its domain lies outside of the hull, or where it is further away than one point of the
+/// surface, the closest one to the middle. Less the square of the distance from a point, the square of that from a
+/// plane, line or point is concave, so the corners tell. (Sud 2006, 5.4: governors of a cell.)
+///
+/// @param corners  relative to the centre of the labels, as `middle`, which lies between them.
+/// Cost: O(labels x corners).
+[[nodiscard]] std::vector<LabelIndex> governors(const LabelGeometry& labels, std::span<const LabelIndex> among,
+                                                std::span<const Vec3d> corners, const Vec3d& middle);
+
+/// The point of some triangles, edges and vertices that is closest to a point, each as a whole.
+/// @param among  not empty.
+[[nodiscard]] Vec3d closest_surface_point(const LabelGeometry& labels, std::span<const LabelIndex> among,
+                                          const Vec3d& q);
 
 }  // namespace blum::voronoi

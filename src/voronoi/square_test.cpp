@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "voronoi/governors.hpp"
+#include "voronoi/label_geometry.hpp"
 #include "voronoi/square_cells.hpp"
 #include "voronoi/surface_in_cells.hpp"
 

@@ -10,7 +10,6 @@
 #include "voronoi/cell_tree.hpp"
 #include "voronoi/label_geometry.hpp"
 #include "voronoi/part_cells.hpp"
-#include "voronoi/square_test.hpp"
 #include "voronoi/surface_in_cells.hpp"
 #include "voronoi/voronoi_solid.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/grid_predicates.hpp"
-#include "voronoi/governors.hpp"
+#include "voronoi/label_geometry.hpp"
 
 namespace blum::voronoi {
 namespace {

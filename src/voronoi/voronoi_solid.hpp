@@ -11,7 +11,6 @@
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "voronoi/label_geometry.hpp"
 #include "voronoi/part_cells.hpp"
-#include "voronoi/reflex_corners.hpp"
 #include "voronoi/site_labels.hpp"
 
 namespace blum::voronoi {

@@ -8,7 +8,7 @@
 
 #include "blum/complex/complex.hpp"
 #include "certificate/box_hierarchy.hpp"
-#include "certificate/homology/apex.hpp"
+#include "certificate/homology/edge_labels.hpp"
 
 namespace blum::verifier {
 namespace {

@@ -12,8 +12,6 @@
 #include "field/backend.hpp"
 #include "field/connectivity_cache.hpp"
 #include "field/cpu/adjacency.hpp"
-#include "field/cpu/cluster_forest.hpp"
-#include "field/cpu/normal_frame.hpp"
 #include "field/cpu/placed_sites.hpp"
 #include "field/cpu/second_kernel.hpp"
 #include "field/cpu/second_links.hpp"

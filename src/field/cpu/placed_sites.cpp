@@ -4,6 +4,17 @@
 
 namespace blum::cpu {
 
+NormalFrame make_normal_frame(const MeshView& mesh, std::span<const std::uint32_t> named, const GridSpec& grid) {
+  const bool is_axis_aligned = grid.direction == Mat3{};
+  kernels::Bounds box;
+  for (const std::uint32_t v : named) {
+    box.extend(is_axis_aligned ? mesh.vertices[v] : grid.direction.transposed_times(mesh.vertices[v]));
+  }
+  const NormalFrame frame = kernels::make_normal_frame(box, grid);
+  kernels::throw_if_faulty(frame);
+  return frame;
+}
+
 void PlacedSites::build(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                         const NormalFrame& frame, const Context& context) {
   positions.resize(mesh.vertices.size());

@@ -12,7 +12,6 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/cpu/adjacency.hpp"
-#include "field/cpu/normal_frame.hpp"
 #include "field/cpu/placed_sites.hpp"
 #include "field/cpu/point_kernel.hpp"
 

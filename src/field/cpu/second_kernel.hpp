@@ -9,7 +9,7 @@
 
 #include "field/cpu/second_links.hpp"
 #include "field/cpu/tile_kernel.hpp"
-#include "field/second_request.hpp"
+#include "field/second_labels.hpp"
 
 namespace blum::cpu {
 

@@ -1,10 +1,11 @@
-// Blum: sites as the kernels see them. SPDX-License-Identifier: Apache-2.0
+// Blum: sites as the kernels see them, and hierarchies of their boxes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "blum/core/buffer.hpp"
 #include "blum/core/context.hpp"
@@ -70,5 +71,17 @@ struct SiteRecords {
 void build_site_records(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                         std::span<const Vec3d> positions, const SiteOrder& order, const Context& context,
                         SiteRecords& out);
+
+/// Sixteen-ary boxes above the clusters of one kind: levels[0] bounds 16 clusters each, the last level has at most 16.
+struct ClusterTree {
+  std::vector<BoxArrays> levels;
+};
+
+struct ClusterForest {
+  std::array<ClusterTree, kind_count> trees;
+};
+
+/// Cost: O(clusters). Reuses the memory of `out`.
+void build_cluster_forest(const SiteRecords& sites, const Context& context, ClusterForest& out);
 
 }  // namespace blum::cpu

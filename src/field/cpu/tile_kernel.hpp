@@ -14,7 +14,6 @@
 #include "blum/core/buffer.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
-#include "field/cpu/cluster_forest.hpp"
 #include "field/cpu/site_records.hpp"
 #include "field/field_request.hpp"
 

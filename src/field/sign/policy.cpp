@@ -118,10 +118,6 @@ Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, 
   return plan;
 }
 
-Plan plan_signs(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
-  return Planner().plan(mode, mesh, sites, context);
-}
-
 Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {
   if (mode == SignMode::normals) {
     throw InvalidOption(

@@ -55,9 +55,6 @@ class Planner {
   SelfIntersectionSearch search_;
 };
 
-/// The plan for one mesh.
-[[nodiscard]] Plan plan_signs(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context);
-
 /// Plans the signs of a mesh that lies in a device's memory, where nobody looks at it: winding numbers for every mesh
 /// with triangles.
 /// @throws InvalidOption as above, and when normals are asked for.

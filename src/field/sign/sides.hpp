@@ -39,8 +39,7 @@ class Sides {
   /// Null where all sides are told by sites.
   [[nodiscard]] const WindingNumber* winding() const { return winding_ ? &*winding_ : nullptr; }
 
-  /// Patches, and sites whose queries ask for themselves.
-  [[nodiscard]] std::size_t patch_count() const { return in_front_.size(); }
+  /// How many sites have queries that ask for themselves.
   [[nodiscard]] std::size_t open_site_count() const;
 
  private:

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "blum/core/buffer.hpp"
+#include "blum/core/context.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/voxel_set.hpp"
@@ -22,5 +24,9 @@ struct VoxelSolid {
   std::shared_ptr<const ExtraIncidence> extra = {};
   bool is_exact = false;  ///< whether the solid is the union of the closed voxels, as those of images are
 };
+
+/// Makes a set that of the voxels deeper than a limit, those of the box's outermost layer left out.
+/// @param depth  per voxel, x fastest: distance to the surface, positive inside, mesh units.  @throws Cancelled.
+void take_deeper_than(std::span<const float> depth, double limit, VoxelSet& voxels, const Context& context);
 
 }  // namespace blum::detail

@@ -14,7 +14,7 @@
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "blum/solid/body_cells.hpp"
-#include "medial_axis/cells/take_deeper.hpp"
+#include "medial_axis/cells/voxel_solid.hpp"
 
 namespace blum::detail {
 namespace {

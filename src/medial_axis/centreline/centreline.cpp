@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -18,6 +19,8 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/core/plural.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
@@ -194,6 +197,20 @@ VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, cons
 }  // namespace blum::centrelines
 
 namespace blum {
+namespace {
+
+constexpr std::size_t most_warnings = 5;
+
+Warning warning_of(const Centreline& line) {
+  const std::string label = line.label ? std::to_string(*line.label) : "";
+  if (line.voxels > 0) {
+    return {WarningCode::other_topology, (line.label ? "label " + label + ": " : "") + line.homotopy};
+  }
+  return {WarningCode::nothing_found,
+          line.label ? "no voxel has the label " + label : "no voxel reaches the threshold"};
+}
+
+}  // namespace
 namespace centrelines {
 namespace {
 
@@ -427,6 +444,32 @@ Centrelines centreline(const VoxelImageView& image, std::span<const std::int64_t
     }
   }
   return run_all(image, tasks, options, context);
+}
+
+std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpec& grid) {
+  std::vector<Warning> out;
+  if (std::count(grid.size.begin(), grid.size.end(), 1) > 0) {
+    out.emplace_back(WarningCode::single_layer,
+                     "the image has a single layer, which is a plate as thick as a voxel: lengths and radii are not "
+                     "those of a picture in the plane");
+  }
+  std::size_t unnamed = 0;
+  for (const Centreline& line : lines.labels) {
+    if (line.voxels > 0 && line.homotopy_kept) continue;
+    if (out.size() < most_warnings) {
+      out.push_back(warning_of(line));
+    } else {
+      ++unnamed;
+    }
+  }
+  if (unnamed > 0) {
+    out.emplace_back(WarningCode::other_topology,
+                     plural(unnamed, "more label has", "more labels have") +
+                         " no voxels, or another topology than their curves: `homotopy` of "
+                         "each label says more");
+  }
+  if (lines.labels.empty()) out.emplace_back(WarningCode::nothing_found, "no voxel is selected");
+  return out;
 }
 
 }  // namespace blum

@@ -12,7 +12,6 @@
 #include "blum/axis/shrinking_complex.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/core/parallel.hpp"
-#include "medial_axis/fit/shrinking_lists.hpp"
 #include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/surface/solid_paths.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
-#include "medial_axis/cells/take_deeper.hpp"
+#include "medial_axis/cells/voxel_solid.hpp"
 #include "medial_axis/surface/equidistant_point.hpp"
 #include "medial_axis/surface/thin_ball.hpp"
 

@@ -14,7 +14,6 @@
 #include "blum/certificate/certificate.hpp"
 #include "blum/core/random.hpp"
 #include "blum/shapes/generators.hpp"
-#include "certificate/homology/apex.hpp"
 #include "certificate/homology/closed_surfaces.hpp"
 #include "certificate/homology/complement.hpp"
 #include "certificate/homology/edge_labels.hpp"

@@ -23,7 +23,7 @@ using sign::Method;
 using sign::Plan;
 
 Plan plan_of(const MeshView& mesh, SignMode mode = SignMode::automatic) {
-  return sign::plan_signs(mode, mesh, SiteTable(mesh), {});
+  return sign::Planner().plan(mode, mesh, SiteTable(mesh), {});
 }
 
 TriangleMesh moved_by(TriangleMesh mesh, const Vec3d& offset) {
@@ -118,7 +118,7 @@ TEST(SignPolicy, OfMeshesThatNobodyLooksAt) {
 std::size_t expect_true_sides(const TriangleMesh& mesh, SignMode mode, std::uint64_t seed) {
   const SiteTable sites(mesh);
   const Bvh bvh(mesh, sites);
-  const Plan plan = sign::plan_signs(mode, mesh, sites, {});
+  const Plan plan = sign::Planner().plan(mode, mesh, sites, {});
   const sign::Sides sides(plan, mesh, sites, bvh, {});
   const double extent = bounds(mesh).diagonal();
   std::size_t wrong = 0;

@@ -16,7 +16,7 @@ namespace blum {
 namespace {
 
 sign::Method method_of(const MeshView& mesh) {
-  return sign::plan_signs(SignMode::winding, mesh, SiteTable(mesh), {}).method;
+  return sign::Planner().plan(SignMode::winding, mesh, SiteTable(mesh), {}).method;
 }
 
 /// Compares all nodes; those within 1e-12 of the diagonal from the surface may differ.

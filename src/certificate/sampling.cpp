@@ -1,4 +1,4 @@
-#include "certificate/triangle_samples.hpp"
+#include "certificate/sampling.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "medial_axis/cells/take_deeper.hpp"
+#include "medial_axis/cells/voxel_solid.hpp"
 
 #include <array>
 #include <cstddef>
