@@ -39,7 +39,7 @@ def test_many_queries_get_what_few_get():
     many = blum.closest_points(mesh, queries)
     query = blum.ClosestPointQuery(mesh)
     few = [query(part) for part in np.split(queries[:5000], 50)]
-    for name in ("distance", "site", "triangle", "points"):
+    for name in ("distance", "site", "triangle", "closest"):
         assert np.array_equal(getattr(many, name)[:5000], np.concatenate([getattr(part, name) for part in few]))
 
 
@@ -98,7 +98,7 @@ def test_a_refitted_query_answers_as_a_new_one():
         expected = blum.ClosestPointQuery((moved, mesh.triangles))
         assert query.sign_reason == expected.sign_reason
         found, other = query(points), expected(points)
-        for name in ("points", "distance", "site", "triangle"):
+        for name in ("closest", "distance", "site", "triangle"):
             assert np.array_equal(getattr(found, name), getattr(other, name))
     with pytest.raises(blum.InvalidMesh, match="vertices"):
         query.refit(mesh.vertices[1:])
