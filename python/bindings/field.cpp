@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/core/device.hpp"
+#include "blum/field/closest_points.hpp"
 #include "blum/field/field.hpp"
 #include "blum/field/field_warnings.hpp"
 #include "blum/field/interpolate.hpp"
@@ -189,6 +190,15 @@ void bind_field(nb::module_& m) {
             run({threads, nb::none()}, [&](const Context& context) { return field_warnings(field, view, context); }));
       },
       nb::arg("field"), nb::arg("mesh"), nb::arg("threads"));
+  m.def(
+      "sign_warnings",
+      [](const MeshArrays& mesh, const ClosestPointQuery& query, int threads) {
+        const MeshView view = mesh.view();
+        const SignRule rule = query.sign_rule();
+        return result_of(
+            run({threads, nb::none()}, [&](const Context& context) { return sign_warnings(view, rule, context); }));
+      },
+      nb::arg("mesh"), nb::arg("query"), nb::arg("threads"));
 }
 
 }  // namespace blum::python

@@ -197,8 +197,10 @@ class MedialComplex(MedialColumns):
     def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
         """Drops whole sheets whose largest separation angle is at most theta (degrees), smallest first."""
         with reporting(progress) as report:
-            core = _core.prune_sheets(self._core, number(theta, "theta"), integer(threads, "threads"), report)
-        return MedialComplex._of(core, self.has, self._origin)
+            angle = number(theta, "theta")
+            core = _core.prune_sheets(self._core, angle, integer(threads, "threads"), report)
+        own = self._origin.theta
+        return MedialComplex._of(core, self.has, replace(self._origin, theta=None if own is None else max(own, angle)))
 
     def decimate(self, tolerance: Real | None = None, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
         """The same axis with fewer vertices and triangles, as `blum medial` writes it.

@@ -10,12 +10,13 @@ import numpy as np
 
 from . import _core
 from ._arguments import FloatArray, IntArray, Integer, Real, integer, points_and_shape
-from ._closest import closest_points
+from ._closest import ClosestPointQuery
 from ._errors import InvalidOption
 from ._mesh import Mesh, MeshLike, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions, NearSampleOptions, SampleOptions
+from ._warn import warn_all
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +73,9 @@ def signed_distance(
     """
     of = as_mesh(mesh, weld=weld)
     rows, shape = points_and_shape(points, "points")
-    found = closest_points(of, rows, threads=threads, progress=progress, **options)
+    query = ClosestPointQuery(of, threads=threads, progress=progress, **options)
+    found = query(rows, threads=threads, progress=progress)
+    warn_all(_core.sign_warnings(of._arrays, query._query, integer(threads, "threads")))
     closest, distance = np.ascontiguousarray(found.closest), np.ascontiguousarray(found.distance)
     gradient: FloatArray = _core.gradients(rows, closest, distance)
     return SignedDistances(

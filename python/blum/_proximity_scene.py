@@ -382,7 +382,7 @@ def separation(
     """
     scene = ProximityScene()
     for name, mesh in (("a", a), ("b", b)):
-        scene.add(as_mesh(mesh, name=name), threads=threads)
+        scene.add(as_mesh(mesh, name=name), name=name, threads=threads)
     return scene.separation(0, 1, max_distance, threads=threads, progress=progress)
 
 
@@ -491,7 +491,7 @@ def _scene_of(meshes: MeshLike | Sequence[MeshLike], compare_self: bool | None, 
     own = len(several) == 1 if compare_self is None else truth(compare_self, "compare_self")
     scene = ProximityScene()
     for name, mesh in several:
-        scene.add(as_mesh(mesh, name=name), compare_self=own, threads=threads)
+        scene.add(as_mesh(mesh, name=name), name=name, compare_self=own, threads=threads)
     return scene
 
 

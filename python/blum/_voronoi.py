@@ -122,6 +122,8 @@ class VoronoiComplex(Complex):
         if self.part != "medial":
             raise InvalidOption(f'a medial axis is made of walls with two footprints: part="medial", not "{self.part}"')
         angle = number(theta, "theta")
+        if not self.report.certified:
+            warn("the complex is not certified, so the axis may have another topology than the solid", "not-certified")
         with reporting(progress) as report:
             core = _core.collapse_axis(self._core, angle, integer(threads, "threads"), report)
         origin = Origin(self._mesh, theta=angle, solid_rule="polyhedron")

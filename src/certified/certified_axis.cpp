@@ -25,7 +25,9 @@ constexpr std::string_view without_borders = "borders of sheets stay at the cell
 constexpr std::string_view without_few_vertices = "the axis keeps all vertices: with fewer, ";
 
 double checked_tolerance(double tolerance) {
-  if (!(tolerance >= 0)) throw InvalidOption("the tolerance of an axis is at least 0");
+  if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
+    throw InvalidOption("the tolerance of an axis must be a finite number of at least 0");
+  }
   return tolerance;
 }
 
@@ -88,6 +90,7 @@ CertifiedAxes axes_on(const AxisGrids& grids, double shift, CertifyAxis certify,
   const std::shared_ptr<const MedialAxis> axis = grids.make(shift);
   out.report = axis->report();
   out.phases = out.report.phases;
+  out.mismatches = model_problems(out.report, options.resolution_option);
   const Certifying by{certify, axis.get(), shift, out.phases};
   const std::vector<AxisForm> forms = forms_of(out.report, options.tolerance, options.prunes_sheets);
   Complex pruned;
@@ -130,6 +133,11 @@ MedialAxisOptions with_angles(MedialAxisOptions medial, const CertifiedAxisOptio
 
 void check(const CertifiedAxisOptions& options) {
   if (options.thetas.empty()) throw InvalidOption("thetas is empty: an axis needs an angle");
+  for (auto theta = options.thetas.begin(); theta != options.thetas.end(); ++theta) {
+    if (std::find(options.thetas.begin(), theta, *theta) != theta) {
+      throw InvalidOption("thetas name " + rounded_text(*theta) + " twice: each has one axis");
+    }
+  }
   if (options.tolerance) static_cast<void>(checked_tolerance(*options.tolerance));
   if (options.prunes_sheets && !std::is_sorted(options.thetas.begin(), options.thetas.end())) {
     throw InvalidOption("thetas must rise where sheets are pruned: each angle goes on from the one before");

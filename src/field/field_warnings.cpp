@@ -9,8 +9,13 @@
 namespace blum {
 namespace {
 
-std::vector<Warning> facing_warnings(const Field& field, const MeshView& mesh, const Orientation& facts,
+std::vector<Warning> facing_warnings(SignRule rule, const MeshView& mesh, const Orientation& facts,
                                      const Context& context) {
+  if (facts.inconsistent_edges > 0) {
+    return {{WarningCode::facing, plural(facts.inconsistent_edges, "edge lies", "edges lie") +
+                                      " between triangles that face different ways, so signs near them may not be "
+                                      "those of a solid; orient the mesh first"}};
+  }
   if (!facts.closed || !facts.oriented || facts.outward) return {};
   if (facts.signed_volume < 0) {
     return {{WarningCode::facing,
@@ -18,7 +23,7 @@ std::vector<Warning> facing_warnings(const Field& field, const MeshView& mesh, c
   }
   // Shells that cross have no depth that would tell which way they must face; winding numbers join them.
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
-  if (field.sign_rule != SignRule::normals && SelfIntersectionSearch().finds_any(mesh, quiet)) return {};
+  if (rule != SignRule::normals && SelfIntersectionSearch().finds_any(mesh, quiet)) return {};
   return {{WarningCode::facing,
            "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
            "says more of its shells"}};
@@ -29,9 +34,11 @@ std::vector<Warning> facing_warnings(const Field& field, const MeshView& mesh, c
 std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, const Orientation& facts,
                                     const Context& context) {
   if (field.sign_rule == SignRule::none) return {};
-  std::vector<Warning> facing = facing_warnings(field, mesh, facts, context);
-  if (!facing.empty()) return facing;
-  if (std::any_of(field.distance.begin(), field.distance.end(), [](float distance) { return distance < 0; })) return {};
+  std::vector<Warning> facing = facing_warnings(field.sign_rule, mesh, facts, context);
+  const auto is_inside = [](float distance) { return distance < 0; };
+  const bool has_inside = std::any_of(field.distance.begin(), field.distance.end(), is_inside);
+  if (!facing.empty() && (facts.inconsistent_edges == 0 || has_inside)) return facing;
+  if (has_inside) return {};
   if (facts.inconsistent_edges > 0) {
     return {{WarningCode::nothing_inside,
              "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
@@ -46,6 +53,12 @@ std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, co
   if (field.sign_rule == SignRule::none) return {};
   validate(mesh);
   return field_warnings(field, mesh, orientation(mesh, SiteTable(mesh, context)), context);
+}
+
+std::vector<Warning> sign_warnings(const MeshView& mesh, SignRule rule, const Context& context) {
+  if (rule == SignRule::none) return {};
+  validate(mesh);
+  return facing_warnings(rule, mesh, orientation(mesh, SiteTable(mesh, context)), context);
 }
 
 }  // namespace blum

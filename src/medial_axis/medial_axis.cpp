@@ -385,7 +385,7 @@ class MedialAxisBuilder {
     report().rule = solid.rule();
     report().reason = solid.reason();
     report().reversed_shells = solid.reversed_shells();
-    report().warnings = reversal_warnings(0, solid.reversed_shells());
+    report().warnings = reversal_warnings(solid.reversed_triangles(), solid.reversed_shells());
     if (solid.rule() == SolidRule::winding) {
       report().warnings.emplace_back(WarningCode::solid_of_voxels, solid.reason() + ", as voxels");
     }

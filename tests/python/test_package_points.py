@@ -155,3 +155,11 @@ def test_bad_input_is_refused():
         blum.sample_surface(box, 1.5)
     with pytest.raises(TypeError, match="colour"):
         blum.sample_surface(box, 5, colour="red")
+
+
+def test_distances_of_a_mesh_inside_out_are_warned_of():
+    ball = blum.generate("sphere", frequency=4)
+    inside_out = blum.Mesh(ball.vertices, ball.triangles[:, ::-1])
+    with pytest.warns(blum.InputWarning, match="inside out") as told:
+        assert blum.signed_distance(inside_out, [[0, 0, 0]]).distance[0] > 0
+    assert [warning.message.code for warning in told] == ["facing"]

@@ -368,8 +368,8 @@ void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
     return std::make_shared<const MedialAxis>(make_axis(solid.input, moved, context));
   };
   const auto certify = [&](const AxisCandidate& axis) { return drafts.certify(axis); };
-  const CertifiedAxes made =
-      certified_axes({options.grid_shift, is_mesh, make}, certify, {r.thetas, r.decimate, r.prunes_sheets}, context);
+  const CertifiedAxes made = certified_axes({options.grid_shift, is_mesh, make}, certify,
+                                            {r.thetas, r.decimate, r.prunes_sheets, "--max-resolution"}, context);
   run.phases.insert(run.phases.end(), made.phases.begin(), made.phases.end());
   Json json = {{"smooth", solid.smooth}, {"grid_shift", made.grid_shift}};
   if (solid.label) {
@@ -378,8 +378,6 @@ void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
   }
   run.warnings.insert(run.warnings.end(), made.warnings.begin(), made.warnings.end());
   add_report(run, made.report, is_mesh ? std::optional(asked_spacing(solid.input, options)) : std::nullopt, json);
-  const std::vector<std::string> problems = model_problems(made.report, "--max-resolution");
-  run.mismatches.insert(run.mismatches.end(), problems.begin(), problems.end());
   run.mismatches.insert(run.mismatches.end(), made.mismatches.begin(), made.mismatches.end());
   Json axes = Json::array();
   for (const CertifiedAxis& axis : made.axes) {

@@ -11,6 +11,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/field/closest_points.hpp"
+#include "blum/field/field_warnings.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/io/point_io.hpp"
 #include "commands.hpp"
@@ -205,6 +206,7 @@ void run(const Arguments& a) {
   }
   spent.read += watch.lap();
   const ClosestPointQuery query(mesh.mesh, options, context);
+  const std::vector<Warning> warnings = sign_warnings(mesh.mesh, query.sign_rule(), context);
   spent.query += watch.lap();
   Facts all;
   Json of_files = Json::array();
@@ -226,8 +228,9 @@ void run(const Arguments& a) {
                                     {"sign_reason", query.sign_reason()},
                                     {"distance", all.json()},
                                     {"files", of_files}});
-  add_run_facts(json, times, context, {}, outputs);
+  add_run_facts(json, times, context, warnings, outputs);
   report(a.report, json, text_of(a, mesh, query, files, all, times));
+  if (!a.report.quiet) warn(warnings);
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ struct CertifiedAxisOptions {
   /// Default: a quarter of the smallest side of a voxel.
   std::optional<double> tolerance = {};
   bool prunes_sheets = false;  ///< whole sheets of at most theta go, each angle from the one before (prune_sheets())
+  /// How the front end writes MedialAxisOptions::max_resolution in what it says of models that do not pass.
+  std::string resolution_option = "max_resolution";
 };
 
 /// An axis that waits for its certificate.
@@ -52,14 +54,15 @@ struct CertifiedAxis {
 
 /// Axes of one solid at several angles, made on one grid.
 struct CertifiedAxes {
-  std::vector<CertifiedAxis> axes;      ///< in the order of the angles
-  MedialAxisReport report;              ///< on the grid that was kept
-  double grid_shift = 0;                ///< of this, voxels
-  std::vector<Warning> warnings;        ///< of the grid; those of each axis are with it
-  std::vector<std::string> mismatches;  ///< "at theta 60: ..." for all that is not certified, one sentence each
-  std::vector<PhaseTime> phases;        ///< seconds; also of grids that were tried in vain
+  std::vector<CertifiedAxis> axes;  ///< in the order of the angles
+  MedialAxisReport report;          ///< on the grid that was kept
+  double grid_shift = 0;            ///< of this, voxels
+  std::vector<Warning> warnings;    ///< of the grid; those of each axis are with it
+  /// All that is not certified, one sentence each: model_problems(), then "at theta 60: ..." of each axis.
+  std::vector<std::string> mismatches;
+  std::vector<PhaseTime> phases;  ///< seconds; also of grids that were tried in vain
 
-  /// Whether all axes are certified.
+  /// Whether the model of the solid passes and all axes are certified.
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
 };
 

@@ -1,4 +1,4 @@
-// Blum: what deserves a look in the field of a mesh. SPDX-License-Identifier: Apache-2.0
+// Blum: what deserves a look in signed distances of a mesh. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -24,5 +24,10 @@ namespace blum {
 /// n) for n triangles more, some milliseconds for 70,000; nothing for unsigned fields.
 [[nodiscard]] std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh,
                                                   const Context& context = {});
+
+/// The warning of these that needs no grid (WarningCode::facing), for signed distances at any points.
+/// @param rule  ClosestPointQuery::sign_rule(). @throws InvalidMesh unless it passes validate(mesh); Cancelled. Cost:
+/// as field_warnings().
+[[nodiscard]] std::vector<Warning> sign_warnings(const MeshView& mesh, SignRule rule, const Context& context = {});
 
 }  // namespace blum

@@ -197,9 +197,10 @@ class ProximityScene {
                                            const Context& context = {}) const;
 
   /// What two solids have in common, and how deep they lie in each other there: nothing where they only touch. Where
-  /// one lies in the other, it is deep by the largest distance of a point of it from the surface of that. With one
-  /// object twice: what lies in two parts of it; parts are then those that cross each other.
-  /// An object whose shells cross, touch, or lie in each other and face the same way is the union of what they bound.
+  /// one lies in the other, it is deep by the largest distance of a point of it from the surface of that. Where faces
+  /// of both coincide, depths depend on which object is the first, by up to a factor of 2 (docs/theory/proximity.md).
+  /// With one object twice: what lies in two parts of it; parts are then those that cross each other. An object whose
+  /// shells cross, touch, or lie in each other and face the same way is the union of what they bound.
   /// @throws InvalidMesh where an object is not closed, or faces inwards, or lies so far from the origin, beyond some
   /// 1e9 times its size, that its parts cannot be told apart; InvalidOption; Cancelled. Cost: about 2 microseconds for
   /// each triangle, 0.1 ms for each pair that crosses, and up to 2 s for each part in common: the more, the wider it is
@@ -220,7 +221,8 @@ class ProximityScene {
   /// itself that has no two primitives without a common vertex.
   [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
-  /// The same of all pairs of objects that are compared: the pairs of separation(), where those of solids that have
+  /// The same of all pairs of objects that are compared, but for objects with themselves that have no two primitives
+  /// without a common vertex: the pairs of separation(), where those of solids that have
   /// something in common are the deepest_pair() of their deepest part, with a negative distance.
   /// @throws as signed_separation(). Cost: that of separation(), and of penetration() for each pair whose boxes meet.
   [[nodiscard]] ProximityPairs signed_separations(const PenetrationOptions& options = {},

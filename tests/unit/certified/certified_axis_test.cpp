@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -183,6 +184,8 @@ TEST_F(TriedAxes, SheetsArePrunedFromAngleToAngle) {
   expect_same(found.axes[1].axis.axis, prune_sheets(first, 100));
   EXPECT_THROW(static_cast<void>(held_from(0, {.thetas = {100, 60}, .prunes_sheets = true})), InvalidOption);
   EXPECT_THROW(static_cast<void>(held_from(0, {.thetas = {}})), InvalidOption);
+  EXPECT_THROW(static_cast<void>(held_from(0, {.thetas = {60, 60}})), InvalidOption);
+  EXPECT_THROW(static_cast<void>(held_from(0, {.tolerance = HUGE_VAL})), InvalidOption);
 }
 
 TEST_F(TriedAxes, AComplexIsWrittenWithFewVerticesIfItIsCertifiedSo) {
@@ -242,6 +245,46 @@ TEST(CertifiedAxes, OfAnImageAreOfItsSelectedVoxels) {
   EXPECT_TRUE(found.holds()) << found.mismatches.front();
   EXPECT_EQ(found.axes.front().metadata.site_ids, SiteIds::voxels);
   EXPECT_EQ(found.axes.front().certificate.against, SolidRule::voxels);
+}
+
+/// A cube with a square hole through it, far too narrow for its slant: no model opens it.
+TriangleMesh block_with_needle() {
+  TriangleMesh out;
+  constexpr double width = 1e-9;
+  constexpr std::array<std::array<double, 2>, 4> square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  for (const double z : {0.0, 1.0}) {
+    for (const auto& [x, y] : square) out.vertices.push_back({x, y, z});
+    for (const auto& [x, y] : square) {
+      out.vertices.push_back({0.37 + 0.2 * z + width * (x - 0.5), 0.41 + 0.3 * z + width * (y - 0.5), z});
+    }
+  }
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    out.triangles.push_back({a, b, c});
+    out.triangles.push_back({a, c, d});
+  };
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::uint32_t n = (k + 1) % 4;
+    add(k, n, 8 + n, 8 + k);
+    add(4 + n, 4 + k, 12 + k, 12 + n);
+    add(n, k, 4 + k, 4 + n);
+    add(8 + k, 8 + n, 12 + n, 12 + k);
+  }
+  return out;
+}
+
+/// Its certificate may hold by luck, as at angles at which nothing is seen: that is not enough.
+TEST(CertifiedAxes, AreNotWhereTheModelDoesNotPass) {
+  const TriangleMesh block = block_with_needle();
+  const auto axis = std::make_shared<const MedialAxis>(medial_axis(block, {.resolution = 8, .max_resolution = 8}));
+  ASSERT_FALSE(axis->report().topology_matches);
+  int grids = 0;
+  const auto make = [&](double) { return ++grids, axis; };
+  const auto certify = [](const AxisCandidate&) { return Certificate{}; };
+  const CertifiedAxes found = certified_axes({0, true, make}, certify, {.resolution_option = "--max-resolution"});
+  EXPECT_EQ(grids, 1) << "another grid would have the same model";
+  EXPECT_TRUE(found.axes.front().certificate.holds());
+  EXPECT_FALSE(found.holds());
+  EXPECT_EQ(found.mismatches, model_problems(axis->report(), "--max-resolution"));
 }
 
 TEST(ModelProblems, NameTheBodyAndTheOption) {

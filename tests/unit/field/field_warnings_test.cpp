@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/warning.hpp"
@@ -44,6 +46,25 @@ std::string text_of(const MeshView& mesh, WarningCode code, const FieldOptions& 
   if (found.size() != 1) return {};
   EXPECT_EQ(found[0].code, code);
   return found[0].text;
+}
+
+/// Half of the triangles are enough for nodes inside, and signs are wrong near the others.
+TEST(FieldWarnings, TellOfTrianglesThatFaceDifferentWaysAlsoWhereNodesAreInside) {
+  TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  std::swap(box.triangles[0][0], box.triangles[0][1]);
+  const Field field = distance_field(box, grid(), {.sign = SignMode::winding});
+  ASSERT_TRUE(std::any_of(field.distance.begin(), field.distance.end(), [](float d) { return d < 0; }));
+  const std::string text = text_of(box, WarningCode::facing, {.sign = SignMode::winding});
+  EXPECT_EQ(text.rfind("3 edges lie between triangles that face different ways, so signs near them", 0), 0U) << text;
+}
+
+TEST(SignWarnings, NeedNoGrid) {
+  const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  EXPECT_TRUE(sign_warnings(box, SignRule::normals).empty());
+  EXPECT_TRUE(sign_warnings(reversed(box), SignRule::none).empty());
+  const std::vector<Warning> found = sign_warnings(reversed(box), SignRule::winding);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found, warnings_of(reversed(box)));
 }
 
 TEST(FieldWarnings, OfABoxThereAreNone) {
