@@ -71,8 +71,8 @@ class MedialAxis:
         """The axis at theta as `blum medial` writes it: with its certificate, which holds.
 
         With its borders where they belong and few vertices; where that is not certified, simpler: with borders at the
-        cells of the grid, then with all vertices; then on a grid that is moved a little. A warning says what failed. The
-        mesh or image must be as it was. With another `least_theta`, sheets may end elsewhere within a voxel.
+        cells of the grid, then with all vertices; then on a grid that is moved a little. A warning says what failed.
+        The mesh or image must be as it was. With another `least_theta`, sheets may end elsewhere within a voxel.
 
         Parameters
         ----------

@@ -120,7 +120,7 @@ def block_with_needle():
 def test_an_axis_that_is_not_certified_is_refused_unless_allowed():
     axis = blum.medial_axis(block_with_needle(), resolution=8, max_resolution=8)
     assert not axis.report.topology_matches
-    with pytest.raises(blum.NotCertified, match="NOT certified: the model of the solid .* at theta 60: ") as refused:
+    with pytest.raises(blum.NotCertified, match=r"NOT certified: the model of the solid .* at theta 60: ") as refused:
         axis.certified(60)
     assert isinstance(refused.value, RuntimeError)
     with pytest.warns(blum.InputWarning, match="NOT certified: the model of the solid"):
