@@ -245,7 +245,7 @@ CertifiedAxis certified_axis(const MeshView& mesh, double theta, const MedialAxi
 CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, double theta,
                              std::optional<double> tolerance, const Context& context) {
   const MeshAxisVerifier verifier(mesh);
-  const std::shared_ptr<const MedialAxis> same(std::shared_ptr<const MedialAxis>(), &axis);  // owns nothing
+  std::shared_ptr<const MedialAxis> same(std::shared_ptr<const MedialAxis>(), &axis);  // owns nothing
   const auto certify = [&](const AxisCandidate& candidate) {
     return timed(candidate, [&](const MedialClaims& claims) {
       return verifier.verify(candidate.axis.axis, claims, {}, 1e300, context);
@@ -262,7 +262,7 @@ CertifiedAxis certified_axis(Complex whole, const MedialMetadata& metadata, doub
   forms.emplace_back();
   const std::size_t vertices = whole.positions.size();
   const auto make = [&](const AxisForm& form) {
-    return form.tolerance ? in_form(whole, form, context) : DecimatedAxis{std::move(whole), 0, vertices};
+    return form.tolerance ? in_form(whole, form, context) : DecimatedAxis{std::exchange(whole, {}), 0, vertices};
   };
   return first_certified(forms, metadata, make, {certify, nullptr, 0, phases});
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <stop_token>
 #include <string_view>
 #include <utility>
@@ -18,8 +17,6 @@
 
 namespace blum {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 void expect_same(const Penetration& one, const Penetration& other) {
   EXPECT_EQ(one.first_object, other.first_object);
