@@ -34,17 +34,16 @@ std::vector<Warning> facing_warnings(SignRule rule, const MeshView& mesh, const 
 std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, const Orientation& facts,
                                     const Context& context) {
   if (field.sign_rule == SignRule::none) return {};
-  std::vector<Warning> facing = facing_warnings(field.sign_rule, mesh, facts, context);
   const auto is_inside = [](float distance) { return distance < 0; };
   const bool has_inside = std::any_of(field.distance.begin(), field.distance.end(), is_inside);
-  if (!facing.empty() && (facts.inconsistent_edges == 0 || has_inside)) return facing;
-  if (has_inside) return {};
-  if (facts.inconsistent_edges > 0) {
+  if (!has_inside && facts.inconsistent_edges > 0) {
     return {{WarningCode::nothing_inside,
              "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
                  " between triangles that face different ways, so that their winding numbers cancel; orient the mesh "
                  "first"}};
   }
+  std::vector<Warning> facing = facing_warnings(field.sign_rule, mesh, facts, context);
+  if (has_inside || !facing.empty()) return facing;
   return {{WarningCode::nothing_inside,
            "no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"}};
 }
