@@ -7,6 +7,7 @@
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/field/smooth_surface.hpp"
 #include "blum/field/voxels_inside.hpp"
 #include "blum/grid/selected_voxels.hpp"
@@ -59,8 +60,8 @@ std::vector<std::string> missing_sites(const MedialView& axis, const MedialClaim
     count += axis.site(v, 0).has_value() && axis.site(v, 1).has_value() ? 0 : 1;
   }
   if (count == 0) return {};
-  return {"the file says that Blum " + claims.metadata.version + " wrote it, but " + count_text(count) +
-          (count == 1 ? " vertex has" : " vertices have") + " a footprint without a site"};
+  return {"the file says that Blum " + claims.metadata.version + " wrote it, but " +
+          plural(count, "vertex has", "vertices have") + " a footprint without a site"};
 }
 
 /// @throws InvalidGrid where fewer voxels than the coarsest grid has lie along the longest side of a mesh: another grid

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "blum/core/exact_text.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/geometry/weld.hpp"
 
 namespace blum {
@@ -126,7 +126,7 @@ std::string faces_inwards(const std::string& name) {
 }
 
 std::string not_closed(const std::string& name, std::size_t open, bool is_closed_by_welding) {
-  const std::string edges = count_text(open) + (open == 1 ? " edge" : " edges");
+  const std::string edges = plural(open, "edge", "edges");
   if (is_closed_by_welding) {
     return name + " is not closed: at " + edges +
            " its triangles lie side by side, but share no vertices; weld it, which merges equal vertices";
