@@ -3,7 +3,7 @@
 namespace blum::cli {
 
 void add_text_option(const Command& command, const char* name, std::optional<std::string>& value, const char* type,
-                     const char* help) {
+                     const std::string& help) {
   command.add_option(name, value, help).type_name(type);
 }
 

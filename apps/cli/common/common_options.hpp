@@ -12,7 +12,7 @@ namespace blum::cli {
 
 /// An option with one value, which is read later.
 void add_text_option(const Command& command, const char* name, std::optional<std::string>& value, const char* type,
-                     const char* help);
+                     const std::string& help);
 
 /// --label, which may be given several times.
 void add_label_option(const Command& command, std::vector<std::string>& labels, const char* help);

@@ -83,10 +83,9 @@ void add_proximity_command(const CommandLine& line) {
   command.add_flag("--skip-changed", a->skip_changed,
                    "continuous with --frames: leave out steps between frames of different triangles or vertices, and "
                    "tell which, instead of an error");
-  const std::string max_distance_help =
-      queries_that(&SceneQuery::takes_max_distance) +
-      ": only pairs no further apart than D, mesh units (default: all; of collide those that meet)";
-  add_text_option(command, "--max-distance", a->max_distance, "D", max_distance_help.c_str());
+  add_text_option(command, "--max-distance", a->max_distance, "D",
+                  queries_that(&SceneQuery::takes_max_distance) +
+                      ": only pairs no further apart than D, mesh units (default: all; of collide those that meet)");
   add_text_option(
       command, "-o,--output", a->output, "FILE",
       "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
