@@ -80,21 +80,22 @@ void bind_axis(nb::module_& m) {
       nb::arg("image"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }
 
-/// Makes an axis again where its grid is moved.
-using MakeAxis = FunctionRef<MedialAxis(double shift, const Context& context)>;
 using VerifyAxis = FunctionRef<Certificate(const Complex& axis, const MedialClaims& claims, const Context& context)>;
 
 /// certified_axes() at one angle, from an axis of all angles that is there: the complex, how far it is at most from
 /// that with all vertices (None: it has all), its report, its certificate, mismatches and warnings.
-nb::tuple certified(const MedialAxis& first, bool may_move, double grid_shift, MakeAxis make, VerifyAxis verify,
+/// @param mesh, medial  how the axis was made, to make it again on a moved grid; nullptr of an image.
+nb::tuple certified(const MedialAxis& first, const MeshView* mesh, const MedialAxisOptions& medial, VerifyAxis verify,
                     const CertifiedAxisOptions& options, int threads, nb::object progress) {
   CertifiedAxes made = run({threads, std::move(progress)}, [&](const Context& context) {
     const auto on_grid = [&](double shift) {
-      if (shift == grid_shift) return std::shared_ptr<const MedialAxis>(std::shared_ptr<void>(), &first);  // not owned
-      return std::shared_ptr<const MedialAxis>(std::make_shared<const MedialAxis>(make(shift, context)));
+      if (shift == medial.grid_shift) return std::shared_ptr<const MedialAxis>(std::shared_ptr<void>(), &first);
+      MedialAxisOptions moved = medial;
+      moved.grid_shift = shift;
+      return std::shared_ptr<const MedialAxis>(std::make_shared<const MedialAxis>(medial_axis(*mesh, moved, context)));
     };
     const auto certify = [&](const AxisCandidate& axis) { return verify(axis.axis.axis, {axis.metadata}, context); };
-    return certified_axes({grid_shift, may_move, on_grid}, certify, options, context);
+    return certified_axes({medial.grid_shift, mesh != nullptr, on_grid}, certify, options, context);
   });
   CertifiedAxis& axis = made.axes.front();
   std::vector<Warning>& warnings = made.warnings;
@@ -110,16 +111,10 @@ void bind_certified(nb::module_& m) {
          double theta, std::optional<double> tolerance, int threads, nb::object progress) {
         const auto options = options_from<MedialAxisOptions>(given);
         const MeshView view = mesh.view();
-        const auto make = [&](double shift, const Context& context) {
-          MedialAxisOptions moved = options;
-          moved.grid_shift = shift;
-          return medial_axis(view, moved, context);
-        };
         const auto verify = [&](const Complex& axis, const MedialClaims& claims, const Context& context) {
           return verifier.verify(axis, claims, {}, HUGE_VAL, context);
         };
-        return certified(first, true, options.grid_shift, make, verify, {{theta}, tolerance}, threads,
-                         std::move(progress));
+        return certified(first, &view, options, verify, {{theta}, tolerance}, threads, std::move(progress));
       },
       nb::arg("first"), nb::arg("verifier"), nb::arg("mesh"), nb::arg("options"), nb::arg("theta"),
       nb::arg("tolerance").none(), nb::arg("threads"), nb::arg("progress").none());
@@ -129,11 +124,10 @@ void bind_certified(nb::module_& m) {
          std::optional<double> threshold, double theta, std::optional<double> tolerance, int threads,
          nb::object progress) {
         const LabelSelection selection = LabelSelection::of(label, threshold);
-        const auto make = [](double, const Context&) -> MedialAxis { throw InvalidOption("an image is its own grid"); };
         const auto verify = [&](const Complex& axis, const MedialClaims& claims, const Context& context) {
           return verifier.verify(axis, claims, selection, {}, context);
         };
-        return certified(first, false, 0, make, verify, {{theta}, tolerance}, threads, std::move(progress));
+        return certified(first, nullptr, {}, verify, {{theta}, tolerance}, threads, std::move(progress));
       },
       nb::arg("first"), nb::arg("verifier"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("theta"),
       nb::arg("tolerance").none(), nb::arg("threads"), nb::arg("progress").none());

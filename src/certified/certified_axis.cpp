@@ -9,6 +9,7 @@
 #include "blum/certified/verify_axis.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/solid/solid_rule.hpp"
 
 namespace blum {
@@ -90,7 +91,7 @@ CertifiedAxes axes_on(const AxisGrids& grids, double shift, CertifyAxis certify,
   const std::shared_ptr<const MedialAxis> axis = grids.make(shift);
   out.report = axis->report();
   out.phases = out.report.phases;
-  out.mismatches = model_problems(out.report, options.resolution_option);
+  out.mismatches = model_problems(out.report, options.style);
   const Certifying by{certify, axis.get(), shift, out.phases};
   const std::vector<AxisForm> forms = forms_of(out.report, options.tolerance, options.prunes_sheets);
   Complex pruned;
@@ -162,6 +163,15 @@ Certificate timed(const AxisCandidate& candidate, FunctionRef<Certificate(const 
   return out;
 }
 
+/// Certifies axes of a mesh in memory. @param verifier, context  must outlive what is returned.
+auto certified_by(const MeshAxisVerifier& verifier, const Context& context) {
+  return [&verifier, &context](const AxisCandidate& candidate) {
+    return timed(candidate, [&](const MedialClaims& claims) {
+      return verifier.verify(candidate.axis.axis, claims, {}, 1e300, context);
+    });
+  };
+}
+
 std::string place_text(const Vec3d& p) {
   return "(" + rounded_text(p.x) + ", " + rounded_text(p.y) + ", " + rounded_text(p.z) + ")";
 }
@@ -214,11 +224,7 @@ CertifiedAxes certified_axes(const MeshView& mesh, const CertifiedAxisOptions& o
     moved.grid_shift = shift;
     return std::make_shared<const MedialAxis>(medial_axis(mesh, moved, context));
   };
-  const auto certify = [&](const AxisCandidate& candidate) {
-    return timed(candidate, [&](const MedialClaims& claims) {
-      return verifier.verify(candidate.axis.axis, claims, {}, 1e300, context);
-    });
-  };
+  const auto certify = certified_by(verifier, context);
   return certified_axes({medial.grid_shift, true, make}, certify, options, context);
 }
 
@@ -246,11 +252,7 @@ CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, doubl
                              std::optional<double> tolerance, const Context& context) {
   const MeshAxisVerifier verifier(mesh);
   std::shared_ptr<const MedialAxis> same(std::shared_ptr<const MedialAxis>(), &axis);  // owns nothing
-  const auto certify = [&](const AxisCandidate& candidate) {
-    return timed(candidate, [&](const MedialClaims& claims) {
-      return verifier.verify(candidate.axis.axis, claims, {}, 1e300, context);
-    });
-  };
+  const auto certify = certified_by(verifier, context);
   return the_only(certified_axes({0, false, [&](double) { return same; }}, certify,
                                  {.thetas = {theta}, .tolerance = tolerance}, context));
 }
@@ -267,7 +269,8 @@ CertifiedAxis certified_axis(Complex whole, const MedialMetadata& metadata, doub
   return first_certified(forms, metadata, make, {certify, nullptr, 0, phases});
 }
 
-std::vector<std::string> model_problems(const MedialAxisReport& report, const std::string& resolution_option) {
+std::vector<std::string> model_problems(const MedialAxisReport& report, OptionStyle style) {
+  const std::string finer = style == OptionStyle::command_line ? "--max-resolution" : "max_resolution";
   std::vector<std::string> out;
   for (std::size_t b = 0; b < report.bodies.size(); ++b) {
     const BodyReport& body = report.bodies[b];
@@ -278,11 +281,11 @@ std::vector<std::string> model_problems(const MedialAxisReport& report, const st
       return failure.obstacle == ModelObstacle::slanted_needle;
     });
     const std::string advice = has_needle ? "fill the narrow holes, or turn the part so that they run along an axis"
-                                          : "raise " + resolution_option + ", or mend the mesh there";
+                                          : "raise " + finer + ", or mend the mesh there";
     out.push_back("the model of " + (report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : "the solid") +
                   " at voxels of side " + rounded_text(body.spacing) + " does not pass in " +
-                  count_text(failures.size()) + (failures.size() == 1 ? " place" : " places") + ", the first one at " +
-                  place_text(at) + " (" + std::string(to_string(failures.front().obstacle)) + "): " + advice);
+                  plural(failures.size(), "place", "places") + ", the first one at " + place_text(at) + " (" +
+                  std::string(to_string(failures.front().obstacle)) + "): " + advice);
   }
   return out;
 }

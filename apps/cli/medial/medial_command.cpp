@@ -283,12 +283,7 @@ class AxisDrafts {
       write_medial(path, axis.axis.axis, metadata, context_);
     }
     axis.phases.push_back({"write", watch.lap()});
-    MedialFile written = read_axis(path);
-    if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
-      written.metadata.solid_rule = metadata.solid_rule;
-      written.metadata.grid = metadata.grid;
-    }
-    Certificate certificate = solid_.verifier.certificate_of(written, solid_.selection, context_);
+    Certificate certificate = solid_.verifier.certificate_of(path, metadata, solid_.selection, context_);
     axis.phases.push_back({"certificate", watch.lap()});
     return certificate;
   }
@@ -319,10 +314,7 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
   run.is_kept.push_back((certificate.holds() && model_passes) || r.allow_uncertified);
   const MedialCounts counts = count(made.axis.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
-  if (metadata.deviation) {
-    run.table.add("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
-                                   rounded_text(made.axis.deviation));
-  }
+  add_decimated(run.table, made);
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
@@ -368,8 +360,9 @@ void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
     return std::make_shared<const MedialAxis>(make_axis(solid.input, moved, context));
   };
   const auto certify = [&](const AxisCandidate& axis) { return drafts.certify(axis); };
-  const CertifiedAxes made = certified_axes({options.grid_shift, is_mesh, make}, certify,
-                                            {r.thetas, r.decimate, r.prunes_sheets, "--max-resolution"}, context);
+  const CertifiedAxes made =
+      certified_axes({options.grid_shift, is_mesh, make}, certify,
+                     {r.thetas, r.decimate, r.prunes_sheets, OptionStyle::command_line}, context);
   run.phases.insert(run.phases.end(), made.phases.begin(), made.phases.end());
   Json json = {{"smooth", solid.smooth}, {"grid_shift", made.grid_shift}};
   if (solid.label) {

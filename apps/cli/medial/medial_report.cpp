@@ -169,6 +169,16 @@ Certificate SolidVerifier::certificate_of(const MedialFile& file, const LabelSel
   }
 }
 
+Certificate SolidVerifier::certificate_of(const std::filesystem::path& written, const MedialMetadata& metadata,
+                                          const LabelSelection& selection, const Context& context) const {
+  MedialFile file = read_axis(written);
+  if (file.metadata.solid_rule.empty()) {
+    file.metadata.solid_rule = metadata.solid_rule;
+    file.metadata.grid = metadata.grid;
+  }
+  return certificate_of(file, selection, context);
+}
+
 namespace {
 
 /// With names as the text has them.
@@ -215,6 +225,12 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 }
 
 }  // namespace
+
+void add_decimated(TextTable& table, const CertifiedAxis& made) {
+  if (!made.metadata.deviation) return;
+  table.add("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
+                             rounded_text(made.axis.deviation));
+}
 
 Json certificate_json(const Certificate& c, bool has_nested) {
   Json json = {{"certified", c.holds()}};

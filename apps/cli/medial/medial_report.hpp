@@ -6,6 +6,7 @@
 #include <string>
 
 #include "blum/certificate/certificate.hpp"
+#include "blum/certified/certified_axis.hpp"
 #include "blum/certified/verify_axis.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
@@ -42,6 +43,10 @@ class SolidVerifier {
   [[nodiscard]] Certificate certificate_of(const MedialFile& file, const LabelSelection& selection,
                                            const Context& context) const;
 
+  /// The same of an axis that was just written, as its file has it. @param metadata  of it: .obj and .ma hold none.
+  [[nodiscard]] Certificate certificate_of(const std::filesystem::path& written, const MedialMetadata& metadata,
+                                           const LabelSelection& selection, const Context& context) const;
+
  private:
   std::optional<MeshAxisVerifier> mesh_;
   std::optional<ImageAxisVerifier> image_;
@@ -58,6 +63,8 @@ class SolidVerifier {
 [[nodiscard]] std::string counts_text(const MedialCounts& counts, bool has_labels);
 /// Which angles a file holds the axes of, where it holds those of all.
 [[nodiscard]] std::string angles_text(double least_theta);
+/// From how many vertices an axis was decimated and how far it moved, if it was.
+void add_decimated(TextTable& table, const CertifiedAxis& made);
 /// Whether it holds, against what, and how precisely. Why not is left to NotCertified.
 void add_certificate(TextTable& table, const Certificate& certificate, bool has_nested);
 

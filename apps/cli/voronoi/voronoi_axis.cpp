@@ -83,28 +83,22 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
     const fs::path& draft = out.drafts.front().path();
     write_medial(draft, axis.axis.axis, axis.metadata, context);
     axis.phases.push_back({"write", writing.lap()});
-    MedialFile written = read_axis(draft);
-    written.metadata.solid_rule = axis.metadata.solid_rule;  // .obj and .ma say nothing of it
-    Certificate certificate = verifier.certificate_of(written, {}, context);
+    Certificate certificate = verifier.certificate_of(draft, axis.metadata, {}, context);
     axis.phases.push_back({"certificate", writing.lap()});
     return certificate;
   };
   const CertifiedAxis made = certified_axis(std::move(whole), metadata_of(options, source, weld), options.decimate,
                                             certify, out.phases, context);
-  const MedialMetadata& metadata = made.metadata;
   const MedialCounts counts = count(made.axis.axis);
   out.warnings = made.warnings;
   out.mismatches = made.certificate.mismatches;
   out.table.add("axis", counts_text(counts, true));
-  if (metadata.deviation) {
-    out.table.add("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
-                                   rounded_text(made.axis.deviation));
-  }
+  add_decimated(out.table, made);
   out.json = {{"theta", options.theta},
               {"counts", counts_json(counts, true)},
               {"deviation", made.axis.deviation},
               {"vertices_before", made.axis.vertices_before},
-              {"graph", add_graph(out, made.axis.axis, input, options, metadata, context)},
+              {"graph", add_graph(out, made.axis.axis, input, options, made.metadata, context)},
               {"certificate", certificate_json(made.certificate, false)}};
   add_certificate(out.table, made.certificate, false);
   return out;

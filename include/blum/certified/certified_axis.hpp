@@ -8,6 +8,7 @@
 
 #include "blum/axis/decimate.hpp"
 #include "blum/certificate/certificate.hpp"
+#include "blum/certified/axis_solid.hpp"
 #include "blum/certified/medial_metadata.hpp"
 #include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
@@ -26,8 +27,7 @@ struct CertifiedAxisOptions {
   /// Default: a quarter of the smallest side of a voxel.
   std::optional<double> tolerance = {};
   bool prunes_sheets = false;  ///< whole sheets of at most theta go, each angle from the one before (prune_sheets())
-  /// How the front end writes MedialAxisOptions::max_resolution in what it says of models that do not pass.
-  std::string resolution_option = "max_resolution";
+  OptionStyle style = OptionStyle::python;  ///< of options in what mismatches say to do
 };
 
 /// An axis that waits for its certificate.
@@ -119,8 +119,8 @@ struct AxisGrids {
 [[nodiscard]] MedialMetadata medial_metadata(const MedialAxis& axis, double theta);
 
 /// Where the model of a solid does not pass, and what there is to do about it: one sentence for each body.
-/// @param resolution_option  how the front end writes MedialAxisOptions::max_resolution.
+/// @param style  of the options that it names.
 [[nodiscard]] std::vector<std::string> model_problems(const MedialAxisReport& report,
-                                                      const std::string& resolution_option = "max_resolution");
+                                                      OptionStyle style = OptionStyle::python);
 
 }  // namespace blum

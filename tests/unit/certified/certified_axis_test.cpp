@@ -280,11 +280,11 @@ TEST(CertifiedAxes, AreNotWhereTheModelDoesNotPass) {
   int grids = 0;
   const auto make = [&](double) { return ++grids, axis; };
   const auto certify = [](const AxisCandidate&) { return Certificate{}; };
-  const CertifiedAxes found = certified_axes({0, true, make}, certify, {.resolution_option = "--max-resolution"});
+  const CertifiedAxes found = certified_axes({0, true, make}, certify, {.style = OptionStyle::command_line});
   EXPECT_EQ(grids, 1) << "another grid would have the same model";
   EXPECT_TRUE(found.axes.front().certificate.holds());
   EXPECT_FALSE(found.holds());
-  EXPECT_EQ(found.mismatches, model_problems(axis->report(), "--max-resolution"));
+  EXPECT_EQ(found.mismatches, model_problems(axis->report(), OptionStyle::command_line));
 }
 
 TEST(ModelProblems, NameTheBodyAndTheOption) {
@@ -293,7 +293,7 @@ TEST(ModelProblems, NameTheBodyAndTheOption) {
   report.bodies[0].topology_matches = true;
   report.bodies[1].spacing = 0.5;
   report.bodies[1].failures = {{.low = {0, 0, 0}, .high = {2, 2, 2}}};
-  const std::vector<std::string> problems = model_problems(report, "--max-resolution");
+  const std::vector<std::string> problems = model_problems(report, OptionStyle::command_line);
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_NE(
       problems.front().find("the model of body 2 at voxels of side 0.5 does not pass in 1 place, the first one at "
