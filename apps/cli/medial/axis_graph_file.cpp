@@ -24,7 +24,7 @@ const AxisSheet* thinnest_wall(const AxisGraph& graph) {
 
 void add_graph_option(const Command& command, std::optional<std::string>& graph, const std::string& help) {
   add_text_option(command, "--graph", graph, "FILE",
-                  (help + " (" + extension_list(FileContent::graph, FileAccess::write) + ")").c_str());
+                  help + " (" + extension_list(FileContent::graph, FileAccess::write) + ")");
 }
 
 std::optional<fs::path> parse_graph(const std::optional<std::string>& text) {

@@ -16,9 +16,8 @@ namespace fs = std::filesystem;
 void add_extend_options(const Command& command, std::optional<std::string>& extend,
                         std::optional<std::string>& length) {
   const std::string names = extension_list(FileContent::extended_axis, FileAccess::write);
-  add_text_option(
-      command, "--extend", extend, "FILE",
-      ("Its sheets, continued to the surface, for meshes of shells (" + names + "); best at --theta 110").c_str());
+  add_text_option(command, "--extend", extend, "FILE",
+                  "Its sheets, continued to the surface, for meshes of shells (" + names + "); best at --theta 110");
   add_text_option(command, "--extend-length", length, "N",
                   "With --extend: continue a rim by at most N of its radii (default 4)");
 }
