@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # `make lint`: format, clang-tidy of what changed (tools/tidy.py), shell scripts, layer rules and their picture, text
-# rules, links, messages of new commits, Python (ruff) and the viewer (tsc, ESLint), each counted as one check.
-#   tools/lint.sh [CHECK ...]   only these: format includes picture text links commits shell python viewer tidy
+# rules, English, links, messages of new commits, Python (ruff) and the viewer (tsc, ESLint), each counted as one check.
+#   tools/lint.sh [CHECK ...]   only these: format includes picture text words links commits shell python viewer tidy
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -26,6 +26,7 @@ run() {
     includes) tools/check_includes.py ;;
     picture) tools/draw_layers.py --check ;;
     text) tools/check_text.py ;;
+    words) tools/check_words.py ;;
     links) tools/check_links.py ;;
     commits) tools/check_commits.py ;;
     shell) shell_scripts ;;
@@ -45,7 +46,7 @@ if [[ ${1:-} == --run ]]; then
 fi
 results=${RESULTS:-build/results/lint}
 [[ -n ${RESULTS:-} ]] || rm -rf "$results"
-[[ $# -gt 0 ]] || set -- format includes picture text links commits shell python viewer tidy
+[[ $# -gt 0 ]] || set -- format includes picture text words links commits shell python viewer tidy
 for name in "$@"; do
   tools/results.py check "$results" "lint-$name" -- "$0" --run "$name"
 done
