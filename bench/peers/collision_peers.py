@@ -134,7 +134,7 @@ def main():
     result = {}
     with tempfile.TemporaryDirectory() as folder:
         pairs = pathlib.Path(folder) / "pairs.npz"
-        runs = [ours(given.blum, "proximity", given.start, given.end, "--query", "continuous", "--self", "-o", pairs,
+        runs = [ours(given.blum, "proximity", "continuous", given.start, given.end, "--self", "-o", pairs,
                      "--threads", 1) for _ in range(3)]  # fmt: skip
     spent = [sum(s for phase, s in run["seconds"].items() if phase not in ("read", "write")) for run in runs]
     pairs_found = runs[0]["vertex_face"] + runs[0]["edge_edge"]

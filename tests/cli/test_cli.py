@@ -100,14 +100,15 @@ def test_info_of_parts_that_cross_knows_no_solid(tmp_path):
     (tmp_path / "two.obj").write_text("\n".join(lines + moved + shifted) + "\n")
     facts = run_json("info", tmp_path / "two.obj")
     assert facts["self_intersections"]["crossing"] > 0 and facts["betti"] is None
-    assert "solid           no: triangles cross each other" in run("info", tmp_path / "two.obj")[0]
+    assert "solid     no: triangles cross each other" in run("info", tmp_path / "two.obj")[0]
     assert run_json("info", tmp_path / "box.obj")["betti"] == [1, 0, 0]
 
 
 def test_info_counts_self_intersections(shapes, tmp_path):
     assert run_json("info", shapes / "torus.obj")["self_intersections"] == {
         "crossing": 0, "touching": 0, "complete": True, "pairs": []}
-    assert "crossings       none" in run("info", shapes / "torus.obj")[0]
+    assert "defects  none" in run("info", shapes / "torus.obj")[0]
+    assert "crossings       none" in run("info", shapes / "torus.obj", "--verbose")[0]
     mesh = tmp_path / "cross.obj"
     # The second triangle passes through the first; the third stands on it with a corner.
     mesh.write_text("v 0 0 0\nv 3 0 0\nv 0 3 0\nv 1 1 -1\nv 1 1 1\nv 5 5 1\nv 1 0.5 0\nv 1 0.25 3\nv 2 0.25 3\n"

@@ -116,11 +116,11 @@ def frames(tmp_path):
     return tmp_path
 
 
-CONTINUOUS = "--query", "continuous", "--self"
+CONTINUOUS = "proximity", "continuous"
 
 
 def proximity(frames, output):
-    return run_json("proximity", frames / "start.obj", frames / "end.obj", *CONTINUOUS, "-o", frames / output)
+    return run_json(*CONTINUOUS, frames / "start.obj", frames / "end.obj", "--self", "-o", frames / output)
 
 
 def test_pairs_are_the_same_in_every_format(frames):
@@ -147,7 +147,7 @@ def test_pairs_do_not_depend_on_threads(frames):
     files = []
     for threads in (1, 2, 7):
         output = frames / f"{threads}.npz"
-        run("proximity", frames / "start.obj", frames / "end.obj", *CONTINUOUS, "-o", output, "--threads", threads)
+        run(*CONTINUOUS, frames / "start.obj", frames / "end.obj", "--self", "-o", output, "--threads", threads)
         files.append((frames / f"{threads}.npz").read_bytes())
     assert files[0] == files[1] == files[2]
 
@@ -166,10 +166,10 @@ def test_what_is_no_motion_is_refused(frames):
         ([start, end, "--self", "-o", frames / "p.obj"], 2, "the extension must be .npz"),
         ([start, end, "--self", "-o", start], 2, ""),
         ([start, end, "--self", "-o", out, "--tolerance", "2"], 2, "tolerance"),
-        ([start, end, "--self", "-o", out, "--max-distance", "2"], 2, "--min-separation says how close"),
+        ([start, end, "--self", "-o", out, "--max-distance", "2"], 2, "there is no option --max-distance"),
         ([start, frames / "absent.obj", "--self", "-o", out], 1, "absent.obj"),
     ]:
-        assert message in run("proximity", *arguments, "--query", "continuous", status=status)[1]
+        assert message in run("proximity", "continuous", *arguments, status=status)[1]
     assert not out.exists() and names(frames) == ["end.obj", "less.obj", "other.obj", "start.obj"]
 
 
@@ -182,7 +182,7 @@ def test_no_query_of_the_data_set_is_wrong():
 @needs_data
 def test_every_colliding_pair_of_the_cloth_is_found(tmp_path):
     frames = [DATA / "cloth-ball" / f"cloth_ball{n}.ply" for n in (92, 93)]
-    run("proximity", *frames, "--query", "continuous", "--self", "-o", tmp_path / "p.npz")
+    run("proximity", "continuous", *frames, "--self", "-o", tmp_path / "p.npz")
     found = np.load(tmp_path / "p.npz")
     triangles = ply_triangles(frames[0])
     edges = np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)

@@ -1,4 +1,4 @@
-"""`blum proximity --query continuous --to END...` tells what of several objects meets while they move: what Python says,
+"""`blum proximity continuous --to END...` reports collisions of several moving objects: what Python says,
 in every format with the objects of each pair, at times that are known; it says what was wrong."""
 
 import csv
@@ -39,8 +39,8 @@ def folder(tmp_path_factory):
 
 
 def continuous(folder, start, end, output, *options):
-    return run_json("proximity", *[folder / name for name in start], "--to", *[folder / name for name in end],
-                    "--query", "continuous", "-o", output, *options)  # fmt: skip
+    files = [*[folder / name for name in start], "--to", *[folder / name for name in end]]
+    return run_json("proximity", "continuous", *files, "-o", output, *options)
 
 
 def python_answer(folder, start, end, compare_self=False, **options):
@@ -213,20 +213,21 @@ def test_a_file_that_says_the_same_rests_too(folder, tmp_path):
 
 
 def test_it_is_told_in_words(folder, tmp_path):
-    files = ["--to", folder / "ball2.ply", folder / "plate.ply", "--query", "continuous", "-o", tmp_path / "p.csv"]
-    out = run("proximity", folder / "ball1.ply", folder / "plate.ply", *files)[0]
+    files = ["--to", folder / "ball2.ply", folder / "plate.ply", "-o", tmp_path / "p.csv"]
+    out = run("proximity", "continuous", folder / "ball1.ply", folder / "plate.ply", *files)[0]
     assert "2 objects, of which 1 moves; 5,132 triangles" in out
     assert "ball1.ply, plate.ply  " in out and "the first at time 0.349999" in out and f"{tmp_path / 'p.csv'}\n" in out
-    names_of_self = run("proximity", folder / "ring1.ply", "--self", "--to", folder / "ring2.ply", *files[3:])[0]
+    ring = [folder / "ring1.ply", "--self", "--to", folder / "ring2.ply"]
+    names_of_self = run("proximity", "continuous", *ring, *files[3:])[0]
     assert "ring1.ply, itself  " in names_of_self
-    assert run("proximity", folder / "ball1.ply", folder / "plate.ply", *files, "--quiet")[0] == ""
+    assert run("proximity", "continuous", folder / "ball1.ply", folder / "plate.ply", *files, "--quiet")[0] == ""
 
 
 def test_many_pairs_of_objects_are_cut_short_in_words(folder, tmp_path):
     files = [folder / "ball1.ply"] + [folder / "plate.ply"] * 7
     ends = [folder / "ball2.ply"] + [folder / "plate.ply"] * 7
-    out = run("proximity", *files, "--to", *ends, "--query", "continuous", "-o", tmp_path / "p.csv")[0]
-    assert "8 pairs of objects more; --json FILE tells all" in out  # plates that rest in one place meet, too
+    out = run("proximity", "continuous", *files, "--to", *ends, "-o", tmp_path / "p.csv")[0]
+    assert "22 pairs of objects more: --json FILE lists all" in out  # plates that rest in one place meet, too
 
 
 def test_files_do_not_depend_on_threads(folder, tmp_path):
@@ -242,7 +243,7 @@ def test_files_do_not_depend_on_threads(folder, tmp_path):
 
 def test_frames_of_one_mesh_say_what_they_said(folder, tmp_path):
     """Without --to two files are frames of one mesh; the same as one object with an end."""
-    run("proximity", folder / "ring1.ply", folder / "ring2.ply", "--query", "continuous", "--self", "-o",
+    run("proximity", "continuous", folder / "ring1.ply", folder / "ring2.ply", "--self", "-o",
         tmp_path / "frames.npz")  # fmt: skip
     continuous(folder, ["ring1.ply"], ["ring2.ply"], tmp_path / "object.npz", "--self")
     frames, objects = read_npz(tmp_path / "frames.npz"), read_npz(tmp_path / "object.npz")
@@ -250,7 +251,7 @@ def test_frames_of_one_mesh_say_what_they_said(folder, tmp_path):
     for name in set(frames) - {"metadata"}:
         assert frames[name].dtype == objects[name].dtype and frames[name].tolist() == objects[name].tolist()
     assert set(objects) - set(frames) == {"vertex_face_object", "edge_edge_object"}
-    run("proximity", folder / "ring1.ply", folder / "ring2.ply", "--query", "continuous", "--self", "-o",
+    run("proximity", "continuous", folder / "ring1.ply", folder / "ring2.ply", "--self", "-o",
         tmp_path / "frames.json")  # fmt: skip
     text = read_json(tmp_path / "frames.json")
     assert list(text)[0] == "metadata" and set(text) == set(frames)
@@ -276,18 +277,18 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([*two, fallen, plate, "-o", tmp_path / "p.obj"], 2, ""),
         ([ball, plate, "-o", tmp_path / "p.obj", "--to", fallen, plate], 2, "must be .npz, .csv, .json or .vtp"),
         ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),
-        ([*two, fallen, plate, "--max-distance", "1"], 2, "--min-separation says how close"),
-        ([*two, fallen, plate, "--culling", "bvh"], 2, "--culling is not for --query continuous"),
-        ([*two, fallen, plate, "--depth-tolerance", "0.1"], 2, "--depth-tolerance is for --query signed and penetration alone"),
+        ([*two, fallen, plate, "--max-distance", "1"], 2, "there is no option --max-distance"),
+        ([*two, fallen, plate, "--culling", "bvh"], 2, "there is no option --culling"),
+        ([*two, fallen, plate, "--depth-tolerance", "0.1"], 2, "there is no option --depth-tolerance"),
         ([*two, fallen, plate, "--tolerance", "0"], 2, "tolerance"),
         ([*two, fallen, plate, "--min-separation", "-1"], 2, "min"),
-        ([*two, fallen, plate, "--frames", "--self"], 2, "--frames are those of one object"),
+        ([*two, fallen, plate, "--frames", "--self"], 2, "--frames and --to exclude each other"),
         ([ball, plate, ring, "--self", "-o", out], 2, "takes two files"),
-        ([ball, plate, ring, "--self", "-o", out], 2, "by --to"),
+        ([ball, plate, ring, "--self", "-o", out], 2, "--to names their files"),
         ([ball, plate, "-o", out], 2, "--to END"),
     ]:
-        assert message in run("proximity", *arguments, "--query", "continuous", status=status)[1], arguments
-    for query in ("separation", "nbody", "collide", "penetration"):
-        error = run("proximity", *two, fallen, plate, "--query", query, status=2)[1]
-        assert "--to is for --query continuous alone" in error
+        assert message in run("proximity", "continuous", *arguments, status=status)[1], arguments
+    for query in ("separation", "closest", "collide", "penetration"):
+        error = run("proximity", query, *two, fallen, plate, status=2)[1]
+        assert "there is no option --to" in error
     assert names(tmp_path) == ["far.obj", "other.ply"]

@@ -1,4 +1,4 @@
-"""`blum proximity --query penetration` tells what solids have in common, and `--frames` what each frame of a moving
+"""`blum proximity penetration` reports the common parts of solids, and `--frames` what each frame of a moving
 object holds, for `blum view`; both say what was wrong."""
 
 import json
@@ -32,7 +32,7 @@ def frames(folder):
 
 def test_tells_what_solids_have_in_common(folder):
     answer = run_json(
-        "proximity", folder / "box.ply", folder / "ball.ply", "--query", "penetration", "-o", folder / "parts.npz"
+        "proximity", "penetration", folder / "box.ply", folder / "ball.ply", "-o", folder / "parts.npz"
     )
     (part,) = answer["penetrations"]
     assert answer["pairs"] == 1
@@ -58,7 +58,7 @@ def test_tells_what_solids_have_in_common(folder):
 def test_finer_tolerance_brings_the_bound_closer(folder):
     def part(*more):
         return run_json(
-            "proximity", folder / "box.ply", folder / "ball.ply", "--query", "penetration", *more
+            "proximity", "penetration", folder / "box.ply", folder / "ball.ply", *more
         )["penetrations"][0]
 
     fine = part("--depth-tolerance", "1e-6")
@@ -70,7 +70,7 @@ def test_says_what_was_wrong_with_solids(folder, tmp_path):
     open_mesh = blum.generate("box")
     blum.Mesh(open_mesh.vertices, np.asarray(open_mesh.triangles)[1:]).write(tmp_path / "open.ply")
     files = folder / "ball.ply", tmp_path / "open.ply"
-    assert "is not closed" in run("proximity", *files, "--query", "penetration", status=1)[1]
+    assert "is not closed" in run("proximity", "penetration", *files, status=1)[1]
     two = folder / "box.ply", folder / "ball.ply"
     for more, status, word in (
         (["--max-distance", "1"], 2, "--max-distance"),
@@ -78,8 +78,8 @@ def test_says_what_was_wrong_with_solids(folder, tmp_path):
         (["--depth-tolerance", "0"], 2, "--depth-tolerance"),
         (["--tolerance", "0.1"], 2, "--tolerance"),
     ):
-        assert word in run("proximity", *two, "--query", "penetration", *more, status=status)[1]
-    assert "--depth-tolerance" in run("proximity", *two, "--depth-tolerance", "0.1", status=2)[1]
+        assert word in run("proximity", "penetration", *two, *more, status=status)[1]
+    assert "--depth-tolerance" in run("proximity", "separation", *two, "--depth-tolerance", "0.1", status=2)[1]
 
 
 def test_messages_call_objects_by_their_files(folder, tmp_path):
@@ -90,11 +90,11 @@ def test_messages_call_objects_by_their_files(folder, tmp_path):
     blum.Mesh(box.vertices, np.repeat(np.asarray(box.triangles)[:1], 40000, axis=0)).write(tmp_path / "heap.ply")
     first, odd, inward, heap = folder / "box.ply", *(tmp_path / f"{name}.ply" for name in ("object 0", "inward", "heap"))
     for arguments, wanted in (
-        ([first, odd, "--query", "penetration"], f"'{odd}' is not closed"),
-        ([first, odd, "--query", "signed"], f"'{odd}' is not closed"),
-        ([first, inward, "--query", "penetration"], f"'{inward}' faces inwards"),
-        ([first, heap, "--self"], f"'{heap}': 40000 primitives meet at vertex"),
-        ([first, odd, "--frames", "--self", "--query", "penetration"], f"'{odd}' is not closed"),
+        (["penetration", first, odd], f"'{odd}' is not closed"),
+        (["signed", first, odd], f"'{odd}' is not closed"),
+        (["penetration", first, inward], f"'{inward}' faces inwards"),
+        (["separation", first, heap, "--self"], f"'{heap}': 40000 primitives meet at vertex"),
+        (["penetration", first, odd, "--frames", "--self"], f"'{odd}' is not closed"),
     ):
         assert run("proximity", *arguments, status=1)[1].startswith(f"blum: error: {wanted}"), arguments
 
@@ -106,7 +106,7 @@ def test_all_pairs_are_those_of_the_library(folder, tmp_path):
     scene = blum.ProximityScene()
     for file in files:
         scene.add(blum.read_mesh(file), compare_self=True)
-    told = run_json("proximity", *files, "--query", "penetration", "--self")["penetrations"]
+    told = run_json("proximity", "penetration", *files, "--self")["penetrations"]
     found = scene.penetrations()
     assert len(told) == len(found) > 5
     for one, part in zip(told, found, strict=True):
@@ -114,7 +114,7 @@ def test_all_pairs_are_those_of_the_library(folder, tmp_path):
         assert one["deep_object"] == part.object[0 if part.is_first_deep else 1]
         assert one["deep_point"] == part.deep_point.tolist() and one["deep_triangle"] == part.deep_triangle
         assert one["curves"] == [curve.tolist() for curve in part.curves]
-    run("proximity", *files, "--query", "signed", "--self", "-o", tmp_path / "pairs.npz")
+    run("proximity", "signed", *files, "--self", "-o", tmp_path / "pairs.npz")
     signed = scene.signed_separations()
     with np.load(tmp_path / "pairs.npz") as file:
         for name in ("object", "primitive", "distance", "point", "feature"):
@@ -127,7 +127,7 @@ def test_signed_is_one_number_for_each_two_solids(folder, tmp_path):
     blum.Mesh(ball.vertices * 0.1, ball.triangles).write(tmp_path / "swallowed.ply")
     files = [folder / "box.ply", folder / "ball.ply", tmp_path / "far.ply", tmp_path / "swallowed.ply"]
     out = tmp_path / "pairs.npz"
-    answer = run_json("proximity", *files, "--query", "signed", "-o", out)
+    answer = run_json("proximity", "signed", *files, "-o", out)
     scene = blum.ProximityScene()
     for file in files:
         scene.add(blum.read_mesh(file))
@@ -139,23 +139,23 @@ def test_signed_is_one_number_for_each_two_solids(folder, tmp_path):
         overlapping = {tuple(pair) for pair in held["object"][held["distance"] < 0].tolist()}
     assert overlapping == {(0, 1), (0, 3)}
     assert answer["min_distance"] == answer["closest"]["distance"] < 0 and answer["pairs"] == 6
-    text, _ = run("proximity", *files, "--query", "signed")
+    text, _ = run("proximity", "signed", *files)
     assert text.count("they overlap, from") == 2
     for more in (["--max-distance", 1], ["--frames", "--self"], ["--to", *files]):
-        assert more[0] in run("proximity", *files, "--query", "signed", *more, status=2)[1]
+        assert more[0] in run("proximity", "signed", *files, *more, status=2)[1]
 
 
-@pytest.mark.parametrize("query", ["separation", "nbody", "collide", "continuous", "penetration"])
+@pytest.mark.parametrize("query", ["separation", "closest", "collide", "continuous", "penetration"])
 def test_tells_of_each_frame_for_the_viewer(folder, query):
     out = folder / f"{query}.json"
-    answer = run_json("proximity", *frames(folder), "--frames", "--self", "--query", query, "-o", out)
+    answer = run_json("proximity", query, *frames(folder), "--frames", "--self", "-o", out)
     told = json.loads(out.read_text())["frames"]
     assert answer["frames"] == len(told) == 4
     assert answer["pairs"] == [len(frame["pairs"]) for frame in told]
     # Apart by 0.3 and 0.1, then 0.1 and 0.3 in each other; on the way from the second frame to the third they meet.
     has_pairs = {
         "separation": [1, 1, 1, 1],
-        "nbody": [1, 1, 1, 1],
+        "closest": [1, 1, 1, 1],
         "collide": [0, 0, 1, 1],
         "continuous": [0, 1, 1, 0],
         "penetration": [0, 0, 1, 1],
@@ -176,5 +176,5 @@ def test_says_what_was_wrong_with_frames(folder):
         ([frames(folder)[0], "--frames", "--self", "-o", out], "two files"),
         ([*frames(folder), "--frames", "--self", "-o", folder / "bad.npz"], ".json"),
     ):
-        assert word in run("proximity", *arguments, status=2)[1]
+        assert word in run("proximity", "separation", *arguments, status=2)[1]
     assert not out.exists()

@@ -17,8 +17,8 @@ blum = pytest.importorskip("blum")
 QUERIES = [
     ("separation", [], lambda scene: scene.separation()),
     ("separation", ["--max-distance", "0.3"], lambda scene: scene.separation(max_distance=0.3)),
-    ("nbody", ["--self"], lambda scene: scene.closest_primitives()),
-    ("nbody", ["--max-distance", "0.05"], lambda scene: scene.closest_primitives(0.05)),
+    ("closest", ["--self"], lambda scene: scene.closest_primitives()),
+    ("closest", ["--max-distance", "0.05"], lambda scene: scene.closest_primitives(0.05)),
     ("collide", ["--self"], lambda scene: scene.collisions()),
     ("collide", ["--max-distance", "0"], lambda scene: scene.collisions()),
     ("collide", ["--self", "--max-distance", "5e-2"], lambda scene: scene.closer_than(0.05)),
@@ -99,7 +99,7 @@ def test_every_format_holds_what_python_says(objects, tmp_path, query, options, 
     wanted = ask(scene_of(objects, "--self" in options))
     for extension, read in READERS.items():
         output = tmp_path / f"p.{extension}"
-        answer = run_json("proximity", *objects, "--query", query, *options, "-o", output)
+        answer = run_json("proximity", query, *objects, *options, "-o", output)
         found = read(output)
         for name in ("object", "primitive", "distance", "point", "feature"):
             assert found[name].tolist() == getattr(wanted, name).tolist(), (extension, name)
@@ -123,17 +123,17 @@ def test_every_format_holds_what_python_says(objects, tmp_path, query, options, 
 
 def test_pairs_are_no_field(objects, tmp_path):
     pairs = tmp_path / "p.npz"
-    run("proximity", *objects, "--query", "collide", "--max-distance", "1", "-o", pairs)
+    run("proximity", "collide", *objects, "--max-distance", "1", "-o", pairs)
     for command in (["info", pairs], ["view", pairs, "-o", tmp_path / "page.html"]):
         assert "it holds pairs of primitives" in run(*command, status=1)[1]
-    run("proximity", objects[0], "--self", "--to", objects[0], "--query", "continuous", "-o", pairs)
+    run("proximity", "continuous", objects[0], "--self", "--to", objects[0], "-o", pairs)
     assert "it holds collisions" in run("info", pairs, status=1)[1]
 
 
 @pytest.mark.parametrize("extension", READERS)
 def test_no_pairs_are_a_file_too(objects, tmp_path, extension):
     output = tmp_path / f"p.{extension}"
-    answer = run_json("proximity", objects[0], objects[2], "--query", "nbody", "--max-distance", "1e-3", "-o", output)
+    answer = run_json("proximity", "closest", objects[0], objects[2], "--max-distance", "1e-3", "-o", output)
     assert [answer["pairs"], answer["min_distance"], answer["closest"]] == [0, None, None]
     found = READERS[extension](output)
     assert {name: found[name].shape for name in ("object", "distance", "point", "feature")} == {
@@ -141,26 +141,26 @@ def test_no_pairs_are_a_file_too(objects, tmp_path, extension):
 
 
 def test_separation_is_told_in_words_and_facts(objects):
-    out = run("proximity", *objects)[0]
+    out = run("proximity", "separation", *objects)[0]
     scene = scene_of(objects, False)
-    assert "3 objects, 1,160 triangles, 2 segments and points" in out and "3 pairs" in out
+    assert "3 objects, 1,160 triangles, 2 segments and points" in out and "pairs                 3 pairs" in out
     assert "torus.ply, moved.ply  they meet, near (" in out
     assert f"torus.ply, soup.obj   {scene.separation(0, 2).distance:.6g}, from (" in out
-    answer = run_json("proximity", *objects, "--max-distance", "0")
+    answer = run_json("proximity", "separation", *objects, "--max-distance", "0")
     assert answer["query"] == "separation" and answer["max_distance"] == 0 and answer["self"] is False
     assert [one["triangles"] for one in answer["objects"]] == [576, 576, 8]
     assert [one["segments"] for one in answer["objects"]] == [0, 0, 2]
     assert answer["objects"][0]["file"] == str(objects[0]) and answer["pairs"] == 1 and answer["outputs"] == []
     assert {"read", "build", "objects", "primitives"} <= answer["seconds"].keys()
     assert answer["total_seconds"] > 0 and answer["peak_memory_bytes"] > 2**20 and answer["threads"] >= 1
-    assert run("proximity", *objects, "--quiet")[0] == ""
-    alone = run("proximity", objects[0], "--self")[0]
+    assert run("proximity", "separation", *objects, "--quiet")[0] == ""
+    alone = run("proximity", "separation", objects[0], "--self")[0]
     assert "torus.ply, itself" in alone and "1 object, 576 triangles\n" in alone
 
 
 def test_many_objects_are_cut_short_in_words(objects):
-    out = run("proximity", *objects[:1] * 8)[0]
-    assert out.count("they meet") == 20 and "8 pairs more; -o PAIRS tells all" in out
+    out = run("proximity", "separation", *objects[:1] * 8)[0]
+    assert out.count("they meet") == 6 and "22 pairs more: -o PAIRS lists all" in out
 
 
 def test_files_do_not_depend_on_threads(objects, tmp_path):
@@ -168,14 +168,14 @@ def test_files_do_not_depend_on_threads(objects, tmp_path):
         files = []
         for threads in (1, 2, 7):
             output = tmp_path / f"{threads}.{extension}"
-            run("proximity", *objects, "--self", "--query", "collide", "--max-distance", "0.1", "-o", output, "--threads",
+            run("proximity", "collide", *objects, "--self", "--max-distance", "0.1", "-o", output, "--threads",
                 threads)  # fmt: skip
             files.append(output.read_bytes())
         assert files[0] == files[1] == files[2]
 
 
 def test_culling_changes_no_file(objects, tmp_path):
-    arguments = *objects, "--self", "--query", "nbody", "-o"
+    arguments = "closest", *objects, "--self", "-o"
     wanted = run_json("proximity", *arguments, tmp_path / "bvh.npz", "--culling", "bvh")
     answer = run_json("proximity", *arguments, tmp_path / "v.npz", "--culling", "voronoi", "--cell-size", "1.5")
     assert [wanted["culling"], wanted["cells"]] == ["bvh", 0]
@@ -192,17 +192,15 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
     (tmp_path / "folder.csv").mkdir()
     for arguments, status, message in [
         ([torus], 2, "give --self, or the files of more objects"),
-        ([torus, "--query", "nbody", "-o", out], 2, "give --self"),
-        ([torus, moved, "--query", "near"], 2, "--query is 'near', but must be separation, "),
+        ([torus, "-o", out], 2, "give --self"),
         ([torus, moved, "--max-distance", "-0.5"], 2, "--max-distance '-0.5': must not be negative"),
         ([torus, moved, "--max-distance", "nan"], 2, "--max-distance 'nan'"),
         ([torus, moved, "--max-distance", "inf"], 2, "--max-distance 'inf'"),
         ([torus, moved, "--max-distance", "near"], 2, "is not a number"),
-        ([torus, moved, "--tolerance", "0.1"], 2, "--tolerance is for --query continuous alone"),
-        ([torus, moved, "--min-separation", "0.1"], 2, "--min-separation is for --query continuous alone"),
+        ([torus, moved, "--tolerance", "0.1"], 2, "there is no option --tolerance"),
+        ([torus, moved, "--min-separation", "0.1"], 2, "there is no option --min-separation"),
         ([torus, moved, "--culling", "octree"], 2, "--culling"),
         ([torus, moved, "--cell-size", "0"], 2, "--cell-size"),
-        ([torus, moved, "--query", "continuous", "--self", "--culling", "bvh", "-o", out], 2, "--culling is not for"),
         ([torus, moved, "--threads", "-1"], 2, "--threads"),
         ([torus, moved, "-o", tmp_path / "p.txt"], 2, "the extension must be .npz, .csv, .json or .vtp"),
         ([torus, soup, "-o", soup], 2, ""),
@@ -217,7 +215,13 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
         ([torus, moved, "-o", tmp_path / "folder.csv"], 1, "folder.csv"),
         ([], 2, "SCENE"),
     ]:
-        assert message in run("proximity", *arguments, status=status)[1], arguments
+        assert message in run("proximity", "separation", *arguments, status=status)[1], arguments
+    for arguments, message in [
+        ([], "a query is missing; the queries are separation, "),
+        (["separate", torus, moved], "there is no query 'separate' (did you mean separation?); the queries are "),
+        ([torus, moved], "there is no query "),
+    ]:
+        assert message in run("proximity", *arguments, status=2)[1], arguments
     assert names(tmp_path) == ["empty.obj", "far.obj", "folder.csv", "nan.obj"]
 
 
@@ -225,19 +229,19 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
 def test_a_full_disk_leaves_the_file_as_it_was(objects, tmp_path, extension):
     output = tmp_path / f"p.{extension}"
     output.write_bytes(b"old")
-    arguments = [BLUM, "proximity", *objects, "--self", "--query", "nbody", "-o", output]
+    arguments = [BLUM, "proximity", "closest", *objects, "--self", "-o", output]
     limited = ["bash", "-c", 'trap "" XFSZ; ulimit -f 4; exec "$@"', "limited", *map(str, arguments)]
     done = subprocess.run(limited, capture_output=True, check=False, timeout=60)
     assert done.returncode == 1 and b"blum: error: " in done.stderr
     assert output.read_bytes() == b"old" and names(tmp_path) == [output.name]
-    run("proximity", *objects, "--self", "--query", "nbody", "-o", output)
+    run("proximity", "closest", *objects, "--self", "-o", output)
     assert len(READERS[extension](output)["distance"]) == 1162 and names(tmp_path) == [output.name]
 
 
 def test_interrupted_work_ends_by_the_signal_and_leaves_nothing(tmp_path):
     run("make", "soup", "-o", tmp_path / "soup.ply", "--triangles", 200000)
     (tmp_path / "out.npz").write_bytes(b"old")
-    arguments = ["proximity", "soup.ply", "--self", "--query", "nbody", "-o", "out.npz", "--threads", "1"]
+    arguments = ["proximity", "closest", "soup.ply", "--self", "-o", "out.npz", "--threads", "1"]
     with subprocess.Popen([BLUM, *arguments], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         time.sleep(0.7)
         assert process.poll() is None, "the work was done before it could be interrupted"

@@ -39,7 +39,7 @@ def folder(tmp_path_factory):
 
 
 def frames(folder, *files):
-    return ["proximity", *[folder / file for file in files], "--frames", "--self", "--query", "continuous"]
+    return ["proximity", "continuous", *[folder / file for file in files], "--frames", "--self"]
 
 
 @pytest.mark.parametrize(
@@ -65,23 +65,23 @@ def test_steps_that_change_are_skipped_and_told(folder, tmp_path):
     assert answer["pairs"][0] == len(told[0]["pairs"]) > 0
     run("view", *[folder / file for file in files], "--frames", "--pairs", out, "-o", tmp_path / "page.html")
     two = [folder / "box.obj", folder / "crossing.obj"]
-    assert "--skip-changed is for --frames" in run("proximity", *two, "--skip-changed", status=2)[1]
+    assert "--skip-changed is for --frames" in run("proximity", "continuous", *two, "--skip-changed", status=2)[1]
 
 
-@pytest.mark.parametrize("query", ["nbody", "collide"])
+@pytest.mark.parametrize("query", ["closest", "collide"])
 def test_pairs_are_counted_without_a_file(folder, query):
-    two = [folder / "box.obj", folder / "crossing.obj", "--query", query]
-    answer = run_json("proximity", *two)
+    two = [folder / "box.obj", folder / "crossing.obj"]
+    answer = run_json("proximity", query, *two)
     assert answer["pairs"] > 0 and answer["outputs"] == [] and answer["limit"] is None
-    out = run("proximity", *two)[0]
+    out = run("proximity", query, *two)[0]
     assert f"{answer['pairs']} pairs" in out and "wrote" not in out
 
 
 def test_first_time_is_told_without_a_file(folder):
     start, end = folder / "frame0.obj", folder / "frame1.obj"
     for command in (
-        ["proximity", start, end, "--self", "--query", "continuous"],
-        ["proximity", start, "--to", end, "--self", "--query", "continuous"],
+        ["proximity", "continuous", start, end, "--self"],
+        ["proximity", "continuous", start, "--to", end, "--self"],
     ):
         answer = run_json(*command)
         assert answer["earliest"] == pytest.approx(2 / 3, abs=2e-6) and answer["outputs"] == []
@@ -98,9 +98,9 @@ def test_first_time_is_told_without_a_file(folder):
 def test_limit_cuts_files_short_and_says_so(folder, tmp_path):
     start, end = folder / "frame0.obj", folder / "frame1.obj"
     commands = {
-        "collide": ["proximity", folder / "box.obj", folder / "crossing.obj", "--query", "collide"],
-        "frames": ["proximity", start, end, "--self", "--query", "continuous"],
-        "objects": ["proximity", start, "--to", end, "--self", "--query", "continuous"],
+        "collide": ["proximity", "collide", folder / "box.obj", folder / "crossing.obj"],
+        "frames": ["proximity", "continuous", start, end, "--self"],
+        "objects": ["proximity", "continuous", start, "--to", end, "--self"],
     }
     for name, command in commands.items():
         whole, short = tmp_path / f"{name}.csv", tmp_path / f"{name}5.csv"
@@ -108,8 +108,8 @@ def test_limit_cuts_files_short_and_says_so(folder, tmp_path):
         answer = run_json(*command, "-o", short, "--limit", 5)
         assert answer["limit"] == 5
         assert short.read_text().splitlines() == whole.read_text().splitlines()[:6], name
-        assert "; the first 5 are told, as --limit says" in run(*command, "-o", short, "--limit", 5)[0]
-        assert "--limit says" not in run(*command, "-o", short, "--limit", 10000)[0]
+        assert "; only the first 5 were written (--limit)" in run(*command, "-o", short, "--limit", 5)[0]
+        assert "(--limit)" not in run(*command, "-o", short, "--limit", 10000)[0]
         assert whole.read_bytes() == short.read_bytes()
     out = tmp_path / "pairs.json"
     assert run_json(*frames(folder, "frame0.obj", "frame1.obj"), "-o", out, "--limit", 2)["pairs"][0] > 2
@@ -119,37 +119,37 @@ def test_limit_cuts_files_short_and_says_so(folder, tmp_path):
 
 def test_to_without_files_says_so(folder, tmp_path):
     two = [folder / "box.obj", folder / "crossing.obj"]
-    err = run("proximity", *two, "--to", "--query", "continuous", "-o", tmp_path / "z.csv", status=2)[1]
+    err = run("proximity", "continuous", *two, "--to", "-o", tmp_path / "z.csv", status=2)[1]
     assert "--to names no file" in err
     assert names(tmp_path) == []
 
 
 def test_objects_of_one_name_are_told_apart(folder, tmp_path):
     two = [folder / "first" / "part.obj", folder / "second" / "part.obj"]
-    assert "first/part.obj, second/part.obj  they meet" in run("proximity", *two, "-o", tmp_path / "p.json")[0]
+    assert "first/part.obj, second/part.obj  they meet" in run("proximity", "separation", *two, "-o", tmp_path / "p.json")[0]
     metadata = json.loads((tmp_path / "p.json").read_text())["metadata"]
     assert [metadata["object_0"], metadata["object_1"]] == ["first/part.obj", "second/part.obj"]
-    out = run("proximity", *two, folder / "box.obj", two[0])[0]
+    out = run("proximity", "separation", *two, folder / "box.obj", two[0])[0]
     assert "second/part.obj, box.obj" in out and "first/part.obj, first/part.obj" in out
 
 
 def test_errors_of_solids_name_files_and_what_to_do(folder):
     box = folder / "box.obj"
     for file, word in (("open.obj", "is not closed, or its triangles"), ("loose.obj", "weld")):
-        err = run("proximity", folder / file, box, "--query", "penetration", status=1)[1]
+        err = run("proximity", "penetration", folder / file, box, status=1)[1]
         assert f"'{folder / file}'" in err and word in err and "object" not in err and str(box) not in err
-    frame = [folder / "frame0.obj", folder / "short.obj", "--frames", "--self", "--query", "penetration"]
-    err = run("proximity", *frame, status=1)[1]
+    frame = [folder / "frame0.obj", folder / "short.obj", "--frames", "--self"]
+    err = run("proximity", "penetration", *frame, status=1)[1]
     assert f"'{folder / 'short.obj'}' is not closed" in err and "3 edges" in err
 
 
 def test_weld_closes_meshes(folder):
     loose, crossing = folder / "loose.obj", folder / "crossing.obj"
-    answer = run_json("proximity", loose, crossing, "--query", "penetration", "--weld")
-    wanted = run_json("proximity", folder / "box.obj", crossing, "--query", "penetration")
+    answer = run_json("proximity", "penetration", loose, crossing, "--weld")
+    wanted = run_json("proximity", "penetration", folder / "box.obj", crossing)
     assert answer["penetrations"][0]["depth"] == wanted["penetrations"][0]["depth"] > 0
     assert answer["objects"][0]["vertices"] == 8
-    out = run("proximity", loose, "--to", loose, "--self", "--query", "continuous", "--weld", "1e-6")[0]
+    out = run("proximity", "continuous", loose, "--to", loose, "--self", "--weld", "1e-6")[0]
     assert "1 object" in out
 
 
@@ -157,9 +157,10 @@ def test_what_is_zero_but_for_rounding_reads_so(folder, tmp_path):
     torus, ball = tmp_path / "torus.ply", tmp_path / "ball.ply"
     blum.generate("torus").write(torus)
     blum.generate("sphere", radius=0.4).write(ball)
-    assert "from (0.54077, 0.443896, 0) to (0.309156, 0.253816, 0)" in run("proximity", torus, ball)[0]
+    assert "from (0.54077, 0.443896, 0) to (0.309156, 0.253816, 0)" in run("proximity", "separation", torus, ball)[0]
 
 
 def test_frames_tell_their_time_as_other_queries_do(folder):
     out = run(*frames(folder, "frame0.obj", "frame1.obj"))[0]
-    assert " s (boxes 0" in out and "at most\n" in out
+    assert " s, " in out and " of memory at most\n" in out and "phases" not in out
+    assert "phases  boxes 0" in run(*frames(folder, "frame0.obj", "frame1.obj"), "--verbose")[0]

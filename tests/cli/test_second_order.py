@@ -34,7 +34,7 @@ def test_fields_of_order_2(shapes, tmp_path, end):
         for name in ("a.distance2.nrrd", "a.site2.nrrd"):
             assert "a.nrrd" in run("info", tmp_path / name, status=1)[1]
         text, _ = run("field", *given, "-o", tmp_path / "a.nrrd")
-        assert "a.distance2.nrrd: of the second order" in text
+        assert "a.distance2.nrrd: second order of the replaced field" in text
         assert not (tmp_path / "a.distance2.nrrd").exists() and not (tmp_path / "a.site2.nrrd").exists()
 
 

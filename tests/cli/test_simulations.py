@@ -68,5 +68,5 @@ def test_bodies_do_not_cross_themselves(tmp_path):
     """The first of them meet the bowl at frame 6, and would cross themselves soon after."""
     assert simulate("bodies", "out", "--frames", "16", folder=tmp_path).returncode == 0
     frames = sorted((tmp_path / "out").glob("frame_*.ply"))
-    answer = run_json("proximity", *frames, "--frames", "--self", "--query", "collide")
+    answer = run_json("proximity", "collide", *frames, "--frames", "--self")
     assert answer["pairs"] == [0] * 16

@@ -56,7 +56,7 @@ def test_pages_are_named_by_what_they_show(tmp_path):
 def test_files_of_pairs_say_how_they_are_shown(tmp_path):
     for name in ("box.ply", "other.ply"):
         run("make", "box", "-o", tmp_path / name)
-    run("proximity", tmp_path / "box.ply", tmp_path / "other.ply", "-o", tmp_path / "s.vtp")
+    run("proximity", "separation", tmp_path / "box.ply", tmp_path / "other.ply", "-o", tmp_path / "s.vtp")
     _, err = run("view", tmp_path / "box.ply", tmp_path / "s.vtp", "-o", tmp_path / "page.html", warns=True)
     assert "blum view FRAME... --frames --pairs PAIRS.json" in err
 

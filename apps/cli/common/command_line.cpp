@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,10 @@ void Command::add_flag_function(const std::string& name, std::function<void()> s
   app_->add_flag_callback(name, std::move(set), help);
 }
 
+void Command::require_subcommand() const {
+  app_->require_subcommand(1);
+}
+
 void Command::footer(const std::string& text) const {
   app_->footer(text);
 }
@@ -69,14 +74,30 @@ void Command::callback(std::function<void()> run) const {
 
 namespace {
 
-/// A word of the command line that is neither an option nor a command, where a command is due.
-void check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
-  if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return;
+/// Rejects a word of the command line that is neither an option nor a command, if a command is expected there.
+void check_command(const CLI::App& app, std::span<const std::string> arguments) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), arguments[0]) != names.end()) return;
-  throw UsageError("there is no command '" + arguments[0] + "'" + hint(similar_words(arguments[0], names)) +
-                   "; the commands are " + join_words(names));
+  const bool is_tool = app.get_parent() == nullptr;
+  if (names.empty() || (arguments.empty() && is_tool)) return;
+  // The only commands with commands of their own are those of queries.
+  const std::string kind = is_tool ? "command" : "query";
+  const std::string all = std::string("the ") + (is_tool ? "commands" : "queries") + " are " + join_words(names);
+  if (arguments.empty()) throw UsageError("a " + kind + " is missing; " + all);
+  if (arguments[0].empty() || arguments[0][0] == '-') return;
+  if (std::find(names.begin(), names.end(), arguments[0]) != names.end()) {
+    return check_command(*app.get_subcommand(arguments[0]), arguments.subspan(1));
+  }
+  throw UsageError("there is no " + kind + " '" + arguments[0] + "'" + hint(similar_words(arguments[0], names)) + "; " +
+                   all);
+}
+
+/// The command that was given, with the names of those above it.
+const CLI::App& used_command(const CLI::App& app, std::string& name) {
+  const auto used = app.get_subcommands();
+  if (used.empty()) return app;
+  name += " " + used.front()->get_name();
+  return used_command(*used.front(), name);
 }
 
 /// What CLI11 could make nothing of, with a hint for a misspelt option; empty where there is nothing.
@@ -110,13 +131,13 @@ void finish(const CLI::App& app, const CLI::ParseError& error) {
   }
   std::string message = error.what();
   while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
-  const auto used = app.get_subcommands();
-  const std::string command = used.empty() ? "blum" : "blum " + used.front()->get_name();
+  std::string name = "blum";
+  const CLI::App& command = used_command(app, name);
   // A misspelt option leaves what it should have set missing: the first is the cause, and is said first.
-  const std::string leftover = leftover_text(used.empty() ? app : *used.front());
+  const std::string leftover = leftover_text(command);
   const bool only_leftover = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   if (!leftover.empty()) message = only_leftover ? leftover : leftover + "; also: " + message;
-  throw UsageError(message + "; see `" + command + " --help`");
+  throw UsageError(message + "; see `" + name + " --help`");
 }
 
 }  // namespace

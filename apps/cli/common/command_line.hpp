@@ -43,6 +43,8 @@ class Command {
   void add_flag(const std::string& name, bool& value, const std::string& help) const;
   /// @param set  is called where the flag is given.
   void add_flag_function(const std::string& name, std::function<void()> set, const std::string& help) const;
+  /// One of its own subcommands must be given.
+  void require_subcommand() const;
   /// What the help ends with.
   void footer(const std::string& text) const;
   /// What the command does.

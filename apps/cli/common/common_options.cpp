@@ -26,7 +26,8 @@ void add_device_option(const Command& command, std::optional<std::string>& devic
 
 void add_report_options(const Command& command, ReportOptions& report, const char* json_help) {
   add_text_option(command, "--json", report.json, "FILE", json_help);
-  command.add_flag("--quiet", report.quiet, "Say nothing but errors");
+  command.add_flag("--quiet", report.quiet, "Print errors only");
+  command.add_flag("--verbose", report.verbose, "Print all details of the summary");
 }
 
 }  // namespace blum::cli

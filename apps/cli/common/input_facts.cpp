@@ -60,12 +60,10 @@ Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const Si
   return json;
 }
 
-std::string mesh_text(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
-                      const Orientation& facts) {
+TextTable mesh_table(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
+                     const Orientation& facts) {
   TextTable table;
-  table.add("input", path.string() + ": " + file_text(file));
-  std::string mesh = plural(file.mesh.vertices.size(), "vertex", "vertices") + ", " +
-                     plural(sites.edge_count(), "edge", "edges") + ", " +
+  std::string mesh = path.string() + ": " + plural(file.mesh.vertices.size(), "vertex", "vertices") + ", " +
                      plural(file.mesh.triangles.size(), "triangle", "triangles");
   if (!file.mesh.segments.empty()) mesh += ", " + plural(file.mesh.segments.size(), "segment", "segments");
   if (!file.mesh.points.empty()) mesh += ", " + plural(file.mesh.points.size(), "point", "points");
@@ -73,8 +71,9 @@ std::string mesh_text(const std::filesystem::path& path, const MeshFile& file, c
     mesh +=
         "; " + plural(facts.components, "component", "components") + ", " + (facts.closed ? "closed" : "not closed");
   }
-  table.add("mesh", mesh);
-  return table.text();
+  table.add("input", mesh);
+  table.detail("file", file_text(file) + "; " + plural(sites.edge_count(), "edge", "edges"));
+  return table;
 }
 
 bool has_only_nan(const VoxelImage& image) {
@@ -109,11 +108,11 @@ Json image_json(const std::filesystem::path& path, const VoxelImage& image) {
   return json;
 }
 
-std::string image_text(const std::filesystem::path& path, const VoxelImage& image) {
+TextTable image_table(const std::filesystem::path& path, const VoxelImage& image) {
   TextTable table;
-  table.add("input",
-            path.string() + ": " + std::string(image_format_name(path)) + " image of " + type_name(image.values));
-  return table.text();
+  table.add("input", path.string() + ": " + std::string(image_format_name(path)) + " image, " + size_text(image.grid) +
+                         " voxels of " + type_name(image.values));
+  return table;
 }
 
 }  // namespace blum::cli

@@ -26,12 +26,12 @@ namespace blum::cli {
 /// The same with the cheap facts of its surface.
 [[nodiscard]] Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                              const Orientation& facts);
-[[nodiscard]] std::string mesh_text(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
-                                    const Orientation& facts);
+[[nodiscard]] TextTable mesh_table(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
+                                   const Orientation& facts);
 
 /// File, format, type and grid of an image.
 [[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image);
-[[nodiscard]] std::string image_text(const std::filesystem::path& path, const VoxelImage& image);
+[[nodiscard]] TextTable image_table(const std::filesystem::path& path, const VoxelImage& image);
 /// Whether no voxel holds a number.
 [[nodiscard]] bool has_only_nan(const VoxelImage& image);
 /// "uint8", "float32" and so on.

@@ -25,7 +25,7 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
     const SiteTable sites(mesh);
     const Orientation facts = orientation(mesh, sites);
     input.json = mesh_json(path, input.mesh, sites, facts);
-    input.text = mesh_text(path, input.mesh, sites, facts);
+    input.table = mesh_table(path, input.mesh, sites, facts);
     if (input.mesh.exact) {
       input.weld = weld_facts(*input.mesh.exact, *weld, mesh);
       input.json["weld"] = weld_json(*input.weld);
@@ -37,7 +37,7 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
     throw FileError("'" + path.string() + "': every voxel is NaN (not a number), so none can be selected");
   }
   input.json = image_json(path, input.image);
-  input.text = image_text(path, input.image);
+  input.table = image_table(path, input.image);
   return input;
 }
 

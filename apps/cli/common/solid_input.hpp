@@ -23,7 +23,7 @@ struct SolidInput {
   VoxelImage image;
   std::optional<WeldFacts> weld;  ///< where vertices within a tolerance above 0 were joined
   Json json;
-  std::string text;
+  TextTable table;
 };
 
 /// @param weld  for meshes.

@@ -44,14 +44,22 @@ std::string percentiles_text(std::span<const double> percents, std::span<const d
   return out;
 }
 
-std::string TextTable::text() const {
+std::string TextTable::text(bool verbose) const {
+  const auto is_shown = [&](const Row& row) { return verbose || !row.is_detail; };
   std::size_t width = 0;
-  for (const auto& [label, content] : rows_) width = std::max(width, label.size());
+  for (const Row& row : rows_) {
+    if (is_shown(row)) width = std::max(width, row.label.size());
+  }
   std::string text;
-  for (const auto& [label, content] : rows_) {
-    text += label + std::string(width - label.size() + 2, ' ') + content + "\n";
+  for (const Row& row : rows_) {
+    if (is_shown(row)) text += row.label + std::string(width - row.label.size() + 2, ' ') + row.content + "\n";
   }
   return text;
+}
+
+void PhaseSummary::add_to(TextTable& table) const {
+  table.add("time", text + ", " + bytes_text(static_cast<double>(peak_memory())) + " of memory at most");
+  if (!phases.empty()) table.detail("phases", phases + " (seconds)");
 }
 
 std::uint64_t peak_memory() {
@@ -97,6 +105,10 @@ void report(const ReportOptions& options, const Json& json, const std::string& t
   if (!options.quiet && !options.json_to_stdout()) print(text);
 }
 
+void report(const ReportOptions& options, const Json& json, const TextTable& table) {
+  report(options, json, table.text(options.verbose));
+}
+
 void warn(const std::vector<Warning>& warnings) {
   for (const Warning& warning : warnings) warn_of(warning.text);
 }
@@ -117,11 +129,10 @@ PhaseSummary summarize(const std::vector<PhaseTime>& phases) {
   out.seconds = to_json(phases);
   for (const PhaseTime& phase : phases) out.total += phase.seconds;
   const auto rounded = [](double seconds) { return rounded_text(std::round(seconds * 1e3) / 1e3); };
-  std::string each;
   for (const auto& [phase, seconds] : out.seconds.members()) {
-    each += (each.empty() ? " (" : ", ") + phase + " " + rounded(seconds.number());
+    out.phases += (out.phases.empty() ? "" : ", ") + phase + " " + rounded(seconds.number());
   }
-  out.text = rounded(out.total) + " s" + each + (each.empty() ? "" : ")");
+  out.text = rounded(out.total) + " s";
   return out;
 }
 

@@ -41,24 +41,33 @@ class Stopwatch {
 /// "1 % below 0.2, 5 % below 0.3, ...".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);
 
-/// How long the phases of a run took; those of one name are added.
+/// Lines of text in two columns, label and content. Details are printed with --verbose only.
+class TextTable {
+ public:
+  void add(std::string label, std::string content) { rows_.push_back({std::move(label), std::move(content), false}); }
+  void detail(std::string label, std::string content) { rows_.push_back({std::move(label), std::move(content), true}); }
+  void add(const TextTable& other) { rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end()); }
+  [[nodiscard]] std::string text(bool verbose = false) const;
+
+ private:
+  struct Row {
+    std::string label, content;
+    bool is_detail = false;
+  };
+  std::vector<Row> rows_;
+};
+
+/// Duration of the phases of a run. Phases of one name are added.
 struct PhaseSummary {
   Json seconds = Json::object();  ///< by phase
   double total = 0;
-  std::string text;  ///< "1.5 s (read 0.5, write 1)"
+  std::string text;    ///< "1.5 s"
+  std::string phases;  ///< "read 0.5, write 1", seconds
+
+  /// Adds the duration and the peak memory, and the phases as a detail.
+  void add_to(TextTable& table) const;
 };
 [[nodiscard]] PhaseSummary summarize(const std::vector<PhaseTime>& phases);
-
-/// Lines of text in two columns, label and content.
-class TextTable {
- public:
-  void add(std::string label, std::string content) { rows_.emplace_back(std::move(label), std::move(content)); }
-  void add(const TextTable& other) { rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end()); }
-  [[nodiscard]] std::string text() const;
-
- private:
-  std::vector<std::pair<std::string, std::string>> rows_;
-};
 
 /// Peak memory of the process in bytes.
 [[nodiscard]] std::uint64_t peak_memory();
@@ -74,14 +83,16 @@ void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& conte
 struct ReportOptions {
   std::optional<std::string> json;  ///< a file, or "-" for stdout
   bool quiet = false;
+  bool verbose = false;  ///< details of the summary are printed, too
   [[nodiscard]] bool json_to_stdout() const { return json && *json == "-"; }
   /// The JSON file among the outputs, for checks; empty or one path.
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
 };
 
-/// Writes the JSON where it was asked for, and the text to stdout unless quiet or JSON goes there.
+/// Writes the JSON if it was asked for, and the text to stdout unless `quiet` is set or the JSON goes there.
 /// @throws FileError.
 void report(const ReportOptions& options, const Json& json, const std::string& text);
+void report(const ReportOptions& options, const Json& json, const TextTable& table);
 
 /// Writes the text of each as a line "blum: warning: ..." to stderr.
 void warn(const std::vector<Warning>& warnings);

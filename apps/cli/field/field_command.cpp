@@ -111,7 +111,7 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
 /// What a run gathers for its summary.
 struct Run {
   Json input;
-  std::string input_text;
+  TextTable input_table;
   Json fields = Json::array();
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
@@ -196,7 +196,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   if (!field.device_reason.empty()) run.table.add("no device", field.device_reason);
   run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
-  run.table.add("sites", sites_text(field, s));
+  run.table.detail("sites", sites_text(field, s));
   if (s.second) run.table.add("second", second_text(field, *s.second));
 }
 
@@ -232,16 +232,16 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                                           {"outputs", outputs},
                                           {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)},
                                           {"removed_second", removed_second}});
-  run.table.add("time", spent.text);
-  run.table.add("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
-                             plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +
-                             bytes_text(static_cast<double>(peak_memory())) + " at most");
+  run.table.add(run.input_table);
+  spent.add_to(run.table);
+  run.table.detail("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
+                                plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads"));
   for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
-  if (run.removed) run.table.add("removed", run.removed->string() + ": sites of the field that was replaced");
+  if (run.removed) run.table.add("removed", run.removed->string() + ": sites of the replaced field");
   for (const fs::path& file : run.removed_second) {
-    run.table.add("removed", file.string() + ": of the second order of the field that was replaced");
+    run.table.add("removed", file.string() + ": second order of the replaced field");
   }
-  report(request.report, json, run.input_text + run.table.text());
+  report(request.report, json, run.table);
   if (!request.report.quiet) warn(run.warnings);
 }
 
@@ -288,7 +288,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   const SiteTable sites(mesh, context);
   const Orientation facts = orientation(mesh, sites);
   run.input = mesh_json(r.input, file, sites, facts);
-  run.input_text = mesh_text(r.input, file, sites, facts);
+  run.input_table = mesh_table(r.input, file, sites, facts);
   run.time("input facts", watch.lap());
 
   const GridSpec grid = make_grid(r, bounds(mesh));
@@ -342,7 +342,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
     throw FileError("'" + r.input.string() + "': every voxel is NaN (not a number), so none can be selected");
   }
   run.input = image_json(r.input, image);
-  run.input_text = image_text(r.input, image);
+  run.input_table = image_table(r.input, image);
   run.time("input facts", watch.lap());
   const std::vector<LabelSelection> selections = r.selections.all();
   check_field_memory(image.grid, selections.size());

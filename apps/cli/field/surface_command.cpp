@@ -91,10 +91,11 @@ void run_smooth(const Arguments& a) {
        {"outputs", {output.string()}}});
   TextTable table;
   table.add("surface", count_text(surface.mesh.vertices.size()) + " vertices, " +
-                           count_text(surface.mesh.triangles.size()) + " triangles; moved by at most " +
+                           count_text(surface.mesh.triangles.size()) + " triangles; at most " +
                            rounded_text(surface.largest_move) + " voxels from the boxes");
+  table.add(image.table);
   table.add("wrote", output.string());
-  report(a.report, json, image.text + table.text());
+  report(a.report, json, table);
 }
 
 void run_level(const Arguments& a) {
@@ -141,11 +142,11 @@ void run_level(const Arguments& a) {
                   {"warnings", to_json(warnings)},
                   {"outputs", {output.string()}}});
   TextTable table;
-  table.add("field", input.string() + ": " + size_text(field.grid) + " nodes");
   table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
                            " triangles at the level " + rounded_text(level));
+  table.add("field", input.string() + ": " + size_text(field.grid) + " nodes");
   table.add("wrote", output.string());
-  report(a.report, json, table.text());
+  report(a.report, json, table);
   if (!a.report.quiet) warn(warnings);
 }
 

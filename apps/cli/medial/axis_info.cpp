@@ -122,7 +122,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
   table.add("of", source_text(m));
   table.add("made with", made_text(m));
   if (graph) table.add("wrote", graph->string());
-  report(options, answer_json("info", json), table.text());
+  report(options, answer_json("info", json), table);
 }
 
 }  // namespace blum::cli

@@ -115,7 +115,7 @@ Json brief_json(const Centreline& line) {
 }
 
 void add_lines(TextTable& table, const Centrelines& lines) {
-  constexpr std::size_t most_shown = 10;
+  constexpr std::size_t most_shown = 6;
   std::size_t branches = 0;
   for (const Centreline& line : lines.labels) branches += line.branches.size();
   for (std::size_t l = 0; l < std::min(lines.labels.size(), most_shown); ++l) {
@@ -177,11 +177,11 @@ void run(const Arguments& a) {
       {{"image", input.string()}, {"grid", to_json(image.grid)}, {"spur", options.spur}, {"labels", briefs}});
   add_run_facts(json, spent, context, lines.warnings, Json::array({output.string()}));
   TextTable table;
-  table.add("image", input.string() + ": " + size_text(image.grid) + " voxels");
   add_lines(table, lines);
+  table.add("image", input.string() + ": " + size_text(image.grid) + " voxels");
   table.add("wrote", output.string());
-  table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
-  report(a.report, json, table.text());
+  spent.add_to(table);
+  report(a.report, json, table);
   if (!a.report.quiet) warn(lines.warnings);
 }
 

@@ -206,9 +206,9 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   json.update(to_json(report));
   json.erase("seconds");   // those of all solids are told together
   json.erase("warnings");  // likewise
-  run.table.add("solid", betti_text(report.betti) + " (" + report.reason + ")");
-  run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
-                              (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts beside them" : ""));
+  run.table.detail("solid", betti_text(report.betti) + " (" + report.reason + ")");
+  run.table.detail("voxels", count_text(voxels) + " of side" + sides_text(report) +
+                                 (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts" : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
   run.warnings.insert(run.warnings.end(), report.warnings.begin(), report.warnings.end());
 }
@@ -448,8 +448,9 @@ void finish(const Request& r, MedialRun& run, const SolidInput& input, bool is_c
                                            {"thread_backend", thread_backend()},
                                            {"warnings", to_json(run.warnings)},
                                            {"outputs", outputs}});
-  run.table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
-  report(r.report, json, input.text + run.table.text());
+  run.table.add(input.table);
+  spent.add_to(run.table);
+  report(r.report, json, run.table);
   if (!r.report.quiet) warn(run.warnings);
 }
 

@@ -15,8 +15,9 @@ namespace blum::cli {
 namespace {
 
 std::string against_text(const Certificate& c) {
-  if (c.against == SolidRule::polyhedron) return "the polyhedron";
-  const std::string voxels = c.against == SolidRule::winding ? "voxels (of the winding number)" : "the image's voxels";
+  if (c.against == SolidRule::polyhedron) return "the solid";
+  const std::string voxels =
+      c.against == SolidRule::winding ? "the voxels of the winding number" : "the voxels of the image";
   return c.voxel ? voxels + " of side " + rounded_text(*c.voxel) : voxels;
 }
 
@@ -24,7 +25,7 @@ std::string against_text(const Certificate& c) {
 std::string claims_text(const CertificateOptions& said) {
   std::string text;
   const auto add = [&](const std::optional<double>& value, const char* before, const char* after) {
-    if (value) text += (text.empty() ? "; at " : ", ") + std::string(before) + rounded_text(*value) + after;
+    if (value) text += (text.empty() ? "" : ", ") + std::string(before) + rounded_text(*value) + after;
   };
   add(said.theta, "theta ", " degrees");
   add(said.lambda, "lambda ", "");
@@ -49,29 +50,39 @@ std::string nothing_seen(const MedialCheck& check) {
 std::string medial_text(const MedialCheck& check) {
   std::string text;
   if (check.samples == 0) {
-    text = "nothing of it says that two walls see it at more than theta";
+    text = "no part of the axis claims two footprints more than theta apart";
   } else {
-    text = percent(check.medial_share) +
-           " of its samples are in the middle (allowed: " + rounded_text(check.allowance) + " off)";
+    text = percent(check.medial_share) + " of the samples are in the middle (tolerance " +
+           rounded_text(check.allowance) + "), " + percent(check.close_share) + " within " +
+           rounded_text(check.close_allowance);
   }
-  if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of its area is for homotopy alone";
-  if (check.sought_angle == 0) return text + "; what it misses was not looked for: its theta is not known";
-  if (!check.judges_missing) return text + "; what it misses was not checked: " + nothing_seen(check);
-  return text + "; it misses " + percent(check.missed_share) + " of what random points show above " +
-         rounded_text(check.sought_angle) + " degrees (" + count_text(check.balls) + " balls), in no body more than " +
-         percent(check.missed_share_of_body);
+  if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of the area serves homotopy only";
+  if (check.sought_angle == 0) return text + "; missing parts not checked: theta is unknown";
+  if (!check.judges_missing) return text + "; missing parts not checked: " + nothing_seen(check);
+  return text + "; " + percent(check.missed_share) + " of the axis above " + rounded_text(check.sought_angle) +
+         " degrees is missing (" + count_text(check.balls) + " random balls), at most " +
+         percent(check.missed_share_of_body) + " in one body";
 }
 
-/// What is told of roles, sheets, and the angles of triangles and edges.
+/// Roles, sheets, and the angles of triangles and edges.
 std::string labels_text(const Certificate& c) {
-  if (!c.checked.labels && !c.checked.angles) return "not looked at";
+  if (!c.checked.labels && !c.checked.angles) return "not checked";
   std::string text;
-  if (c.checked.labels) text = c.labels.holds ? "roles and sheets follow from the triangles" : "wrong roles or sheets";
+  if (c.checked.labels) text = c.labels.holds ? "roles and sheets match the triangles" : "wrong roles or sheets";
   if (!c.checked.angles) return text;
   if (!text.empty()) text += "; ";
   if (!c.angles.holds) return text + "wrong angles of triangles or edges";
-  return text + "of the triangles " + percent(c.angles.below_share) + " say less than their corners see, " +
-         percent(c.angles.above_share) + " more than is seen around them";
+  if (c.angles.below_share == 0 && c.angles.above_share == 0) return text + "angles match the corners";
+  return text + percent(c.angles.below_share) + " of the triangles have a smaller angle than their corners, " +
+         percent(c.angles.above_share) + " a larger one than their surroundings";
+}
+
+/// The share of the axis that is in the middle, and what it misses; empty if neither was checked.
+std::string medial_share_text(const Certificate& c) {
+  if (!c.checked.medial || c.medial.samples == 0) return "";
+  std::string text = "; " + percent(c.medial.medial_share) + " in the middle";
+  if (c.medial.judges_missing) text += ", " + percent(c.medial.missed_share) + " missing";
+  return text;
 }
 
 }  // namespace
@@ -226,10 +237,16 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 
 }  // namespace
 
+std::string balls_text(const BallUnionCheck& balls) {
+  return "the solid extends at most " + rounded_text(balls.solid_to_balls) + " beyond the union of balls (mean " +
+         rounded_text(balls.mean_solid_to_balls) + "); their surfaces are at most " +
+         rounded_text(balls.balls_to_surface) + " apart";
+}
+
 void add_decimated(TextTable& table, const CertifiedAxis& made) {
   if (!made.metadata.deviation) return;
-  table.add("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
-                             rounded_text(made.axis.deviation));
+  table.detail("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
+                                rounded_text(made.axis.deviation));
 }
 
 Json certificate_json(const Certificate& c, bool has_nested) {
@@ -299,53 +316,49 @@ std::string angles_text(double least_theta) {
 }
 
 void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
-  const std::string axis = "the axis has " + betti_text(c.axis);
   if (c.holds()) {
-    table.add("certified",
-              "against " + against_text(c) + ": " + axis + ", as many as the solid" +
-                  (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : "") +
-                  claims_text(c.checked));
+    table.add("certified", "yes: " + betti_text(c.axis) + ", as " + against_text(c) +
+                               (c.bodies.size() > 1 ? ", in each of " + count_text(c.bodies.size()) + " bodies" : "") +
+                               "; inside the solid" + medial_share_text(c));
   } else {
-    // Why is told by the error.
-    table.add("NOT certified", (c.topology_holds ? axis + ", as the solid, but is wrong otherwise"
-                                                 : axis + "; the solid " + betti_text(c.solid)) +
-                                   claims_text(c.checked));
+    // The error says why.
+    table.add("certified", c.topology_holds ? "NO: the topology is that of the solid, but another check fails"
+                                            : "NO: " + betti_text(c.axis) + "; the solid has " + betti_text(c.solid));
   }
-  table.add("proven", c.homology.shown);
-  std::string geometry = "vertices, edges and triangles in the solid";
+  table.detail("homology", c.homology.shown);
+  if (const std::string claims = claims_text(c.checked); !claims.empty()) table.detail("claims", claims);
+  std::string geometry = "vertices, edges and triangles inside the solid";
   if (!c.geometry.holds || !c.edges.holds || !c.triangles.holds) geometry = "wrong";
   if (c.edges.pushed > 0) {
-    geometry += ", but for " + plural(c.edges.pushed, "edge that cuts a corner", "edges that cut corners") +
+    geometry += ", except " + plural(c.edges.pushed, "edge that cuts a corner", "edges that cut corners") +
                 " by up to " + rounded_text(c.edges.pushed_by);
   }
   if (c.triangles.holds && c.triangles.leaving > 0) {
-    geometry += ", but for the insides of " + plural(c.triangles.leaving, "triangle", "triangles") + ", by up to " +
+    geometry += ", except the interiors of " + plural(c.triangles.leaving, "triangle", "triangles") + ", by up to " +
                 rounded_text(c.triangles.outside_by);
   }
   if (c.triangles.undecided > 0) {
     geometry += ", " + plural(c.triangles.undecided, "triangle", "triangles") + " in thin walls undecided";
   }
-  if (c.checked.radii) geometry += "; radii off by at most " + rounded_text(c.geometry.radius_error);
+  if (c.checked.radii) geometry += "; radius error at most " + rounded_text(c.geometry.radius_error);
   if (c.checked.footprints) {
-    geometry += ", footprints " + rounded_text(c.geometry.footprint_off_surface) + " off the surface";
+    geometry += ", footprints at most " + rounded_text(c.geometry.footprint_off_surface) + " off the surface";
   }
-  table.add("geometry", geometry + " (tolerance " + rounded_text(c.geometry.tolerance) + ")");
+  table.detail("geometry", geometry + " (tolerance " + rounded_text(c.geometry.tolerance) + ")");
   std::string unknown;
   for (const auto& [is_checked, what] : what_files_may_lack(c)) {
     if (!is_checked) unknown += (unknown.empty() ? "" : ", ") + std::string(what);
   }
-  table.add("labels", labels_text(c));
+  table.detail("labels", labels_text(c));
   if (!unknown.empty()) unknown = "not in the file: " + unknown;
   for (const std::string& what : not_looked_at(c, has_nested)) unknown += (unknown.empty() ? "" : "; ") + what;
   if (!unknown.empty()) table.add("not checked", unknown);
   std::string said;
   for (const std::string& what : taken_as_said(c)) said += (said.empty() ? "" : ", ") + what;
-  table.add("as said", said);
-  if (c.checked.medial) table.add("medial", medial_text(c.medial));
+  table.detail("not verified", said + ": copied from the file");
+  if (c.checked.medial) table.detail("medial", medial_text(c.medial));
   if (!c.checked.balls) return;
-  table.add("balls", "the solid reaches at most " + rounded_text(c.balls.solid_to_balls) +
-                         " beyond the union of the balls (mean " + rounded_text(c.balls.mean_solid_to_balls) +
-                         "), whose surface is at most " + rounded_text(c.balls.balls_to_surface) + " from the solid's");
+  table.add("balls", balls_text(c.balls));
 }
 
 }  // namespace blum::cli

@@ -64,6 +64,9 @@ class SolidVerifier {
 /// Which angles a file holds the axes of, where it holds those of all.
 [[nodiscard]] std::string angles_text(double least_theta);
 /// From how many vertices an axis was decimated and how far it moved, if it was.
+/// How far the union of the balls is from the solid.
+[[nodiscard]] std::string balls_text(const BallUnionCheck& balls);
+
 void add_decimated(TextTable& table, const CertifiedAxis& made);
 /// Whether it holds, against what, and how precisely. Why not is left to NotCertified.
 void add_certificate(TextTable& table, const Certificate& certificate, bool has_nested);

@@ -150,15 +150,12 @@ void run(const Arguments& a) {
                         {"mean_solid_to_balls", certificate.balls.mean_solid_to_balls},
                         {"balls_beyond_solid", certificate.balls.balls_beyond_solid},
                         {"balls_to_surface", certificate.balls.balls_to_surface}};
-    table.add("distance", "the solid reaches at most " + rounded_text(certificate.balls.solid_to_balls) +
-                              " beyond the union of the balls (mean " +
-                              rounded_text(certificate.balls.mean_solid_to_balls) + "), whose surface is at most " +
-                              rounded_text(certificate.balls.balls_to_surface) + " from the solid's");
+    table.add("distance", balls_text(certificate.balls));
   }
   if (r.is_field) {
     const std::optional<fs::path> removed = sites_of_replaced_field(r.output);
     write_field(r.output, field, {nullptr, nullptr, r.axis.filename().string(), BLUM_VERSION}, context);
-    if (removed) table.add("removed", removed->string() + ": sites of the field that was replaced");
+    if (removed) table.add("removed", removed->string() + ": sites of the replaced field");
     json["removed"] = removed ? Json(removed->string()) : Json(nullptr);
   } else {
     const TriangleMesh surface = zero_surface(field, 0, context);
@@ -178,7 +175,7 @@ void run(const Arguments& a) {
     table.add("wrote", output.string());
   }
   json["warnings"] = to_json(warnings);
-  report(a.report, json, table.text());
+  report(a.report, json, table);
   if (!a.report.quiet) warn(warnings);
 }
 

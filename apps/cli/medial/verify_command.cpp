@@ -95,7 +95,11 @@ class Verifier {
     }
   }
 
-  [[nodiscard]] std::string text() const { return solid_->text + table_.text(); }
+  [[nodiscard]] TextTable table() const {
+    TextTable out = table_;
+    out.add(solid_->table);
+    return out;
+  }
   /// An object for one axis, an array for several.
   [[nodiscard]] Json json() const { return results_.size() == 1 ? results_.front() : results_; }
   [[nodiscard]] const std::vector<Warning>& warnings() const { return warnings_; }
@@ -159,7 +163,7 @@ void run(const Arguments& a) {
   Verifier verifier(path, kind, given, a.smooth, context);
   for (const fs::path& axis : axes) verifier.verify(axis);
   progress.clear();
-  report(a.report, verifier.json(), verifier.text());
+  report(a.report, verifier.json(), verifier.table());
   if (!a.report.quiet) warn(verifier.warnings());
   verifier.check();
 }

@@ -170,13 +170,13 @@ Json json_of(const PointFile& file) {
           {"found", file.facts.found},    {"inside", file.facts.inside},    {"distance", file.facts.json()}};
 }
 
-std::string text_of(const Arguments& a, const MeshFile& mesh, const ClosestPointQuery& query,
-                    const std::vector<PointFile>& files, const Facts& all, const PhaseSummary& spent) {
+TextTable table_of(const Arguments& a, const MeshFile& mesh, const ClosestPointQuery& query,
+                   const std::vector<PointFile>& files, const Facts& all, const PhaseSummary& spent) {
   TextTable table;
-  table.add("mesh", a.mesh + ": " + plural(mesh.mesh.triangles.size(), "triangle", "triangles"));
   table.add("points", all.counts_text(query.sign_rule()));
-  table.add("sign", std::string(to_string(query.sign_rule())) + ": " + query.sign_reason());
   if (all.found > 0) table.add("distance", all.distances_text());
+  table.add("sign", std::string(to_string(query.sign_rule())) + ": " + query.sign_reason());
+  table.add("mesh", a.mesh + ": " + plural(mesh.mesh.triangles.size(), "triangle", "triangles"));
   for (const PointFile& file : files) {
     std::string text = file.output.string();
     if (files.size() > 1) {
@@ -185,8 +185,8 @@ std::string text_of(const Arguments& a, const MeshFile& mesh, const ClosestPoint
     }
     table.add("wrote", text);
   }
-  table.add("time", spent.text);
-  return table.text();
+  spent.add_to(table);
+  return table;
 }
 
 void run(const Arguments& a) {
@@ -229,7 +229,7 @@ void run(const Arguments& a) {
                                     {"distance", all.json()},
                                     {"files", of_files}});
   add_run_facts(json, times, context, warnings, outputs);
-  report(a.report, json, text_of(a, mesh, query, files, all, times));
+  report(a.report, json, table_of(a, mesh, query, files, all, times));
   if (!a.report.quiet) warn(warnings);
 }
 

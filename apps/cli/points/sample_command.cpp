@@ -126,12 +126,12 @@ void run(const Arguments& a) {
                                      {"seed", asked.options.seed}});
   add_run_facts(json, spent, context, {}, Json::array({output.string()}));
   TextTable table;
-  table.add("mesh", input.string() + ": " + plural(file.mesh.triangles.size(), "triangle", "triangles"));
   table.add("points",
-            plural(points.positions.size(), "point", "points") + (a.near ? " near the surface" : " of the surface"));
+            plural(points.positions.size(), "point", "points") + (a.near ? " near the surface" : " on the surface"));
+  table.add("mesh", input.string() + ": " + plural(file.mesh.triangles.size(), "triangle", "triangles"));
   table.add("wrote", output.string());
-  table.add("time", spent.text);
-  report(a.report, json, table.text());
+  spent.add_to(table);
+  report(a.report, json, table);
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ void run(const Arguments& a) {
                                           : std::string()));
   table.add("time", rounded_text(mean) + " microseconds a query, " + rounded_text(median) + " the median, " +
                         rounded_text(p99) + " at most for 99 %");
-  report(a.report, json, table.text());
+  report(a.report, json, table);
 }
 
 }  // namespace

@@ -22,15 +22,15 @@ namespace fs = std::filesystem;
 
 void check(const ProximityArguments& a) {
   if (a.scene.size() != 2) {
-    throw UsageError("--query continuous takes two files, the mesh at the start and at the end of a motion, but " +
+    throw UsageError("continuous takes two files, the mesh at the start and at the end of a motion, but " +
                      plural(a.scene.size(), "is", "are") +
-                     " given; for objects give where they are at the end by --to");
+                     " given; for several objects, --to names their files at the end");
   }
   if (!a.self) {
     throw UsageError(
-        "one mesh has nothing to meet but itself: give --self; or, where the files are objects, --to END...");
+        "one mesh can only meet itself: give --self; if the files are different objects, give --to END...");
   }
-  check_continuous_options(a);
+  if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
 /// What of a mesh collides between two frames.
@@ -77,23 +77,23 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"outputs", outputs_json(a)}});
 }
 
-std::string text_of(const ProximityArguments& a, const Answer& answer) {
+TextTable table_of(const ProximityArguments& a, const Answer& answer) {
   const TriangleMesh& mesh = answer.mesh.start;
   const ContinuousCollisions& found = answer.found;
   const auto first = found.earliest();
   const std::size_t count = found.vertex_face.size() + found.edge_edge.size();
   TextTable table;
-  table.add("scene", a.scene[0] + " to " + a.scene[1] + ": " + plural(mesh.vertices.size(), "vertex", "vertices") +
-                         ", " + plural(mesh.triangles.size(), "triangle", "triangles"));
   table.add("collisions", plural(found.vertex_face.size(), "vertex and face", "of a vertex and a face") + ", " +
                               plural(found.edge_edge.size(), "of two edges", "of two edges") +
                               (first ? "; the first at time " + rounded_text(*first) : "") +
                               (a.output ? limit_text(count, answer.limit) : ""));
-  table.add("tests", count_text(found.exact_tests) + " exact ones, of " + count_text(found.box_pairs) +
-                         " pairs whose moving boxes touch");
+  table.add("scene", a.scene[0] + " to " + a.scene[1] + ": " + plural(mesh.vertices.size(), "vertex", "vertices") +
+                         ", " + plural(mesh.triangles.size(), "triangle", "triangles"));
+  table.detail("tests", count_text(found.exact_tests) + " exact ones, of " + count_text(found.box_pairs) +
+                            " pairs whose moving boxes touch");
   if (a.output) table.add("wrote", *a.output);
-  table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
-  return table.text();
+  answer.spent.add_to(table);
+  return table;
 }
 
 }  // namespace
@@ -126,18 +126,6 @@ MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end, std::opt
   }
   mesh.end = std::move(last.vertices);
   return mesh;
-}
-
-void check_continuous_options(const ProximityArguments& a) {
-  if (a.max_distance)
-    throw UsageError("--max-distance is not for --query continuous: --min-separation says how close is told");
-  if (const auto names = a.culling.given(); !names.empty()) {
-    throw UsageError(names.front() + " is not for --query continuous");
-  }
-  if (const auto names = a.penetration.given(); !names.empty()) {
-    throw UsageError(names.front() + " is for --query " + queries_that(&SceneQuery::takes_depth) + " alone");
-  }
-  if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
 void run_continuous_query(const ProximityArguments& a) {
@@ -175,7 +163,7 @@ void run_continuous_query(const ProximityArguments& a) {
   progress.clear();
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);
-  report(a.report, json_of(a, answer), text_of(a, answer));
+  report(a.report, json_of(a, answer), table_of(a, answer));
 }
 
 }  // namespace blum::cli

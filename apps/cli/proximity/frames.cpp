@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 void check(const ProximityArguments& a) {
-  if (!a.ends.empty()) throw UsageError("--frames are those of one object, which --to does not go with");
-  if (!a.self) throw UsageError("--frames are those of one object, which has nothing to meet but itself: give --self");
+  if (!a.ends.empty()) throw UsageError("--frames and --to exclude each other: frames are those of one object");
+  if (!a.self) throw UsageError("--frames are those of one object, which can only meet itself: give --self");
   if (a.scene.size() < 2) throw UsageError("--frames takes at least two files");
   if (a.output) check_extension("--output", *a.output, {".json"});
 }
@@ -134,8 +134,7 @@ class Sequence {
       out.skipped = "'" + files[k + 1] + "': " + what + " '" + files[k] + "'";
       if (arguments_.skip_changed) return;
       throw FormatError(out.skipped +
-                        ": between frames of different triangles or vertices nothing can be told; --skip-changed "
-                        "leaves out such steps");
+                        ": frames of one motion have the same triangles and vertices; --skip-changed skips such steps");
     }
     ObjectMotion motion;
     motion.object = object_;
@@ -195,26 +194,25 @@ std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
   }
   if (!a.output) return text;
   if (const std::size_t limit = read_limit(a); answer.most > limit) {
-    text += "; the first " + count_text(limit) + " of each frame are told, as --limit says";
+    text += "; only the first " + count_text(limit) + " of each frame were written (--limit)";
   }
-  return text + "; see them with: blum view FRAMES --frames --pairs " + *a.output;
+  return text + "; view them with: blum view FRAMES --frames --pairs " + *a.output;
 }
 
-std::string text_of(const ProximityArguments& a, const Answer& answer, const PhaseSummary& spent) {
-  constexpr std::size_t most_rows = 20;
+TextTable table_of(const ProximityArguments& a, const Answer& answer, const PhaseSummary& spent) {
+  constexpr std::size_t most_rows = 6;
   TextTable table;
-  table.add("frames", count_text(a.scene.size()));
   table.add("pairs", pairs_text(a, answer));
+  table.add("frames", count_text(a.scene.size()));
   for (std::size_t k = 0; k < std::min(answer.skipped.size(), most_rows); ++k) {
     table.add("skipped", answer.skipped[k]["reason"].text());
   }
   if (answer.skipped.size() > most_rows) {
-    table.add("...",
-              plural(answer.skipped.size() - most_rows, "step", "steps") + " skipped more; --json FILE tells all");
+    table.add("...", plural(answer.skipped.size() - most_rows, "step", "steps") + " more: --json FILE lists all");
   }
   if (a.output) table.add("wrote", *a.output);
-  table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
-  return table.text();
+  spent.add_to(table);
+  return table;
 }
 
 Json json_of(const ProximityArguments& a, const Answer& answer, const PhaseSummary& spent, int threads) {
@@ -267,7 +265,7 @@ void run_frames(const ProximityArguments& a, const SceneQuery& query) {
   }
   progress.clear();
   const PhaseSummary spent = summarize(answer.phases);
-  report(a.report, json_of(a, answer, spent, thread_count(context)), text_of(a, answer, spent));
+  report(a.report, json_of(a, answer, spent, thread_count(context)), table_of(a, answer, spent));
 }
 
 }  // namespace blum::cli

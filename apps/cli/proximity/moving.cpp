@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Rows of the table that are printed.
-constexpr std::size_t most_rows = 20;
+constexpr std::size_t most_rows = 6;
 
 void check(const ProximityArguments& a) {
   if (a.ends.size() != a.scene.size()) {
@@ -28,9 +28,9 @@ void check(const ProximityArguments& a) {
                      " given: name one for each, in the same order; for an object that rests its file again");
   }
   if (a.scene.size() == 1 && !a.self) {
-    throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
+    throw UsageError("one object can only meet itself: give --self, or the files of more objects");
   }
-  check_continuous_options(a);
+  if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
 /// The objects of a scene, and what of them collides.
@@ -170,26 +170,26 @@ std::string collisions_text(const PairSummary& pair) {
          (pair.earliest ? "; the first at time " + rounded_text(*pair.earliest) : "");
 }
 
-std::string text_of(const ProximityArguments& a, const Answer& answer) {
+TextTable table_of(const ProximityArguments& a, const Answer& answer) {
   std::size_t triangles = 0;
   for (const MovingMesh& mesh : answer.meshes) triangles += mesh.start.triangles.size();
   const auto& pairs = answer.found.objects;
   TextTable table;
-  table.add("scene", plural(answer.meshes.size(), "object", "objects") + ", of which " +
-                         plural(answer.moving(), "moves", "move") + "; " + plural(triangles, "triangle", "triangles"));
   const PairSummary all = summary_of(answer.found);
   table.add("collisions", collisions_text(all) + (a.output ? limit_text(all.count(), answer.limit) : ""));
   for (std::size_t k = 0; k < std::min(pairs.size(), most_rows); ++k) {
     table.add(objects_text(answer.names, pairs[k].first, pairs[k].second), collisions_text(summary_of(pairs[k])));
   }
   if (pairs.size() > most_rows) {
-    table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " of objects more; --json FILE tells all");
+    table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " of objects more: --json FILE lists all");
   }
-  table.add("tests", count_text(answer.found.exact_tests) + " exact ones, of " + count_text(answer.found.box_pairs) +
-                         " pairs whose moving boxes touch");
+  table.add("scene", plural(answer.meshes.size(), "object", "objects") + ", of which " +
+                         plural(answer.moving(), "moves", "move") + "; " + plural(triangles, "triangle", "triangles"));
+  table.detail("tests", count_text(answer.found.exact_tests) + " exact ones, of " + count_text(answer.found.box_pairs) +
+                            " pairs whose moving boxes touch");
   if (a.output) table.add("wrote", *a.output);
-  table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
-  return table.text();
+  answer.spent.add_to(table);
+  return table;
 }
 
 void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
@@ -233,7 +233,7 @@ void run_moving_scene(const ProximityArguments& a) {
   progress.clear();
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);
-  report(a.report, json_of(a, answer), text_of(a, answer));
+  report(a.report, json_of(a, answer), table_of(a, answer));
 }
 
 }  // namespace blum::cli

@@ -22,8 +22,8 @@ namespace blum::cli {
 
 struct ProximityArguments {
   std::vector<std::string> scene;
-  std::vector<std::string> ends;  ///< of continuous alone: where each object is at the end
-  std::string query = "separation";
+  std::vector<std::string> ends;  ///< continuous only: one file for each object at the end
+  std::string query;              ///< SceneQuery::name
   bool self = false;
   bool frames = false;        ///< whether files are frames of one object
   bool skip_changed = false;  ///< of frames and continuous: goes on where a frame is another mesh than the one before
@@ -51,11 +51,13 @@ struct SceneFound {
   std::string_view kind = "closest";    ///< what the viewer calls the pairs
 };
 
-/// All that the tool knows of a query: another one is a row of scene_queries.cpp.
+/// A query of `blum proximity`, which is a subcommand. Another query is another row of scene_queries.cpp.
 struct SceneQuery {
   std::string_view name;
-  std::string_view doc;  ///< for --help
-  bool takes_max_distance = false;
+  std::string_view doc;                ///< for --help
+  std::string_view output;             ///< help of --output
+  std::string_view examples;           ///< for --help, a line each
+  std::string_view max_distance = {};  ///< help of --max-distance; empty if it does not take one
   bool takes_culling = false;
   bool takes_depth = false;  ///< whether options of penetration are for it
   bool takes_frames = true;
@@ -66,16 +68,10 @@ struct SceneQuery {
 
 [[nodiscard]] std::span<const SceneQuery> scene_queries();
 
-/// "separation and nbody": the names of queries that take something, for help and errors.
-[[nodiscard]] std::string queries_that(bool SceneQuery::* take);
-
-/// @throws UsageError that names all of them.
-[[nodiscard]] const SceneQuery& scene_query(const std::string& name);
-
-/// --query continuous: two files are a mesh at the start and the end of a motion; with --to as run_moving_scene().
+/// `continuous`: two files are a mesh at the start and the end of a motion; with --to as run_moving_scene().
 void run_continuous_query(const ProximityArguments& a);
 
-/// --query continuous with --to: each file is an object at the start of a motion, and has one at the end.
+/// `continuous` with --to: each file is an object at the start of a motion, and has one at the end.
 void run_moving_scene(const ProximityArguments& a);
 
 /// A mesh at the start and the end of a motion.
@@ -90,9 +86,6 @@ struct MovingMesh {
 
 /// In what two frames of one motion are not one mesh: "it has 3 vertices, not 4 as"; empty where they are one.
 [[nodiscard]] std::string difference(const MeshView& start, const MeshView& end);
-
-/// What is asked of options by --query continuous, whatever moves. @throws UsageError.
-void check_continuous_options(const ProximityArguments& a);
 
 /// Any query but continuous: each file is an object.
 void run_scene_query(const ProximityArguments& a, const SceneQuery& query);

@@ -26,21 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Rows of the table that separation prints.
-constexpr std::size_t most_rows = 20;
+constexpr std::size_t most_rows = 6;
 
-void check(const ProximityArguments& a, const SceneQuery& query) {
+void check(const ProximityArguments& a) {
   if (a.scene.size() == 1 && !a.self) {
-    throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
-  }
-  if (const auto names = a.impact.given(); !names.empty()) {
-    throw UsageError(names.front() + " is for --query continuous alone");
-  }
-  if (const auto names = a.penetration.given(); !query.takes_depth && !names.empty()) {
-    throw UsageError(names.front() + " is for --query " + queries_that(&SceneQuery::takes_depth) + " alone");
-  }
-  if (!query.takes_max_distance && a.max_distance) throw UsageError("--max-distance is not for --query " + a.query);
-  if (const auto names = a.culling.given(); !query.takes_culling && !names.empty()) {
-    throw UsageError(names.front() + " is not for --query " + a.query);
+    throw UsageError("one object can only meet itself: give --self, or the files of more objects");
   }
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
 }
@@ -50,7 +40,7 @@ struct Answer {
   std::vector<TriangleMesh> meshes;
   SceneQuestion asked;
   ProximityPairs found;
-  std::vector<Penetration> parts;  ///< of --query penetration: what `found` tells
+  std::vector<Penetration> parts;  ///< of `penetration`, a pair of `found` each
   std::string_view kind;           ///< of the pairs
   std::vector<std::string> names;  ///< of the objects
   PhaseSummary spent;
@@ -188,7 +178,7 @@ void add_penetrations(const Answer& answer, TextTable& table) {
     table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k], size));
   }
   if (answer.parts.size() > most_rows) {
-    table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more; --json FILE tells all");
+    table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more: --json FILE lists all");
   }
 }
 
@@ -200,7 +190,7 @@ void add_separations(const Answer& answer, TextTable& table) {
     table.add(object_text(answer, pairs[k]), distance_text(pairs[k], size));
   }
   if (pairs.size() > most_rows) {
-    table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " more; -o PAIRS tells all");
+    table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " more: -o PAIRS lists all");
   }
 }
 
@@ -217,17 +207,16 @@ std::string scene_text(const Answer& answer) {
 
 std::string pairs_text(const Answer& answer) {
   if (answer.kind == "penetration") {
-    return answer.parts.empty() ? "none: nothing lies in anything else"
-                                : plural(answer.parts.size(), "part in common", "parts in common");
+    return answer.parts.empty() ? "none: no two solids overlap"
+                                : plural(answer.parts.size(), "common part", "common parts");
   }
   const bool meet = answer.kind == "collision";
   return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
          (answer.asked.max_distance && !meet ? " within " + rounded_text(*answer.asked.max_distance) : "");
 }
 
-std::string text_of(const ProximityArguments& a, const SceneQuery& query, const Answer& answer) {
+TextTable table_of(const ProximityArguments& a, const SceneQuery& query, const Answer& answer) {
   TextTable table;
-  table.add("scene", scene_text(answer));
   table.add("pairs", pairs_text(answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
   if (answer.kind == "penetration") {
     add_penetrations(answer, table);
@@ -236,13 +225,14 @@ std::string text_of(const ProximityArguments& a, const SceneQuery& query, const 
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
     table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
   }
+  table.add("scene", scene_text(answer));
   if (answer.kind != "penetration")
-    table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
-                           count_text(answer.found.report.candidates) + " candidates in " +
-                           plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
+    table.detail("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
+                              count_text(answer.found.report.candidates) + " candidates in " +
+                              plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
   if (a.output) table.add("wrote", *a.output);
-  table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
-  return table.text();
+  answer.spent.add_to(table);
+  return table;
 }
 
 void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
@@ -256,7 +246,7 @@ void write(const ProximityArguments& a, const Answer& answer, const Context& con
 }  // namespace
 
 void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
-  check(a, query);
+  check(a);
   Answer answer;
   const SceneOptions culling = a.culling.read();
   check(culling);
@@ -291,7 +281,7 @@ void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
   progress.clear();
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);
-  report(a.report, json_of(a, answer), text_of(a, query, answer));
+  report(a.report, json_of(a, answer), table_of(a, query, answer));
 }
 
 }  // namespace blum::cli

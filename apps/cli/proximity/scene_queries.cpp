@@ -1,12 +1,9 @@
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <span>
-#include <string>
+#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "common/options.hpp"
 #include "proximity/queries.hpp"
 
 namespace blum::cli {
@@ -24,7 +21,7 @@ SceneFound ask_signed(const ProximityScene& scene, const SceneQuestion& asked, c
   return {.pairs = scene.signed_separations(asked.penetration, context)};
 }
 
-SceneFound ask_nbody(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
+SceneFound ask_closest(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
   return {.pairs = scene.closest_primitives(most(asked), context)};
 }
 
@@ -42,57 +39,66 @@ SceneFound ask_penetration(const ProximityScene& scene, const SceneQuestion& ask
   return out;
 }
 
+constexpr std::string_view pairs_output =
+    "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between closest points)";
+constexpr std::string_view within = "Only pairs at most D apart, mesh units (default: all)";
+
 constexpr std::array queries{
     SceneQuery{.name = "separation",
-               .doc = "the closest pair of each two objects (default)",
-               .takes_max_distance = true,
+               .doc = "Closest pair of primitives of each two objects",
+               .output = pairs_output,
+               .examples = R"(  blum proximity separation arm.ply table.ply
+  blum proximity separation *.stl -o pairs.csv)",
+               .max_distance = within,
                .takes_culling = true,
                .has_rows = true,
                .ask = ask_separation},
     SceneQuery{.name = "signed",
-               .doc = "the same of solids, or minus the depth where they overlap",
+               .doc = "Distance of each two solids, or minus the depth if they overlap",
+               .output = pairs_output,
+               .examples = "  blum proximity signed a.ply b.ply c.ply",
                .takes_culling = true,
                .takes_depth = true,
                .takes_frames = false,
                .has_rows = true,
                .ask = ask_signed},
-    SceneQuery{.name = "nbody",
-               .doc = "for each primitive (triangle, segment or point) the closest one",
-               .takes_max_distance = true,
+    SceneQuery{.name = "closest",
+               .doc = "Closest other primitive of each triangle, segment and point",
+               .output = pairs_output,
+               .examples = "  blum proximity closest cloth.ply --self --max-distance 0.01 -o pairs.vtp",
+               .max_distance = within,
                .takes_culling = true,
-               .ask = ask_nbody},
+               .ask = ask_closest},
     SceneQuery{.name = "collide",
-               .doc = "all pairs that meet",
-               .takes_max_distance = true,
+               .doc = "All pairs of primitives that meet, or are close",
+               .output = pairs_output,
+               .examples = R"(  blum proximity collide a.ply b.ply
+  blum proximity collide a.ply b.ply --max-distance 0.01 -o pairs.npz)",
+               .max_distance = "All pairs at most D apart, mesh units (default 0: pairs with a common point)",
                .takes_culling = true,
                .ask = ask_collide},
     SceneQuery{.name = "penetration",
-               .doc = "what solids have in common, and how deep they lie in each other",
+               .doc = "Common parts of solids: depth, direction, area, volume",
+               .output =
+                   "The deepest point of each part and the closest point of the other surface, with the depth as a "
+                   "negative distance: .npz (as pairs, with depth_bound, direction, area, volume), .csv, .json, "
+                   ".vtp",
+               .examples = "  blum proximity penetration a.ply b.ply --json -",
                .takes_depth = true,
                .ask = ask_penetration},
-    SceneQuery{.name = "continuous", .doc = "what of a mesh, or with --to of objects, meets between two frames"}};
+    SceneQuery{.name = "continuous",
+               .doc = "Collisions of moving meshes between two frames",
+               .output = "The collisions: .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
+                         "vertex_face_object, edge_edge_object), .csv, .json, .vtp (vertices, edges and faces at the "
+                         "time of impact)",
+               .examples = R"(  blum proximity continuous cloth1.ply cloth2.ply --self -o pairs.npz
+  blum proximity continuous ball1.ply plate.ply --to ball2.ply plate.ply
+  blum proximity continuous cloth*.ply --frames --self -o pairs.json)"}};
 
 }  // namespace
 
 std::span<const SceneQuery> scene_queries() {
   return queries;
-}
-
-std::string queries_that(bool SceneQuery::* take) {
-  std::vector<std::string> names;
-  for (const SceneQuery& query : queries) {
-    if (query.*take) names.emplace_back(query.name);
-  }
-  return join_words(names);
-}
-
-const SceneQuery& scene_query(const std::string& name) {
-  const auto* const query =
-      std::find_if(queries.begin(), queries.end(), [&](const auto& one) { return one.name == name; });
-  if (query != queries.end()) return *query;
-  std::vector<std::string> names;
-  for (const SceneQuery& one : queries) names.emplace_back(one.name);
-  throw UsageError("--query is '" + name + "', but must be " + join_words(names, "or"));
 }
 
 }  // namespace blum::cli

@@ -75,7 +75,7 @@ std::size_t read_limit(const ProximityArguments& a) {
 }
 
 std::string limit_text(std::size_t pairs, std::size_t limit) {
-  return pairs > limit ? "; the first " + count_text(limit) + " are told, as --limit says" : "";
+  return pairs > limit ? "; only the first " + count_text(limit) + " were written (--limit)" : "";
 }
 
 ContinuousCollisions first_of(ContinuousCollisions found, std::size_t limit) {

@@ -66,9 +66,10 @@ void run(const Arguments& a) {
   add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
   TextTable table;
   add_cleaning(cleaned.report, tolerance, table);
+  table.add(input.table);
   table.add("wrote", output.string());
-  table.add("time", spent.text);
-  report(a.report, json, input.text + table.text());
+  spent.add_to(table);
+  report(a.report, json, table);
   if (!a.report.quiet) warn(warnings);
 }
 

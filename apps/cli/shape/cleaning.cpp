@@ -19,12 +19,12 @@ std::string change_text(std::size_t before, std::size_t after) {
 void add_cleaning(const CleanReport& done, double tolerance, TextTable& table) {
   table.add("vertices", change_text(done.vertices_before, done.vertices));
   table.add("triangles", change_text(done.triangles_before, done.triangles));
-  table.add("steps", plural(done.collapses, "collapse", "collapses") + ", " + plural(done.flips, "flip", "flips"));
-  table.add("deviation",
-            "at most " + rounded_text(done.deviation) + ", both ways; tolerance " + rounded_text(tolerance));
-  table.add("heights", "of triangles at least " + rounded_text(done.smallest_height) + ", before " +
-                           rounded_text(done.smallest_height_before));
-  table.add("topology", betti_text(done.betti) + ", as before; no crossings, checked exactly");
+  table.detail("steps", plural(done.collapses, "collapse", "collapses") + ", " + plural(done.flips, "flip", "flips"));
+  table.add("deviation", "at most " + rounded_text(done.deviation) + " in both directions (tolerance " +
+                             rounded_text(tolerance) + ")");
+  table.detail("heights", "smallest height of a triangle " + rounded_text(done.smallest_height) + ", before " +
+                              rounded_text(done.smallest_height_before));
+  table.add("topology", betti_text(done.betti) + ", unchanged; no crossings (exact test)");
 }
 
 Json cleaning_json(const CleanReport& done, double tolerance) {

@@ -146,47 +146,65 @@ std::string contacts_text(const SelfIntersections& contacts) {
   return crossing + touching + (contacts.complete ? "" : ", and more: the search ended there");
 }
 
+std::string cells_text(const Topology& t) {
+  std::string text = plural(t.vertices, "vertex", "vertices") + ", " + plural(t.edges, "edge", "edges") + ", " +
+                     plural(t.triangles, "triangle", "triangles");
+  if (t.segments > 0) text += ", " + plural(t.segments, "segment", "segments");
+  if (t.points > 0) text += ", " + plural(t.points, "point", "points");
+  return text + "; " + plural(t.pieces, "piece", "pieces");
+}
+
+/// Everything that a clean closed surface has none of.
+std::string defects_text(const Topology& t, const SelfIntersections& contacts) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, const char* one, const char* many) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + plural(count, one, many);
+  };
+  add(t.boundary_edges, "boundary edge", "boundary edges");
+  add(t.nonmanifold_edges, "non-manifold edge", "non-manifold edges");
+  add(t.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices");
+  add(t.inconsistent_edges, "edge between triangles of opposite orientation",
+      "edges between triangles of opposite orientation");
+  add(t.degenerate_triangles, "degenerate triangle", "degenerate triangles");
+  add(t.duplicate_triangles, "repeated triangle", "repeated triangles");
+  add(t.vertices - t.named_vertices, "unused vertex", "unused vertices");
+  if (!contacts.pairs.empty()) text += (text.empty() ? "" : ", ") + contacts_text(contacts);
+  return text.empty() ? "none" : text;
+}
+
+void add_topology_details(const Topology& t, const SelfIntersections& contacts, TextTable& table) {
+  if (t.triangles == 0) return;
+  table.detail("components", count_text(t.components) + ", of them " + count_text(t.closed_components) + " closed");
+  table.detail("boundary edges", count_text(t.boundary_edges) + " in " + plural(t.boundary_loops, "loop", "loops"));
+  table.detail("crossings", contacts_text(contacts));
+  table.detail("closed", yes_no(t.closed));
+  table.detail("oriented", yes_no(t.oriented));
+  table.detail("Euler number", std::to_string(t.euler_characteristic));
+  if (!t.shells.empty()) table.detail("genus", genus_text(t));
+}
+
 TextTable topology_table(const fs::path& path, const MeshFile& file, const Topology& t,
                          const SelfIntersections& contacts, const std::optional<Solid>& repaired) {
   TextTable table;
   table.add("file", path.string() + ": " + file_text(file));
-  table.add("vertices", count_text(t.vertices) +
-                            (t.named_vertices < t.vertices
-                                 ? ", of them " + count_text(t.vertices - t.named_vertices) + " used by nothing"
-                                 : ""));
-  table.add("edges", count_text(t.edges));
-  table.add("triangles", count_text(t.triangles));
-  if (t.segments > 0) table.add("segments", count_text(t.segments));
-  if (t.points > 0) table.add("points", count_text(t.points));
-  if (!t.bounds.is_empty()) {
-    table.add("bounds", vector_text(t.bounds.lower) + " to " + vector_text(t.bounds.upper));
-    table.add("size", vector_text(t.bounds.size()));
-  }
-  table.add("pieces", count_text(t.pieces));
-  if (t.triangles > 0) {
-    table.add("components", count_text(t.components) + ", of them " + count_text(t.closed_components) + " closed");
-    table.add("boundary edges", count_text(t.boundary_edges) + " in " + plural(t.boundary_loops, "loop", "loops"));
-    table.add("non-manifold", plural(t.nonmanifold_edges, "edge", "edges") + ", " +
-                                  plural(t.nonmanifold_vertices, "vertex", "vertices"));
-    table.add("degenerate", plural(t.degenerate_triangles, "triangle", "triangles"));
-    table.add("repeated", plural(t.duplicate_triangles, "triangle", "triangles"));
-    table.add("crossings", contacts_text(contacts));
-    table.add("closed", yes_no(t.closed));
-    table.add("oriented",
-              t.oriented ? "yes"
-                         : "no: " + plural(t.inconsistent_edges, "edge", "edges") + " between triangles that disagree");
-    table.add("area", rounded_text(t.area));
-    if (t.closed && t.oriented) table.add("volume", rounded_text(t.signed_volume));
-    table.add("Euler number", std::to_string(t.euler_characteristic));
-    if (!t.shells.empty()) table.add("genus", genus_text(t));
-  }
+  table.add("mesh", cells_text(t));
   table.add("solid", solid_text(t, contacts));
   if (repaired && repaired->betti()) {
     table.add("repaired", parts_text(*repaired->betti()));
-    table.add("", repaired->reason());
+    table.detail("", repaired->reason());
   } else if (repaired) {
     table.add("repaired", "no: " + repaired->reason());
   }
+  if (t.triangles > 0) table.add("defects", defects_text(t, contacts));
+  if (!t.bounds.is_empty()) {
+    table.add("size", vector_text(t.bounds.size()) + ", from " + vector_text(t.bounds.lower) + " to " +
+                          vector_text(t.bounds.upper));
+  }
+  if (t.triangles > 0) {
+    table.add("area", rounded_text(t.area));
+    if (t.closed && t.oriented) table.add("volume", rounded_text(t.signed_volume));
+  }
+  add_topology_details(t, contacts, table);
   return table;
 }
 
@@ -244,7 +262,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   if (a.model) json["model"] = add_model(a, file.mesh, context, table);
   progress.clear();
   if (is_welded_away(file) && !a.report.quiet) warn({{WarningCode::other_vertices, welded_away_text(file)}});
-  report(a.report, answer_json("info", json), table.text());
+  report(a.report, answer_json("info", json), table);
 }
 
 // ---- Images ----
@@ -295,7 +313,7 @@ void run_image(const Arguments& a) {
   table.add("not zero", plural(values.nonzero, "voxel", "voxels"));
   if (values.not_numbers > 0) table.add("not a number", plural(values.not_numbers, "voxel", "voxels"));
   add_labels(table, values);
-  report(a.report, answer_json("info", json), table.text());
+  report(a.report, answer_json("info", json), table);
 }
 
 // ---- Fields ----
@@ -325,7 +343,7 @@ void run_field(const Arguments& a) {
   table.add("sites", has_sites ? count_text(s.all.sites) + " distinct (" + std::string(to_string(field.site_ids)) +
                                      "), " + plural(s.siteless_nodes, "node", "nodes") + " without"
                                : "none in the file");
-  report(a.report, answer_json("info", json), table.text());
+  report(a.report, answer_json("info", json), table);
 }
 
 // ---- Devices ----
@@ -337,7 +355,7 @@ void run_devices(const Arguments& a) {
   for (const DeviceInfo& device : found.devices) {
     table.add(device.device, device.name + ", " + bytes_text(static_cast<double>(device.memory)));
   }
-  report(a.report, answer_json("info", to_json(found)), table.text());
+  report(a.report, answer_json("info", to_json(found)), table);
 }
 
 void run(const Arguments& a) {

@@ -67,14 +67,15 @@ void add_side(TextTable& table, const std::string& label, const Side& side) {
   table.add(label, interval_text(side.distance.lower, side.distance.upper));
   if (!side.deviation) return;
   if (side.deviation->sign_rule != SignRule::none) {
-    table.add("", "signs by " + std::string(to_string(side.deviation->sign_rule)) + ": " + side.deviation->sign_reason);
+    table.detail("",
+                 "signs by " + std::string(to_string(side.deviation->sign_rule)) + ": " + side.deviation->sign_reason);
   }
   const SurfaceDeviation& by_area = *side.deviation;
   const auto with_error = [](double value, double error) { return rounded_text(value) + " +- " + rounded_text(error); };
   table.add("", "mean " + with_error(by_area.mean, by_area.mean_error) + ", rms " +
                     with_error(by_area.rms, by_area.rms_error));
-  table.add("", "of the area " + percentiles_text(SurfaceDeviation::percents, by_area.percentiles) + " (+- " +
-                    rounded_text(by_area.percentile_error) + ")");
+  table.detail("", "by area " + percentiles_text(SurfaceDeviation::percents, by_area.percentiles) + " (+- " +
+                       rounded_text(by_area.percentile_error) + ")");
 }
 
 /// The witnesses as a segment for each direction.
@@ -188,18 +189,19 @@ void run(const Arguments& a) {
   if (!a.one_sided) json["backward"] = sides[1].json();
   add_run_facts(json, spent, context, {}, a.output ? Json::array({*a.output}) : Json::array());
   TextTable table;
-  table.add("a", paths[0].string() + ": " + size_text(first));
-  table.add("b", paths[1].string() + ": " + size_text(second));
   table.add("distance", interval_text(both.lower, both.upper) + (a.one_sided ? ", from a to b" : ""));
   table.add("between", vector_text(both.points[0]) + " of a and " + vector_text(both.points[1]) + " of b");
   add_side(table, "a to b", sides[0]);
   if (!a.one_sided) add_side(table, "b to a", sides[1]);
   for (std::size_t k = 0; k < sides.size() && !a.only_distance; ++k) {
-    if (!sides[k].deviation) table.add("", std::string(k == 0 ? "a" : "b") + " has no area, so no means by area");
+    if (!sides[k].deviation)
+      table.add("", std::string(k == 0 ? "a" : "b") + " has no area, so means by area are not defined");
   }
+  table.add("a", paths[0].string() + ": " + size_text(first));
+  table.add("b", paths[1].string() + ": " + size_text(second));
   if (a.output) table.add("wrote", *a.output);
-  table.add("time", spent.text);
-  report(a.report, json, table.text());
+  spent.add_to(table);
+  report(a.report, json, table);
 }
 
 }  // namespace

@@ -157,25 +157,25 @@ std::string sites_text(const VoronoiReport& report) {
 }
 
 std::string certificate_text(VoronoiPart part) {
-  if (part == VoronoiPart::medial_axis)
-    return "the homology is that of the solid's exact medial axis, and of the solid";
-  return subject_of(part) + " have the homology of the exact diagram's";
+  if (part == VoronoiPart::medial_axis) return "same homology as the exact medial axis and as the solid";
+  return "same homology as " + subject_of(part) + " of the exact diagram";
 }
 
 void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, TextTable& table) {
+  table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
+  table.add("topology", betti_text(report.found) +
+                            (report.found == report.expected ? "" : "; expected " + betti_text(report.expected)));
   table.add("sites", sites_text(report));
-  table.add("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
-                         plural(report.splits, "split", "splits") + ", the smallest " + std::to_string(report.depth) +
-                         " times; " + rounded_text(report.governors) + " labels in a cube, mean");
-  table.add("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
-                         count_text(report.exact_lines) + " by exact signs");
+  table.detail("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
+                            plural(report.splits, "split", "splits") + ", the smallest " +
+                            std::to_string(report.depth) + " times; " + rounded_text(report.governors) +
+                            " labels in a cube, mean");
+  table.detail("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
+                            count_text(report.exact_lines) + " by exact signs");
   table.add("complex", counts.text());
   if (report.certified) {
-    table.add("geometry", "at most " + rounded_text(report.hausdorff_bound) + " from the exact one, everywhere");
+    table.add("geometry", "at most " + rounded_text(report.hausdorff_bound) + " from the exact diagram, everywhere");
   }
-  table.add("expected", betti_text(report.expected));
-  table.add("found", betti_text(report.found));
-  table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
 }
 
 struct Request {
@@ -364,8 +364,9 @@ void run(const Arguments& a) {
   if (a.cleaned) table.add("wrote", *a.cleaned);
   if (is_written) table.add("wrote", *a.output);
   if (is_graph_written) table.add("wrote", r.axis.graph->string());
-  table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
-  report(a.report, json, input.text + table.text());
+  table.add(input.table);
+  spent.add_to(table);
+  report(a.report, json, table);
   if (!a.report.quiet) warn(warnings);
   if (mismatches.empty()) return;
   const bool is_any_missing = a.output && !is_written;
