@@ -50,11 +50,11 @@ class LineWalker {
       const std::uint32_t vertex = graph_.junctions[j].vertex;
       for (const std::uint32_t e : parts_.incidence().edges_of_vertex()[vertex]) begin_at(vertex, e);
     }
-    // What is left has no junction. The first edge of a loop begins at its smallest vertex.
+    // The rest has no junctions. The first edge of a loop begins at its smallest vertex.
     for (std::uint32_t e = 0; e < line_of_edge_.size(); ++e) begin_at(parts_.incidence().edges()[e][0], e);
   }
 
-  /// Of incidence().edges(): the place of its line in the seams or the curves.
+  /// For each of incidence().edges(): place of its line in the seams or the curves.
   [[nodiscard]] const std::vector<std::uint32_t>& line_of_edge() const { return line_of_edge_; }
 
  private:
@@ -107,7 +107,7 @@ class LineWalker {
     line.arc_length.push_back(line.length);
   }
 
-  /// The one that goes on from a vertex; none at a junction, and where a loop ends.
+  /// Returns the edge that goes on from a vertex; none at a junction and at the end of a loop.
   [[nodiscard]] std::uint32_t next_edge(std::uint32_t vertex, EdgePart part) const {
     if (junction_at_[vertex] != none) return none;
     for (const std::uint32_t e : parts_.incidence().edges_of_vertex()[vertex]) {
@@ -150,7 +150,7 @@ class LineWalker {
   std::vector<std::uint32_t> line_of_edge_;  ///< among the seams or the curves
 };
 
-/// @throws InvalidOption where a column is missing that says what is what.
+/// @throws InvalidOption if a column is missing that is needed.
 void check_needed(const Complex& axis) {
   if (!axis.positions.empty() && axis.vertex_columns.find(medial_columns::radius) == nullptr) {
     throw InvalidOption(missing_medial_column("vertices", medial_columns::radius));
@@ -160,8 +160,8 @@ void check_needed(const Complex& axis) {
   }
 }
 
-/// For each sheet the pairs of patches that the footprints of its vertices lie on. Each corner of a triangle stands for
-/// a third of the area.
+/// Adds to each sheet the pairs of patches that the footprints of its vertices lie on. Each corner of a triangle stands
+/// for a third of the area.
 class PatchPairs {
  public:
   PatchPairs(const AxisParts& parts, const SurfacePatches& patches, AxisGraph& graph)
@@ -191,7 +191,7 @@ class PatchPairs {
   }
 
  private:
-  /// Of each vertex: the numbers of two sets of patches; none where it knows no two.
+  /// Finds for each vertex the numbers of two sets of patches; none if it does not know two walls.
   void find_sides() {
     const MedialView& axis = parts_.view();
     for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {

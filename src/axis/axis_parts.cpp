@@ -9,7 +9,8 @@
 namespace blum::detail {
 namespace {
 
-/// The least value up to which a share of the weight lies, by halving; parts that no longer matter are left out.
+/// Returns the least value up to which a share of the weight lies, by halving. Parts that no longer matter are left
+/// out.
 double quantile(std::vector<LinearPart> parts, double share, double low, double high) {
   constexpr int halvings = 50;
   double missing = 0;  // weight
@@ -29,7 +30,7 @@ double quantile(std::vector<LinearPart> parts, double share, double low, double 
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// Which corner of a triangle a vertex is.
+/// Returns the corner of a triangle that a vertex is.
 std::uint32_t corner_of(const std::array<std::uint32_t, 3>& triangle, std::uint32_t vertex) {
   return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
 }

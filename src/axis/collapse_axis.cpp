@@ -46,13 +46,13 @@ class AxisCollapser {
     if (++steps_ % steps_between_looks == 0) throw_if_cancelled(context_);
   }
 
-  /// What both ends of an edge see: along a seam more than its triangles do.
+  /// Returns the angle that both ends of an edge see. Along a seam, it is larger than those of its triangles.
   [[nodiscard]] float own_angle(std::uint32_t edge) const {
     const auto& [a, b] = incidence_.edges()[edge];
     return static_cast<float>(std::min(vertex_angles_[a], vertex_angles_[b]));
   }
 
-  /// The only triangle that is left at an edge; none where there are more, or no more.
+  /// Returns the only triangle that is left at an edge; none if several or no triangles are left.
   [[nodiscard]] std::uint32_t only_triangle(std::uint32_t edge) const {
     if (triangles_left_[edge] != 1) return none;
     const std::span<const std::uint32_t> all = incidence_.triangles_of_edge()[edge];
@@ -65,7 +65,7 @@ class AxisCollapser {
     for (std::uint32_t e = 0; e < edge_count(); ++e) {
       triangles_left_.push_back(static_cast<std::uint32_t>(incidence_.triangles_of_edge()[e].size()));
     }
-    // By rising angle, then number of the free edge.
+    // By ascending angle, then number of the free edge.
     using Waiting = std::pair<float, std::uint32_t>;
     std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> line;
     const auto offer = [&](std::uint32_t edge) {
@@ -89,7 +89,7 @@ class AxisCollapser {
     }
   }
 
-  /// The largest angle of a triangle that was at an edge.
+  /// Returns the largest of the angle of an edge and those of the triangles that were at it.
   [[nodiscard]] float angle_of_edge(std::uint32_t edge) const {
     float largest = own_angle(edge);
     for (const std::uint32_t t : incidence_.triangles_of_edge()[edge]) largest = std::max(largest, angles_[t]);
@@ -177,7 +177,7 @@ class AxisCollapser {
   std::size_t steps_ = 0;
 };
 
-/// @throws InvalidOption where a column is missing that cannot be made up for.
+/// @throws InvalidOption if a column is missing that cannot be replaced.
 void check_columns(const Complex& walls) {
   const auto has = [&](const Columns& columns, std::string_view kind, std::string_view name) {
     if (columns.find(name) == nullptr) throw InvalidOption(missing_medial_column(kind, name));

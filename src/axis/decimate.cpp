@@ -19,10 +19,10 @@ namespace {
 using detail::DecimatorInput;
 using detail::SheetDecimator;
 
-/// What goes first: vertices that move sheets by these parts of the tolerance.
+/// Levels, as parts of the tolerance: vertices that move sheets by at most the first one are removed first.
 constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 0.8};
 
-/// The edges that bound sheets: those that are listed, and those where sheets of two numbers meet.
+/// Returns the edges that bound sheets: those that are listed, and those where sheets of two numbers meet.
 std::vector<std::array<std::uint32_t, 2>> borders_of(const Complex& axis, const Context& context) {
   std::vector<std::array<std::uint32_t, 2>> borders = axis.edges;
   const Incidence incidence(axis.view(), context);
@@ -51,7 +51,7 @@ DecimatorInput input_of(const Complex& axis, const Context& context) {
   return input;
 }
 
-/// Rims and seams have the largest angle of the triangles that are left at them.
+/// Gives rims and seams the largest angle of the triangles that are left at them.
 void give_borders_angles(Complex& axis) {
   const auto of_triangle = axis.triangle_columns.get<float>(medial_columns::separation_angle);
   std::vector<std::pair<std::array<std::uint32_t, 2>, float>> sides;

@@ -36,22 +36,22 @@ using detail::SearchMesh;
 using detail::StripOutline;
 
 constexpr std::size_t rims_per_range = 64;
-/// New vertices that are closer to each other than this part of the radius are one.
+/// New vertices that are closer together than this part of the radius become one.
 constexpr double one_point = 1e-3;
 
-/// What becomes of a corner of a rim.
+/// Continuation of a corner of a rim.
 struct Continued {
   RimStart start;
-  bool stays = false;               ///< at the border, or on another sheet
-  std::optional<RimTarget> target;  ///< none where it stays, or nothing is met
+  bool stays = false;               ///< it is at the border or on another sheet
+  std::optional<RimTarget> target;  ///< none if it stays or nothing is met
 };
 
-/// The triangles in front of a rim edge; their points are numbered as fill_strip() does.
+/// Triangles in front of a rim edge. Their points are numbered as in fill_strip().
 struct Strip {
   std::vector<Vec3d> line;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   bool is_pinched = false;   ///< both ends of the rim lead to one point
-  bool is_left_out = false;  ///< for its shape, or as it would leave the solid
+  bool is_left_out = false;  ///< for its shape, or because it would leave the solid
 };
 
 double area_of(const std::vector<Vec3d>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
@@ -62,7 +62,7 @@ double area_of(const std::vector<Vec3d>& positions, const std::vector<std::array
   return area;
 }
 
-/// The boundaries of all bodies in one mesh.
+/// Returns the boundaries of all bodies in one mesh.
 TriangleMesh boundary_of(const Solid& solid) {
   TriangleMesh all;
   for (const SolidBody& body : solid.bodies()) {
@@ -110,7 +110,7 @@ class AxisExtender {
     sheet_.assign(view_.sheet.begin(), view_.sheet.end());
   }
 
-  // --- Where rims lead to.
+  // --- Targets of rims.
 
   void find_starts() {
     const std::vector<double> stays_below = radii_at_borders();
@@ -127,7 +127,7 @@ class AxisExtender {
     }
   }
 
-  /// Of each corner: the radius up to which it is at the border already.
+  /// Returns for each corner the radius up to which it counts as at the border.
   [[nodiscard]] std::vector<double> radii_at_borders() const {
     std::vector<double> of_sheet(sheet_count(axis_), 0);
     for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -142,8 +142,8 @@ class AxisExtender {
     return of_corner;
   }
 
-  /// First all rims go on as far as they can; then each ends at what it meets of the others. So walls end at each other
-  /// whose sheets both end before they meet.
+  /// First all rims go on as far as they can. Then each ends at what it meets of the others. So walls end at each other
+  /// if their sheets both end before they meet.
   void find_strips() {
     find_starts();
     const SearchMesh surface(boundary_of(solid_), context_);
@@ -167,7 +167,7 @@ class AxisExtender {
     });
   }
 
-  /// Its first vertices are those of the axis.
+  /// Returns a mesh of all strips. Its first vertices are those of the axis.
   [[nodiscard]] TriangleMesh strips_as_mesh() const {
     TriangleMesh all{axis_.positions};
     for (std::size_t e = 0; e < strips_.size(); ++e) {
@@ -209,7 +209,7 @@ class AxisExtender {
     return strip;
   }
 
-  /// Where the line has no proper triangles, its ends alone may have.
+  /// Fills a strip with triangles. If its line has no proper triangles, its ends alone may have.
   void fill(const RimEdge& edge, bool is_final, Strip& strip) const {
     const auto is_inside = [&](const Vec3d& p) { return solid_.inside(p); };
     const std::array rim{at(edge.vertices[0]), at(edge.vertices[1])};
@@ -226,7 +226,7 @@ class AxisExtender {
     leave_out(strip);
   }
 
-  /// Drops the points between the targets of the rim's ends.
+  /// Removes the points between the targets of the rim's ends.
   void keep_ends(const RimEdge& edge, Strip& strip) const {
     strip.line.clear();
     for (const std::uint32_t c : edge.corners) {
@@ -243,8 +243,8 @@ class AxisExtender {
 
   // --- The result.
 
-  /// Numbers the targets of corners as new vertices; those of pinched strips are one. Around a loop one strip stays
-  /// away, as the others would close a hole with it.
+  /// Numbers the targets of corners as new vertices; those of pinched strips are one. Around a loop one strip is left
+  /// out, because the others would close a hole with it.
   std::vector<std::uint32_t> number_new_vertices() {
     detail::UnionFind corners(rims_.corners.size());
     detail::UnionFind vertices(axis_.positions.size());
@@ -293,7 +293,7 @@ class AxisExtender {
     const auto moved = std::count_if(edge.corners.begin(), edge.corners.end(),
                                      [&](std::uint32_t c) { return continued_[c].target.has_value(); });
     const bool is_plain = std::cmp_equal(strip.line.size(), moved);
-    // What two strips have in common at their border would close a hole.
+    // A border edge of two strips would close a hole.
     if (is_plain && !strip.is_pinched && !border_.insert(std::minmax(ends[0], ends[1])).second) {
       leave_out(strip);
       return;

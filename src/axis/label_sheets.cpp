@@ -28,9 +28,10 @@ struct Hinge {
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Cosine of 37 degrees.
 constexpr double sharp = 0.8;
-/// Triangles.
+/// Pieces with fewer triangles than this are small.
 constexpr std::size_t few = 8;
-/// How many triangles away from seams tell how a sheet lies, and among how many they are looked for.
+/// Number of triangles away from seams that show how a sheet lies, and number of those among which they are searched
+/// for.
 constexpr std::size_t telling = 12;
 constexpr std::size_t most_looked_at = 96;
 
@@ -40,7 +41,7 @@ Vec3d normal_of(const Complex& axis, std::uint32_t triangle) {
   return cross(axis.positions[b] - at, axis.positions[c] - at);
 }
 
-/// From an edge to the third vertex of a triangle, at a right angle to the edge.
+/// Returns the vector from an edge to the third vertex of a triangle, at a right angle to the edge.
 Vec3d leaf(const Complex& axis, const std::array<std::uint32_t, 2>& edge, std::uint32_t triangle) {
   const auto& v = axis.triangles[triangle];
   const std::uint32_t third = v[0] ^ v[1] ^ v[2] ^ edge[0] ^ edge[1];
@@ -51,7 +52,7 @@ Vec3d leaf(const Complex& axis, const std::array<std::uint32_t, 2>& edge, std::u
   return squared > 0 ? out - along * (dot(out, along) / squared) : out;
 }
 
-/// The cosine of the angle at a hinge: -1 where it is flat, and where a triangle has no area.
+/// Returns the cosine of the angle at a hinge: -1 if it is flat or a triangle has no area.
 double cosine_of(const Complex& axis, const Hinge& hinge) {
   const Vec3d a = leaf(axis, hinge.vertices, hinge.triangles[0]);
   const Vec3d b = leaf(axis, hinge.vertices, hinge.triangles[1]);
@@ -84,7 +85,7 @@ class SheetJoiner {
         join(hinges_[h]);
       }
     }
-    // The flattest first, so that what is little goes where it belongs.
+    // The flattest come first, so that small pieces join the sheets that they belong to.
     std::sort(beside_seams.begin(), beside_seams.end(), [&](const auto& a, const auto& b) {
       return std::tie(a.first, hinges_[a.second].triangles) < std::tie(b.first, hinges_[b.second].triangles);
     });
@@ -123,14 +124,14 @@ class SheetJoiner {
     if (a == b) return false;
     if (std::min(size_[a], size_[b]) < few) return true;
     if (cosine > -sharp) return false;
-    // What lies along seams only is as crooked as these.
+    // Pieces that lie only along seams are as crooked as these.
     if (std::min(inner_size_[a], inner_size_[b]) < few) return true;
     const Vec3d p = normal_near(hinge.triangles[0]);
     const Vec3d q = normal_near(hinge.triangles[1]);
     return std::abs(dot(p, q)) >= sharp * length(p) * length(q);
   }
 
-  /// The mean direction across a piece around a triangle, away from seams.
+  /// Returns the mean direction across a piece around a triangle, away from seams.
   [[nodiscard]] Vec3d normal_near(std::uint32_t triangle) {
     const std::uint32_t piece = pieces_.find(triangle);
     std::vector<std::uint32_t> line{triangle};
@@ -156,16 +157,16 @@ class SheetJoiner {
   const Complex& axis_;
   const std::vector<Hinge>& hinges_;
   detail::UnionFind pieces_;
-  std::vector<std::size_t> size_, inner_size_;  ///< of what stands for a piece: triangles, those away from seams
+  std::vector<std::size_t> size_, inner_size_;  ///< of pieces: triangles, and those away from seams
   std::vector<bool> is_on_seam_, is_inner_;
   std::vector<std::array<std::uint32_t, 3>> hinge_at_;  ///< of each triangle
 };
 
-/// Joins triangles at hinges, but for those beside seams where two sheets meet. Where seams lie a step beside the
-/// crease of two sheets, first on one side of it and then on the other, the two hang together at the step. So beside
-/// seams nothing is joined where the axis bends by 37 degrees or more, at the hinge or between what lies on either side
-/// a few triangles away from the seam; unless that is only a few triangles, which go to the neighbour that they are
-/// flattest with.
+/// Joins triangles at hinges, except beside seams where two sheets meet. Seams may lie a step beside the crease of two
+/// sheets, first on one side of it and then on the other. Then the two sheets are connected at the step. So beside
+/// seams nothing is joined where the axis bends by 37 degrees or more. The bend is taken at the hinge, and between the
+/// parts a few triangles away from the seam. Parts of only a few triangles join the neighbour with which they are
+/// flattest.
 /// @param axis  whose edges have roles.
 detail::UnionFind join_sheets(const Complex& axis, const std::vector<Hinge>& hinges) {
   return SheetJoiner(axis, hinges).join();
@@ -173,12 +174,12 @@ detail::UnionFind join_sheets(const Complex& axis, const std::vector<Hinge>& hin
 
 constexpr std::int32_t no_sheet = -1;
 
-/// As columns hold it.
+/// Returns a role as columns contain it.
 constexpr std::int32_t number_of(MedialRole role) {
   return static_cast<std::int32_t>(role);
 }
 
-/// What is known of a vertex from its edges.
+/// Data of a vertex from its edges.
 struct Around {
   std::uint32_t rims = 0, seams = 0, curves = 0;
   std::int32_t sheet = no_sheet;
@@ -188,7 +189,7 @@ struct Around {
 MedialRole role_of(const Around& a) {
   if (a.curves == 0 && a.seams == 0) {
     if (a.sheet == no_sheet) return MedialRole::curve;                    // a vertex alone
-    if (a.rims > 2 || a.has_several_sheets) return MedialRole::junction;  // sheets touch here only
+    if (a.rims > 2 || a.has_several_sheets) return MedialRole::junction;  // sheets only touch here
     return a.rims > 0 ? MedialRole::rim : MedialRole::sheet;
   }
   if (a.seams == 2 && a.curves == 0) return a.rims == 0 ? MedialRole::seam : MedialRole::junction;
@@ -196,7 +197,7 @@ MedialRole role_of(const Around& a) {
   return MedialRole::junction;
 }
 
-/// Adds the sides of triangles that are rims or seams to the edges; returns those that are neither.
+/// Adds the sides of triangles that are rims or seams to the edges. Returns those that are neither.
 std::vector<Hinge> add_rims_and_seams(Complex& axis, const Incidence& incidence) {
   const std::span<const float> angles = axis.triangle_columns.get<float>(medial_columns::separation_angle);
   std::vector<Hinge> hinges;
@@ -228,7 +229,7 @@ void number_sheets(Complex& axis, detail::UnionFind sheets) {
   const std::span<std::int32_t> sheet_of = axis.triangle_columns.edit<std::int32_t>(medial_columns::sheet);
   std::int32_t count = 0;
   for (std::uint32_t t = 0; t < sheet_of.size(); ++t) {
-    // The smallest triangle of a sheet stands for it, and so has its number before the others.
+    // The smallest triangle of a sheet represents it, and so gets its number before the others.
     const std::uint32_t first = sheets.find(t);
     sheet_of[t] = first == t ? count++ : sheet_of[first];
   }

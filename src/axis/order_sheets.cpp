@@ -16,24 +16,24 @@
 namespace blum::detail {
 namespace {
 
-/// What has at least this part of the largest area is a good part. Parts of symmetrical sheets are as large, or twice
-/// or three times so: this is neither.
+/// A good part has at least this share of the largest area. Parts of symmetrical sheets are as large, or twice or three
+/// times so. This share is none of these.
 constexpr double good_part = 0.41;
 
-/// What is next to an edge between patches counts less: it could be of either.
+/// Vertices next to an edge between patches count less, because they could belong to either.
 constexpr double weight_of_shared = 0.2;
-/// Sheets with less than this part of the area of all of them come last: they may be there on one grid and not on
-/// another, and would move the numbers of others.
+/// Sheets with less than this part of the total area come last. They may exist on one grid and not on another, and
+/// would change the numbers of others.
 constexpr double least_part = 0.001;
 
 constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max();
 
-/// Areas by what they belong to.
+/// Areas by key.
 class Areas {
  public:
   void add(std::uint64_t key, double area) { areas_[key] += area; }
 
-  /// The smallest key with a good part of the area; unknown where there is none.
+  /// Returns the smallest key with a good part of the area; unknown if no key has area.
   [[nodiscard]] std::uint64_t smallest() const {
     double most = 0;
     for (const auto& [key, area] : areas_) most = std::max(most, area);
@@ -58,7 +58,8 @@ std::span<const std::int32_t> sheets_of(const Complex& axis) {
   return axis.triangle_columns.get<std::int32_t>(medial_columns::sheet);
 }
 
-/// Gives sheets new numbers. @param order  their old ones.
+/// Gives sheets new numbers.
+/// @param order  their old ones.
 void renumber(Complex& axis, const std::vector<std::uint32_t>& order) {
   std::vector<std::int32_t> number(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) number[order[k]] = static_cast<std::int32_t>(k);
@@ -67,14 +68,14 @@ void renumber(Complex& axis, const std::vector<std::uint32_t>& order) {
   }
 }
 
-/// What sheets are told apart by.
+/// Traits that distinguish sheets.
 struct Traits {
   double area = 0;
   Vec3d centroid;
   bool is_crumb = false;
   std::uint64_t pair = unknown;
-  /// The sum of those of the centroid from all anchors. Each has its weight: sheets at mirrored places may be as far
-  /// from one of them, and in the sum are not.
+  /// Sum of the distances of the centroid from all anchors, each with its weight. Sheets at mirrored places may be
+  /// equally far from one anchor, but not in the sum.
   double distance = 0;
 };
 
@@ -97,9 +98,9 @@ class Sorter {
   }
 
  private:
-  /// The patches that a vertex lies between, the smaller number first, and how much it says of its sheet.
+  /// Patches that a vertex lies between, the smaller number first, and its weight for its sheet.
   struct Sides {
-    std::uint64_t pair = unknown;  ///< where it does not know two walls
+    std::uint64_t pair = unknown;  ///< if it does not know two walls
     double weight = 1;
   };
   [[nodiscard]] std::vector<Sides> sides_of_vertices() const {

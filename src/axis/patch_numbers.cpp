@@ -12,13 +12,13 @@ namespace {
 /// Degrees by which edges in flat and in smooth parts bend at most.
 constexpr double flat = 1;
 constexpr double smooth = 30;
-/// Flat parts count that have at least this part of the surface. No part of a regular prism or of a box of squares has
-/// just this, so that rounding decides nothing.
+/// Flat parts count if they have at least this part of the surface. No part of a regular prism or of a box of squares
+/// has exactly this, so that rounding decides nothing.
 constexpr double least_part = 0.00437;
-/// How far anchors are from the line or plane of those before, as a part of the reach.
+/// Least distance of an anchor from the line or plane of those before, as a part of the reach.
 constexpr double apart = 0.0937;
 
-/// The smallest face of the input in each patch.
+/// Returns the smallest face of the input in each patch.
 std::vector<std::uint32_t> first_faces(const SurfacePatches& patches, const PatchedMesh& part) {
   std::vector<std::uint32_t> first(patches.patches().size(), PatchNumbers::none);
   for (std::uint32_t t = 0; t < part.triangle_of.size(); ++t) {
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> first_faces(const SurfacePatches& patches, const Patc
   return first;
 }
 
-/// The number of each triangle of a part: even for flat parts, odd for smooth ones.
+/// Returns the number of each triangle of a part: even for flat parts, odd for smooth ones.
 std::vector<std::uint32_t> numbers_of_faces(const PatchedMesh& part, const SiteTable& own, const Context& context) {
   const SurfacePatches flats(part.mesh, own, flat, context);
   const SurfacePatches rest(part.mesh, own, smooth, context);
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> numbers_of_faces(const PatchedMesh& part, const SiteT
   return numbers;
 }
 
-/// How far a point is from the place, line or plane through up to three others.
+/// Returns the distance of a point from the point, line or plane through up to three others.
 double distance_from(const std::vector<Vec3d>& others, const Vec3d& point) {
   const Vec3d way = point - others[0];
   if (others.size() == 1) return length(way);
@@ -76,7 +76,7 @@ void PatchNumbers::add(const PatchedMesh& part, const SiteTable& own, const Cont
     }
   }
   for (std::uint32_t site = 0; site < of_own.size(); ++site) {
-    // What no triangle has may have no triangle to stand for it.
+    // A site that no triangle has may have no counterpart in the input.
     if (of_own[site] == none) continue;
     const std::size_t to = part.input_site(SiteId(site)).value;
     number_of_[to] = std::min(number_of_[to], of_own[site]);

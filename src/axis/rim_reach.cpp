@@ -13,14 +13,13 @@ namespace {
 
 constexpr double tangent_of_cone = 2.1445;  // of 65 degrees
 constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing may be in between
-constexpr double nearly_none = 1e-6;        // of the way: what is met there is where it begins
-constexpr double sine_of_meeting = 0.26;    // of 15 degrees: less is one sheet that goes on
+constexpr double nearly_none = 1e-6;        // of the way: anything met there is where it begins
+constexpr double sine_of_meeting = 0.26;    // of 15 degrees: at less, one sheet goes on
 constexpr double cosine_of_meeting = 0.966;
 constexpr int most_halvings = 6;
-/// Planes that are closer to each other than this, as the determinant of their normals, have no point in common that
-/// is worth looking for.
+/// Planes whose normals have a smaller determinant have no common point that is worth computing.
 constexpr double least_determinant = 0.05;
-/// A line and a direction span a plane where the sine of the angle between them is at least this.
+/// A line and a direction span a plane if the sine of the angle between them is at least this.
 constexpr double least_slant = 0.1;
 constexpr double corner_tolerance = 1e-6;  // of the reach
 
@@ -28,7 +27,7 @@ struct Point2 {
   double x = 0, y = 0;
 };
 
-/// The plane of a start with the start as origin and its direction as x.
+/// Plane of a start, with the start as origin and its direction as x.
 struct Frame {
   Vec3d origin, x, y, normal;
 
@@ -36,7 +35,7 @@ struct Frame {
   [[nodiscard]] Vec3d lifted(const Point2& p) const { return origin + x * p.x + y * p.y; }
 };
 
-/// Where a plane cuts a triangle; nullopt where it does not, or holds it.
+/// Returns the segment in which a plane cuts a triangle; nullopt if it does not cut it or contains it.
 std::optional<std::array<Vec3d, 2>> section(const std::array<Vec3d, 3>& corners, const Frame& frame) {
   std::array<double, 3> side{};
   for (std::size_t k = 0; k < 3; ++k) side[k] = dot(corners[k] - frame.origin, frame.normal);
@@ -50,7 +49,7 @@ std::optional<std::array<Vec3d, 2>> section(const std::array<Vec3d, 3>& corners,
   return found == 2 ? std::optional(ends) : std::nullopt;
 }
 
-/// The part of a segment in the cone around x; nullopt where there is none.
+/// Returns the part of a segment in the cone around x, or nullopt if it lies outside.
 std::optional<std::array<Point2, 2>> in_cone(const Point2& a, const Point2& b) {
   double from = 0;
   double to = 1;
@@ -82,7 +81,7 @@ std::optional<Frame> frame_of(const RimStart& start) {
   return Frame{start.at, cross(y, *start.normal), y, *start.normal};
 }
 
-/// The closest point in the plane and the cone, seen or not.
+/// Returns the closest point in the plane and the cone, visible or not.
 std::optional<RimTarget> closest_in_plane(const SearchMesh& surface, const Frame& frame, double reach) {
   std::optional<RimTarget> best;
   std::tuple best_of(reach, std::numeric_limits<std::uint32_t>::max());
@@ -103,7 +102,7 @@ std::optional<RimTarget> closest_in_plane(const SearchMesh& surface, const Frame
   return best;
 }
 
-/// Where planes through points meet, as x with normal . x = normal . point.
+/// Returns the point where three planes through points meet: x with normal . x = normal . point.
 std::optional<Vec3d> meeting_point(const std::array<Vec3d, 3>& normals, const std::array<Vec3d, 3>& points) {
   const double determinant = dot(normals[0], cross(normals[1], normals[2]));
   if (std::abs(determinant) < least_determinant) return std::nullopt;
@@ -118,7 +117,7 @@ bool is_own(const RimStart& start, const Triangle& triangle) {
   return std::find_first_of(triangle.begin(), triangle.end(), start.own.begin(), start.own.end()) != triangle.end();
 }
 
-/// Halfway between two starts.
+/// Returns the start halfway between two others.
 std::optional<RimStart> halfway(const RimStart& a, const RimStart& b) {
   RimStart out = a;
   out.at = (a.at + b.at) * 0.5;
@@ -212,7 +211,7 @@ std::vector<Vec3d> RimReach::between(const Stop& a, const Stop& b, double tolera
   return path;
 }
 
-/// What a point lies on: the surface, or a sheet or strip that meets the plane of a start.
+/// Returns the target at a point: on the surface, or on a sheet or strip that meets the plane of a start.
 std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, const RimStart& start) const {
   if (const auto near = obstacles_.surface->bvh().nearest_primitives(point, 1, tolerance); !near.empty()) {
     return RimTarget{near[0].point, obstacles_.surface->normal(near[0].primitive)};
@@ -258,11 +257,11 @@ void RimReach::add_between(const Stop& a, const Stop& b, double tolerance, int d
   add_between(*middle, b, tolerance, depth + 1, path);
 }
 
-/// The point where the planes at two targets meet a plane between their starts, if it lies on something.
+/// Returns the point where the planes at two targets meet a plane between their starts, if an obstacle is there.
 std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) const {
   const std::optional<RimStart> start = halfway(a.start, b.start);
   if (!start) return std::nullopt;
-  // A plane through both points: one along the sheet may be tilted, and far off at the corner.
+  // A plane through both targets. One along the sheet may be tilted, and far off at the corner.
   const double gap = length(b.target.at - a.target.at);
   Vec3d normal = cross(b.target.at - a.target.at, start->outwards) / gap;
   if (length(normal) < least_slant) normal = start->normal.value_or(Vec3d{});

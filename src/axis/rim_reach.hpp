@@ -1,4 +1,4 @@
-// Blum: where rims of medial axes lead to when they are continued. SPDX-License-Identifier: Apache-2.0
+// Blum: targets of rims of medial axes that are continued. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace blum::detail {
 
-/// A triangle mesh to look up points in. It owns what it needs.
+/// Triangle mesh in which points are looked up. It owns its data.
 class SearchMesh {
  public:
   /// @param mesh  has triangles.
@@ -23,7 +23,7 @@ class SearchMesh {
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
   [[nodiscard]] const BoxBvh& boxes() const { return boxes_; }  ///< of the triangles
-  [[nodiscard]] Vec3d normal(std::uint32_t triangle) const;     ///< of unit length; 0 where there is no area
+  [[nodiscard]] Vec3d normal(std::uint32_t triangle) const;     ///< unit length; 0 without area
 
  private:
   TriangleMesh mesh_;
@@ -31,52 +31,52 @@ class SearchMesh {
   BoxBvh boxes_;
 };
 
-/// A point of a rim in its solid, and where to go from there.
+/// Point of a rim in its solid, and the way from there.
 struct RimStart {
   Vec3d at;
-  Vec3d outwards;                      ///< of unit length
-  std::optional<Vec3d> normal;         ///< of the plane to stay in; none: go along `outwards`
-  double radius = 0;                   ///< distance to the surface
-  double reach = 0;                    ///< not further than this
-  std::array<std::uint32_t, 2> own{};  ///< vertices of the axis that it lies on, or between
+  Vec3d outwards;                      ///< Unit length.
+  std::optional<Vec3d> normal;         ///< Plane to stay in. If none, the way follows `outwards`.
+  double radius = 0;                   ///< Distance to the surface.
+  double reach = 0;                    ///< Greatest length of the way.
+  std::array<std::uint32_t, 2> own{};  ///< Vertices of the axis that it lies on or between.
 };
 
 enum class RimEnd : std::uint8_t {
   border,  ///< on the surface of the solid
-  sheet,   ///< on another sheet, or on what continues it
-  open,    ///< as far as the reach goes, where nothing was met
+  sheet,   ///< on another sheet or its continuation
+  open,    ///< at the end of the reach, if nothing was met
 };
 
 struct RimTarget {
   Vec3d at;
-  Vec3d normal;  ///< of what is there, of unit length
+  Vec3d normal;  ///< unit normal of the target
   RimEnd end = RimEnd::border;
 };
 
-/// What rims may meet. All must outlive it.
+/// Meshes that rims may meet. All must outlive it.
 struct RimObstacles {
   const SearchMesh* surface = nullptr;  ///< of the solid
   const SearchMesh* sheets = nullptr;   ///< of the axis: its vertices and triangles
-  const SearchMesh* strips = nullptr;   ///< that continue them, whose first vertices are those of the axis; or none
+  const SearchMesh* strips = nullptr;   ///< continue these; their first vertices are those of the axis; may be null
 };
 
 class RimReach {
  public:
-  /// @param allows_open  whether what meets nothing ends at its reach, instead of nowhere.
+  /// @param allows_open  true if a rim that meets nothing ends at its reach; otherwise it has no target.
   RimReach(const RimObstacles& obstacles, bool allows_open) : obstacles_(obstacles), allows_open_(allows_open) {}
 
-  /// The closest point of the surface that the plane of a start has within 65 degrees of its direction, and that is
-  /// seen from there; without a plane, the point that the direction leads to. Or else what is met on the way of sheets
-  /// and strips, at 15 degrees or more.
+  /// Returns the closest point of the surface in the plane of a start, within 65 degrees of its direction and visible
+  /// from the start. Without a plane, it is the point that the direction leads to. If the way meets sheets or strips
+  /// before that at 15 degrees or more, that point is returned.
   [[nodiscard]] std::optional<RimTarget> find(const RimStart& start) const;
 
   struct Stop {
     RimStart start;
     RimTarget target;
   };
-  /// The points between two targets on a line along what they lie on, such that the middle of each of its segments is
-  /// at most `tolerance` off where it can be: corners where the planes at two points meet, and what is met from
-  /// halfway.
+  /// Returns the points between two targets on a line along the obstacles that they lie on. The middle of each segment
+  /// is at most `tolerance` off, if possible. Points are corners where the planes at two points meet, and targets of
+  /// starts halfway.
   [[nodiscard]] std::vector<Vec3d> between(const Stop& a, const Stop& b, double tolerance) const;
 
  private:

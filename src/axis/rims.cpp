@@ -20,8 +20,8 @@ const Vec3d& point(const StripOutline& outline, std::uint32_t number) {
   return number < first_of_line ? outline.rim[number] : outline.line[number - first_of_line];
 }
 
-/// How good a triangle is: its area seen along the normal by the square of its longest side; -1 where it is turned too
-/// far.
+/// Returns the quality of a triangle: twice its area seen along the normal, divided by the square of its longest side.
+/// It is -1 if the triangle is turned too far.
 double quality(const StripOutline& outline, const std::array<std::uint32_t, 3>& triangle) {
   const Vec3d& a = point(outline, triangle[0]);
   const Vec3d& b = point(outline, triangle[1]);
@@ -32,7 +32,8 @@ double quality(const StripOutline& outline, const std::array<std::uint32_t, 3>& 
   return along / std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
 }
 
-/// The triangle at the rim has line[k] as its tip; the others fan out from the rim's ends on both sides.
+/// Returns triangles of which the one at the rim has line[k] as its tip. The others fan out from the rim's ends on both
+/// sides.
 std::vector<std::array<std::uint32_t, 3>> fans(std::uint32_t line_points, std::uint32_t k) {
   std::vector<std::array<std::uint32_t, 3>> triangles{{1, 0, first_of_line + k}};
   for (std::uint32_t p = 0; p + 1 < line_points; ++p) {
@@ -94,7 +95,7 @@ class RimFinder {
     }
   }
 
-  /// The groups of triangles around a vertex that hang together through edges at it, those of seams included.
+  /// Adds a corner for each group of triangles around a vertex that are connected through edges at it, seams included.
   void add_corners(std::uint32_t v) {
     const std::span<const std::uint32_t> around = incidence_.triangles_of_vertex()[v];
     detail::UnionFind groups(around.size());
@@ -142,8 +143,8 @@ class RimFinder {
     rims_.corners.push_back(corner);
   }
 
-  /// The mean over triangles by their area, so that slivers hardly tilt it: those given, and what hangs together with
-  /// them within the radius, as small triangles at rims are rough.
+  /// Returns the mean normal of triangles by their area, so that slivers hardly tilt it. Triangles that are connected
+  /// with the given ones within the radius count, too, because small triangles at rims are rough.
   [[nodiscard]] std::optional<Vec3d> tangent_normal(std::uint32_t v, std::vector<std::uint32_t> triangles) const {
     for (std::size_t k = 0; k < triangles.size() && triangles.size() < most_in_tangent; ++k) {
       for (const std::uint32_t e : incidence_.sides()[triangles[k]]) {
@@ -165,8 +166,8 @@ class RimFinder {
     return length(sum) > 0 ? std::optional(unit(sum)) : std::nullopt;
   }
 
-  /// The mean over the rim edges of a group. Long ones count no more than the shortest but three times: a corner
-  /// between a long and a short side looks to the middle, and a step in a rim hardly matters.
+  /// Returns the mean outward direction of the rim edges of a group. Long edges count no more than three times the
+  /// shortest. So a corner between a long and a short side looks to the middle, and a step in a rim hardly matters.
   [[nodiscard]] Vec3d outwards_of(std::uint32_t v, const std::optional<Vec3d>& normal,
                                   std::span<const std::uint32_t> around, detail::UnionFind& groups,
                                   std::uint32_t group) const {

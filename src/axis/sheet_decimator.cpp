@@ -12,11 +12,11 @@
 namespace blum::detail {
 namespace {
 
-/// The cosine that a triangle may turn by at most: 75 degrees.
+/// Cosine of the largest angle by which a triangle may turn: 75 degrees.
 constexpr double least_cosine = 0.25;
 constexpr std::size_t most_ring = 64;
 
-/// A point seen along the normal of a fan, from its centre.
+/// Point seen along the normal of a fan, from its centre.
 struct Seen {
   double x = 0, y = 0;
   double height = 0, radius = 0;  ///< radius: less that of the centre
@@ -37,7 +37,7 @@ struct Difference {
   }
 };
 
-/// What the ring looks like along a normal.
+/// Ring as seen along a normal.
 class View {
  public:
   View(const AxisPoint& centre, std::span<const AxisPoint> ring, const Vec3d& normal) {
@@ -51,14 +51,14 @@ class View {
     }
   }
 
-  /// Whether the fan lies above the plane once, before the centre goes.
+  /// Returns true if the fan lies above the plane once, before the centre is removed.
   [[nodiscard]] bool is_above_plane(bool is_closed) const {
     for (std::size_t k = 0; k + 1 < seen_.size() + (is_closed ? 1 : 0); ++k) {
       if (!(cross(seen_[k], seen_[(k + 1) % seen_.size()]) > 0)) return false;
     }
     return true;
   }
-  /// The same afterwards.
+  /// Returns true if the fan lies above the plane once afterwards.
   [[nodiscard]] bool is_unfolded() const {
     for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
       if (!(cross(seen_[0], seen_[k], seen_[k + 1]) > 0)) return false;
@@ -66,10 +66,10 @@ class View {
     return true;
   }
 
-  /// Whether the centre of an open fan lies beyond the line between the ends of its ring.
+  /// Returns true if the centre of an open fan lies beyond the line between the ends of its ring.
   [[nodiscard]] bool is_tip() const { return cross(seen_[0], seen_[seen_.size() - 1]) > 0; }
 
-  /// At the centre, where the fan covers it afterwards.
+  /// Includes the difference at the centre, if the fan covers it afterwards.
   void include_centre(Difference& difference) const {
     for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
       const double a = cross(seen_[k], seen_[k + 1]);
@@ -83,7 +83,7 @@ class View {
     }
   }
 
-  /// Where edges from the centre cross those afterwards: between these places both are linear.
+  /// Includes the differences where edges from the centre cross those afterwards. Between these places both are linear.
   void include_crossings(Difference& difference) const {
     for (std::size_t j = 2; j < seen_.size(); ++j) {
       const Seen& from = seen_[0];
@@ -94,7 +94,7 @@ class View {
         if (i == j) continue;
         const Seen& spoke = seen_[i];
         const double turn = cross(spoke, along);
-        // Signs tell mostly that there is no crossing, without dividing.
+        // Signs mostly show without division that no crossing exists.
         if (turn == 0 || (turn > 0 ? !(start > 0 && start <= turn) : !(start < 0 && start >= turn))) continue;
         const double s = start / turn;
         const double t = cross(from, spoke) / turn;
@@ -109,21 +109,21 @@ class View {
   InlineList<Seen, most_ring> seen_;
 };
 
-/// Whether a triangle faces to where a normal does, roughly.
+/// Returns true if a triangle roughly faces where a normal does.
 bool faces(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& normal) {
   const Vec3d own = blum::cross(b - a, c - a);
   return dot(own, normal) > least_cosine * length(own);
 }
 
 constexpr std::size_t most_in_batch = 256;
-/// At each step sheets may move by this part of the least radius nearby; by the second one of the tolerance anyway:
-/// flat ones do by rounding, and reach out to where the radius is 0.
+/// At each step sheets may reach beyond where they were by this part of the least radius nearby. By `nothing` of the
+/// tolerance they always may: flat ones do so by rounding, and they reach out to where the radius is 0.
 constexpr double part_of_radius = 0.5;
 constexpr double nothing = 1e-6;
-/// Rims, seams and curves may move by this part of the tolerance: they say most for the fewest vertices.
+/// Rims, seams and curves may move by this part of the limit of sheets, because few vertices of them show most.
 constexpr double part_of_borders = 0.4;
 
-/// Whether any vertex of the first fans, or any other end of a border, is of a kind.
+/// Returns true if any vertex of the fans, or any other end of a border, is of a kind.
 template <class Is>
 bool is_any_of(std::span<const Fan> fans, std::span<const std::pair<std::uint32_t, std::uint32_t>> chain,
                const Is& is) {
@@ -156,7 +156,7 @@ std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const Axis
   }
   const View view(centre, ring, normal);
   if (!view.is_unfolded()) return std::nullopt;
-  // Each point of a triangle moves with its corner, and so no further than that.
+  // Each point of a triangle moves with its corner, and so no further than the corner.
   const double moved = length(ring[0].position - centre.position);
   const Deviation bound{std::max(moved, std::abs(ring[0].radius - centre.radius)), moved};
   if (!view.is_above_plane(is_closed)) return bound;
@@ -191,10 +191,11 @@ void SheetDecimator::run(std::span<const double> levels) {
   }
 }
 
-/// Takes out vertices that are not next to one taken out before, once over all. All threads look at those of a batch
-/// as they are before any of it goes; what something goes next to is looked at again. The order, and so the result,
-/// does not depend on the threads: those of a batch are far apart in memory, and next to those of the batch before.
-/// @return  how many went.
+/// Removes vertices that are not next to one removed before, in one pass over all. All threads examine the vertices of
+/// a batch before any of them is removed. If something next to a vertex was removed, it is examined again. The order,
+/// and so the result, does not depend on the threads. Vertices of a batch are far apart in memory, and next to those of
+/// the batch before.
+/// @return  number of removed vertices.
 std::size_t SheetDecimator::sweep(double limit) {
   const std::vector<std::uint32_t> waiting = waiting_vertices();
   const std::size_t batches = (waiting.size() + most_in_batch - 1) / most_in_batch;
@@ -228,7 +229,7 @@ void SheetDecimator::take_batch(double limit) {
     if (is_touched(v)) continue;
     Look& look = looks_[k];
     is_waiting_[v] = 0;
-    // What went on the other side of a neighbour may forbid to go there.
+    // A removal on the other side of a neighbour may forbid this one.
     if (look.candidate && is_any_of(std::span(look.fans).first(look.fan_count), look.chain, is_touched))
       look_at(v, limit, look);
     if (look.candidate) take(v, look);
@@ -239,7 +240,7 @@ void SheetDecimator::look_at(std::uint32_t v, double limit, Look& look) const {
 }
 
 /// Finds the fans of a vertex and its neighbours along a chain, if it has two of these or none.
-/// @return  whether it may go at all.
+/// @return  true if the vertex may be removed at all.
 bool SheetDecimator::gather(std::uint32_t v, Look& look) const {
   auto& chain = look.chain;
   auto& sides = look.sides;
@@ -258,7 +259,7 @@ bool SheetDecimator::gather(std::uint32_t v, Look& look) const {
   }
   return true;
 }
-/// Follows triangles from a ring vertex to another one, or round to the same. They leave `sides`.
+/// Follows triangles from a ring vertex to another one, or around to the same. They are removed from `sides`.
 bool SheetDecimator::add_fan(Look& look, std::uint32_t from, std::uint32_t to) {
   auto& sides = look.sides;
   if (look.fan_count == look.fans.size()) look.fans.emplace_back();
@@ -282,7 +283,7 @@ bool SheetDecimator::add_fan(Look& look, std::uint32_t from, std::uint32_t to) {
   return !fan.is_closed || fan.ring.size() > 2;
 }
 
-/// The neighbour that a vertex had best go to.
+/// Returns the neighbour to which a vertex is best contracted.
 std::optional<SheetDecimator::Candidate> SheetDecimator::best(std::uint32_t v, double limit, Look& look) const {
   auto& targets = look.targets;
   targets.clear();
@@ -307,7 +308,7 @@ std::optional<SheetDecimator::Candidate> SheetDecimator::best(std::uint32_t v, d
   return std::nullopt;
 }
 
-/// How far all cells around a vertex would be from where they were at first; nullopt where that is too far.
+/// Returns how far all cells around a vertex would be from their original places; nullopt if that is too far.
 std::optional<SheetDecimator::Candidate> SheetDecimator::moved_to(std::uint32_t v, std::uint32_t to, double limit,
                                                                   Look& look) const {
   double along = 0;
@@ -380,7 +381,7 @@ void SheetDecimator::touch(std::uint32_t v) {
   is_waiting_[v] = may_wait(v) ? 1 : 0;
 }
 
-/// The angle of a sheet is the largest of its triangles': what goes leaves its own to the triangle beside it.
+/// Passes the angle of a removed triangle on to the triangle beside it. So the largest angle of a sheet stays.
 void SheetDecimator::pass_angle_on(const Fan& fan) {
   const std::size_t count = fan.triangles.size();
   const auto pass = [&](std::uint32_t from, std::uint32_t to) {

@@ -46,7 +46,7 @@ bool ShrinkingComplex::may_contract(std::uint32_t from, std::uint32_t to, LinkSc
   std::sort(linked.begin(), linked.end());
   std::sort(linked_to_edge.begin(), linked_to_edge.end());
   const bool is_twice =
-      std::adjacent_find(linked_to_edge.begin(), linked_to_edge.end()) != linked_to_edge.end();  // the same triangle
+      std::adjacent_find(linked_to_edge.begin(), linked_to_edge.end()) != linked_to_edge.end();  // equal triangles
   const auto is_of_edge = [&](std::uint32_t v) {
     return std::binary_search(linked_to_edge.begin(), linked_to_edge.end(), v);
   };

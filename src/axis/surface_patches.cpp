@@ -15,10 +15,10 @@
 namespace blum::detail {
 namespace {
 
-/// So that a prism of twelve sides, whose edges bend by 30 degrees but for rounding, is one patch at 30.
+/// A prism of twelve sides, whose edges bend by 30 degrees up to rounding, is thus one patch at 30.
 constexpr double rounding = 1e-6;  // degrees
 
-/// Whether a triangle runs along an edge from its smaller vertex to the larger one.
+/// Returns true if a triangle runs along an edge from its smaller vertex to the larger one.
 bool runs_along(const Triangle& triangle, const Segment& edge) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (triangle[k] == edge[0] && triangle[(k + 1) % 3] == edge[1]) return true;
@@ -115,7 +115,7 @@ void SurfacePatches::add_up() {
   for (AxisPatch& patch : patches_) {
     patch.centroid = patch.centroid / patch.area;
     const double size = length(patch.normal);
-    // What is left of a closed surface is rounding.
+    // For a closed surface the sum is rounding.
     patch.normal = size > 1e-9 * patch.area ? patch.normal / size : Vec3d{};
   }
 }

@@ -1,4 +1,4 @@
-// Blum: smooth parts of a mesh, and which of them a site lies on. SPDX-License-Identifier: Apache-2.0
+// Blum: smooth parts of a mesh, and the parts that a site lies on. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,24 @@
 
 namespace blum::detail {
 
-/// The patches of a mesh (see AxisPatch), numbered by their first face.
+/// Patches of a mesh (see AxisPatch), numbered by their first face.
 class SurfacePatches {
  public:
-  /// @param angle  degrees. @throws InvalidMesh, Cancelled. Cost: near-linear. Lives no longer than the mesh.
+  /// @param angle  degrees. @throws InvalidMesh, Cancelled. Cost: near-linear. The mesh must outlive this object.
   SurfacePatches(const MeshView& mesh, double angle, const Context& context);
-  /// The same with the sites of the mesh, which passes validate().
+  /// The same with the sites of the mesh, which must pass validate().
   SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context);
 
   static constexpr std::uint32_t none = 0xffffffffU;
 
   [[nodiscard]] const std::vector<AxisPatch>& patches() const { return patches_; }
-  /// That of a face; none for one without area.
+  /// Returns the patch of a face; none for a face without area.
   [[nodiscard]] std::uint32_t of_face(std::uint32_t face) const { return patch_of_[face]; }
-  /// Those that a site lies on, rising. @throws InvalidOption for a site that the mesh does not have.
+  /// Returns the patches that a site lies on, ascending. @throws InvalidOption for a site that the mesh does not have.
   [[nodiscard]] std::vector<std::uint32_t> at(SiteId site) const;
 
  private:
-  /// The triangles of each edge or vertex, one after the other.
+  /// Triangles of each edge or vertex, one after the other.
   struct Rows {
     std::vector<std::size_t> first;
     std::vector<std::uint32_t> triangles;
@@ -42,7 +42,7 @@ class SurfacePatches {
 
   const MeshView mesh_;
   SiteTable sites_;
-  std::vector<Vec3d> normals_;  ///< of twice the area's length
+  std::vector<Vec3d> normals_;  ///< length: twice the area
   Rows at_edges_, at_vertices_;
   std::vector<std::uint32_t> patch_of_;  ///< of each face
   std::vector<AxisPatch> patches_;

@@ -1,4 +1,4 @@
-// The one place that knows every back end.
+// Chooses the back end for a device. Only this file names all back ends.
 #include "field/backend.hpp"
 
 #include "blum/core/error.hpp"
@@ -8,8 +8,8 @@
 namespace blum {
 namespace {
 
-/// What make_cuda(index) makes where the device is a CUDA device, or may be one and is there; else what make_cpu()
-/// does, and `reason` says why.
+/// Returns make_cuda(index) for a CUDA device. For `automatic`, tries CUDA device 0 first. If that fails, `reason` gets
+/// the error and make_cpu() is returned. For the CPU, returns make_cpu().
 template <class MakeCuda, class MakeCpu>
 auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& make_cpu, std::string& reason) {
   if (device.kind == DeviceKind::cuda) return make_cuda(device.index);
@@ -18,7 +18,7 @@ auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& mak
       return make_cuda(0);
     } catch (const DeviceError& error) {
       reason = error.what();
-    } catch (const OutOfMemory& error) {  // of the device: others may fill it
+    } catch (const OutOfMemory& error) {  // device memory, which other processes may fill
       reason = error.what();
     }
   }

@@ -1,4 +1,4 @@
-// Blum: what computes fields, on each device. SPDX-License-Identifier: Apache-2.0
+// Blum: back ends that compute fields, one per device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@
 namespace blum {
 
 struct FieldResult {
-  /// Nodes that are left to exact queries: those that no site claimed in float32, and those whose side is too close to
-  /// call; rising.
+  /// Nodes left to exact queries, ascending: those that no site claimed in float32, and those whose side float32 cannot
+  /// decide.
   std::vector<std::size_t> unsettled;
-  /// Whether nodes got the signs that were asked for; else they are left to others.
+  /// True if the nodes have the requested signs; otherwise the caller finds them.
   bool is_signed = false;
 };
 
-/// Computes fields on one device; keeps connectivity and memory from one to the next.
+/// Computes fields on one device. Keeps connectivity and memory between fields.
 class FieldBackend {
  public:
   FieldBackend() = default;
@@ -35,19 +35,19 @@ class FieldBackend {
 
   [[nodiscard]] virtual Device device() const = 0;
 
-  /// Makes `mesh` the current one; what depends on its connectivity alone is kept while that stays the same. The mesh
-  /// must stay alive until compute() returns.
+  /// Makes `mesh` the current mesh. Data that depend only on connectivity are kept while the connectivity stays the
+  /// same. The mesh must stay alive until compute() returns.
   virtual void set_mesh(const MeshView& mesh, const Context& context) = 0;
   [[nodiscard]] virtual const SiteTable& sites() const = 0;
 
-  /// Whether others find the signs of a method, with the sites of the field.
+  /// Returns true if the caller finds the signs of a method, from the sites of the field.
   [[nodiscard]] virtual bool needs_sites_for(sign::Method method) const = 0;
 
-  /// Fills the memory of a request, the host's, and appends phase times.
+  /// Fills the host memory of a request, and appends phase times.
   [[nodiscard]] virtual FieldResult compute(const FieldRequest& request, const Context& context,
                                             std::vector<PhaseTime>& phases) = 0;
 
-  /// Fills the second order of the field that compute() made; returns the nodes that are left to exact queries, rising.
+  /// Fills the second order of the field that compute() made. Returns the nodes left to exact queries, ascending.
   [[nodiscard]] virtual std::vector<std::size_t> compute_second(const SecondRequest& /*request*/,
                                                                 const Context& /*context*/) {
     return {};
@@ -63,18 +63,21 @@ class ImageBackend {
   virtual ~ImageBackend() = default;
 
   [[nodiscard]] virtual Device device() const = 0;
-  /// Makes a valid image the current one; it must stay alive. Requests for it may differ in selection and memory.
+  /// Makes a valid image the current one. The image must stay alive. Later requests for it may differ in selection and
+  /// memory.
   virtual void set_image(const VoxelImageView& image, const detail::ImageRequest& request) = 0;
-  /// How many voxels a request selects.
+  /// Returns the number of voxels that a request selects.
   [[nodiscard]] virtual std::size_t select(const detail::ImageRequest& request) = 0;
-  /// Fills the memory, the host's, of the request that was selected last.
+  /// Fills the host memory of the request that was selected last.
   virtual void transform(const detail::ImageRequest& request) = 0;
 };
 
-/// The back end of context.device for fields of an order. @param reason  gets why it is the CPU's where `automatic` was
-/// asked for. @throws DeviceError; InvalidOption for order 2 on a device that is not the CPU.
+/// Returns the back end of context.device for fields of an order.
+/// @param reason  gets the reason if `automatic` falls back to the CPU.
+/// @throws DeviceError; InvalidOption if the order is 2 and a CUDA device is asked for.
 [[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context, int order, std::string& reason);
-/// Likewise; none for the CPU. @throws DeviceError.
+/// Returns the image back end of context.device; null for the CPU. `reason` is as above.
+/// @throws DeviceError.
 [[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(const Context& context, std::string& reason);
 
 }  // namespace blum

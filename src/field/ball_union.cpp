@@ -16,11 +16,11 @@
 namespace blum {
 namespace {
 
-/// Blocks of at most this many nodes are not cut any further.
+/// Blocks of at most this many nodes are not split further.
 constexpr std::int64_t leaf_nodes = 8;
-/// Blocks of at most this many nodes are done by one worker.
+/// One worker fills a block of at most this many nodes.
 constexpr std::int64_t local_nodes = std::int64_t{1} << 18;
-/// What 32-bit distances hold.
+/// Largest coordinate and radius whose distances float32 can hold.
 constexpr double largest_length = 1e37;
 
 void check(std::span<const Ball> balls) {
@@ -49,7 +49,7 @@ struct Block {
   [[nodiscard]] std::int64_t node_count() const { return side(0) * side(1) * side(2); }
 };
 
-/// The ball around the nodes of a block.
+/// Ball around the nodes of a block.
 struct Reach {
   Vec3d centre;
   double radius = 0;
@@ -61,11 +61,11 @@ Reach reach_of(const GridSpec& grid, const Block& block) {
   const Vec3d sides{static_cast<double>(block.side(0) - 1) * grid.spacing.x,
                     static_cast<double>(block.side(1) - 1) * grid.spacing.y,
                     static_cast<double>(block.side(2) - 1) * grid.spacing.z};
-  // A direction may be 1e-6 off from orthonormal.
+  // Slack, because a direction may deviate from orthonormal by 1e-6.
   return {(first + last) * 0.5, 0.5 * length(sides) * (1 + 1e-5)};
 }
 
-/// Halves the longest sides of a block, so that what comes of it is about as long as wide. Calls visit(part).
+/// Halves the longest sides of a block, so that its parts are about as long as wide. Calls visit(part) for each part.
 template <class Visit>
 void for_each_part(const GridSpec& grid, const Block& block, const Visit& visit) {
   const auto extent = [&](std::size_t axis) { return static_cast<double>(block.side(axis) - 1) * grid.spacing[axis]; };
@@ -84,7 +84,7 @@ void for_each_part(const GridSpec& grid, const Block& block, const Visit& visit)
   }
 }
 
-/// Balls, number by number.
+/// Balls as one array per coordinate.
 struct BallRows {
   std::vector<double> x, y, z, radius;
 
@@ -101,11 +101,11 @@ struct BallRows {
   [[nodiscard]] Ball operator[](std::size_t k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 };
 
-/// Leaves out the balls that are nowhere in a block closer than the one that is closest to its centre.
+/// Removes balls that are nowhere in a block closer than the ball that is closest to the block's centre.
 class Filter {
  public:
-  /// Calls keep(ball) for the balls from `begin` to before `end` that have to be looked at in a block, in their
-  /// order; keep may add balls to the rows.
+  /// Calls keep(ball), in order, for the balls of a range that may be the closest somewhere in a block. The range goes
+  /// from `begin` to before `end`. keep may add balls to the rows.
   template <class Keep>
   void run(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end, const Keep& keep) {
     measure(reach, balls, begin, end);
@@ -118,7 +118,7 @@ class Filter {
   }
 
  private:
-  /// How far the centre of the block is from each centre, and from each ball.
+  /// Measures the distance from the block's centre to each ball's centre, and to each ball.
   void measure(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     if (to_centre_.size() < count) {
@@ -139,7 +139,8 @@ class Filter {
     }
   }
 
-  /// The first of the smallest values. (std::min_element waits for each comparison before the next one.)
+  /// Returns the index of the first smallest value. std::min_element would wait for each comparison before the next
+  /// one.
   [[nodiscard]] std::size_t smallest_value(std::size_t count) const {
     constexpr std::size_t lanes = 8;
     std::array<double, lanes> least{};
@@ -155,10 +156,12 @@ class Filter {
     return static_cast<std::size_t>(std::find(value_.begin(), value_.end(), smallest) - value_.begin());
   }
 
-  /// Whether each ball, further from the centre of the block than the best one, may be closer somewhere in the block.
+  /// Sets `lead_`: negative if a ball, further from the block's centre than the best one, may be closer somewhere in
+  /// the block.
   ///
-  /// The difference of the two distances changes by |u - v| per length, u and v the directions from the two centres;
-  /// and |u - v| is at most 2, and at most 2 apart / (|x - one| + |x - other|) (Dunkl, Williams 1964).
+  /// The difference of the two distances changes by at most |u - v| per unit of length. Here u and v are the directions
+  /// from the two centres. The length |u - v| is at most 2, and at most 2 apart / (|x - one| + |x - other|) (Dunkl,
+  /// Williams 1964). Here `apart` is the distance between the centres.
   void compare(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end, std::size_t best) {
     const Ball closest = balls[begin + best];
     const double best_value = value_[best];
@@ -181,7 +184,7 @@ class Filter {
       const double catching_up = sum > 0 ? behind * behind * sum * sum - four * squared_apart : -1;
       const double near = behind - 2 * reach.radius;
       const double deeper = closest.radius > radius[k] ? closest.radius - radius[k] : 0;
-      const double inside = deeper * deeper - squared_apart;  // not negative: it lies in the closest one
+      const double inside = deeper * deeper - squared_apart;  // at least 0 if the ball lies in the closest one
       const double lead_or_near = catching_up > near ? catching_up : near;
       lead[k] = inside > lead_or_near ? inside : lead_or_near;
     }
@@ -189,16 +192,16 @@ class Filter {
 
   std::vector<double> to_centre_;
   std::vector<double> value_;
-  std::vector<double> lead_;  ///< negative where a ball may be the closest one somewhere
+  std::vector<double> lead_;  ///< negative if a ball may be the closest one somewhere
 };
 
-/// Blocks, and the balls that have to be looked at in them.
+/// A block, and the balls that may be closest in it.
 struct Task {
   Block block;
   BallRows balls;
 };
 
-/// Cuts the grid into blocks that one worker each does, level by level, each with its own part of the balls.
+/// Splits the grid, level by level, into blocks for one worker each. Each block gets its own subset of the balls.
 std::vector<Task> cut_grid(std::span<const Ball> balls, const GridSpec& grid, const Context& context) {
   std::vector<Task> tasks(1);
   tasks[0].block.end = grid.size;
@@ -223,7 +226,7 @@ std::vector<Task> cut_grid(std::span<const Ball> balls, const GridSpec& grid, co
   return tasks;
 }
 
-/// Fills blocks, octant by octant, with the balls of the blocks around them on a stack.
+/// Fills blocks, octant by octant. A stack holds the balls of the blocks around the current one.
 class BlockFiller {
  public:
   BlockFiller(const GridSpec& grid, const Context& context, std::span<float> values)
@@ -237,7 +240,7 @@ class BlockFiller {
  private:
   using Coordinates = std::array<double, leaf_nodes>;
 
-  /// Fills a block from the balls of the stack from `begin` on.
+  /// Fills a block from the balls of the stack from index `begin` on.
   void fill(const Block& block, std::size_t begin) {
     if (context_.cancel.stop_requested()) return;
     const std::size_t end = stack_.size();

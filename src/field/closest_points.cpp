@@ -25,7 +25,7 @@ namespace blum {
 namespace {
 
 constexpr std::size_t queries_per_range = sign::most_shared;
-/// What rounding may do to the sum of two distances, relative to the lengths involved, generously.
+/// Generous bound on the rounding error of the sum of two distances, relative to the lengths involved.
 constexpr double rounding = 1e-12;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
@@ -36,10 +36,10 @@ double checked_limit(const ClosestPointOptions& options) {
   return options.max_distance.value_or(no_limit);
 }
 
-/// Few queries keep their order.
+/// At most this many queries keep their order.
 constexpr std::size_t few_queries = 64;
 
-/// An order of queries in which neighbours come together.
+/// Returns an order of queries in which neighbours follow each other.
 std::vector<std::uint32_t> order_along_curve(std::span<const Vec3d> queries) {
   std::vector<std::uint32_t> order(queries.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -58,21 +58,21 @@ std::vector<std::uint32_t> order_along_curve(std::span<const Vec3d> queries) {
   return order;
 }
 
-/// Answers come in another order than queries.
+/// Prefetches a result, because answers come in another order than queries.
 void prefetch_to_write([[maybe_unused]] const ClosestPoint* point) {
 #if defined(__GNUC__)
   __builtin_prefetch(point, 1);
 #endif
 }
 
-/// Of a point on the line through two others, the part of the second one, between 0 and 1.
+/// Returns the weight of b at a point p on the line through a and b, clamped to 0 to 1.
 double part_between(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
   const double squared = squared_length(b - a);
   return squared > 0 ? std::clamp(dot(p - a, b - a) / squared, 0.0, 1.0) : 0.0;
 }
 
-/// Weights of three corners whose first two are the furthest apart; p lies in the triangle, but for rounding. However
-/// narrow the triangle is, the mean of its corners is p.
+/// Returns the weights of three corners at p. The first two corners are the furthest apart. p lies in the triangle,
+/// except for rounding. The weighted mean of the corners is p, however narrow the triangle is.
 std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
   const Vec3d& a = corners[0];
   const Vec3d along = corners[1] - a;
@@ -80,14 +80,15 @@ std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3
   if (!(squared > 0)) return {1, 0, 0};
   double foot = dot(corners[2] - a, along) / squared;
   Vec3d height = corners[2] - a - along * foot;
-  // Of a narrow triangle rounding leaves too much along the side: once more.
+  // In a narrow triangle, rounding leaves a part of the height along the side; remove it.
   const double left = dot(height, along) / squared;
   foot += left;
   height -= along * left;
   const double squared_height = squared_length(height);
   const double third = squared_height > 0 ? std::min(dot(p - a, height) / squared_height, 1.0) : 0.0;
   const double second = dot(p - a, along) / squared - third * foot;
-  // Beyond a side by rounding, which the height of a narrow triangle enlarges: on it.
+  // Rounding, which the height of a narrow triangle magnifies, can put p beyond a side. Such a point counts as on the
+  // side.
   if (!(third > 0)) {
     const double part = part_between(a, corners[1], p);
     return {1 - part, part, 0};
@@ -108,7 +109,7 @@ std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3
 using Use = FunctionRef<void(std::span<const FoundPoint>)>;
 
 struct ClosestPointQuery::Data {
-  TriangleMesh mesh;  ///< what `search` is built of
+  TriangleMesh mesh;  ///< `search_` is built from it
   SignMode mode;
   SiteTable sites;
   Bvh bvh;
@@ -116,8 +117,8 @@ struct ClosestPointQuery::Data {
   sign::Plan plan;
   sign::Sides sides;
   double max_distance;
-  double longest = 0;           ///< side of the mesh's box
-  double coordinate_limit = 0;  ///< of queries, mesh units
+  double longest = 0;           ///< longest side of the mesh's box
+  double coordinate_limit = 0;  ///< largest coordinate of a query, mesh units
 
   Data(const MeshView& given, const ClosestPointOptions& options, const Context& context)
       : mesh(copy_of(given)),
@@ -157,13 +158,13 @@ struct ClosestPointQuery::Data {
 
   [[nodiscard]] ClosestPoint finished(const Vec3d& query, const std::optional<NearestSite>& nearest) const {
     if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
-    // What lies on the surface is not inside.
+    // A point on the surface is not inside.
     const bool is_negative = nearest->distance > 0 && sides.is_inside(query, *nearest);
     const double distance = is_negative ? -nearest->distance : nearest->distance;
     return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
   }
 
-  /// The same for queries that lie close together: those that need winding numbers share what they can.
+  /// Finishes queries that lie close together. Queries that need winding numbers share them if possible.
   void finish(std::span<const Vec3d> queries, std::span<const PointSearch::Answer> group, Use use) const {
     static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
     InlineList<FoundPoint, sign::most_shared> found;
@@ -193,7 +194,8 @@ struct ClosestPointQuery::Data {
     use({&found[0], found.size()});
   }
 
-  /// Queries that follow each other: the last one's closest point is no closer than the next one's.
+  /// Answers queries in an order in which neighbours follow each other. The last closest point bounds the next
+  /// distance.
   void find(std::span<const Vec3d> queries, std::span<const std::uint32_t> order, Use use) const {
     InlineList<PointSearch::Answer, sign::most_shared> group;
     std::optional<NearestSite> last;
@@ -206,12 +208,13 @@ struct ClosestPointQuery::Data {
     finish(queries, group.span(), use);
   }
 
-  /// A bound, widened by more than rounding can have taken from it.
+  /// Returns a bound, widened by more than rounding can have reduced it.
   [[nodiscard]] double with_slack(double bound, const Vec3d& q) const {
     return bound * (1 + 1e-9) + 1e-12 * (longest + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
   }
 
-  /// The search for so many queries; null where they are not worth one. It is built by the first that are.
+  /// Returns the search for this many queries, or null if a search does not pay. The first call for which it pays
+  /// builds it.
   [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
     const std::scoped_lock lock(search_mutex_);
     if (is_prepared_) return queries >= PointSearch::fewest ? search_.get() : nullptr;
@@ -243,7 +246,7 @@ struct ClosestPointQuery::Data {
  private:
   mutable std::mutex search_mutex_;
   mutable std::unique_ptr<const PointSearch> search_;
-  bool is_prepared_ = false;  ///< then there is a search, for any number of queries from PointSearch::fewest on
+  bool is_prepared_ = false;  ///< if true, `search_` exists for any number of queries from PointSearch::fewest on
 };
 
 ClosestPointQuery::ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options, const Context& context) {
@@ -308,7 +311,8 @@ std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> quer
 
 namespace {
 
-/// Many queries that find several primitives each. @param find  of one query.
+/// Answers many queries that find several primitives each.
+/// @param find  returns the primitives of one query.
 template <class Find>
 NearPrimitives gathered(std::span<const Vec3d> queries, const Context& context, const Find& find) {
   NearPrimitives out;
@@ -358,7 +362,7 @@ std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const V
 std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found) {
   const double rounding = 1e-13 * (length(query) + length(found.point));
   if (!(std::abs(found.distance) > rounding) || !std::isfinite(found.distance)) return std::nullopt;
-  // By its own length: next to the surface rounding takes more from the point than from the distance.
+  // Divide by its own length: next to the surface, rounding affects the point more than the distance.
   const Vec3d away = (query - found.point) / std::abs(found.distance);
   const double size = length(away);
   if (!(size > 0)) return std::nullopt;
@@ -374,7 +378,7 @@ std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const Clo
     out[k] = 1;
     return out;
   }
-  // About 1 long, so that nothing overflows.
+  // Scaled to a length of about 1, so that nothing overflows.
   const Vec3d& origin = mesh.vertices[triangle[0]];
   double size = 0;
   for (const std::uint32_t v : triangle) {

@@ -1,4 +1,4 @@
-// Blum: whether a mesh has the connectivity of the one before it. SPDX-License-Identifier: Apache-2.0
+// Blum: detects meshes with the connectivity of the one before. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace blum {
 
-/// Remembers the indices of a mesh.
+/// Copy of a mesh's indices, to compare later meshes with.
 class ConnectivityCache {
  public:
   [[nodiscard]] bool holds(const MeshView& mesh) const;

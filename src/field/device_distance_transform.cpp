@@ -17,7 +17,7 @@ struct DeviceDistanceTransform::State {
 
   GridSpec grid;
   DistanceTransformOptions options;
-  detail::ImageRequest request;  ///< without memory
+  detail::ImageRequest request;  ///< without result memory
   cuda::DeviceQueue queue;
 };
 

@@ -35,7 +35,7 @@ void check_mesh(const DeviceMeshView& mesh, const FieldOptions& options) {
   if (mesh.triangles.rows + mesh.segments.rows + mesh.points.rows == 0) {
     throw InvalidMesh("the mesh has no triangles, segments or points, so no node has a closest site");
   }
-  // Each triangle may have three edges of its own.
+  // Each triangle may have three edges of its own, so it may add four sites.
   const std::size_t limit = max_id_count;
   for (const std::size_t rows : {mesh.vertices.rows, mesh.triangles.rows, mesh.segments.rows, mesh.points.rows}) {
     if (rows > limit) throw InvalidMesh("the mesh has more sites than there are ids for");
@@ -57,14 +57,14 @@ struct DeviceFieldSolver::State {
   GridSpec grid;
   FieldOptions options;
   cuda::DeviceQueue queue;
-  std::optional<sign::Plan> plan;  ///< none before there is a connectivity
+  std::optional<sign::Plan> plan;  ///< empty until set_connectivity()
 };
 
 DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context) {
   validate(grid);
   check_options(options);
   if (options.order != 1) throw InvalidOption("fields in a device's memory are of order 1; order 2 is for the CPU");
-  // Of no mesh yet: refuses what no mesh on a device can have.
+  // No mesh on a device supports normals, so they are rejected before a mesh is known.
   if (options.sign == SignMode::normals) (void)sign::plan_unseen_signs(options.sign, 0);
   state_ = std::make_unique<State>(grid, options, context.device);
 }

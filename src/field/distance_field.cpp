@@ -1,4 +1,4 @@
-// Fields of meshes: plans the signs, runs the back end, settles what it leaves open.
+// Computes fields of meshes: plans the signs, runs the back end, settles the nodes that it leaves open.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,10 +42,9 @@ void invert_signs(const Context& context, Field& field) {
   });
 }
 
-/// Negates the distances of nodes inside.
-/// @param plan   of this mesh; with Method::crossings or Method::sums.
+/// Negates the distances of nodes inside. The result has the same bytes for any number of threads.
+/// @param plan   plan of this mesh, with Method::crossings or Method::sums.
 /// @param field  unsigned distances of this mesh, off by at most 1e-6 of the diagonal of the box around mesh and grid.
-/// The same bytes for any number of threads.
 void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& sites, const Context& context,
                    Field& field) {
   if (plan.method == Method::crossings) {
@@ -58,14 +57,14 @@ void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& site
     (void)apply_winding_sign(field, mesh, sites, context);
     return;
   }
-  // Above -1 where the winding number is, that of the mesh turned inside out is not above 1/2.
+  // The reversed mesh has negated winding numbers. A number above -1 is not above 1/2 there, so the signs are inverted.
   const std::vector<Triangle> turned = reversed_triangles(mesh.triangles);
   (void)apply_winding_sign(field, {mesh.vertices, turned, {}, {}}, sites, context);
   invert_signs(context, field);
 }
 
-/// Negates the distances of nodes whose closest site, as the field has it, faces away from them.
-/// @return  nodes without a site, rising.
+/// Negates the distances of nodes whose closest site, as stored in the field, faces away from them.
+/// @return  nodes without a site, ascending.
 std::vector<std::size_t> apply_pseudonormals(const MeshView& mesh, const SiteTable& sites, const Context& context,
                                              Field& field) {
   const Pseudonormals normals(mesh, sites, context);
@@ -83,7 +82,7 @@ std::vector<std::size_t> apply_pseudonormals(const MeshView& mesh, const SiteTab
         }
         const auto at = static_cast<std::int64_t>(k);
         const Vec3d query = grid.position(at % grid.size[0], at / grid.size[0], static_cast<std::int64_t>(slice));
-        // A site's normal is perpendicular to it, so that any of its points will do.
+        // A site's normal is perpendicular to the site, so any of its points serves.
         const auto corner = static_cast<std::size_t>(sites.vertices(site)[0]);
         if (normals.is_inside(query, mesh.vertices[corner], site)) field.distance[node] = -field.distance[node];
       }
@@ -105,14 +104,15 @@ struct SecondSite {
   SiteId site = SiteId::none();
 };
 
-/// Finds second sites in double precision, point by point. For the few nodes that the kernels leave open: it looks at
-/// balls that grow. Everything given must outlive it.
+/// Finds second sites in double precision, point by point, in growing balls. It serves the few nodes that the kernels
+/// leave open. The mesh, sites and labels must outlive it.
 class SecondSearch {
  public:
   SecondSearch(const MeshView& mesh, const SiteTable& sites, const SecondLabels& labels, const Context& context);
 
-  /// The closest site, of the smallest id, that has no label in common with `first`; none beyond `limit`.
-  /// @param first_distance  where it is, about, which tells how far to look.
+  /// Returns the closest site that shares no label with `first`; none beyond `limit`. Among equally close sites it
+  /// returns the one of the smallest id.
+  /// @param first_distance  approximate distance of the first site, from which the first radius follows.
   [[nodiscard]] SecondSite find(const Vec3d& query, SiteId first, double first_distance, double limit) const;
 
  private:
@@ -129,7 +129,7 @@ void offer_site(double distance, SiteId site, SecondSite& best) {
   if (distance < best.distance || (distance == best.distance && site.value < best.site.value)) best = {distance, site};
 }
 
-/// The closest of the ends of an edge and the edge itself.
+/// Offers the closest of an edge's two ends and the edge itself.
 void offer_edge(const MeshView& mesh, const SiteTable& sites, const Segment& ends, const Vec3d& query,
                 SecondSite& best) {
   const Vec3d& a = mesh.vertices[ends[0]];
@@ -139,7 +139,7 @@ void offer_edge(const MeshView& mesh, const SiteTable& sites, const Segment& end
   const double from_b = dot(b - query, along);
   if (from_a <= 0) return offer_site(length(query - a), SiteId(ends[0]), best);
   if (from_b <= 0) return offer_site(length(query - b), SiteId(ends[1]), best);
-  // From the nearer end, so that rounding does not grow with the edge's length.
+  // Measured from the nearer end, so that rounding does not grow with the edge's length.
   const double squared = from_a + from_b;
   const Vec3d point = from_a < from_b ? a + along * (from_a / squared) : b - along * (from_b / squared);
   const auto found = std::lower_bound(sites.edges().begin(), sites.edges().end(), ends);
@@ -164,7 +164,7 @@ SecondSearch::SecondSearch(const MeshView& mesh, const SiteTable& sites, const S
 
 void SecondSearch::offer(const NearestPrimitive& found, const Vec3d& query, const SecondLabels::OfSite& first,
                          SecondSite& best) const {
-  // What is left of a primitive without its excluded corners: all of it, an edge, a corner or nothing.
+  // The primitive without its excluded corners: all of it, an edge, a corner or nothing.
   std::array<std::uint32_t, 3> left{};
   std::size_t count = 0;
   bool is_whole = true;
@@ -196,13 +196,13 @@ SecondSite SecondSearch::find(const Vec3d& query, SiteId first, double first_dis
       return true;
     });
     if (best.distance <= radius || radius >= end) break;
-    // What was found outside of the ball is in the next one, and nothing further can be closer.
+    // The next ball contains the best site found outside of this one; no site beyond it is closer.
     radius = std::min({end, best.distance, 2 * radius});
   }
   return best.distance <= limit ? best : SecondSite{};
 }
 
-/// Finishes nodes that float32 left open: exact distance and site.
+/// Computes the exact second distance and site of nodes that float32 left open.
 void settle_second(const std::vector<std::size_t>& nodes, const MeshView& mesh, const SiteTable& sites,
                    const SecondRequest& request, const Context& context) {
   if (nodes.empty()) return;
@@ -227,7 +227,7 @@ void settle_second(const std::vector<std::size_t>& nodes, const MeshView& mesh, 
 
 constexpr std::size_t nodes_per_range = std::size_t{1} << 18;
 
-/// Finishes nodes that float32 left open: exact distance and site, and the side by its pseudonormal.
+/// Computes the exact distance and site of nodes that float32 left open, and the side by the site's pseudonormal.
 void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, const SiteTable& sites, bool with_sides,
                   const Context& context, Field& field) {
   if (nodes.empty()) return;
@@ -273,21 +273,21 @@ struct FieldSolver::State {
   std::unique_ptr<FieldBackend> engine;
   std::string device_reason;
   sign::Planner planner;
-  std::vector<std::uint32_t> objects;  ///< of the vertices; empty: the connected parts
+  std::vector<std::uint32_t> objects;  ///< one per vertex; empty: the connected parts
   Field field;
 
   void compute(const MeshView& mesh, const Context& frame_context);
 
  private:
-  /// Gives field and request their memory; what the field has of it already, it keeps.
+  /// Allocates the memory of field and request. Memory of the right size is kept.
   void allocate(bool with_sites, FieldRequest& request);
-  /// Adds the second order to a field that is complete but for what its sites count.
+  /// Adds the second order to a field that is complete except for the kind of its site ids.
   void compute_second(const MeshView& mesh, const Context& frame_context);
 };
 
 void FieldSolver::State::allocate(bool with_sites, FieldRequest& request) {
   const std::size_t nodes = field.grid.node_count();
-  // One by one: where memory runs out between the two, the next frame finds the first one there already.
+  // One by one: if memory runs out between the two, the next frame finds the first one allocated.
   if (field.distance.size() != nodes) field.distance = Buffer<float>(nodes);
   request.distance = field.distance.data();
   if (!with_sites) return;

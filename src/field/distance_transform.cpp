@@ -1,4 +1,4 @@
-// Distance transforms of images on the device that is asked for.
+// Distance transforms of images on the requested device.
 #include "blum/field/distance_transform.hpp"
 
 #include <memory>

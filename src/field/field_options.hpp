@@ -1,4 +1,4 @@
-// Blum: from the options of fields to requests. SPDX-License-Identifier: Apache-2.0
+// Blum: checks the options of fields and turns them into requests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "blum/field/field.hpp"
@@ -8,17 +8,20 @@
 
 namespace blum {
 
-/// @throws InvalidOption.
+/// Checks the options of a field.
+/// @throws InvalidOption if a value is out of range.
 void check_options(const FieldOptions& options);
 
-/// @throws InvalidOption where objects are of no use.
+/// Checks that a field with these options uses objects.
+/// @throws InvalidOption unless the order is 2 and the second site is of another object.
 void check_objects(const FieldOptions& options);
 
-/// @param has_free_parts  whether the mesh has segments or points, which lie on no triangle.
-/// @throws InvalidOption where triangle ids are asked for.
+/// Checks the kind of site ids.
+/// @param has_free_parts  true if the mesh has segments or points, which lie on no triangle.
+/// @throws InvalidOption if triangle ids are asked for and the mesh has free parts.
 void check_site_ids(const FieldOptions& options, bool has_free_parts);
 
-/// What to compute for a mesh whose signs are planned; without memory yet.
+/// Returns the request for a mesh whose signs are planned, without memory yet.
 [[nodiscard]] FieldRequest make_field_request(const GridSpec& grid, const FieldOptions& options,
                                               const sign::Plan& plan);
 

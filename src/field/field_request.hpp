@@ -1,4 +1,4 @@
-// Blum: what a field of a mesh is asked for, from options to kernels. SPDX-License-Identifier: Apache-2.0
+// Blum: request for the field of a mesh, from options to kernels. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace blum {
 
-/// What a field is asked for and where it goes. Made once, by make_field_request(), and passed on as it is: to the
-/// tiles of the CPU, across the border of the CUDA module (which has no other description of a field), and to its
-/// kernels. Only the memory changes on the way, where a slab of the grid goes to memory of its own.
+/// Request for a field, and the memory of its result. make_field_request() makes it once. It is passed on unchanged to
+/// the tiles of the CPU, and across the border of the CUDA module to its kernels. The module has no other description
+/// of a field. Only the memory changes on the way, when a slab of the grid goes to memory of its own.
 ///
-/// A new option of fields has its member here. Plain memory: cuda::module_version counts its layouts.
+/// A new option of fields needs a member here. The struct is plain memory; cuda::module_version counts its layouts.
 struct FieldRequest {
   GridSpec grid;
   /// Half-width of the band, mesh units, finite; 0: the full grid.
   double band = 0;
-  /// One per node, x fastest, mesh units; +-band beyond the band.
+  /// One distance per node, x fastest, mesh units; +-band beyond the band.
   float* distance = nullptr;
-  /// The closest sites, one per node; 0xffffffff beyond the band. Null where they are not wanted.
+  /// Closest sites, one per node; 0xffffffff beyond the band. Null if not wanted.
   std::uint32_t* site = nullptr;
-  /// How nodes get their signs; see sign::Plan, also for the level. A back end may leave that to others: FieldResult.
+  /// Method of the signs; sign::Plan explains it and `level`. A back end may leave signs to others: see FieldResult.
   sign::Method sign = sign::Method::none;
-  /// What sites count in a device's memory. In the host's memory they count features, until the signs are there.
+  /// Kind of site ids in a device's memory. In the host's memory they are features until the signs are found.
   SiteIds site_ids = SiteIds::features;
   std::int32_t level = 0;
 

@@ -21,7 +21,7 @@ std::vector<Warning> facing_warnings(SignRule rule, const MeshView& mesh, const 
     return {{WarningCode::facing,
              "the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"}};
   }
-  // Shells that cross have no depth that would tell which way they must face; winding numbers join them.
+  // Crossing shells have no depth that defines which way they must face; winding numbers join them.
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
   if (rule != SignRule::normals && SelfIntersectionSearch().finds_any(mesh, quiet)) return {};
   return {{WarningCode::facing,

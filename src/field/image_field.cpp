@@ -38,7 +38,7 @@ void begin_field(const VoxelImageView& image, const DistanceTransformOptions& op
   field.distance = Buffer<float>(image.grid.node_count());
   field.site = Buffer<SiteId>(image.grid.node_count());
   request.distance = field.distance.data();
-  // SiteId holds nothing but its 32-bit value.
+  // SiteId holds only its 32-bit value.
   static_assert(sizeof(SiteId) == sizeof(std::uint32_t));
   request.site = &field.site.data()->value;
   field.site_ids = SiteIds::voxels;

@@ -1,4 +1,4 @@
-// Blum: what fields of images have in common on every device. SPDX-License-Identifier: Apache-2.0
+// Blum: parts of image fields that are the same on every device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,11 @@
 
 namespace blum::detail {
 
-/// @throws InvalidImage where the selected voxels leave nothing to measure to.
+/// Checks the number of selected voxels.
+/// @throws InvalidImage if no voxel is selected, or if a signed field has all voxels selected.
 void check_selected(std::size_t selected, const VoxelImageView& image, const ImageRequest& request);
 
-/// Everything of an image's field but its values, for which there is memory then, which the request is told of.
+/// Fills an image's field except for its values. Allocates memory for the values and sets it in the request.
 /// @throws OutOfMemory.
 void begin_field(const VoxelImageView& image, const DistanceTransformOptions& options, ImageRequest& request,
                  Field& field);

@@ -19,8 +19,8 @@ struct CommonUnit {
   double unit = 1;
 };
 
-/// Any three doubles whose exponents do not differ too much have a common unit: a power of two times the greatest
-/// common divisor of their mantissas. False where the multiples would not fit.
+/// Finds the common unit of spacings: a power of two times the greatest common divisor of their mantissas. It exists
+/// for any three doubles whose exponents do not differ too much. Returns false if the multiples do not fit.
 bool find_common_unit(const double (&spacing)[3], int used, CommonUnit& common) {
   int lowest_exponent = std::numeric_limits<int>::max();
   int exponents[3] = {};
@@ -44,7 +44,7 @@ bool find_common_unit(const double (&spacing)[3], int used, CommonUnit& common) 
   return true;
 }
 
-/// Largest squared distance in the image, in units of the request.
+/// Returns the largest squared distance in the image, in units of unit^2.
 double largest_square(const ImageRequest& request) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -59,13 +59,14 @@ bool is_power_of_two(double value) {
   return std::frexp(value, &exponent) == 0.5;
 }
 
-/// Chooses whole-number arithmetic where the spacings allow it.
+/// Chooses integer arithmetic if the spacings allow it.
 void choose_arithmetic(ImageRequest& request, const double (&spacing)[3], int used) {
   constexpr double integer_limit = 1 << 30;
   constexpr double float_limit = 1 << 24;
   CommonUnit common;
   if (find_common_unit(spacing, used, common)) {
-    // A unit that is a power of two keeps the scaled root correctly rounded, so whole numbers stay undivided.
+    // Only a unit that is a power of two keeps the scaled root correctly rounded. Another whole unit is multiplied into
+    // the weights, which leaves the unit 1.
     const double whole = std::round(common.unit);
     const bool undivided = whole == common.unit && whole > 1 && whole < 1024 && !is_power_of_two(whole);
     for (const double factor : {undivided ? whole : 1.0, 1.0}) {
@@ -90,7 +91,7 @@ void choose_arithmetic(ImageRequest& request, const double (&spacing)[3], int us
   request.unit = scale;
 }
 
-/// Beyond this, float32 would hold infinities, or nothing but zeros.
+/// Rejects extents for which float32 distances would be infinite, or all zero.
 void check_extent(const GridSpec& grid) {
   double longest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -124,7 +125,7 @@ ImageRequest make_image_request(const GridSpec& grid, const DistanceTransformOpt
     if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + exact_text(band));
     request.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
     if (request.has_band) {
-      request.band = static_cast<float>(band);  // as distances are rounded, so that one equal to it stays within
+      request.band = static_cast<float>(band);  // rounded like distances: one equal to the band stays within
     }
   }
   return request;

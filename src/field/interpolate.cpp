@@ -15,17 +15,18 @@ namespace blum {
 namespace {
 
 constexpr std::size_t points_per_range = 4096;
-/// How far beyond the outermost nodes rounding may put a point of the border, in steps of the grid.
+/// How far rounding may put a point of the border outside of the grid, relative to the number of layers, in grid steps.
 constexpr double rounding = 1e-9;
 
-/// The layers before and after a coordinate, and how far it is between them.
+/// Layers before and after a coordinate, and its position between them, 0 to 1.
 struct Between {
   std::int64_t before = 0;
   std::int64_t after = 0;
   double part = 0;
 };
 
-/// @param at    in steps from the first layer.
+/// Returns the layers around a position; nullopt outside of the grid.
+/// @param at    position in steps from the first layer.
 /// @param size  number of layers.
 std::optional<Between> between_layers(double at, std::int64_t size) {
   if (size == 1) return std::abs(at) <= 0.5 ? std::optional(Between{}) : std::nullopt;
@@ -36,13 +37,13 @@ std::optional<Between> between_layers(double at, std::int64_t size) {
   return Between{before, before + 1, std::fmin(std::fmax(at - static_cast<double>(before), 0.0), 1.0)};
 }
 
-/// Between two values, each of which stays exactly what it is at its end, also where it is infinite.
+/// Interpolates between two values. At each end it returns that end's value exactly, even if it is infinite.
 double mix(double a, double b, double part) {
   if (part == 0) return a;
   return part == 1 ? b : a + (b - a) * part;
 }
 
-/// The cell around a point; nullopt outside of the grid.
+/// Returns the cell around a point; nullopt outside of the grid.
 std::optional<std::array<Between, 3>> cell_around(const GridSpec& grid, const Vec3d& point) {
   const Vec3d local = grid.direction.transposed_times(point - grid.origin);
   std::array<Between, 3> axes;
@@ -54,7 +55,7 @@ std::optional<std::array<Between, 3>> cell_around(const GridSpec& grid, const Ve
   return axes;
 }
 
-/// The values at the corners of a cell: bit a of their number is set for the layer after, along axis a.
+/// Returns the values at the corners of a cell. Bit a of a corner's number is set for the layer after, along axis a.
 std::array<double, 8> corners_of(const GridSpec& grid, std::span<const float> values,
                                  const std::array<Between, 3>& cell) {
   std::array<double, 8> out;
@@ -65,14 +66,14 @@ std::array<double, 8> corners_of(const GridSpec& grid, std::span<const float> va
   return out;
 }
 
-/// Along x, then y, then z.
+/// Interpolates along x, then y, then z.
 double mixed(const std::array<double, 8>& v, const std::array<Between, 3>& cell) {
   const auto along_x = [&](std::size_t row) { return mix(v[row], v[row + 1], cell[0].part); };
   const auto along_y = [&](std::size_t slice) { return mix(along_x(slice), along_x(slice + 2), cell[1].part); };
   return mix(along_y(0), along_y(4), cell[2].part);
 }
 
-/// How the mixture changes along an axis, per step of the grid.
+/// Returns the derivative of the interpolated value along an axis, per grid step.
 double slope(const std::array<double, 8>& v, const std::array<Between, 3>& cell, std::size_t axis) {
   const std::size_t b = (axis + 1) % 3;
   const std::size_t c = (axis + 2) % 3;
@@ -95,7 +96,7 @@ void check(const Field& field) {
   }
 }
 
-/// Calls take(point, cell, values of its corners) for the points in the grid.
+/// Calls take(point, cell, values of its corners) for the points inside the grid.
 template <class Take>
 void for_each_cell(const Field& field, std::span<const Vec3d> points, const Context& context, const Take& take) {
   check(field);

@@ -8,7 +8,7 @@
 namespace blum {
 namespace {
 
-/// More at once take more memory (50 bytes each), and no less time each.
+/// Larger batches take more memory (50 bytes per query) and no less time per query.
 constexpr std::size_t queries_per_batch = std::size_t{1} << 23;
 
 }  // namespace

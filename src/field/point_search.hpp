@@ -1,4 +1,4 @@
-// Blum: the closest sites of many points, by the kernels of fields. SPDX-License-Identifier: Apache-2.0
+// Blum: closest sites of many points, by the kernels of fields. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -15,36 +15,40 @@
 
 namespace blum {
 
-/// Answers many queries at once: what Bvh::nearest() answers one by one, bit for bit. Kernels in single precision say
-/// which site is closest; where its domain holds the query by a margin, and no other site is as close but for rounding,
-/// its distance is computed in double; else a search of the hierarchy, which knows how far to look, decides.
+/// Answers many queries at once. The answers are those of Bvh::nearest(), bit for bit. Kernels in single precision find
+/// the closest site, and a second one if both are equally close within rounding. If the domains of these sites hold the
+/// query by a margin, their distances are computed in double precision. Otherwise a search of the hierarchy decides,
+/// which already has a bound on the distance.
 class PointSearch {
  public:
   PointSearch(const MeshView& mesh, const SiteTable& sites, const Context& context)
       : engine_(mesh, sites, context), projection_(mesh, sites, context) {}
 
-  /// Fewer queries at once have too little in common.
+  /// Fewest queries at once that have enough in common.
   static constexpr std::size_t fewest = 1024;
-  /// Whether so many queries are worth building a search: as many as there are faces are (docs/performance.md).
+  /// Returns true if this many queries justify building a search: at least 4096, and as many as the mesh has faces
+  /// (docs/performance.md).
   [[nodiscard]] static bool is_worth_building(std::size_t queries, const SiteTable& sites);
-  /// Whether they are worth a search that is there.
+  /// Returns true if this many queries justify using a search that exists.
   [[nodiscard]] static bool is_worth_using(std::size_t queries, const SiteTable& sites);
 
-  /// What is closest to a query.
+  /// Closest site of one query.
   struct Answer {
-    std::size_t query = 0;  ///< its index
-    NearestSite nearest;    ///< without a site where nothing lies within max_distance
+    std::size_t query = 0;  ///< index of the query
+    NearestSite nearest;    ///< without a site if nothing lies within max_distance
   };
 
-  /// Calls tell(answers) for groups of queries, on many threads at once; over all groups, each query is told once.
-  /// @param queries  finite. @param bvh  of the same mesh. @throws Cancelled.
+  /// Calls `tell(answers)` for groups of queries, on many threads at once. Each query is in exactly one group.
+  /// @param queries  finite points.
+  /// @param bvh      tree of the same mesh.
+  /// @throws Cancelled.
   void nearest(std::span<const Vec3d> queries, double max_distance, const Bvh& bvh, const Context& context,
                FunctionRef<void(std::span<const Answer>)> tell) const;
 
  private:
-  /// By the sites that the kernels have found; false where that is not certain.
+  /// Computes the answer from the sites that the kernels found. Returns false if it is not certain.
   [[nodiscard]] bool project(const Vec3d& query, const cpu::FoundSite& found, NearestSite& nearest) const;
-  /// By the hierarchy, which is told how far to look.
+  /// Searches the hierarchy, with the kernels' bound on the distance.
   [[nodiscard]] std::optional<NearestSite> search(const Vec3d& query, const cpu::FoundSite& found, double max_distance,
                                                   const Bvh& bvh) const;
 

@@ -1,4 +1,4 @@
-// Blum: which sites may be second at a node, and what the second order of a field is asked for.
+// Blum: which sites may be second at a node, and the request for the second order of a field.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,14 +16,14 @@
 
 namespace blum {
 
-/// Both rules of second order in one: every vertex has a label, a site has those of its vertices, and sites that have a
-/// label in common are no second of each other. Without a common vertex: each vertex is its own label. Of another
-/// object: the label is the object.
+/// Labels that express both rules of second order. Every vertex has a label, and a site has the labels of its vertices.
+/// Sites that share a label are not second to each other. Under the rule "no common vertex", each vertex is its own
+/// label. Under the rule "other object", the label is the object.
 ///
-/// What remains of a mesh without the sites that have some labels is a mesh, too: with a site, its border remains.
+/// A mesh without the sites that have some labels is still a mesh: every site that remains keeps its border.
 class SecondLabels {
  public:
-  /// The labels of a site's vertices; the first one again where there are fewer than three.
+  /// Labels of a site's vertices; the first label repeats if there are fewer than three.
   using OfSite = std::array<std::uint32_t, 3>;
 
   SecondLabels() = default;
@@ -31,19 +31,19 @@ class SecondLabels {
   SecondLabels(SecondRule rule, const MeshView& mesh, const SiteTable& sites, std::span<const std::uint32_t> objects,
                const Context& context);
 
-  /// Whether each vertex is its own label.
+  /// Returns true if each vertex is its own label.
   [[nodiscard]] bool is_by_vertex() const { return of_vertex_.empty(); }
-  /// Below the number of vertices.
+  /// Returns the label of a vertex, below the number of vertices.
   [[nodiscard]] std::uint32_t of_vertex(std::uint32_t vertex) const {
     return of_vertex_.empty() ? vertex : of_vertex_[vertex];
   }
   [[nodiscard]] OfSite of_site(const SiteTable& sites, SiteId site) const;
-  /// Whether any site may be second beside one with these labels.
+  /// Returns true if any site may be second to a site with these labels.
   [[nodiscard]] bool has_second(const OfSite& labels) const;
 
  private:
   std::vector<std::uint32_t> of_vertex_;
-  std::size_t count_ = 0;  ///< different labels of the vertices that something names
+  std::size_t count_ = 0;  ///< number of different labels of the vertices that primitives use
 };
 
 [[nodiscard]] inline bool share_label(const SecondLabels::OfSite& a, const SecondLabels::OfSite& b) {
@@ -52,7 +52,7 @@ class SecondLabels {
   return found;
 }
 
-/// A field of first order that is complete, its signs and sites included, and where the second order of it goes.
+/// First-order field that is complete with signs and sites, and the memory of its second order.
 struct SecondRequest {
   GridSpec grid;
   /// Half-width of the band, mesh units, finite; 0: the full grid.
@@ -61,7 +61,7 @@ struct SecondRequest {
   const float* distance = nullptr;      ///< one per node, mesh units, of any sign
   const std::uint32_t* site = nullptr;  ///< features; 0xffffffff beyond the band
   float* distance2 = nullptr;           ///< one per node, mesh units
-  std::uint32_t* site2 = nullptr;       ///< features; 0xffffffff where there is none
+  std::uint32_t* site2 = nullptr;       ///< features; 0xffffffff if none
 
   [[nodiscard]] bool has_band() const { return band > 0; }
 };

@@ -26,18 +26,18 @@
 namespace blum {
 namespace {
 
-/// The eight voxels around a corner of the lattice; voxel o lies at (o & 1, o >> 1 & 1, o >> 2 & 1), low or high along
-/// each axis. The surface has a patch for each 6-connected set of those that are not selected.
+/// Case of the eight voxels around a corner of the lattice. Voxel o lies at (o & 1, o >> 1 & 1, o >> 2 & 1), low or
+/// high along each axis. The surface has a patch for each 6-connected set of voxels that are not selected.
 struct CornerCase {
   static constexpr std::uint8_t none = 255;
 
   std::uint8_t patches = 0;
-  std::array<std::uint8_t, 8> patch_of{};           ///< of each voxel; none where it is selected
-  std::array<std::array<std::int8_t, 3>, 8> way{};  ///< of each patch: the sum of its voxels' (+-1, +-1, +-1)
-  /// Bit e: the edge from the corner up along axis e has two voxels selected, diagonally opposite of each other, and
-  /// the other two not. The surface passes it twice.
+  std::array<std::uint8_t, 8> patch_of{};           ///< Per voxel; none if it is selected.
+  std::array<std::array<std::int8_t, 3>, 8> way{};  ///< Per patch: the sum of its voxels' (+-1, +-1, +-1).
+  /// Bit e stands for the edge from the corner up along axis e. It is set if exactly two voxels around the edge are
+  /// selected, diagonally opposite of each other. The surface passes such an edge twice.
   std::uint8_t double_edges = 0;
-  /// Two voxels that are diagonally opposite of each other and nothing else: the patch is a ring around the corner.
+  /// True if exactly two voxels are selected, opposite across the corner: the patch is a ring around the corner.
   bool is_ring = false;
 };
 
@@ -47,7 +47,7 @@ constexpr bool is_in(unsigned set, unsigned voxel) {
   return (set >> voxel & 1U) != 0;
 }
 
-/// The voxels that are joined to the first one in a set.
+/// Returns the voxels of a set that are connected to the first one.
 constexpr unsigned flood(unsigned set, unsigned first) {
   unsigned found = 1U << first;
   for (unsigned step = 0; step < 8; ++step) {
@@ -72,9 +72,9 @@ constexpr void add_patch(CornerCase& corner, unsigned voxels) {
   ++corner.patches;
 }
 
-/// Whether the surface passes an edge twice; `edge` is its axis.
+/// Returns true if the surface passes an edge twice. `edge` is its axis.
 constexpr bool is_double(unsigned selected, unsigned edge) {
-  const unsigned low = 1U << edge;  // the four voxels around have this bit
+  const unsigned low = 1U << edge;  // the four voxels around the edge have this bit
   const unsigned a = 1U << (edge + 1) % 3;
   const unsigned b = 1U << (edge + 2) % 3;
   const bool first = is_in(selected, low);
@@ -105,40 +105,40 @@ constexpr std::array<CornerCase, 256> make_corner_cases() {
 
 }  // namespace detail
 
-/// By which voxels are selected: bit o is voxel o.
+/// Cases, indexed by the selected voxels: bit o is voxel o.
 inline constexpr std::array<CornerCase, 256> corner_cases = detail::make_corner_cases();
 
-/// Where a vertex may be, in voxels; without extent along an axis that it may not leave.
+/// Box in which a vertex may lie, in voxels. It has no extent along an axis along which the vertex is fixed.
 struct NetBox {
   Vec3d low, high;
 };
 
-/// The surface between a set of voxels and the rest as a closed, oriented manifold of quadrilaterals and triangles that
-/// face the rest. Coordinates are in voxels: integer where voxels have their centres. Positions are those of the
-/// surface of the boxes, but for a little room where boxes touch only in an edge or a corner, which are joined there.
+/// Surface between a set of voxels and the rest: a closed, oriented manifold of quadrilaterals and triangles that face
+/// the rest. Coordinates are in voxels, with integers at the centres of voxels. Positions are those of the surface of
+/// the boxes. Boxes that touch only in an edge or a corner are joined there, and positions make a little room.
 struct SurfaceNet {
   static constexpr std::uint32_t none = 0xffffffff;
 
   std::vector<Vec3d> positions;
-  std::vector<NetBox> boxes;                           ///< of each vertex: its position is inside
-  std::vector<std::array<std::uint32_t, 4>> polygons;  ///< triangles end with none
+  std::vector<NetBox> boxes;                           ///< per vertex: contains its position
+  std::vector<std::array<std::uint32_t, 4>> polygons;  ///< a triangle ends with none
 };
 
 constexpr std::size_t rows_per_range = 256;
-/// How far a vertex may be from the corner of the lattice that it stands for: cells of different corners share nothing,
-/// and the voxels' centres, which are corners of cells, are in none.
+/// Largest distance, along an axis, of a vertex from the lattice corner that it stands for. Boxes of different corners
+/// are disjoint and contain no voxel centre.
 constexpr double reach = 0.49;
-/// Between the two passes of the surface along an edge, and the tip of a ring and its corner.
+/// Least distance, along an axis, of a double edge's vertices from the edge, and of a ring's arm from its corner.
 constexpr double least_room = 0.02;
-/// Room where boxes touch in an edge or a corner, before smoothing. Any small number will do.
+/// Room at an edge or corner in which boxes touch, before smoothing. Any small number works.
 constexpr double room = 0.1;
 constexpr double ring_room = 0.2;
-/// Sideways, of the middle of a face.
+/// Largest sideways move of the vertex in the middle of a face.
 constexpr double middle_reach = 0.25;
 
 using Place = std::array<std::int64_t, 3>;
 
-/// A corner of the lattice that the surface passes.
+/// Lattice corner that the surface passes.
 struct NetCorner {
   std::uint32_t x = 0;
   std::uint8_t selected = 0;  ///< see CornerCase
@@ -147,7 +147,7 @@ struct NetCorner {
   std::uint32_t first_polygon = 0;
 
   [[nodiscard]] const CornerCase& shape() const { return corner_cases[selected]; }
-  // Its vertices: of patches, or of the six arms of a ring; of double edges, two each; in the middle of faces.
+  // Order of its vertices: patches, or the six arms of a ring; double edges, two each; middles of faces.
   [[nodiscard]] std::uint32_t patch_vertices() const { return shape().is_ring ? 6U : shape().patches; }
   [[nodiscard]] std::uint32_t edge_vertex(unsigned edge, unsigned voxel) const {
     const unsigned before = shape().double_edges & ((1U << edge) - 1);
@@ -166,7 +166,7 @@ struct NetCorner {
   }
 };
 
-/// The vertices around a face, counter-clockwise as the rest sees it.
+/// Vertices around a face, counter-clockwise as seen from the voxels that are not selected.
 struct Outline {
   std::array<std::uint32_t, 12> vertices{};
   std::size_t size = 0;
@@ -178,7 +178,7 @@ constexpr unsigned with_bits(unsigned a, bool at_a, unsigned b, bool at_b, unsig
   return (at_a ? 1U << a : 0U) | (at_b ? 1U << b : 0U) | (at_c ? 1U << c : 0U);
 }
 
-/// The arm of a ring along an axis.
+/// Returns the number of a ring's arm along an axis.
 constexpr std::uint32_t arm(unsigned axis, bool is_up) {
   return 2U * axis + (is_up ? 1U : 0U);
 }
@@ -230,7 +230,7 @@ class NetBuilder {
     return voxels_.row(y, z);
   }
 
-  /// Calls visit(x, selected) for the corners of a row whose voxels are neither all selected nor none.
+  /// Calls visit(x, selected) for the corners of a row around which some voxels, but not all, are selected.
   template <class Visit>
   void for_each_mixed(std::int64_t y, std::int64_t z, const Visit& visit) const {
     const std::array<std::span<const std::uint64_t>, 4> rows{words(y - 1, z - 1), words(y, z - 1), words(y - 1, z),
@@ -238,7 +238,7 @@ class NetBuilder {
     std::array<std::uint64_t, 4> last{};
     for (std::size_t w = 0; w < voxels_.words_per_row(); ++w) {
       std::array<std::uint64_t, 4> here{};
-      std::array<std::uint64_t, 4> before{};  // bit x: the voxel below x
+      std::array<std::uint64_t, 4> before{};  // bit x is voxel x - 1
       std::uint64_t any = 0;
       std::uint64_t all = ~std::uint64_t{0};
       for (std::size_t r = 0; r < 4; ++r) {
@@ -284,13 +284,15 @@ class NetBuilder {
                              [](const NetCorner& corner, std::int64_t x) { return std::int64_t{corner.x} < x; });
   }
 
-  /// Whether the face across axis c, up from the corner along both others, parts a selected voxel from another.
+  /// Returns true if a face separates a selected voxel from one that is not. It lies across axis c, up from the corner
+  /// along both others.
   static bool has_face(const NetCorner& corner, unsigned c) {
     const unsigned low = 7U ^ 1U << c;
     return (corner.selected >> low & 1U) != (corner.selected >> 7U & 1U);
   }
 
-  /// All of its corners are found corners, as one of the two voxels is there.
+  /// Returns the vertices around a face. Its corners are all in corners_, because one of its two voxels is selected and
+  /// one is not.
   [[nodiscard]] Outline outline(const NetCorner& corner, const Place& at, unsigned c) const {
     const unsigned a = (c + 1) % 3;
     const unsigned b = (c + 2) % 3;
@@ -338,7 +340,7 @@ class NetBuilder {
     });
   }
 
-  /// Turns the counts of corners into where they begin.
+  /// Turns the counts of corners into start indices.
   void number() {
     for (NetCorner& corner : corners_) {
       const std::uint32_t polygons = corner.first_polygon;
@@ -385,7 +387,7 @@ class NetBuilder {
     }
   }
 
-  /// A little into the voxels that a patch is that of.
+  /// Returns a small offset from the corner into the voxels of a patch.
   static Vec3d way_of(const CornerCase& shape, std::size_t patch) {
     Vec3d way{};
     double most = 1;
@@ -404,7 +406,7 @@ class NetBuilder {
     put(net, vertex, tip, box);
   }
 
-  /// The two vertices in the middle of a double edge, which stay in the plane across it, each on its own side.
+  /// Places the two vertices in the middle of a double edge. They stay in the plane across it, each on its own side.
   static void put_edge(SurfaceNet& net, const NetCorner& corner, const Vec3d& p, unsigned edge) {
     const unsigned a = (edge + 1) % 3;
     const unsigned b = (edge + 2) % 3;
@@ -462,6 +464,7 @@ class NetBuilder {
   std::size_t polygons_ = 0;
 };
 
+/// Makes the surface of a set of voxels.
 /// @throws InvalidOption for more than max_id_count vertices or triangles; Cancelled.
 SurfaceNet make_surface_net(const VoxelSet& voxels, const Context& context) {
   return NetBuilder(voxels, context).run();
@@ -469,18 +472,19 @@ SurfaceNet make_surface_net(const VoxelSet& voxels, const Context& context) {
 
 constexpr int most_iterations = 1000;
 constexpr std::size_t vertices_per_range = 4096;
-/// Taubin's steps, in and out. A tube of radius 1.5 voxels keeps its radius over 60 rounds; ripples of 5 voxels go.
+/// Steps of Taubin smoothing, in and out. A tube of radius 1.5 voxels keeps its radius over 60 rounds, and ripples of 5
+/// voxels vanish.
 constexpr double step_in = 0.5;
 constexpr double step_out = -0.51;
-/// A vertex that crosses is put back in so many steps.
+/// Number of steps in which a vertex of crossing triangles is moved back to its start.
 constexpr std::uint8_t hold_steps = 4;
 
-/// The neighbours of the vertices of a net.
+/// Neighbours of the vertices of a net.
 struct Neighbours {
   std::vector<std::uint32_t> begin;
   std::vector<std::uint32_t> vertices;
 
-  /// A side runs one way in one polygon and the other way in another, so each neighbour follows its vertex once.
+  /// A side runs one way in one polygon and the other way in another, so each vertex lists each neighbour once.
   explicit Neighbours(const SurfaceNet& net) : begin(net.positions.size() + 1, 0) {
     for_each_side(net, [this](std::uint32_t from, std::uint32_t) { ++begin[from + 1]; });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -507,7 +511,7 @@ Vec3d moved(const std::vector<Vec3d>& positions, const Neighbours& neighbours, s
   return positions[vertex] + step * (1.0 / (end - begin) * sum - positions[vertex]);
 }
 
-/// The places of the vertices after smoothing, each in its box.
+/// Returns the positions of the vertices after smoothing. Each vertex stays in its box.
 std::vector<Vec3d> relaxed(const SurfaceNet& net, int iterations, const Context& context) {
   std::vector<Vec3d> positions = net.positions;
   if (iterations == 0) return positions;
@@ -532,7 +536,7 @@ bool is_mirrored(const Mat3& direction) {
   return dot(cross(direction.columns[0], direction.columns[1]), direction.columns[2]) < 0;
 }
 
-/// The surface on its way from where it began to where smoothing puts it.
+/// Surface on its way from its start positions to the smoothed ones.
 class Embedding {
  public:
   Embedding(const SurfaceNet& net, const std::vector<Vec3d>& smooth, const GridSpec& grid)
@@ -542,7 +546,8 @@ class Embedding {
     add_triangles();
   }
 
-  /// Puts vertices back until the surface does not cross itself. Where it began it does not, so this ends.
+  /// Moves vertices back until the surface does not cross itself. This ends, because the surface does not cross itself
+  /// at its start.
   void resolve(const Context& context) {
     constexpr std::size_t limit = 1000000;
     for (SelfIntersections found = find_self_intersections(mesh_, limit, context); !found.pairs.empty();
@@ -592,7 +597,7 @@ class Embedding {
     mesh_.vertices[v] = grid_.origin + grid_.direction * Vec3d{at.x * s.x, at.y * s.y, at.z * s.z};
   }
 
-  /// Quadrilaterals are cut along the shorter diagonal.
+  /// Splits quadrilaterals along the shorter diagonal.
   void add_triangles() {
     const bool turns = is_mirrored(grid_.direction);
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -617,7 +622,7 @@ class Embedding {
   const SurfaceNet& net_;
   const std::vector<Vec3d>& smooth_;
   const GridSpec& grid_;
-  std::vector<std::uint8_t> steps_;  ///< of hold_steps, that a vertex is on its way
+  std::vector<std::uint8_t> steps_;  ///< per vertex: steps of hold_steps towards its smoothed position
   TriangleMesh mesh_;
 };
 

@@ -17,17 +17,17 @@
 namespace blum {
 namespace {
 
-/// An edge of one of the six tetrahedra around the diagonal of a cube. Corner c of a cube is at (c & 1, c >> 1 & 1,
-/// c >> 2 & 1); an edge goes from corner `from` to corner `from | step`, which share no bits.
+/// Edge of one of the six tetrahedra around the diagonal of a cube. Corner c of a cube is at (c & 1, c >> 1 & 1, c >> 2
+/// & 1). An edge goes from corner `from` to corner `from | step`; `from` and `step` share no bits.
 struct CubeEdge {
   std::uint8_t from = 0;
   std::uint8_t step = 0;  ///< 1 to 7
 };
 
-/// The triangles that part the corners inside from those outside, facing outside.
+/// Triangles that separate the corners inside from those outside. They face outside.
 struct CubeCase {
   std::uint8_t triangle_count = 0;
-  std::array<std::array<CubeEdge, 3>, 12> triangles{};  ///< two at most in each tetrahedron
+  std::array<std::array<CubeEdge, 3>, 12> triangles{};  ///< at most two in each tetrahedron
 };
 
 namespace detail {
@@ -36,7 +36,7 @@ struct Corner3 {
   int x, y, z;
 };
 
-/// The middle of an edge between two corners, doubled.
+/// Returns the middle of an edge between two corners, times two.
 constexpr Corner3 doubled_middle(unsigned a, unsigned b) {
   return {static_cast<int>((a & 1U) + (b & 1U)), static_cast<int>((a >> 1 & 1U) + (b >> 1 & 1U)),
           static_cast<int>((a >> 2 & 1U) + (b >> 2 & 1U))};
@@ -46,21 +46,21 @@ constexpr Corner3 minus(const Corner3& a, const Corner3& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// Six times the signed volume of p, q, r and the origin.
+/// Returns six times the signed volume of p, q, r and the origin.
 constexpr int volume(const Corner3& p, const Corner3& q, const Corner3& r) {
   return p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x);
 }
 
-/// A corner inside and one outside.
+/// A corner inside and a corner outside.
 using Pair = std::array<unsigned, 2>;
 
-/// The corners of a tetrahedron, ascending, are joined by steps: the smaller one's bits are among the larger one's.
+/// Returns the edge between two corners of a tetrahedron. The smaller corner's bits are among the larger one's.
 constexpr CubeEdge edge_of(const Pair& pair) {
   const unsigned from = pair[0] & pair[1];
   return {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>((pair[0] | pair[1]) ^ from)};
 }
 
-/// Adds the triangle through the middles of three edges, turned towards the outer end of the first.
+/// Adds the triangle through the middles of three edges. It faces the outer end of the first edge.
 constexpr void add_triangle(CubeCase& cube, const Pair& a, const Pair& b, const Pair& c) {
   const Corner3 p = doubled_middle(a[0], a[1]);
   const Corner3 q = doubled_middle(b[0], b[1]);
@@ -84,7 +84,8 @@ constexpr void add_tetrahedron(CubeCase& cube, unsigned inside_corners, const st
   }
 }
 
-/// Each tetrahedron goes from corner 0 to corner 7 along the three axes in one of their six orders.
+/// Cuts the cube into six tetrahedra. Each goes from corner 0 to corner 7 along the three axes in one of their six
+/// orders.
 constexpr CubeCase make_cube_case(unsigned inside_corners) {
   CubeCase cube;
   for (unsigned first = 0; first < 3; ++first) {
@@ -106,13 +107,14 @@ constexpr std::array<CubeCase, 256> make_cube_cases() {
 
 }  // namespace detail
 
-/// By the corners that are inside: bit c is corner c.
+/// Cases, indexed by the corners that are inside: bit c is corner c.
 inline constexpr std::array<CubeCase, 256> cube_cases = detail::make_cube_cases();
 
-/// Ranges share a slice with the next one, which is worked out twice: so they are not thin.
+/// Each range computes a slice that it shares with the next range, so ranges are not thin.
 constexpr std::size_t nodes_per_range = std::size_t{1} << 20;
 constexpr std::size_t least_slices_per_range = 4;
-/// Part of an edge that a vertex keeps from its ends: triangles next to a node of exactly the level keep an area.
+/// Least distance of a vertex from the ends of its edge, as a part of the edge. With it, triangles next to a node
+/// exactly at the level keep an area.
 constexpr double least_part = 1e-3;
 
 void check(const Field& field, double level) {
@@ -130,8 +132,8 @@ void check(const Field& field, double level) {
   if (!std::isfinite(level)) throw InvalidOption("the level is " + exact_text(level) + ", but must be finite");
 }
 
-/// Which corners of the cube at each node of a slice are inside: bit c is the node c steps ahead (see CubeEdge). Beyond
-/// the border of the grid the nodes of the border go on.
+/// Corners inside of the cube at each node of a slice. Bit c stands for the node at the offset of corner c (see
+/// CubeEdge). Beyond the border of the grid, the nodes of the border repeat.
 class Slice {
  public:
   Slice(const Field& field, double level)
@@ -143,7 +145,7 @@ class Slice {
         corners_(size_x_ * size_y_),
         row_(size_x_ + 1) {}
 
-  /// Works out slice z. Stops early, with any result, where the caller has asked to stop.
+  /// Reads slice z. Stops early, with an arbitrary result, if the caller has asked to stop.
   void read(std::size_t z, const Context& context) {
     for (std::size_t y = size_y_; y-- > 0;) {
       if (context.cancel.stop_requested()) return;
@@ -153,7 +155,7 @@ class Slice {
 
   [[nodiscard]] unsigned corners(std::size_t node) const { return corners_[node]; }
 
-  /// Calls visit(x, y, node in slice) where the corners are not all inside or all outside, in the order of the nodes.
+  /// Calls visit(x, y, node in slice), in the order of the nodes, where the corners are not all inside or all outside.
   template <class Visit>
   void for_each_mixed(const Visit& visit) const {
     for (std::size_t y = 0, node = 0; y < size_y_; ++y) {
@@ -164,7 +166,7 @@ class Slice {
   }
 
  private:
-  /// Bits 0, 1, 4, 5 are this row's, and the others those of the next row, which has been read before.
+  /// Bits 0, 1, 4 and 5 belong to this row. The others belong to the next row, which has been read before.
   void read_row(std::size_t y, std::size_t z) {
     const float* const here = field_.distance.data() + (z * size_y_ + y) * size_x_;
     const float* const above = z + 1 < size_z_ ? here + size_y_ * size_x_ : here;
@@ -189,7 +191,7 @@ class Slice {
   std::vector<std::uint8_t> row_;
 };
 
-/// Steps, as bits 1 to 7, from a node along edges that cross the level and stay in the grid.
+/// Set of steps from a node, as bits 1 to 7, along edges that cross the level and stay in the grid.
 class CrossedEdges {
  public:
   explicit CrossedEdges(const GridSpec& grid) : size_(grid.size) {}
@@ -201,7 +203,7 @@ class CrossedEdges {
     if (is_last(z, 2)) crossed &= without_z;
     return crossed;
   }
-  /// Whether a node is the first corner of a cube.
+  /// Returns true if a node is the first corner of a cube.
   [[nodiscard]] bool has_cube(std::size_t x, std::size_t y, std::size_t z) const {
     return !is_last(x, 0) && !is_last(y, 1) && !is_last(z, 2);
   }
@@ -216,7 +218,8 @@ class CrossedEdges {
   std::array<std::int64_t, 3> size_;
 };
 
-/// How much of the mesh belongs to a slice: the vertices on edges from its nodes, and the triangles in the cubes above.
+/// Part of the mesh that belongs to a slice: the vertices on edges from its nodes, and the triangles in the cubes
+/// above.
 struct SliceCounts {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
@@ -248,7 +251,7 @@ class Marching {
   }
 
  private:
-  /// A slice, and the number of the first vertex of each of its nodes that has one.
+  /// Slice with the number of the first vertex of each node that has one.
   struct NumberedSlice {
     Slice slice;
     std::vector<std::uint32_t> first_vertex;
@@ -258,7 +261,7 @@ class Marching {
 
   [[nodiscard]] bool has_finite_distances(std::size_t z) const {
     const float* const begin = field_.distance.data() + z * nodes_per_slice_;
-    // Counting, instead of stopping at the first, vectorises.
+    // Counts all of them: a loop that stops at the first does not vectorise.
     std::uint32_t others = 0;
     for (std::size_t node = 0; node < nodes_per_slice_; ++node) {
       others |= std::abs(begin[node]) <= std::numeric_limits<float>::max() ? 0U : 1U;
@@ -284,7 +287,7 @@ class Marching {
     });
   }
 
-  /// Turns the counts of slices into where they begin.
+  /// Turns the counts of slices into start indices.
   void add_up() {
     SliceCounts sum;
     for (std::size_t z = 0; z <= slices_; ++z) {
@@ -396,7 +399,7 @@ class Marching {
   std::size_t nodes_per_slice_;
   std::size_t grain_ = 1;
   bool is_mirrored_ = false;
-  /// Before add_up(): of each slice; then: of all slices before it, and of all slices at the end.
+  /// Before add_up(): counts per slice. Afterwards: sums over all slices before it, with the totals at the end.
   std::vector<SliceCounts> counts_;
 };
 

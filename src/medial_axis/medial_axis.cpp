@@ -64,19 +64,19 @@ using detail::VoxelSurface;
 
 using Pair = std::array<std::uint32_t, 2>;
 
-/// Looks at whether it is cancelled after so many cells: a few milliseconds.
+/// Number of cells between two checks for cancellation: a few milliseconds.
 constexpr std::size_t cells_between_looks = 65536;
 
 struct HashOfPlace {
   std::size_t operator()(const Vec3d& p) const {
     std::size_t hash = 0;
-    // 0.0 makes 0 of -0, which is equal to it.
+    // Adding 0.0 makes 0 of -0, which is equal to it.
     for (const double x : {p.x, p.y, p.z}) hash = (hash ^ std::hash<double>()(x + 0.0)) * 0x9e3779b97f4a7c15U;
     return hash ^ hash >> 32U;
   }
 };
 
-/// How long something is there, and how important it is.
+/// Level until which something exists, and its importance.
 struct Stay {
   float until = 0;
   float angle = 0;
@@ -94,7 +94,7 @@ class Nest {
   void add(const AxisPiece& piece) {
     std::vector<std::uint32_t> vertex(piece.vertices.size(), 0);
     std::vector<bool> is_known(piece.vertices.size(), false);
-    // Vertices come before what joins them: a face stays as long as what it is a face of.
+    // Vertices come before the cells that join them: a face stays as long as the cells that it is a face of.
     for (int dimension = 0; dimension <= 2; ++dimension) {
       for (std::size_t c = 0; c < piece.cells.size(); ++c) {
         if (c % cells_between_looks == 0) throw_if_cancelled(context_);
@@ -148,7 +148,7 @@ class Nest {
     stays_.push_back({cell.level, cell.angle});
   }
 
-  /// One without extent is as good as its sides.
+  /// Adds a triangle. One without extent is replaced by its sides.
   void add_triangle(const std::array<std::uint32_t, 3>& corners, const AxisCell& cell) {
     const auto& [a, b, c] = corners;
     if (a == b || b == c || c == a) {
@@ -161,14 +161,14 @@ class Nest {
     triangle_until_.push_back(cell.level);
   }
 
-  /// Gives each pair of vertices that anything joins its roles: a seam while it has three triangles, a rim while it has
-  /// one, a curve when it has none.
+  /// Adds each pair of vertices that anything joins, with its roles. It is a seam while it has three triangles, a rim
+  /// while it has one, and a curve when it has none.
   void add_edges() {
     const Incidence incidence({lists_.vertices.size(), threads_, lists_.triangles}, context_);
-    // Every side of a triangle is a thread, too, but for diagonals.
+    // Every side of a triangle is a thread, too, except diagonals.
     std::vector<Stay> threads(incidence.edges().size());
     for (std::size_t t = 0; t < threads_.size(); ++t) threads[incidence.edge_of_listed()[t]].extend(stays_[t]);
-    std::vector<float> untils;  // of the triangles at an edge, falling
+    std::vector<float> untils;  // of the triangles at an edge, descending
     for (std::size_t e = 0; e < threads.size(); ++e) {
       untils.clear();
       float angle = 0;
@@ -194,7 +194,7 @@ class Nest {
     edge_until_.push_back(until);
   }
 
-  /// Vertices and triangles with their sheets and roles at the least angle.
+  /// Returns vertices and triangles with their sheets and roles at the least angle.
   Complex labelled() {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       const bool is_curve = edge_roles_[e] == static_cast<std::int32_t>(MedialRole::curve);
@@ -206,7 +206,7 @@ class Nest {
     return complex;
   }
 
-  /// Puts the edges of all angles in the place of those of the least.
+  /// Replaces the edges of the least angle by those of all angles.
   void set_edges(Complex& nested) {
     nested.edges = std::move(edges_);
     nested.edge_columns = Columns(nested.edges.size());
@@ -225,13 +225,13 @@ class Nest {
   std::vector<float> vertex_until_, triangle_until_;
   std::vector<Pair> threads_;  ///< edges, and sides of triangles without extent
   std::vector<Stay> stays_;    ///< of the threads
-  // The edges of the result.
+  // Edges of the result.
   std::vector<Pair> edges_;
   std::vector<float> edge_angles_, edge_from_, edge_until_;
   std::vector<std::int32_t> edge_roles_;
 };
 
-/// What append_at() and contract_points() make of pieces at the angles from `least_theta` on.
+/// Returns one complex of all results of append_at() and contract_points() at the angles from `least_theta` on.
 /// @throws Cancelled.
 Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta, const Context& context) {
   Nest nest(least_theta, context);
@@ -241,7 +241,7 @@ Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta, co
 
 constexpr int least_resolution = 8;
 constexpr int most_resolution = 800;
-/// What a grid of voxels makes of a smooth surface: steps whose edges the axis would reach out for.
+/// A grid of voxels turns a smooth surface into steps. Without this floor, the axis would reach out for their edges.
 constexpr NoiseFloor stairs{20, 120, 3, 3, 15, 0};
 
 void check(const MedialAxisOptions& options) {
@@ -277,9 +277,9 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
   for (std::size_t k = 0; k < 3; ++k) sum[k] += part[k];
 }
 
-/// Throws where rounding of coordinates leaves a solid too few places to lie in.
+/// Throws if rounding of coordinates leaves a solid too few different positions.
 void check_place(const Box3& box) {
-  constexpr double least_size = 5e-7;  // of the largest coordinate: with less, roundings look like corners
+  constexpr double least_size = 5e-7;  // of the largest coordinate; with less, roundings look like corners
   const Vec3d furthest = max(max(box.lower, box.upper), max(-1.0 * box.lower, -1.0 * box.upper));
   const double coordinate = std::max({furthest.x, furthest.y, furthest.z});
   const double size = longest_side(box);
@@ -288,8 +288,8 @@ void check_place(const Box3& box) {
                     ", which leave it too few digits: move it towards the origin");
 }
 
-/// Whether a needle keeps the model from passing with smaller voxels, too.
-/// @param smaller  the least part of a voxel's side.
+/// Returns true if a needle keeps the model from passing with smaller voxels, too.
+/// @param smaller  smallest side of a voxel that is allowed, as a part of the present one.
 bool stays_stuck(const BodyReport& report, double smaller) {
   return std::any_of(report.failures.begin(), report.failures.end(),
                      [&](const ModelFailure& failure) { return failure.cuts * smaller > ModelFailure::most_cuts; });
@@ -305,9 +305,9 @@ InvalidMesh without_interior(const Solid& solid, double spacing) {
 
 namespace {
 
-/// The surface of a body of a polyhedron, which borders of its axis are fitted to.
+/// Surface of a body, to which the borders of its axis are fitted.
 struct BodySurface {
-  Solid solid;  ///< shares what it holds
+  Solid solid;  ///< shares its data
   const SolidBody* body;
   SiteTable sites;
   MeshSurface surface;
@@ -329,11 +329,11 @@ struct MedialAxis::Data {
   double greatest_theta = 180;
   double lambda = 0;
 
-  /// An axis at an angle, fitted to the surfaces of a polyhedron.
+  /// Axis at an angle, fitted to the surfaces of a polyhedron.
   struct Fitted {
     AxisLists lists;
     std::size_t vertices_before = 0;
-    double moved = 0;  ///< insides of sheets, at most, mesh units
+    double moved = 0;  ///< largest move of insides of sheets, mesh units
   };
   /// @param tolerance  FitTarget::tolerance
   [[nodiscard]] Fitted fitted(double theta, double tolerance, const Context& context) const {
@@ -358,7 +358,7 @@ struct MedialAxis::Data {
     return out;
   }
 
-  /// The complex of lists, with sheets and roles.
+  /// Returns the complex of lists, with sheets and roles.
   [[nodiscard]] Complex labelled(AxisLists lists, const Context& context) const {
     Complex complex = complex_of(std::move(lists));
     Incidence incidence(complex.view(), context);
@@ -370,7 +370,7 @@ struct MedialAxis::Data {
   }
 };
 
-/// Makes the pieces of an axis one after the other.
+/// Makes the pieces of an axis: one for each body, or one for an image.
 class MedialAxisBuilder {
  public:
   MedialAxisBuilder(const MedialAxisOptions& options, const Context& context)
@@ -403,7 +403,7 @@ class MedialAxisBuilder {
     return finish();
   }
 
-  /// The axis of the solid that make() finds, which counts as a phase.
+  /// Returns the axis of the solid that make() returns. Making the solid counts as a phase.
   template <class Make>
   MedialAxis of(const Make& make, const char* phase) {
     PhaseTimer timer(report().phases);
@@ -415,7 +415,7 @@ class MedialAxisBuilder {
  private:
   MedialAxisReport& report() { return data_->report; }
 
-  /// Throws where options are lengths that the solid does not have: nothing of its axis would be told.
+  /// Throws if an option is a length that the solid does not have. Nothing of its axis would be left.
   void check_lengths(const Box3& box) const {
     const double diagonal = box.diagonal();
     const auto check_length = [&](const char* name, double length) {
@@ -427,7 +427,7 @@ class MedialAxisBuilder {
     check_length("spacing", options_.spacing.value_or(0));
   }
 
-  /// Voxels fine enough for the topology of a body, if any are that the options allow.
+  /// Returns voxels fine enough for the topology of a body, if the options allow such; else the finest ones tried.
   [[nodiscard]] Voxelized voxelize(const SolidBody& body, double spacing, const Context& context) const {
     const bool is_polyhedron = data_->report.rule == SolidRule::polyhedron;
     const double finest = longest_side(bounds(body.mesh)) / options_.max_resolution;
@@ -461,9 +461,9 @@ class MedialAxisBuilder {
     add_piece(voxelized, std::move(piece));
   }
 
-  /// What is made of one body.
+  /// Results for one body.
   struct BodyPart {
-    Voxelized voxelized;  ///< without voxels nothing else was made
+    Voxelized voxelized;  ///< If it has no voxels, nothing else was made.
     std::unique_ptr<BodySurface> surface;
     AxisPiece piece;
     std::vector<PhaseTime> phases;
@@ -485,7 +485,7 @@ class MedialAxisBuilder {
     for (std::size_t b = 0; b < parts.size(); ++b) add_part(solid, bodies[b], std::move(parts[b]));
   }
 
-  /// About how many voxels the box of a body holds.
+  /// Returns about how many voxels the box of a body contains.
   [[nodiscard]] static std::size_t voxels_around(const SolidBody& body, double spacing) {
     constexpr double most = 1e15;
     const Vec3d size = bounds(body.mesh).size() / spacing;
@@ -509,8 +509,8 @@ class MedialAxisBuilder {
     return part;
   }
 
-  /// Makes the model of a body finer where cells of its axis leave the solid, and the axis anew: in smaller boxes there
-  /// is less for them to run around.
+  /// Refines the model of a body where cells of its axis leave the solid, and makes the axis anew. In smaller boxes the
+  /// cells have less to run around.
   void split_where_left(BodyPart& part, const SolidBody& body, const Context& context) const {
     constexpr int most_rounds = 6;
     if (!part.voxelized.report.topology_matches) return;
@@ -524,7 +524,8 @@ class MedialAxisBuilder {
     }
   }
 
-  /// Bodies that were made side by side tell more seconds together than went by.
+  /// Adds the phases of bodies. Bodies that were made side by side take more seconds together than went by, so these
+  /// are scaled.
   void add_phases(const std::vector<BodyPart>& parts, double seconds) {
     double all = 0;
     for (const BodyPart& part : parts) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t grain = 1 << 14;
 
-/// Indices 0 .. keys.size()-1 in rising order of key (< key_count), equal keys in their own order.
+/// Sorts the indices 0 .. keys.size()-1 by ascending key (< key_count). Equal keys keep their own order.
 void counting_order(std::span<const std::uint32_t> keys, std::size_t key_count, std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> start(key_count + 1, 0);
   for (const std::uint32_t key : keys) ++start[key + 1];

@@ -54,15 +54,16 @@ class PhaseClock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Small planes stay in cache between the x and the y pass; large ones (2D images) are cut into more tasks.
+/// Small planes stay in cache between the x and the y pass. Large ones (2D images) are cut into more tasks.
 constexpr std::size_t largest_plane_per_task = std::size_t{1} << 20U;
 /// Voxels of a task: enough to hide its overhead, few enough to stop within milliseconds.
 constexpr std::size_t task_voxels = std::size_t{1} << 16U;
-/// In the z pass neighbouring tiles share pages and the memory's rows, so that tasks are larger.
+/// Voxels of a task of the z pass. Its neighbouring tiles share pages and the memory's rows, so that tasks are larger.
 constexpr std::size_t depth_task_voxels = std::size_t{1} << 18U;
 
-/// Writes to each page of some rows of distances, which nothing has written yet. The depth pass would: but a column of
-/// it crosses a page in every layer, so the first few tasks would wait for all of the memory, deaf to cancel.
+/// Writes to each page of some rows of distances, which nothing has written yet. The depth pass would do so, but a
+/// column of it crosses a page in every layer. Its first few tasks would wait for all of the memory, and not react to a
+/// cancel.
 void touch_distances(const TransformPlan& plan, std::size_t first_row, std::size_t last_row) {
   constexpr std::size_t page = 4096 / sizeof(float);
   const std::size_t end = last_row * plan.size[0];

@@ -8,7 +8,7 @@
 
 namespace blum::cpu {
 
-/// As blum::distance_transforms(), of an image that is valid.
+/// Computes blum::distance_transforms() of a valid image, on the CPU.
 [[nodiscard]] std::vector<Field> distance_transforms(const VoxelImageView& image,
                                                      std::span<const LabelSelection> selections,
                                                      const DistanceTransformOptions& options, const Context& context);

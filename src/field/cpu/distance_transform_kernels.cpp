@@ -1,14 +1,16 @@
 // The three passes of the distance transform, compiled once per instruction set.
 //
-// A column pass (y or z) asks, for each row r of a column, for the row s that minimises f(s) + w (r - s)^2, where f is
-// what the earlier passes found. The smallest minimiser s(r) never falls as r grows (the matrix is totally monotone:
-// Aggarwal, Klawe, Moran, Shor, Wilber 1987), so rows are solved coarse to fine, each only between the solutions of its
-// two neighbours: log2(n) + 2 candidates per row in all. Lanes are neighbouring columns; a row searches the union of
-// their ranges. Where neighbouring columns disagree too much for that, they are solved one by one.
+// A column pass (y or z) solves the rows r of a column. For each it finds the row s that minimises f(s) + w (r - s)^2,
+// where f is the result of the earlier passes. The smallest minimiser s(r) never falls as r grows (the matrix is
+// totally monotone: Aggarwal, Klawe, Moran, Shor, Wilber 1987). So rows are solved coarse to fine, each only between
+// the solutions of its two neighbours. This takes log2(n) + 2 candidates per row in all. Lanes are neighbouring
+// columns; a row searches the union of their ranges. Neighbouring columns that disagree too much for that are solved
+// one by one.
 //
 // In a signed transform a voxel of the other kind in the column costs nothing by itself. The smallest minimiser then
-// never falls within each kind, and between rows of different kinds by at most one: between r1 < r2 there is an edge of
-// the kinds, e | e + 1, where s(r1) <= e + 1 and s(r2) >= e, since beyond the edge nothing is closer.
+// never falls within each kind, and between rows of different kinds it falls by at most one. The reason: between r1 <
+// r2 there is an edge of the kinds, e | e + 1. There s(r1) <= e + 1 and s(r2) >= e, because nothing beyond the edge is
+// closer.
 #include "field/cpu/distance_transform_kernels.hpp"
 
 #include <algorithm>
@@ -33,8 +35,8 @@ namespace blum::detail::HWY_NAMESPACE {
 namespace {
 
 /// Arithmetic of squared distances, in int32 or double. In a column of mixed kinds the cost of a selected voxel is
-/// stored flipped: ~f or -f. Flipped again for a selected row, costs of the row's own kind are positive and those of
-/// the other kind negative.
+/// stored flipped: ~f or -f. For a selected row, all costs are flipped again. Then costs of the row's own kind are
+/// positive, and those of the other kind negative.
 template <class T>
 struct Costs;
 
@@ -55,7 +57,7 @@ struct Costs<std::int32_t> {
   static HWY_INLINE V flip(D d, V cost) {
     return hn::Xor(cost, hn::Set(d, -1));
   }
-  /// What xor flips all other costs of this row with: everything where the row's own cost is flipped.
+  /// Returns the mask that flips the other costs for this row by xor: all ones if the row's own cost is flipped.
   template <class D, class V>
   static HWY_INLINE V flip_mask(D, V cost) {
     return hn::ShiftRight<31>(cost);
@@ -85,19 +87,19 @@ struct Costs<double> {
   }
 };
 
-/// Neighbouring columns of one axis, as scratch memory holds them: lane l of row r at r * stride + l.
+/// Neighbouring columns of one axis, as scratch memory holds them: lane l of row r is at r * stride + l.
 struct Columns {
-  std::size_t length = 0;      ///< rows
-  std::size_t stride = 0;      ///< between rows in scratch
-  std::size_t first = 0;       ///< linear index of the voxel of row 0, lane 0
-  std::size_t row_stride = 0;  ///< between rows in the image
-  std::size_t x = 0;           ///< of lane 0
-  std::size_t y = 0;           ///< in the z pass
-  std::size_t lanes = 0;       ///< columns; the lanes of a vector beyond them repeat the last one
-  std::size_t mask_word = 0;   ///< where the mask's row of row 0 starts
+  std::size_t length = 0;      ///< Number of rows.
+  std::size_t stride = 0;      ///< Step between rows in scratch.
+  std::size_t first = 0;       ///< Linear index of the voxel of row 0, lane 0.
+  std::size_t row_stride = 0;  ///< Step between rows in the image.
+  std::size_t x = 0;           ///< Coordinate of lane 0.
+  std::size_t y = 0;           ///< Coordinate in the z pass.
+  std::size_t lanes = 0;       ///< Number of columns; the lanes of a vector beyond them repeat the last one.
+  std::size_t mask_word = 0;   ///< Start of the mask's row of row 0.
   std::size_t mask_stride = 0;
-  bool mixed = false;         ///< holds both kinds, in a signed transform
-  bool all_selected = false;  ///< holds only selected voxels, in a signed transform
+  bool mixed = false;         ///< Holds both kinds, in a signed transform.
+  bool all_selected = false;  ///< Holds only selected voxels, in a signed transform.
   std::size_t lowest_candidate = 0;
   std::size_t highest_candidate = 0;
 };
@@ -107,7 +109,7 @@ HWY_INLINE std::uint32_t column_bits(const TransformPlan& plan, const Columns& c
   return static_cast<std::uint32_t>(words[columns.x / 64] >> (columns.x % 64));
 }
 
-/// Finds out which kinds the columns hold.
+/// Finds the kinds that the columns hold.
 void classify(const TransformPlan& plan, Columns& columns) {
   if (!plan.is_signed) return;
   const std::uint32_t lanes = (std::uint32_t{1} << columns.lanes) - 1;
@@ -123,8 +125,8 @@ void classify(const TransformPlan& plan, Columns& columns) {
   columns.all_selected = all == lanes;
 }
 
-/// Copies what the pass before left in the columns into scratch, with the costs that it stands for, and finds the rows
-/// that can be closest.
+/// Copies the result of the pass before in the columns into scratch, with the costs, and finds the rows that can be
+/// closest.
 template <class D, bool kFinal, bool kMixed>
 void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& columns) {
   using T = hn::TFromD<D>;
@@ -158,7 +160,7 @@ void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& colu
   std::size_t highest = 0;
   for (std::size_t row = 0; row < columns.length; ++row) {
     const auto* in = reinterpret_cast<const std::int32_t*>(plan.site) + columns.first + row * columns.row_stride;
-    // The rows of a column lie far apart, where the processor does not look ahead by itself.
+    // The rows of a column lie far apart, so the processor does not prefetch them by itself.
     if constexpr (kFinal) hwy::Prefetch(in + (next_columns ? width : 0));
     if (columns.lanes < width) {
       for (std::size_t lane = 0; lane < width; ++lane) buffer[lane] = in[std::min(lane, columns.lanes - 1)];
@@ -205,7 +207,7 @@ class Sweep {
   static constexpr bool one_lane = hn::MaxLanes(D()) == 1;
 
  public:
-  /// @param lane  of the columns, that the vector starts at.
+  /// @param lane  lane of the columns at which the vector starts.
   Sweep(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, const Columns& columns,
         std::size_t lane)
       : plan_(plan),
@@ -218,7 +220,7 @@ class Sweep {
         lowest_(scratch.lowest.data()),
         highest_(scratch.highest.data()) {}
 
-  /// Solves all rows; false when that takes more than about `budget` candidates, or the caller has cancelled.
+  /// Solves all rows. Returns false if that takes more than about `budget` candidates, or the caller has cancelled.
   bool run(std::size_t budget) {
     constexpr std::size_t candidates_between_checks = std::size_t{1} << 22U;
     const std::size_t n = columns_.length;
@@ -281,10 +283,10 @@ class Sweep {
     }
   }
 
-  /// All ones where a value is negative.
+  /// Returns all ones for negative values.
   static HWY_INLINE VI kind(VI value) { return hn::ShiftRight<31>(value); }
 
-  /// words[(row * stride + lane) * step] with each lane's own row.
+  /// Returns words[(row * stride + lane) * step] with each lane's own row.
   HWY_INLINE VI gather(const std::int32_t* words, std::size_t step, VI row) const {
     const DI di;
     const std::size_t stride = columns_.stride * step;
@@ -296,7 +298,7 @@ class Sweep {
     }
   }
 
-  /// A closest row of the other kind is itself the site. The sign bit of a cost tells its kind.
+  /// Replaces the site by the closest row itself, if that is of the other kind. The sign bit of a cost is its kind.
   HWY_INLINE VI replace_other_kind(VI partial, VI closest_row, VI negative) const {
     const DI di;
     // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be std::int32_t itself
@@ -340,7 +342,7 @@ class Sweep {
     store(di, site, reinterpret_cast<std::int32_t*>(plan_.site) + out);
   }
 
-  /// Distances of squared distances.
+  /// Returns the distances of squared distances.
   HWY_INLINE hn::Vec<DF> root(V best) const {
     const DF df;
     if constexpr (std::is_same_v<T, double>) {
@@ -393,7 +395,7 @@ class Sweep {
   std::int32_t* highest_;
 };
 
-/// Solves columns that fill at most one vector: together, or one by one where that is cheaper.
+/// Solves columns that fill at most one vector: together, or one by one if that is cheaper.
 template <class D, bool kFinal, bool kMixed>
 void solve_columns(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, Columns& columns) {
   load_columns<D, kFinal, kMixed>(plan, scratch, columns);

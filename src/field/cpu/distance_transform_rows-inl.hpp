@@ -25,13 +25,14 @@ constexpr std::uint32_t no_site = 0xffffffffU;
 
 using RowTag = hn::CappedTag<std::int32_t, 16>;
 
-/// Bits of 16 voxels of a row.
+/// Returns the bits of 16 voxels of a row.
 HWY_INLINE std::uint32_t group_bits(const std::uint64_t* words, std::size_t group) {
   return static_cast<std::uint32_t>(words[group / 4] >> (16 * (group % 4))) & 0xffffU;
 }
 
 /// The closest target in a row lies left (last target up to x) or right (first target from x on). `no_left` and
-/// `no_right` look further away than any voxel in unsigned arithmetic, as rows are shorter than 2^31.
+/// `no_right` stand for a missing one. In unsigned arithmetic they are further away than any voxel, because rows are
+/// shorter than 2^31.
 constexpr std::uint32_t no_left = 0x80000000U;
 constexpr std::uint32_t no_right = 0xffffffffU;
 
@@ -40,7 +41,7 @@ struct RowState {
   std::uint32_t last_other = no_left;
 };
 
-/// Position of the highest set bit of small positive integers (below 2^24), from the exponent of a float.
+/// Returns the position of the highest set bit of small positive integers (below 2^24), from the exponent of a float.
 template <class V>
 HWY_INLINE V highest_bit(V bits) {
   const RowTag d;
@@ -48,7 +49,7 @@ HWY_INLINE V highest_bit(V bits) {
   return hn::Sub(hn::ShiftRight<23>(hn::BitCast(d, hn::ConvertTo(df, bits))), hn::Set(d, 127));
 }
 
-/// The closer of left and right, the left one when both are equally far.
+/// Returns the closer of left and right, or the left one if both are equally far.
 template <class V>
 HWY_INLINE V closer(V x, V left, V right) {
   const RowTag d;
@@ -62,7 +63,7 @@ HWY_INLINE auto as_lanes(std::uint32_t value) {
   return hn::Set(RowTag(), static_cast<std::int32_t>(value));
 }
 
-/// Writes the closest targets of `lanes` voxels, which may be fewer than a vector holds at the end of a row.
+/// Writes the closest targets of `lanes` voxels. At the end of a row these may be fewer than a vector holds.
 template <class V>
 HWY_INLINE void store_lanes(V value, std::uint32_t* out, std::size_t lanes) {
   const RowTag d;
@@ -75,7 +76,7 @@ HWY_INLINE void store_lanes(V value, std::uint32_t* out, std::size_t lanes) {
   }
 }
 
-/// One group of 16 voxels that starts at x0; `bits` are the selected ones, `valid` those inside the row.
+/// Transforms one group of 16 voxels that starts at x0. `bits` are the selected ones, `valid` those inside the row.
 template <bool kSigned>
 HWY_INLINE void transform_group(std::uint32_t bits, std::uint32_t valid, std::uint32_t x0, const RowState& state,
                                 std::uint32_t next_selected, std::uint32_t next_other, std::uint32_t* out,

@@ -36,7 +36,7 @@ void copy_set(const RecordSet& from, const Context& context, RecordSet& to) {
   copy_floats(from.cluster_cones.sine, to.cluster_cones.sine);
 }
 
-/// Beyond its reach a site is beaten by a surface point, but by one that may be excluded.
+/// Removes the reaches of sites. Beyond its reach a site is beaten by a surface point, but that point may be excluded.
 void remove_reaches(SiteRecords& sites, const Context& context) {
   for (std::size_t kind = 0; kind < kind_count; ++kind) {
     RecordSet& set = sites.kinds[kind];
@@ -55,13 +55,14 @@ void remove_reaches(SiteRecords& sites, const Context& context) {
   }
 }
 
-/// Whether an edge joins vertices of different labels.
+/// Returns true if an edge joins vertices of different labels.
 bool has_mixed_edges(const SiteTable& sites, const SecondLabels& labels) {
   return std::any_of(sites.edges().begin(), sites.edges().end(),
                      [&](const Segment& edge) { return labels.of_vertex(edge[0]) != labels.of_vertex(edge[1]); });
 }
 
-/// What bounds the domain of a site whatever is first: of what meets at it, that which has no labels but its own.
+/// Returns the neighbours and faces of each site that have no labels but its own. They bound its domain whatever is
+/// first.
 Adjacency without_other_labels(const FirstSites& first, const SecondLabels& labels) {
   Adjacency out;
   const Adjacency& all = first.adjacency;
@@ -90,10 +91,10 @@ Adjacency without_other_labels(const FirstSites& first, const SecondLabels& labe
   return out;
 }
 
-/// Fields above 16 MB are not expected to stay in the caches.
+/// Fields of more nodes, above 16 MB, are not expected to stay in the caches.
 constexpr std::size_t fewest_streamed_nodes = std::size_t{1} << 21;
 
-/// Unit vertex pseudonormals in the grid's axes.
+/// Returns the unit vertex pseudonormals in the grid's axes.
 std::vector<Vec3f> vertex_sides(const MeshView& mesh, const SiteTable& sites, const NormalFrame& frame,
                                 const Context& context) {
   const Pseudonormals normals(mesh, sites, context);
@@ -111,7 +112,7 @@ std::vector<Vec3f> vertex_sides(const MeshView& mesh, const SiteTable& sites, co
   return sides;
 }
 
-/// Cuts a grid into tiles of at most `size` nodes a side.
+/// Cuts a grid into tiles of at most `size` nodes per side.
 struct Tiling {
   std::array<std::int64_t, 3> grid;
   std::int64_t size;

@@ -21,7 +21,7 @@
 
 namespace blum::cpu {
 
-/// What the first order knows of a mesh.
+/// First-order data of a mesh.
 struct FirstSites {
   const MeshView& mesh;
   const SiteTable& sites;
@@ -31,14 +31,14 @@ struct FirstSites {
   const SiteRecords& records;
 };
 
-/// The records, labels and links that tiles of the second order read.
+/// Records, labels and links that tiles of the second order read.
 class SecondSites {
  public:
   void build(const FirstSites& first, const SecondLabels& labels, const Context& context);
 
   [[nodiscard]] const SiteRecords& records() const { return records_; }
   [[nodiscard]] const ClusterForest& forest() const { return forest_; }
-  /// Without the field and its request. Valid until the next build().
+  /// Returns a job without the field and its request. It is valid until the next build().
   [[nodiscard]] SecondJob job() const;
 
  private:
@@ -65,7 +65,7 @@ class Engine final : public FieldBackend {
 
  private:
   void build_records(const FieldRequest& request, const Context& context);
-  /// Of a field, but for its request and signs.
+  /// Returns the job of a field, without its request and signs.
   [[nodiscard]] FieldJob make_job(const GridSpec& grid, const Context& context) const;
 
   MeshView mesh_;

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Calls use(vector of loaded boxes' lane offset, lower corner, upper corner) for sixteen consecutive boxes.
+/// Calls use(lane offset of the loaded boxes, lower corners, upper corners) for sixteen consecutive boxes.
 template <class Use>
 HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, Use use) {
   for (std::size_t offset = 0; offset < cluster_size; offset += lanes) {
@@ -24,9 +24,10 @@ HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, U
   }
 }
 
-/// Keeps a box of surface unless p0 is closer than all of it to every point x of the tile: unless the minimum over x
-/// and over p in the box of |x - p|^2 - |x - p0|^2 is positive. It is separable; along an axis it is linear in x and
-/// convex in p, so it is found at an end of the tile with p as near to it as can be.
+/// Tests boxes of surface against a tile. A box is dropped if p0 is closer than all of it to every point x of the tile.
+/// This holds if |x - p|^2 - |x - p0|^2 is positive for all x, and for all p in the box. The minimum is separable.
+/// Along an axis the difference is linear in x and convex in p. So its minimum is at an end of the tile, with p as near
+/// to it as can be.
 struct TileTest {
   Vec low, high, low_p0, high_p0;
   V tolerance;
@@ -54,7 +55,7 @@ struct TileTest {
     return hn::Min(hn::MulSub(from_low, from_low, low_to_p0), hn::MulSub(from_high, from_high, high_to_p0));
   }
 
-  /// One bit per box of sixteen.
+  /// Returns one bit per box of sixteen.
   HWY_INLINE std::uint32_t keeps(const BoxArrays& boxes, std::size_t first) const {
     std::uint32_t result = 0;
     for_each_box_vector(boxes, first, [&](std::size_t offset, const Vec& lower, const Vec& upper) {
@@ -74,8 +75,9 @@ struct TileTest {
   }
 };
 
-/// Keeps a cluster unless the tile lies outside of every direction in which its sites can be closest: as spheres, the
-/// distance from the tile's centre to the cone is above the sum of both radii.
+/// Returns one bit per cluster. A cluster is dropped if the tile lies outside of every direction in which its sites can
+/// be closest. Tile and cluster count as spheres: the test compares the distance from the tile's centre to the cone
+/// with the sum of both radii.
 template <class Test>
 HWY_INLINE std::uint32_t meets_cones(const Test& tile, const BoxArrays& boxes, const ConeArrays& cones,
                                      std::size_t first) {
@@ -103,7 +105,7 @@ HWY_INLINE std::uint32_t existing_boxes(std::size_t first, std::size_t count) {
   return count - first >= cluster_size ? 0xffffU : (1U << (count - first)) - 1;
 }
 
-/// Depth-first search for the clusters that a tile must look at, in storage order.
+/// Finds the clusters that may matter to a tile by depth-first search, in storage order.
 template <class Test>
 HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of_kind, const Test& test,
                                 std::size_t level, std::size_t first, std::vector<std::uint32_t>& out) {
@@ -121,7 +123,7 @@ HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of
   }
 }
 
-/// Nearest-first search for the closest record to a point, among those of which may_be(site id) is true.
+/// Nearest-first search for the closest record to a point, among those for which may_be(site id) is true.
 template <class MayBe>
 struct NearestSearch {
   const SiteRecords& sites;
@@ -188,7 +190,7 @@ HWY_INLINE Witness nearest_record(const FieldJob& job, const Vec3f& query) {
   return nearest_record(job, query, [](std::uint32_t) { return true; });
 }
 
-/// Finds the clusters of all kinds that matter to a tile; returns how many.
+/// Finds the clusters of all kinds that matter to a tile. Returns their number.
 template <class Test>
 HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test, TileScratch::Impl& scratch) {
   std::size_t total = 0;
@@ -204,14 +206,14 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test,
   return total;
 }
 
-/// Adds the records of the found clusters that may matter to the tile to the order to sort.
+/// Appends the records of the found clusters that may matter to the tile. They are sorted later.
 template <Kind kind, class Test>
 HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
                                std::vector<detail::KeyedIndex>& out) {
   const Record* records = job.sites->kinds[kind].records.data();
   NoClosest closest;
   for (const std::uint32_t cluster : clusters) {
-    if (job.cancel.stop_requested()) return;  // in the middle of a sphere all of its sites are looked at
+    if (job.cancel.stop_requested()) return;  // in the middle of a sphere all of its sites are tested
     for (std::size_t first = cluster * cluster_size; first < (cluster + std::size_t{1}) * cluster_size;
          first += lanes) {
       Columns columns;
@@ -230,7 +232,7 @@ HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std:
   }
 }
 
-/// Copies the records that may matter to a tile, in rising order of site id.
+/// Copies the records that may matter to a tile, in ascending order of site id.
 template <class Test>
 HWY_INLINE void gather_records(const FieldJob& job, const Test& test, TileScratch::Impl& scratch, Candidates& out) {
   for (std::size_t kind = 0; kind < kind_count; ++kind) {

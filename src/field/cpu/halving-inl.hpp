@@ -17,16 +17,16 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Surface points near a box: the closest to its centre first, then those of neighbouring boxes.
+/// Surface points near a box: first the closest to its centre, then those of neighbouring boxes.
 struct Dominators {
   static constexpr std::size_t most = 4;
   std::array<Vec3f, most> point{};
   std::size_t count = 1;
 };
 
-/// Drops what a known surface point p0 beats everywhere in the box center +- reach. With pi the projection of the
-/// centre on a site's flat, |x - p0|^2 < distance(x, flat)^2 for all x of the box when |c - pi|^2 > |c - p0|^2 + 2
-/// reach . |p0 - pi| + (largest squared offset along the flat).
+/// Drops sites that a known surface point p0 beats everywhere in the box center +- reach. Let pi be the projection of
+/// the centre c on a site's flat. Then |x - p0|^2 < distance(x, flat)^2 for all x of the box if |c - pi|^2 > |c - p0|^2
+/// + 2 reach . |p0 - pi| + (largest squared offset along the flat).
 struct Domination {
   struct Point {
     Vec center_to_p0;  // c - p0
@@ -46,6 +46,7 @@ struct Domination {
     }
   }
 
+  /// Returns the lanes whose sites no surface point beats everywhere in the box.
   /// @param to_flat  c - pi, per lane.
   HWY_INLINE M keeps(const Vec& to_flat, V squared_distance, V along_flat) const {
     const V rest = hn::Sub(squared_distance, along_flat);
@@ -86,7 +87,7 @@ struct ChildOffsets {
   }
 };
 
-/// For each child, the closest site at its centre that has been seen so far.
+/// Per child: the closest site at its centre that has been seen so far.
 struct ClosestAtCenters {
   static constexpr bool is_asked = true;
   V squared[8];
@@ -105,13 +106,13 @@ struct ClosestAtCenters {
   }
 };
 
-/// Stands in where nobody asks.
+/// Takes the place of ClosestAtCenters if closest sites are not needed.
 struct NoClosest {
   static constexpr bool is_asked = false;
   HWY_INLINE void offer(int, V, M, VI) {}
 };
 
-/// A block of vertices seen from a point m: what the tests and the leaves need of each.
+/// Block of vertices seen from a point m, with the data that the tests and the leaves need of each.
 struct VertexBlock {
   Vec to_site;       // m - p
   Vec direction[4];  // of the domain's planes
@@ -124,7 +125,7 @@ struct VertexBlock {
   }
 };
 
-/// A block of edges seen from a point m.
+/// Block of edges seen from a point m.
 struct EdgeBlock {
   Vec t, b, n;
   V along, across_b, across_n;  // components of m - midpoint
@@ -154,7 +155,7 @@ struct EdgeBlock {
   }
 };
 
-/// A block of faces seen from a point m.
+/// Block of faces seen from a point m.
 struct FaceBlock {
   Vec n, gradient_u, gradient_v;
   V height, minus_u, minus_v;  // at m
@@ -177,8 +178,8 @@ struct FaceBlock {
   }
 };
 
-/// Tests blocks of candidates against a box's eight children, or the box itself (boxes = 1): fills worst[c], positive
-/// where the site's domain misses the child, and offers distances at the children's centres.
+/// Tests blocks of candidates against a box's eight children, or the box itself (boxes = 1). Sets worst[c] to a
+/// positive value if the site's domain misses the child. Offers distances at the children's centres.
 template <int boxes>
 struct BlockTest {
   Domination domination;
@@ -193,13 +194,13 @@ struct BlockTest {
   BlockTest(const CenteredBox& box, const Dominators& dominators)
       : BlockTest(box.center, box.half + Vec3f{box_slack, box_slack, box_slack}, dominators) {}
 
-  /// What is not beaten everywhere in the box.
+  /// Returns the lanes that are not beaten everywhere in the box.
   template <class Block>
   HWY_INLINE M keeps(const Block& block) const {
     return block.keeps(domination);
   }
 
-  /// Adds the test value <= limit of an affine function at every child.
+  /// Adds the test value <= limit of an affine function for every child.
   HWY_INLINE void bound(V base, const Vec& gradient, V limit, V worst[boxes]) const {
     V value[boxes];
     offsets.values(hn::Sub(base, limit), gradient, value);
@@ -252,7 +253,7 @@ struct BlockTest {
     const V slack = set(2 * plane_slack);
     bound(block.across_b, block.b, hn::Add(support(block.b, half), block.first_limit), worst);
     bound(across_second, second, hn::Add(support(second, half), slack), worst);
-    // Against the sum's direction lies the middle of the wedge: going that way by more than the reach leaves the
+    // The middle of the wedge lies against the sum's direction: going that way by more than the reach leaves the
     // region.
     const V sum_support = hn::Add(support(sum, half), slack);
     const V forward = hn::Add(sum_support, block.first_limit);
@@ -278,7 +279,7 @@ struct BlockTest {
   template <class Closest>
   HWY_INLINE void run(const FaceBlock& block, [[maybe_unused]] M keep, [[maybe_unused]] VI index, V worst[boxes],
                       [[maybe_unused]] Closest& closest) const {
-    // Each barycentric coordinate in [0, 1] up to the box's extent: |coordinate - 1/2| - extent <= 1/2.
+    // Each barycentric coordinate must lie in [0, 1] up to the box's extent: |coordinate - 1/2| - extent <= 1/2.
     const V one_half = set(0.5F);
     V outside[boxes];
     V value[boxes];
@@ -326,7 +327,7 @@ struct BlockOf<face_kind> {
   using type = FaceBlock;
 };
 
-/// Which lanes of a block of candidates exist.
+/// Indices of the lanes of a block of candidates, and which of them exist.
 struct Lanes {
   VI index;
   M valid;
@@ -340,9 +341,9 @@ HWY_INLINE void load_block(const RecordList& list, std::size_t b, Columns& out) 
   load_columns(list.data() + b * lanes, out);
 }
 
-/// Tests all candidates of a kind against the eight children, and offers distances at their centres. `store` is called
-/// with each block that has a candidate left, for the leaves to read.
-/// @param parent  list of records, or what else has a count() and load_block(it, number, columns).
+/// Tests all candidates of a kind against the eight children, and offers distances at their centres. Calls `store` with
+/// each block that has a candidate left, for the leaves to read.
+/// @param parent  list of records, or another type that has count() and load_block(it, number, columns).
 template <Kind kind, class Test, class List, class Closest, class Store>
 HWY_INLINE void halve_kind(const Test& test, const List& parent, ChildBits& out, Closest& closest, Store store) {
   const std::size_t count = parent.count();
@@ -367,7 +368,7 @@ HWY_INLINE void halve_kind(const Test& test, const List& parent, ChildBits& out,
   }
 }
 
-/// halve_kind for vertices, edges and faces. `store_of(kind)` makes each kind's store.
+/// Runs halve_kind for vertices, edges and faces. `store_of(kind)` makes each kind's store.
 template <class Test, class Lists, class Closest, class StoreOf>
 HWY_INLINE void halve_kinds(const Test& test, const Lists& parent, std::array<ChildBits, kind_count>& out,
                             Closest& closest, StoreOf store_of) {

@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Node l of a leaf is at (l % 4, l / 4 % 4, l / 16). Four vectors are worked on at a time: `planar` of them differ in
-/// x and y only, and that pattern repeats over `slabs` values of z.
+/// Node l of a leaf is at (l % 4, l / 4 % 4, l / 16). Four vectors are computed at a time. `planar` of them differ in x
+/// and y only, and that pattern repeats over `slabs` values of z.
 constexpr std::size_t leaf_nodes = 64;
 constexpr std::size_t pass_vectors = 4;
 constexpr std::size_t planar = lanes >= 16 ? 1 : (lanes >= 4 ? 16 / lanes : 4);
@@ -21,17 +21,17 @@ constexpr std::size_t slabs = pass_vectors / planar;
 constexpr std::size_t pass_nodes = pass_vectors * lanes;
 constexpr std::size_t passes = leaf_nodes / pass_nodes;
 
-/// Winners of a leaf so far.
+/// Closest sites of a leaf's nodes so far.
 struct LeafState {
   alignas(64) std::array<float, leaf_nodes> squared;
   alignas(64) std::array<std::uint32_t, leaf_nodes> id;
-  alignas(
-      64) std::array<float, leaf_nodes> side;  ///< affine side function of the winner; only where sides are asked for
+  alignas(64) std::array<float, leaf_nodes> side;  ///< affine side function of the closest site, if asked for
 };
 
-/// Columns of prepared candidates. Each affine function is its value at the leaf's centre and its gradient.
+/// Columns of prepared candidates. Each affine function is stored as its value at the middle of the leaf's parent, and
+/// its gradient.
 struct LeafVertex {
-  enum { to_site = 0, planes = 3, id = 19, count = 20 };  // c - p; four planes of 4
+  enum { to_site = 0, planes = 3, id = 19, count = 20 };  // middle - p; four planes of 4
 };
 struct LeafEdge {
   enum {
@@ -83,8 +83,8 @@ struct LeafStore {
     put(LeafEdge::second_b, b, block.second_b);
     put(LeafEdge::second_n, b, block.second_n);
     put(LeafEdge::first_limit, b, block.first_limit);
-    // The pseudonormal is the sum of the faces' normals: with b and the second face's direction given in the frame of b
-    // and n, that is side * (second_n, 1 - second_b), of squared length 2 (1 - second_b).
+    // The pseudonormal is the sum of the faces' normals. In the frame of b and n, it is side * (second_n, 1 -
+    // second_b), of squared length 2 (1 - second_b).
     const V rest = hn::Sub(set(1.0F), block.second_b);
     const V scale = hn::Div(block.side, hn::Sqrt(hn::Max(hn::Add(rest, rest), set(1e-12F))));
     put(LeafEdge::side_b, b, hn::Mul(scale, block.second_n));
@@ -99,8 +99,8 @@ struct LeafStore {
   }
 };
 
-/// Which of a block's candidates a leaf's dominators leave. Everything is read at the leaf's centre, `offset` from the
-/// middle that the columns were written for.
+/// Finds which of a block's candidates a leaf's dominators leave. All values are read at the leaf's centre, at `offset`
+/// from the middle that the columns were written for.
 struct LeafDomination {
   Domination domination;
   Vec offset;
@@ -135,8 +135,7 @@ struct LeafDomination {
   }
 };
 
-/// Positions of the nodes of a pass, relative to the middle of the leaf's parent: what affine functions are evaluated
-/// at.
+/// Positions of the nodes of a pass, relative to the middle of the leaf's parent. Affine functions are evaluated there.
 struct LatticeNodes {
   static constexpr std::size_t vectors = pass_vectors;
   V x[planar], y[planar], z[slabs];
@@ -147,7 +146,7 @@ struct LatticeNodes {
       for (std::size_t s = 0; s < slabs; ++s) out[s * planar + p] = hn::MulAdd(gz, z[s], in_plane);
     }
   }
-  /// Squared lengths of positions + offset.
+  /// Computes the squared lengths of positions + offset.
   HWY_INLINE void squared_lengths(const Vec& offset, V out[vectors]) const {
     for (std::size_t p = 0; p < planar; ++p) {
       const V in_plane = hn::MulAdd(hn::Add(offset.x, x[p]), hn::Add(offset.x, x[p]), square(hn::Add(offset.y, y[p])));
@@ -191,7 +190,7 @@ struct LeafPattern {
   }
 };
 
-/// Evaluates candidates at the nodes of one pass, and has each offered to the winners, which the derived class keeps.
+/// Evaluates candidates at the nodes of one pass, and offers each to the winners, which the derived class keeps.
 template <class Winners, bool with_sides, class Nodes = LatticeNodes>
 struct LeafEvaluation {
   static constexpr std::size_t vectors = Nodes::vectors;
@@ -243,7 +242,7 @@ struct LeafEvaluation {
     const V new_id = set(in.column(LeafEdge::id)[at]);
     const V slack = set(plane_slack);
     for (std::size_t k = 0; k < vectors; ++k) {
-      // Beyond its ends the edge is as far as its end: the excess keeps the distance exact within the slack.
+      // Beyond its ends the edge is as far as its end. The excess keeps the distance exact within the slack.
       const V excess = hn::Sub(hn::Abs(along[k]), half_length);
       const V beyond = hn::Max(excess, hn::Zero(d));
       const V across =
@@ -280,7 +279,7 @@ struct LeafEvaluation {
   explicit LeafEvaluation(const Nodes& of_pass) : nodes(of_pass) {}
 };
 
-/// The running winners of one pass, in registers.
+/// Winners of one pass so far, in registers.
 template <bool with_sides, class Nodes = LatticeNodes>
 struct LeafPass : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes> {
   static constexpr std::size_t vectors = Nodes::vectors;
@@ -296,7 +295,7 @@ struct LeafPass : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes>
     }
   }
 
-  /// Lets a candidate win the nodes where `inside` is negative and it is strictly closer.
+  /// Lets a candidate win the nodes at which `inside` is negative and it is strictly closer.
   HWY_INLINE void take(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
     const V wins = hn::And(inside, hn::Sub(candidate, squared[k]));
     squared[k] = if_sign_bit(wins, candidate, squared[k]);
@@ -315,14 +314,14 @@ HWY_INLINE void finish_pass(const LeafPass<with_sides>& pass, std::size_t index,
   }
 }
 
-/// What a box of 8 x 8 x 8 nodes hands to its leaves: prepared candidates, and which matter to which leaf.
+/// Data that a box of 8 x 8 x 8 nodes hands to its leaves: prepared candidates, and which matter to which leaf.
 struct LeafInput {
   const std::array<LeafColumns, 3>& columns;
   std::array<ChildBits, kind_count>& bits;
   std::size_t child;
 };
 
-/// How many candidates the leaf has.
+/// Returns the number of candidates of the leaf, without slivers.
 HWY_INLINE std::size_t candidate_count(const LeafInput& input) {
   std::size_t count = 0;
   for (std::size_t kind = 0; kind < sliver_kind; ++kind) {

@@ -1,4 +1,4 @@
-// Blum: boxes of nodes and how they halve. SPDX-License-Identifier: Apache-2.0
+// Blum: boxes of nodes and their halves. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 
 namespace blum::cpu {
 
-/// Boxes are widened by this (normalised units), which covers all rounding in the tests that cull against them.
+/// Boxes are widened by this length (normalised units). It covers all rounding in the tests that cull against them.
 inline constexpr float box_slack = 3e-6F;
 
-/// A box of nodes as a centre and half-sizes in the normalised frame.
+/// Box of nodes as a centre and half-sizes in the normalised frame.
 struct CenteredBox {
   Vec3f center;
   Vec3f half;  ///< to the outermost nodes, not widened
@@ -29,14 +29,14 @@ inline CenteredBox centered(const FieldJob& job, const NodeBox& box) {
   return out;
 }
 
-/// The up to eight halves of a box of `size` nodes a side (clipped by the grid), in one symmetric picture: child c is
-/// centred at middle +- offset (plus along axis a where bit a of c is set) and lies within half of its centre.
+/// Up to eight halves of a box of `size` nodes per side (clipped by the grid), in one symmetric form. Child c is
+/// centred at middle +- offset (plus along axis a if bit a of c is set). It lies within `half` of its centre.
 struct Halving {
   std::array<NodeBox, 8> child{};
   std::array<bool, 8> exists{};
   Vec3f middle, offset, half;
 
-  /// The whole box lies within this of the middle.
+  /// Returns the distance from the middle, per axis, within which the whole box lies.
   [[nodiscard]] Vec3f reach() const { return offset + half; }
 };
 

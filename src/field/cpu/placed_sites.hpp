@@ -1,4 +1,4 @@
-// Blum: the sites of a mesh in the frame that is computed in. SPDX-License-Identifier: Apache-2.0
+// Blum: the sites of a mesh in the frame of the computation. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,21 @@ namespace blum::cpu {
 
 using kernels::NormalFrame;
 
+/// Returns the frame of a mesh and a grid.
 /// @param named  the vertices that the mesh names.
-/// @throws InvalidGrid when the common box is so large that float32 distances would overflow.
+/// @throws InvalidGrid if the common box is too large or too small for float32 distances.
 [[nodiscard]] NormalFrame make_normal_frame(const MeshView& mesh, std::span<const std::uint32_t> named,
                                             const GridSpec& grid);
 
-/// What kernels read of a mesh.
+/// Data of a mesh that kernels read.
 struct PlacedSites {
   std::vector<Vec3d> positions;  ///< of all vertices that the mesh names, normalised
   SiteOrder order;
   SiteRecords records;
   ClusterForest forest;
 
-  /// Reuses the memory of what was there. @throws Cancelled.
+  /// Builds all members, reusing their memory.
+  /// @throws Cancelled.
   void build(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency, const NormalFrame& frame,
              const Context& context);
 };

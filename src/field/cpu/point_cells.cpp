@@ -7,8 +7,8 @@
 namespace blum::cpu {
 namespace {
 
-/// More points do not stay in caches; fewer have too many candidates in common with their neighbours, but are divided
-/// among threads.
+/// Limits of the points of a cell. More points do not stay in caches. Fewer have too many candidates in common with
+/// their neighbours, but give each thread some work.
 constexpr std::size_t most_per_cell = 16384;
 constexpr std::size_t least_per_cell = 1024;
 constexpr std::size_t cells_per_thread = 8;

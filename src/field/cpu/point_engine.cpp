@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t grain = std::size_t{1} << 13;
 constexpr double infinite = std::numeric_limits<double>::infinity();
-/// What single precision may have taken from a distance, in the normalised frame.
+/// Bound on the error of a distance in single precision, in the normalised frame.
 constexpr double slack = 2e-6;
 
 Vec3d clamped(const Vec3d& p, const Box3& box) {
@@ -23,7 +23,7 @@ Vec3d clamped(const Vec3d& p, const Box3& box) {
   return out;
 }
 
-/// Queries lie all over memory: they are on their way while their group is put together.
+/// Queries are scattered in memory, so they are prefetched while their group is put together.
 void prefetch(const Vec3d& query) {
   hwy::Prefetch(&query.x);
   hwy::Prefetch(&query.z);  // may be in the next cache line
@@ -33,7 +33,8 @@ SiteId known_site(std::uint32_t record) {
   return record == dead_record ? SiteId::none() : SiteId(record);
 }
 
-/// A grid of two nodes a side whose box is a mesh's, wider by its longest side: most queries are that close.
+/// Returns a grid of two nodes per side. Its box is the mesh's, widened on each side by a quarter of the longest side:
+/// most queries are that close.
 GridSpec frame_grid(const Box3& bounds) {
   const Vec3d size = bounds.size();
   const double margin = 0.25 * std::max({size.x, size.y, size.z});

@@ -14,14 +14,14 @@ namespace blum::cpu {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// More clusters than this are not looked at for a cell that has further cells.
+/// A cell with more clusters than this is divided before its records are gathered, if it can be.
 constexpr std::size_t most_clusters = 8000;
-/// Points with more clusters, or candidates, each than these are better off with a search of their own.
+/// With more clusters, or candidates, per point than this, points are left to searches of their own.
 constexpr std::size_t clusters_per_point = 64;
 constexpr std::size_t candidates_per_point = 256;
-/// Points with no more candidates than this are not divided further.
+/// Points with at most this many candidates are not divided further.
 constexpr std::size_t few_candidates = 16;
-/// Distances that differ by no more than this are equal but for rounding, in the normalised frame.
+/// Distances that differ by at most this are equal within rounding, in the normalised frame.
 constexpr float tie = 2e-6F;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
@@ -56,7 +56,7 @@ struct PointNodes {
   }
 };
 
-/// The winners of a pass, the next best, and how close a third site comes.
+/// Winners of a pass, the next best ones, and the distance of the third best.
 template <std::size_t count>
 struct PointPass : LeafEvaluation<PointPass<count>, false, PointNodes<count>> {
   V squared[count];
@@ -85,12 +85,13 @@ struct PointPass : LeafEvaluation<PointPass<count>, false, PointNodes<count>> {
   }
 };
 
-/// Works on one cell: owns nothing, holds what the recursion passes along.
+/// Computes one cell. It owns nothing, and holds the data that the recursion passes along.
 class PointWorker {
  public:
   PointWorker(const PointJob& job, PointScratch& scratch)
       : job_(job), points_(*job.points), mine_(scratch.impl()), scratch_(mine_.tile.impl()) {}
 
+  /// Finds the closest sites of the points of a cell.
   /// @param cell  not of the last level.
   void cell(const PointCell& cell) {
     if (job_.field.cancel.stop_requested()) return;
@@ -119,7 +120,7 @@ class PointWorker {
            candidates[sliver_kind].count();
   }
 
-  /// Bounds the distances of points by that of a point of the surface, and leaves it at that.
+  /// Bounds the distances of points by that of a point of the surface, and names no sites.
   void give_up(const PointCell& cell, const Vec3f& surface_point) {
     const Vec p0 = set(surface_point);
     for (std::size_t at = cell.begin; at < cell.end; at += lanes) {
@@ -138,7 +139,7 @@ class PointWorker {
   template <class Tag, class Vector, class T>
   static void put(std::size_t at, std::size_t end, Tag tag, Vector values, Buffer<T>& out) {
     if (end - at >= lanes) return hn::StoreU(values, tag, out.data() + at);
-    // What lies behind belongs to other threads.
+    // Memory beyond the end belongs to other threads.
     alignas(64) std::array<T, lanes> here;
     hn::Store(values, tag, here.data());
     std::copy_n(here.data(), end - at, out.data() + at);
@@ -193,7 +194,7 @@ class PointWorker {
     return !can_divide(cell) || candidate_count(input) <= few_candidates;
   }
 
-  /// A box around points, not widened.
+  /// Returns a box around the points of a cell, not widened.
   [[nodiscard]] CenteredBox box_around(const PointCell& cell) const {
     Vec3f low;
     Vec3f high;
@@ -251,7 +252,7 @@ class PointWorker {
     for_each_candidate<edge_kind>(input, [&](std::size_t i) { pass.edge(input.columns[1], i); });
     for_each_candidate<face_kind>(input, [&](std::size_t i) { pass.face(input.columns[2], i); });
     for (std::size_t k = 0; k < vectors; ++k) {
-      // Two distances x, y are too close to tell where y^2 <= (x + tie)^2.
+      // Distances x and y are too close to distinguish if y^2 <= (x + tie)^2.
       const V reach = square(hn::Add(hn::Sqrt(pass.squared[k]), set(tie)));
       const M has_other = hn::Le(pass.second[k], reach);
       const M has_third = hn::Le(pass.third[k], reach);
@@ -265,7 +266,7 @@ class PointWorker {
       const Vec3d query{points_.coordinate[0][k], points_.coordinate[1][k], points_.coordinate[2][k]};
       const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
       float& best = job_.results->squared[k];
-      // Slivers stand for their borders, too: what is as close is left to a search in double.
+      // Slivers stand for their borders, too. If another site is as close, the point is left to a search in double.
       if (squared <= best + 2 * tie * std::sqrt(best) + tie * tie) job_.results->site[k] = dead_record;
       best = std::min(best, squared);
     }

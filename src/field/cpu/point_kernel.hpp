@@ -20,35 +20,36 @@ struct MortonPoints {
   static constexpr std::size_t padding = 64;
 
   std::array<Buffer<float>, 3> coordinate;
-  std::vector<std::uint32_t> code;  ///< of the cell that a point lies in, of 2^levels a side; rising
-  Vec3d lower;                      ///< corner of the cube
-  double side = 0;                  ///< of the cube
+  std::vector<std::uint32_t> code;  ///< Code of each point's cell, of 2^levels per side; ascending.
+  Vec3d lower;                      ///< Corner of the cube.
+  double side = 0;                  ///< Side of the cube.
 
   [[nodiscard]] std::size_t size() const { return code.size(); }
 };
 
-/// Points that lie in one cube: a cell of some level, or a part of its points where they are many.
+/// Points that lie in one cube: a cell of some level, or a part of its points if they are many.
 struct PointCell {
   std::size_t begin = 0;
   std::size_t end = 0;
-  unsigned level = 0;  ///< 0: the cube of all
+  unsigned level = 0;  ///< 0: the cube of all points
   Vec3f center;
   float half = 0;
 
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-/// What is found of each point.
+/// Results for each point.
 struct PointResults {
-  /// Squared distance to a point of the surface, normalised: the closest one but for rounding, where the site is known.
+  /// Squared distance to a point of the surface, normalised. If the site is known, it is the closest point, within
+  /// rounding.
   Buffer<float> squared;
-  Buffer<std::uint32_t> site;   ///< dead_record where it is left to a search of its own
-  Buffer<std::uint32_t> other;  ///< as close but for rounding; dead_record where there is none
+  Buffer<std::uint32_t> site;   ///< dead_record if it is left to a search of its own
+  Buffer<std::uint32_t> other;  ///< as close within rounding; dead_record if none
 };
 
-/// Everything that cells read, and where they write.
+/// Input of all cells, and the output of their results.
 struct PointJob {
-  FieldJob field;  ///< its sites, hierarchies and cancellation are used
+  FieldJob field;  ///< only its sites, hierarchies and cancellation are used
   const MortonPoints* points = nullptr;
   PointResults* results = nullptr;
 };
@@ -68,7 +69,8 @@ class PointScratch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Cells of at most some thousand points each, enough of them for so many threads, which together hold all points.
+/// Returns cells that together hold all points. Each has at most some thousand points, and there are enough for this
+/// many threads.
 [[nodiscard]] std::vector<PointCell> point_cells(const MortonPoints& points, int threads);
 
 /// Finds the closest sites of the points of a cell, by culling as for the tiles of a field.

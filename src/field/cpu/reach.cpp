@@ -11,12 +11,12 @@ namespace blum::cpu {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Rounding of w . (y - p) in float32, with margin.
+/// Bound, with margin, on the rounding of w . (y - p) in float32.
 constexpr float rounding = 6e-7F;
 /// Covers the approximate reciprocal (relative error below 1e-3 on every target).
 constexpr float safety = 1.002F;
 
-/// Offsets along the Morton curve at which vertices are tried: the near ones, then with growing gaps.
+/// Returns the next offset along the Morton curve at which vertices are tried: near ones first, then with growing gaps.
 std::size_t next_offset(std::size_t offset) {
   return offset + 1 + offset / 6;
 }
@@ -29,7 +29,7 @@ struct Reaches {
   V first, second;
 };
 
-/// The bounds that one surface point gives, for the lanes from `lane` on.
+/// Bounds that one surface point gives, for the lanes from `lane` on.
 struct LaneSites {
   Vec corner[3];
   Vec direction[2];

@@ -20,21 +20,20 @@ struct SurfacePoints {
 using SixteenFloats = std::array<float, cluster_size>;
 using SixteenVectors = std::array<SixteenFloats, 3>;
 
-/// A cluster of convex sites: up to three corners each, and up to two unit directions between which their domains lie.
+/// Cluster of convex sites: up to three corners each, and up to two unit directions between which their domains lie.
 /// Corners and directions that a site lacks repeat another one.
 struct alignas(64) ReachInput {
   std::array<SixteenVectors, 3> corner;
   std::array<SixteenVectors, 2> direction;
 };
 
-/// Upper bounds on the distance at which a site can still be closest, for sixteen sites: beyond rho from a site with
-/// corners p, along its domain's directions w, a surface point y is closer, if
-///   rho = max over p of |y - p|^2 / (2 min over p, w of w . (y - p)),
-/// because |y - (p + r w)|^2 < r^2 is linear in r, p varies over a convex set, and w over a cone. The smallest rho over
-/// some dozens of vertices near `rank` on the Morton curve is taken; far_away where there is none.
-/// @param both  true: both directions bound the same wedge, and first is for it. false: each direction is a domain of
-/// its
-///              own (the two sides of a face), with its own result.
+/// Finds upper bounds on the distance at which a site can still be closest, for sixteen sites. Let p be the corners of
+/// a site, and w the directions of its domain. Beyond this rho a surface point y is closer:
+///   rho = max over p of |y - p|^2 / (2 min over p, w of w . (y - p)).
+/// The reason: |y - (p + r w)|^2 < r^2 is linear in r, p varies over a convex set, and w over a cone. The search takes
+/// the smallest rho over some dozens of vertices near `rank` on the Morton curve; far_away if none gives one.
+/// @param both  If true, both directions bound the same wedge, and `first` is for it. If false, each direction is a
+///              domain of its own (the two sides of a face), with its own result.
 void find_reaches(const ReachInput& input, const SurfacePoints& points, std::size_t rank, bool both,
                   SixteenFloats& first, SixteenFloats& second);
 

@@ -19,12 +19,12 @@ std::span<const std::uint32_t> neighbours_of(const RecordInput& input, std::uint
   return std::span(input.adjacency.neighbours).subspan(first, input.adjacency.first_neighbour[vertex + 1] - first);
 }
 
-/// Few enough edges for the sixteen-at-a-time path, and enough of them to bound a cone.
+/// Returns true if edges are few enough for the sixteen-at-a-time path, and enough to bound a cone.
 bool fits_fan(std::size_t edge_count) {
   return edge_count >= 3 && edge_count <= VertexFans::most;
 }
 
-/// Puts a vertex into a lane; edges without extent are left out.
+/// Puts a vertex into a lane. Edges without extent are left out.
 void add_fan(const RecordInput& input, std::uint32_t vertex, std::size_t lane, VertexFans& fans) {
   const Vec3d& p = input.positions[vertex];
   std::size_t count = 0;
@@ -85,7 +85,8 @@ void build_from_fan(const RecordInput& input, std::uint32_t vertex, std::size_t 
 
 using kernels::EdgeShape;
 
-/// Unit direction that leaves an edge into one of its triangles; false if the triangle is too flat to have one.
+/// Finds the unit direction that leaves an edge into one of its triangles. Returns false if the triangle is missing or
+/// too flat to have one.
 bool in_face_direction(const RecordInput& input, const FaceFacts& facts, std::uint32_t triangle, const Segment& edge,
                        const Vec3d& tangent, Vec3d& direction) {
   if (triangle == no_index) return false;
@@ -96,8 +97,8 @@ bool in_face_direction(const RecordInput& input, const FaceFacts& facts, std::ui
   return true;
 }
 
-/// The directions between which an edge's domain lies. A zero direction stands for a domain without such bounds, whose
-/// reach is unlimited.
+/// Sets the directions between which an edge's domain lies. A zero direction stands for a domain without such bounds,
+/// whose reach is unlimited.
 void set_edge_reach(const EdgeShape& edge, std::size_t lane, ClusterBuild& cluster) {
   Vec3d border[2];
   const bool is_clear = kernels::edge_borders(edge, border);

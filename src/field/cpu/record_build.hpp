@@ -1,4 +1,4 @@
-// Blum: how the records of a cluster of sites are built. SPDX-License-Identifier: Apache-2.0
+// Blum: builds the records of a cluster of sites. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 
 namespace blum::cpu {
 
-/// Collects the domains of a cluster's sites, each given by the unit rays that span it, and bounds them all, or their
+/// Collects the domains of a cluster's sites, each given by the unit rays that span it. Bounds them all, or their
 /// opposites, by one cone.
 class DirectionCone {
  public:
-  /// @param rays  that span one site's domain; none stands for a domain that may be anything.
+  /// @param rays  rays that span one site's domain; an empty span stands for a domain that may be anything.
   void add(std::span<const Vec3f> rays) {
     if (rays.empty() || count_ + rays.size() > rays_.size()) is_bounded_ = false;
     if (!is_bounded_) return;
@@ -38,9 +38,9 @@ class DirectionCone {
     float sine = 1;
   };
 
-  /// The double cone: every direction of every domain makes an angle with the axis, or with its opposite, whose cosine
-  /// is at least `cosine`. A spherical cap of less than a half-sphere is convex, so a domain whose rays lie in one cap
-  /// lies in it; rays on both sides of the axis would not do.
+  /// Returns the double cone. Every direction of every domain makes an angle with the axis, or with its opposite, whose
+  /// cosine is at least `cosine`. A spherical cap of less than a half-sphere is convex, so a domain whose rays lie in
+  /// one cap lies in it. Rays on both sides of the axis would not suffice.
   [[nodiscard]] Result finish() const {
     constexpr float margin = 2e-3F;
     const float size = length(axis_);
@@ -72,14 +72,14 @@ using kernels::negligible_length;
 using kernels::store;
 using kernels::unit;
 
-/// What is learned of each triangle when its record is built, and read when those of its edges are.
+/// Facts of each triangle, found when its record is built, and read for the records of its edges.
 struct FaceFacts {
-  /// Unit normals; zero for triangles too flat to trust one.
+  /// Unit normals; zero for triangles too flat for a reliable one.
   std::vector<Vec3d> normals;
   std::vector<std::uint8_t> is_sliver;
 };
 
-/// What the builders of all kinds share.
+/// Input that the builders of all kinds share.
 struct RecordInput {
   const MeshView& mesh;
   const SiteTable& sites;
@@ -92,7 +92,7 @@ struct RecordInput {
   }
 };
 
-/// A cluster while it is built.
+/// Cluster while it is built.
 struct ClusterBuild {
   Box3 box;
   ReachInput reach;
@@ -107,8 +107,8 @@ struct ClusterBuild {
   }
 };
 
-/// Sites are stored along a curve, but the arrays they are built from are in the mesh's order: what a cluster reads is
-/// asked for in time. Far ahead, that is what names other things; nearer, the things named.
+/// Sites are stored along a curve, but the arrays they are built from are in the mesh's order. So the data that a
+/// cluster reads are prefetched. Far ahead, these are the data that name others; nearer, the data named.
 enum class Ahead : std::uint8_t { far, near };
 inline void prefetch(const void* at) {
   __builtin_prefetch(at);
@@ -118,8 +118,8 @@ void prefetch_edges(const RecordInput& input, const FaceFacts& facts, std::span<
                     Ahead ahead);
 void prefetch_faces(const RecordInput& input, std::span<const std::uint32_t> sites, Ahead ahead);
 
-/// Build the records of up to sixteen sites and add them to their cluster; a site that can own no node leaves its
-/// record dead. Faces come before edges, which read what faces write of themselves.
+/// Build the records of up to sixteen sites and add them to their cluster. A site that can own no node leaves its
+/// record dead. Faces come before edges, which read the facts that faces write.
 void build_vertices(const RecordInput& input, std::span<const std::uint32_t> sites, std::span<Record> records,
                     ClusterBuild& cluster);
 void build_edges(const RecordInput& input, const FaceFacts& facts, std::span<const std::uint32_t> sites,

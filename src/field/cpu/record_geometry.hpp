@@ -18,7 +18,7 @@ using kernels::to_float;
 using kernels::value_at;
 using kernels::vec_at;
 
-/// A point of the surface and which record it lies on.
+/// Point of the surface, and the record that it lies on.
 struct Witness {
   Vec3f point{};
   Kind kind = vertex_kind;
@@ -26,7 +26,8 @@ struct Witness {
   float squared_distance = std::numeric_limits<float>::infinity();  ///< to the query that found it
 };
 
-/// As the kernels' functions, by kind.
+/// Finds the closest point of a record, by the kernels' function for its kind. Returns false for a face if the query
+/// lies outside of its prism.
 inline bool closest_on_record(Kind kind, const Record& record, const Vec3f& query, Vec3f& point) {
   switch (kind) {
     case vertex_kind:
@@ -44,13 +45,13 @@ inline bool closest_on_record(Kind kind, const Record& record, const Vec3f& quer
   return false;
 }
 
-/// A side is called only if the pseudonormal is at least this far (as a cosine) from being perpendicular.
+/// A side is decided only if the pseudonormal is at least this far (as a cosine) from being perpendicular.
 inline constexpr float clear_side = 0.01F;
-/// Nor is it called this close to the surface, in the normalised frame.
+/// A side is not decided this close to the surface, in the normalised frame.
 inline constexpr float smallest_side = 1e-6F;
 
-/// Component of a vector along an edge's unit pseudonormal, the sum of its faces' normals. With the second face's
-/// direction given in the frame of b and n, that sum is side * (second_n b + (1 - second_b) n).
+/// Returns the component of a vector along an edge's unit pseudonormal, the sum of its faces' normals. With the second
+/// face's direction given in the frame of b and n, that sum is side * (second_n b + (1 - second_b) n).
 inline float edge_side(const Record& record, const Vec3f& from_midpoint) {
   const Vec3f binormal = vec_at(record, EdgeColumns::binormal);
   const Vec3f normal = cross(vec_at(record, EdgeColumns::tangent), binormal);
@@ -60,7 +61,8 @@ inline float edge_side(const Record& record, const Vec3f& from_midpoint) {
          (value_at(record, EdgeColumns::second_n) * dot(from_midpoint, binormal) + rest * dot(from_midpoint, normal));
 }
 
-/// Which side of a closed mesh a query lies on, from its closest site: +1 outside, -1 inside, 0 too close to call.
+/// Returns the side of a closed mesh that a query lies on, from its closest site: +1 outside, -1 inside, 0 too close to
+/// call.
 inline int side_of(const Witness& closest, const Vec3f& query, const std::vector<Vec3f>& vertex_sides) {
   const Record& record = *closest.record;
   float side = 0;

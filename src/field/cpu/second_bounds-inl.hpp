@@ -1,4 +1,4 @@
-// Blum: bounds on how far the second sites of a box are, and lists of candidates. SPDX-License-Identifier: Apache-2.0
+// Blum: bounds on the distance of a box's second sites, and lists of candidates. SPDX-License-Identifier: Apache-2.0
 #if defined(BLUM_FIELD_CPU_SECOND_BOUNDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
 #undef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
@@ -16,9 +16,9 @@ namespace HWY_NAMESPACE {
 
 using OfSite = SecondLabels::OfSite;
 
-/// Surface points that bound how far the second site is: of two that are apart, one may be second wherever anything is
-/// first, so that a second site is no further than the further of the two. One alone where it may be second at all
-/// nodes at hand; none where nothing is known.
+/// Surface points that bound the distance of the second site. If two points are apart, one of them may be second
+/// wherever anything is first. So a second site is no further than the further of the two. A single point suffices if
+/// it may be second at all nodes of the box. Without points, nothing is known.
 struct Bounds {
   std::array<Vec3f, 2> point{};
   std::array<OfSite, 2> labels{};
@@ -58,7 +58,7 @@ struct BoundedTest : BlockTest<boxes> {
         other(h.middle, Dominators{{bounds.point[1]}, 1}, h.reach()),
         count(bounds.count) {}
 
-  /// Takes one bound instead, for what is known of all nodes.
+  /// Replaces the bounds by one that holds for all nodes.
   void bound_by(const Domination& all) {
     this->domination = all;
     count = 1;
@@ -84,7 +84,7 @@ HWY_INLINE void list_child(const PlaceList& parent, const ChildBits& child_bits,
   const std::uint16_t* words = child_bits.child(child);
   std::size_t count = 0;
   for (std::size_t b = 0; b < child_bits.blocks(); ++b) {
-    // All lanes are written, of which the next block overwrites the rest.
+    // All lanes are written; the next block overwrites the surplus.
     alignas(8) const std::array<std::uint8_t, 8> word{static_cast<std::uint8_t>(words[b] & 0xff),
                                                       static_cast<std::uint8_t>(words[b] >> 8)};
     const auto mask = hn::LoadMaskBits(di, word.data());

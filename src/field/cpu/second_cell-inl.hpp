@@ -1,4 +1,4 @@
-// Blum: evaluates the second order in a cell of 8 x 8 x 8 nodes. SPDX-License-Identifier: Apache-2.0
+// Blum: evaluates the second order in a cell of 16 x 16 x 16 nodes. SPDX-License-Identifier: Apache-2.0
 #if defined(BLUM_FIELD_CPU_SECOND_CELL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef BLUM_FIELD_CPU_SECOND_CELL_INL
 #undef BLUM_FIELD_CPU_SECOND_CELL_INL
@@ -21,14 +21,14 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Ids are compared as signed numbers; this one loses against all.
+/// Ids are compared as signed numbers; this one loses against all others.
 constexpr std::uint32_t nobody = 0x7fffffff;
 constexpr float no_distance = hwy::HighestValue<float>();
 
 using DS = hn::RebindToSigned<D>;
 constexpr DS ds{};
 
-/// Where a candidate beats what a node has: it is closer, or as close with a smaller id.
+/// Returns the lanes in which a candidate beats the node's best: it is closer, or as close with a smaller id.
 HWY_INLINE M is_better(V squared, V id, V best, V best_id) {
   const M has_smaller_id = hn::RebindMask(d, hn::Lt(hn::BitCast(ds, id), hn::BitCast(ds, best_id)));
   return hn::Or(hn::Lt(squared, best), hn::And(hn::Eq(squared, best), has_smaller_id));
@@ -38,14 +38,14 @@ HWY_INLINE V set_id(std::uint32_t id) {
   return hn::BitCast(d, hn::Set(di, id));
 }
 
-/// Positions of `lanes` nodes of a leaf, from where its pattern is seen from.
+/// Returns the positions of `lanes` nodes of a leaf, relative to the origin of its pattern.
 HWY_INLINE Vec positions_of(const LeafPattern& pattern, std::size_t node) {
   const LeafPattern::Pass& pass = pattern.pass[node / pass_nodes];
   const std::size_t k = node % pass_nodes / lanes;
   return {pass.x[k % planar], pass.y[k % planar], pass.z[k / planar]};
 }
 
-/// Where the nodes of a cell are, from its middle.
+/// Positions of the nodes of a cell, relative to its middle.
 struct CellPositions {
   alignas(64) std::array<std::array<float, SecondCell::row>, 3> axis;
   /// x and y of the 16 nodes of a leaf's layer, for each of four leaves along the axis.
@@ -60,14 +60,14 @@ struct CellPositions {
     }
   }
 
-  /// Of `lanes` nodes one after the other.
+  /// Returns the positions of `lanes` consecutive nodes.
   [[nodiscard]] HWY_INLINE Vec following(std::size_t node) const {
     const std::size_t leaf = node / leaf_nodes;
     return {hn::Load(d, x[leaf % 4].data() + node % 16), hn::Load(d, y[leaf / 4 % 4].data() + node % 16),
             set(axis[2][leaf / 16 * 4 + node / 16 % 4])};
   }
 
-  /// Of any nodes.
+  /// Returns the positions of any nodes.
   [[nodiscard]] HWY_INLINE Vec of(VI nodes) const {
     const auto coordinate = [&](int in_leaf, int of_leaf) {
       const VI low = hn::And(hn::ShiftRightSame(nodes, in_leaf), hn::Set(di, 3));
@@ -129,7 +129,7 @@ class CellSorter {
       for (std::size_t i = group.first_item;; i = cell_.items[i].next) {
         const SecondCell::Item& item = cell_.items[i];
         const std::uint32_t first = static_cast<std::uint32_t>(item.leaf * leaf_nodes);
-        // Four at a time, of which the next item overwrites the rest: so the number of turns is easier to foresee.
+        // Four at a time, so that the number of turns is easier to predict. The next item overwrites the surplus.
         std::uint64_t nodes = item.nodes;
         for (std::size_t at = place; nodes != 0; at += 4) {
           for (std::size_t k = 0; k < 4; ++k, nodes &= nodes - 1) {
@@ -145,7 +145,7 @@ class CellSorter {
   }
 
  private:
-  /// A bit for each node of a leaf whose first site is this one.
+  /// Returns one bit per node of a leaf, set if `site` is the node's first site.
   static HWY_INLINE std::uint64_t nodes_of(const std::uint32_t* sites, std::uint32_t site) {
     const VI wanted = hn::Set(di, site);
     std::uint64_t found = 0;
@@ -183,7 +183,7 @@ class CellSorter {
   std::span<const SecondLabels::OfSite> labels_;
 };
 
-/// Vectors of nodes of a cell, from a place of its order on, and the closest of the closed segments offered to them.
+/// Vectors of nodes of a cell, from a place of its order on, with the closest of the closed segments offered to them.
 template <std::size_t vectors>
 struct LinkOffers {
   Vec position[vectors];
@@ -198,7 +198,7 @@ struct LinkOffers {
     }
   }
 
-  /// @param middle  what positions are relative to.
+  /// @param middle  point that positions are relative to.
   HWY_INLINE void offer(const LinkSegment& segment, const Vec3f& middle) {
     const Vec center = set(segment.middle - middle);
     const Vec tangent = set(segment.tangent);
@@ -219,7 +219,7 @@ struct LinkOffers {
     }
   }
 
-  /// Writes what the nodes have got, in the order of nodes.
+  /// Writes the results of the nodes, in the order of nodes.
   HWY_INLINE void store(std::size_t at, SecondCell& cell) const {
     alignas(64) std::array<float, vectors * lanes> squared;
     alignas(64) std::array<std::uint32_t, vectors * lanes> id;
@@ -243,8 +243,8 @@ HWY_INLINE void offer_links_at(std::span<const std::uint32_t> links, const Secon
   offers.store(at, cell);
 }
 
-/// Gives the nodes of a group the closest of some closed segments. Whole vectors are written, also of nodes after the
-/// group: groups are to be taken in their order.
+/// Gives the nodes of a group the closest of some closed segments. Whole vectors are written, also to nodes after the
+/// group, so groups are processed in their order.
 HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const SecondLinks& all, const Vec3f& middle,
                               const CellPositions& positions, const SecondCell::Group& group, SecondCell& cell) {
   for (std::size_t at = group.begin; at < group.end;) {
@@ -258,25 +258,25 @@ HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const Second
   }
 }
 
-/// What bounds squared distances from above at nodes x around a centre c: |x - c|^2 + 2 (x - c) . slope + limit, which
-/// has the form of a squared distance from a point, as a Domination needs it. Any slope is valid with the limit that
-/// goes with it; a good one follows the distances.
+/// Upper bound on squared distances at nodes x around a centre c: |x - c|^2 + 2 (x - c) . slope + limit. This has the
+/// form of a squared distance from a point, as a Domination needs it. Any slope is valid with the limit that belongs to
+/// it; a good one follows the distances.
 struct DistanceBound {
   Vec3f slope;
   float limit = 0;
-  float largest = 0;  ///< squared distance, which rounding goes with
+  float largest = 0;  ///< squared distance; rounding is proportional to it
   bool is_known = false;
 
-  /// The same around another centre, `offset` further.
+  /// Returns the same bound around another centre, `offset` further.
   [[nodiscard]] DistanceBound around(const Vec3f& offset) const {
     DistanceBound out = *this;
     out.slope = slope + offset;
     out.limit = limit + squared_length(offset) + 2 * blum::dot(offset, slope);
-    // What rounding may have taken from it.
+    // Rounding is proportional to the larger of the two.
     out.largest = std::max(largest, squared_length(out.slope));
     return out;
   }
-  /// The test that drops what is further than this everywhere in the box center +- reach.
+  /// Returns the test that drops sites further than this everywhere in the box center +- reach.
   [[nodiscard]] Domination domination(const Vec3f& center, const Vec3f& reach) const {
     Domination out(center, Dominators{{center}, 1}, reach);
     const float slack = 4e-6F * largest + 2e-6F * std::sqrt(largest) + 1e-12F;
@@ -285,9 +285,10 @@ struct DistanceBound {
   }
 };
 
-/// @param count   of nodes.
-/// @param node_at callable: first of `lanes` nodes -> their positions from the centre.
-/// @param squared of the nodes; those below 0 do not count. Read as whole vectors.
+/// Returns a bound on the squared distances of nodes.
+/// @param count    number of nodes.
+/// @param node_at  callable: first of `lanes` nodes -> their positions from the centre.
+/// @param squared  one per node, read as whole vectors; those below 0 do not count.
 template <class NodeAt>
 HWY_INLINE DistanceBound bound_distances(std::size_t count, const NodeAt& node_at, const float* squared) {
   V worst = hn::Zero(d);
@@ -331,7 +332,7 @@ HWY_INLINE DistanceBound bound_distances(std::size_t count, const NodeAt& node_a
   return out;
 }
 
-/// A ball around the nodes of a group, from the cell's middle.
+/// Ball around the nodes of a group, relative to the cell's middle.
 struct GroupBall {
   Vec3f center;
   float radius = 0;
@@ -350,12 +351,12 @@ inline GroupBall ball_of(const SecondCell& cell, const SecondCell::Group& group,
   return {(low + high) * 0.5F, length(high - low) * 0.50001F + box_slack};
 }
 
-/// The first sites of a leaf and its seconds so far, which are part of the cell.
+/// First sites of a leaf and its second ones so far, which are part of the cell.
 struct SecondLeaf {
-  /// Labels of the first sites, found when they are asked for.
+  /// Labels of the first sites, found on demand.
   alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
-  const std::uint32_t* first;  ///< dead_record where there is none
-  float* squared;              ///< below 0 where there is no first site, so that nothing can be second
+  const std::uint32_t* first;  ///< dead_record if none
+  float* squared;              ///< below 0 without a first site, so that nothing can be second
   std::uint32_t* id;
   std::uint64_t has_labels = 0;  ///< a bit for each node
 
@@ -364,7 +365,7 @@ struct SecondLeaf {
         squared(cell.squared.data() + leaf * leaf_nodes),
         id(cell.id.data() + leaf * leaf_nodes) {}
 
-  /// Of `lanes` nodes.
+  /// Finds the labels of `lanes` nodes.
   void find_labels(std::size_t begin, std::span<const SecondLabels::OfSite> of_site) {
     has_labels |= std::uint64_t{1} << begin;
     for (std::size_t node = begin; node < begin + lanes; ++node) {
@@ -374,13 +375,13 @@ struct SecondLeaf {
   }
 };
 
-/// Evaluates candidates at the nodes of a leaf. What a candidate offers is kept, to be looked at closely where it is as
-/// close as what some node has: mostly none is, but at the nodes whose first site it is.
+/// Evaluates candidates at the nodes of a leaf. Distances of a candidate are kept, to be examined closely if they are
+/// as small as some node's best. Mostly they are not, except at the nodes whose first site it is.
 struct SecondPass : LeafEvaluation<SecondPass, false> {
   const SecondLeaf& leaf;
   std::size_t first_node;
-  V* offered = nullptr;  ///< where squared distances go; infinite outside of the candidate's domain
-  M is_close{};          ///< in any vector
+  V* offered = nullptr;  ///< Output of squared distances; infinite outside of the candidate's domain.
+  M is_close{};          ///< Lanes with a close one, in any vector.
 
   SecondPass(const LeafPattern::Pass& pattern, std::size_t node, const SecondLeaf& of_leaf)
       : LeafEvaluation<SecondPass, false>(pattern), leaf(of_leaf), first_node(node) {}
@@ -395,8 +396,8 @@ struct SecondPass : LeafEvaluation<SecondPass, false> {
   }
 };
 
-/// Lets a candidate win where it may be second, if it does.
-/// @param offered  its squared distances at the nodes of a pass, as SecondPass leaves them.
+/// Lets a candidate win the nodes at which it may be second and is better.
+/// @param offered  its squared distances at the nodes of a pass, as SecondPass writes them.
 HWY_INLINE void settle_second(const V* offered, std::size_t first_node, std::uint32_t candidate,
                               std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
   const SecondLabels::OfSite own = labels[candidate];
@@ -422,17 +423,17 @@ HWY_INLINE void settle_second(const V* offered, std::size_t first_node, std::uin
   }
 }
 
-/// Candidates of a pass that some node may take. They are put off, since whether a candidate is among them is hard to
-/// foresee, and known late: a branch for each would cost more than its evaluation.
+/// Candidates of a pass that some node may take. They are examined later: if a candidate is among them is hard to
+/// predict, and known late. A branch for each would cost more than its evaluation.
 struct SecondOffers {
   static constexpr std::size_t most = 24;
 
-  V squared[most][pass_vectors];  ///< as SecondPass leaves them
+  V squared[most][pass_vectors];  ///< as SecondPass writes them
   std::array<std::uint32_t, most> candidate;
   std::size_t count = 0;
 
   HWY_INLINE V* next() { return squared[count]; }
-  /// Keeps what next() holds where it is of use.
+  /// Keeps the values in next() if some lane is close.
   HWY_INLINE void add(const float* id, M is_close) {
     std::memcpy(&candidate[count], id, sizeof(std::uint32_t));
     count += static_cast<std::size_t>(!hn::AllFalse(d, is_close));

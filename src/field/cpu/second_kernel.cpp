@@ -16,11 +16,11 @@ namespace {
 constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
 constexpr std::int64_t leaf_size = 4;
-/// Links of a site beyond this are first cut down to those that are near.
+/// If a site has more links than this, they are first reduced to those that are near.
 constexpr std::size_t many_links = 32;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
-/// Works on one tile: owns nothing, holds what the recursion passes along.
+/// Computes one tile. It owns nothing, and holds the data that the recursion passes along.
 class SecondWorker {
  public:
   SecondWorker(const SecondJob& job, SecondScratch& scratch)
@@ -64,9 +64,9 @@ class SecondWorker {
   }
 
  private:
-  // --- what is known of a box's first sites
+  // --- first sites of a box
 
-  /// Calls visit(first node of a row) for the rows of a box until it returns false; whether none did.
+  /// Calls visit(first node of a row) for the rows of a box until it returns false. Returns true if it never did.
   template <class Visit>
   bool all_rows(const NodeBox& box, Visit visit) const {
     const auto& size = field_.request.grid.size;
@@ -86,7 +86,7 @@ class SecondWorker {
     });
   }
 
-  /// The labels that all first sites of a box have; null where they differ, or there are none.
+  /// Returns the labels that all first sites of a box have; null if they differ, or without first sites.
   [[nodiscard]] const OfSite* only_labels(const NodeBox& box) const {
     const OfSite* only = nullptr;
     const bool is_only = all_rows(box, [&](std::size_t row) {
@@ -109,7 +109,7 @@ class SecondWorker {
     list.shorten(kept);
   }
 
-  /// Gives a box of nodes beyond the band no second site.
+  /// Gives a box of nodes the limit as distance and no second site.
   void fill(const NodeBox& box) const {
     (void)all_rows(box, [&](std::size_t row) {
       std::fill_n(job_.request.distance2 + row, box.count[0], limit());
@@ -118,7 +118,7 @@ class SecondWorker {
     });
   }
 
-  /// What nodes without a second site get.
+  /// Returns the distance of nodes without a second site.
   [[nodiscard]] float limit() const {
     return job_.request.has_band() ? static_cast<float>(job_.request.band) : std::numeric_limits<float>::infinity();
   }
@@ -144,7 +144,8 @@ class SecondWorker {
     return out;
   }
 
-  /// Bounds for a child of a box, of the sites that the lanes have found closest to its centre; else the parent's.
+  /// Returns bounds for a child of a box, from the sites that the lanes have found closest to its centre. Without such
+  /// sites, it returns the parent's bounds.
   [[nodiscard]] Bounds bounds_of_child(const SecondCandidates& candidates, const ClosestAtCenters& closest,
                                        std::size_t child, const Vec3f& center, const Bounds& parent) const {
     alignas(64) std::array<float, lanes> squared;
@@ -170,7 +171,7 @@ class SecondWorker {
     if (!take_nearest([](const OfSite&) { return true; })) return parent;
     if (only_ != nullptr) return out;
     if (take_nearest([&](const OfSite& labels) { return job_.are_apart(out.labels[0], labels); })) return out;
-    // The parent's further point does where it is apart from the child's nearest.
+    // The parent's further point serves if it is apart from the child's nearest.
     for (std::size_t k = 0; k < parent.count; ++k) {
       if (!job_.are_apart(out.labels[0], parent.labels[k])) continue;
       out.point[1] = parent.point[k];
@@ -204,7 +205,7 @@ class SecondWorker {
         list_child(candidates[kind], child_bits[kind], c, of_child.places[kind]);
       }
       const CenteredBox place = centered(field_, parts.child[c]);
-      // Within cells, links tell more.
+      // Within cells, links give better bounds.
       const bool needs_bounds = !is_cell || job_.links == nullptr;
       const Bounds child_bounds = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
       list_slivers(candidates.slivers, place, child_bounds, of_child.slivers);
@@ -237,7 +238,7 @@ class SecondWorker {
 
   // --- cells
 
-  /// Evaluates links at all nodes of a cell.
+  /// Reads the first sites of a cell, and evaluates links at all of its nodes.
   void begin_cell(const NodeBox& box, const Vec3f& middle) {
     cell_box_ = box;
     cell_middle_ = middle;
@@ -273,7 +274,8 @@ class SecondWorker {
     return box.count[0] == side && box.count[1] == side && box.count[2] == side;
   }
 
-  /// @return  what bounds the distances from above, around the middle.
+  /// Evaluates the links of all groups of a cell.
+  /// @return  upper bound on the distances, around the middle.
   DistanceBound offer_all_links(const NodeBox& box, const Vec3f& middle) {
     CellSorter sorter(cell_, job_.labels);
     sorter.find_groups();
@@ -291,7 +293,7 @@ class SecondWorker {
         SecondCell::nodes, [&](std::size_t node) { return places.following(node); }, cell_.squared.data());
   }
 
-  /// Of a cell that comes soon: its rows lie all over memory.
+  /// Prefetches the first sites of a cell that comes soon, because its rows are scattered in memory.
   void prefetch_firsts(const NodeBox& box) const {
     (void)all_rows(box, [&](std::size_t node) {
       hwy::Prefetch(job_.request.site + node);
@@ -321,8 +323,8 @@ class SecondWorker {
     });
   }
 
-  /// Calls visit(first node, its place from that of the row's first node, bytes) for the parts of a row that are in one
-  /// leaf each.
+  /// Calls visit(first node, its place, bytes) for the parts of a row that lie in one leaf each. Places are relative to
+  /// that of the row's first node.
   template <class Visit>
   static HWY_INLINE void for_each_part(const NodeBox& box, Visit visit) {
     if (box.count[0] == SecondCell::side) {
@@ -384,7 +386,7 @@ class SecondWorker {
     }
   }
 
-  /// The largest distance that a node has so far; without bound where one has none.
+  /// Returns the largest distance that a node has so far; huge if some node has none.
   static float furthest(const SecondLeaf& state) {
     V worst = hn::Zero(d);
     for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
@@ -411,7 +413,7 @@ class SecondWorker {
     }
   }
 
-  /// Of groups that come soon: links lie all over memory.
+  /// Prefetches the links of groups that come soon, because they are scattered in memory.
   void prefetch_links(std::size_t g) const {
     if (g + 8 < cell_.group_count) {
       for (const std::uint32_t v : cell_.groups[g + 8].labels) hwy::Prefetch(&job_.links->first[v]);
@@ -431,7 +433,7 @@ class SecondWorker {
     }
   }
 
-  /// The links of a site's vertices that do not touch it.
+  /// Returns the links of a site's vertices that do not touch it.
   std::span<const std::uint32_t> find_links(const OfSite& vertices) {
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -441,7 +443,7 @@ class SecondWorker {
       std::uint32_t* out = mine_.links.data();
       for (const SecondLinks::Entry& link : entries) {
         out[count] = link.segment;
-        unsigned is_own = 0;  // without branches, which no machine can foresee
+        unsigned is_own = 0;  // without branches, which would be unpredictable
         for (const std::uint32_t v : vertices) {
           is_own |= static_cast<unsigned>(link.start == v) | static_cast<unsigned>(link.end == v);
         }
@@ -451,7 +453,7 @@ class SecondWorker {
     return {mine_.links.data(), count};
   }
 
-  /// Of many links, those that any node of a group may be closest to; in their place.
+  /// Returns those of many links that may be closest to any node of a group. They replace the list.
   std::span<const std::uint32_t> near_links(std::span<const std::uint32_t> links, const Vec3f& middle,
                                             const GroupBall& ball) {
     const Vec3f center = middle + ball.center;
@@ -485,7 +487,7 @@ class SecondWorker {
       open = hn::Or(open, has_none);
       hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.squared.data() + node);
       const VI id = hn::Load(di, cell_.id.data() + node);
-      // What nobody has claimed is looked at once more.
+      // Nodes that no site has claimed stay open for report_open().
       const auto is_settled = hn::RebindMask(di, hn::AndNot(has_none, is_beyond));
       hn::Store(hn::IfThenElse(is_settled, hn::Set(di, dead_record), id), di, cell_.id.data() + node);
     }
@@ -499,7 +501,7 @@ class SecondWorker {
     });
   }
 
-  /// Writes a row of a cell to the field: past the caches where it is a whole line.
+  /// Writes a row of a cell to the field, past the caches if it is a whole line.
   template <class T>
   static HWY_INLINE void put_row(const NodeBox& box, const T* from, T* to, bool is_line) {
     if (!is_line) {
@@ -513,7 +515,7 @@ class SecondWorker {
     }
   }
 
-  /// Nodes that nothing has claimed, although there is something that may be second.
+  /// Reports nodes that no site has claimed, although some site may be second.
   void report_open(const NodeBox& box, std::size_t at, std::size_t node) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
       const std::size_t place = at + i / 4 * leaf_nodes + i % 4;
@@ -531,11 +533,11 @@ class SecondWorker {
   SecondCell& cell_;
   std::vector<std::size_t>& unsettled_;
   std::array<LeafPattern, 8> full_patterns_;
-  LeafPattern pattern_;  ///< of the leaf at hand, where it is cut off
-  NodeBox cell_box_;     ///< the cell at hand
+  LeafPattern pattern_;  ///< of the current leaf, if it is cut off
+  NodeBox cell_box_;     ///< the current cell
   Vec3f cell_middle_;
   DistanceBound cell_bound_;      ///< around its middle
-  const OfSite* only_ = nullptr;  ///< labels of all first sites of the tile at hand, where the rule is by objects
+  const OfSite* only_ = nullptr;  ///< labels of all first sites of the current tile, if the rule is by objects
 };
 
 void compute_second_tile_here(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {

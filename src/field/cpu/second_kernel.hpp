@@ -13,25 +13,25 @@
 
 namespace blum::cpu {
 
-/// Everything that tiles of the second order read, and where they write.
+/// Input of all tiles of the second order, and the output of their results.
 struct SecondJob {
-  /// The records that may be second, without reaches: what beats a site beyond its reach may be excluded. Of the
-  /// request in it only the grid is looked at.
+  /// Records that may be second, without reaches: the point that beats a site beyond its reach may be excluded. Only
+  /// the grid of its request is used.
   FieldJob field;
   SecondRequest request;
-  /// The labels of every site. Records' planes come from sites with the same labels only; where `links` is set, also
-  /// from others, and what the links of the first site's vertices hold is looked at besides.
+  /// Labels of every site. Records' planes come from sites with the same labels only. If `links` is set, they also come
+  /// from others, and the links of the first site's vertices are evaluated in addition.
   std::span<const SecondLabels::OfSite> labels;
   const SecondLinks* links = nullptr;
-  /// Labels that some site has in common with label l: others[first_other[l] .. first_other[l + 1]), rising.
+  /// Labels that share some site with label l: others[first_other[l] .. first_other[l + 1]), ascending.
   std::span<const std::uint32_t> first_other;
   std::span<const std::uint32_t> others;
 
-  /// Whether no site has labels of both, so that one of the two may be second wherever anything is first.
+  /// Returns true if no site has labels of both, so that one of the two may be second wherever anything is first.
   [[nodiscard]] bool are_apart(const SecondLabels::OfSite& a, const SecondLabels::OfSite& b) const;
 };
 
-/// Memory that a worker keeps from tile to tile, and what it found that is left to exact queries.
+/// Memory that a worker keeps from tile to tile, and the nodes that are left to exact queries.
 class SecondScratch {
  public:
   SecondScratch();
@@ -42,7 +42,7 @@ class SecondScratch {
   struct Impl;
   Impl& impl() { return *impl_; }
 
-  /// Linear indices of nodes that no site claimed, although there is one that may be second.
+  /// Linear indices of nodes that no site claimed, although some site may be second.
   std::vector<std::size_t> unsettled;
 
  private:

@@ -12,13 +12,13 @@ using kernels::to_float;
 
 constexpr std::size_t grain = 1 << 12;
 
-/// The edges opposite to each vertex in its triangles.
+/// Edges opposite to each vertex in its triangles.
 struct Opposite {
   std::vector<std::uint32_t> first;
   std::vector<std::uint32_t> edges;
 };
 
-/// Calls visit(vertex, opposite edge) for every corner of the triangles that name three vertices.
+/// Calls visit(vertex, opposite edge) for every corner of the triangles that name three different vertices.
 template <class Visit>
 void for_each_opposite(const MeshView& mesh, const SiteTable& sites, const Visit& visit) {
   const auto edges = sites.triangle_edges();
@@ -40,8 +40,8 @@ Opposite find_opposite(const MeshView& mesh, const SiteTable& sites) {
   return out;
 }
 
-/// Whether the edges in a vertex' link that end at `neighbour` cannot stand for it: whether a site with the vertex, but
-/// not the neighbour, may touch all of them.
+/// Returns true if the edges in a vertex' link that end at `neighbour` cannot stand for it. This is so if a site with
+/// the vertex, but not the neighbour, may touch all of them.
 /// @param link  the edges of the link, by both ends: (neighbour, other end), sorted.
 bool needs_point(const std::vector<Segment>& link, std::uint32_t neighbour) {
   const auto first = std::lower_bound(link.begin(), link.end(), Segment{neighbour, 0});

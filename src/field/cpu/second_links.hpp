@@ -1,4 +1,4 @@
-// Blum: what borders on the surroundings of each vertex. SPDX-License-Identifier: Apache-2.0
+// Blum: the link of each vertex: the edges and points opposite to it. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,24 +16,26 @@
 
 namespace blum::cpu {
 
-/// A closed edge in the normalised frame, or a point (no tangent, no length).
+/// Closed edge in the normalised frame, or a point (no tangent, no length).
 struct LinkSegment {
   Vec3f middle;
   Vec3f tangent;  ///< unit
   float half_length = 0;
-  std::uint32_t id = 0;     ///< SiteId of what lies between the ends
-  std::uint32_t start = 0;  ///< vertex at middle - tangent * half_length; its id is below that of the other end
+  std::uint32_t id = 0;     ///< SiteId of the part between the ends.
+  std::uint32_t start = 0;  ///< Vertex at middle - tangent * half_length; its id is below that of the other end.
   std::uint32_t end = 0;
 };
 
-/// The link of every vertex: the edges opposite to it in its triangles, and the other ends of its edges where these
-/// edges may not stand for them. With a site, all that touches its vertices is left out of the second order; then the
-/// planes that bound the domains of what remains along the hole come from sites that are gone, and what remains there
-/// is looked at without them. It lies in the links of the site's vertices.
+/// Link of every vertex: the edges opposite to it in its triangles, and other ends of its edges. The latter are listed
+/// only if those opposite edges may not stand for them.
+///
+/// The second order leaves out every site that touches a vertex of the first site. Sites along this hole then have
+/// planes from sites that are left out, so they must be evaluated without these planes. They lie in the links of the
+/// first site's vertices.
 struct SecondLinks {
-  /// Of the edges, in their order, then of the vertices, as points.
+  /// Segments of the edges, in their order, then of the vertices, as points.
   Buffer<LinkSegment> segments;
-  /// A segment and its ends.
+  /// Segment and its ends.
   struct Entry {
     std::uint32_t segment = 0;
     std::uint32_t start = 0;
@@ -48,9 +50,10 @@ struct SecondLinks {
   }
 };
 
-/// Depends on connectivity alone, so that a deforming mesh keeps it.
+/// Builds the entries. They depend on connectivity alone, so that a deforming mesh keeps them.
 void build_link_entries(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                         const Context& context, SecondLinks& out);
+/// Builds the segments.
 /// @param positions  of all vertices, in the normalised frame.
 void build_link_segments(const MeshView& mesh, const SiteTable& sites, std::span<const Vec3d> positions,
                          const Context& context, SecondLinks& out);

@@ -1,4 +1,4 @@
-// Blum: what a tile of the second order keeps in memory. SPDX-License-Identifier: Apache-2.0
+// Blum: memory of a tile of the second order. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace blum::cpu {
 
-/// A box of up to 16^3 nodes, leaf after leaf: node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k + 64 (a + 4 b + 16
-/// c). With that, it is sorted by first sites.
+/// Box of up to 16^3 nodes, leaf after leaf: node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k + 64 (a + 4 b + 16 c).
+/// Its nodes are also sorted by first sites.
 struct SecondCell {
   static constexpr std::int64_t side = 16;
   static constexpr std::size_t row = 16;
@@ -23,38 +23,38 @@ struct SecondCell {
 
   /// Nodes of a leaf with the same first site.
   struct Item {
-    std::uint64_t nodes = 0;  ///< a bit for each
+    std::uint64_t nodes = 0;  ///< a bit for each node
     std::uint16_t leaf = 0;
-    std::uint16_t next = 0;  ///< item of the same group
+    std::uint16_t next = 0;  ///< next item of the same group
   };
   /// Nodes with the same first site.
   struct Group {
     std::uint32_t site = 0;
     SecondLabels::OfSite labels{};
     std::uint16_t first_item = 0, last_item = 0;
-    std::uint16_t begin = 0, end = 0;  ///< in the order
+    std::uint16_t begin = 0, end = 0;  ///< range in `order`
   };
 
-  alignas(64) std::array<std::uint32_t, nodes> first;  ///< sites; dead_record: none, or no node
-  /// The second sites so far; below 0 where nothing is first.
+  alignas(64) std::array<std::uint32_t, nodes> first;  ///< First sites; dead_record: none, or not a node.
+  /// Squared distances and ids of the second sites so far; the former are below 0 without a first site.
   alignas(64) std::array<float, nodes + padding> squared;
   alignas(64) std::array<std::uint32_t, nodes + padding> id;
   std::array<Item, nodes> items;
   std::size_t item_count = 0;
   std::array<Group, nodes> groups;
   std::size_t group_count = 0;
-  std::array<std::uint16_t, 8192> table;  ///< finds groups: their number and 1
-  /// Nodes that have a first site, group after group; past the end a node that is none, for whole vectors.
+  std::array<std::uint16_t, 8192> table;  ///< Hash table of groups: number of the group + 1.
+  /// Nodes that have a first site, group after group. Past the end comes a node that does not exist, for whole vectors.
   alignas(64) std::array<std::uint32_t, nodes + padding> order{};
 };
 
-/// Candidates of one kind, as places in the list of a tile's records. Children share that list: copies of records would
-/// cost more than all tests of them.
+/// Candidates of one kind, as places in the list of a tile's records. Children share that list, because copies of
+/// records would cost more than all tests of them.
 class PlaceList {
  public:
   static constexpr std::size_t padding = 16;
 
-  /// Empties the list and makes room.
+  /// Empties the list and makes room for `capacity` places.
   void reset(const RecordList& records, std::size_t capacity) {
     records_ = &records;
     if (places_.size() < capacity + 2 * padding) places_ = Buffer<std::uint32_t>(capacity + capacity / 2 + 4 * padding);
@@ -65,10 +65,10 @@ class PlaceList {
     std::iota(places_.begin(), places_.begin() + records.count(), 0U);
     finish(records.count());
   }
-  /// Where up to `padding` places at a time are written, before finish() tells how many there are.
+  /// Returns the memory to which up to `padding` places at a time are written, before finish() sets their number.
   [[nodiscard]] std::uint32_t* places() { return places_.data(); }
   [[nodiscard]] const std::uint32_t* places() const { return places_.data(); }
-  /// Makes the padding readable.
+  /// Sets the number of places, and makes the padding readable.
   void finish(std::size_t count) {
     count_ = count;
     std::fill_n(places_.data() + count, padding, 0U);
@@ -94,10 +94,10 @@ struct SecondCandidates {
 
 struct SecondScratch::Impl {
   TileScratch tile;
-  SecondCandidates all;                    ///< of the tile at hand
-  std::array<SecondCandidates, 4> levels;  ///< of the child at hand, for each level of the tile's
+  SecondCandidates all;                    ///< of the current tile
+  std::array<SecondCandidates, 4> levels;  ///< of the current child, for each level of the tile's
   SecondCell cell;
-  std::vector<std::uint32_t> links;  ///< of the first site at hand; as long as any have been
+  std::vector<std::uint32_t> links;  ///< of the current first site; never shrinks
   std::vector<float> link_distances;
 };
 

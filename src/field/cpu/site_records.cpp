@@ -28,7 +28,7 @@ void store_cone(ConeArrays& cones, std::size_t index, const DirectionCone::Resul
   cones.sine[index] = cone.sine;
 }
 
-/// Writes the reaches of a cluster's records into them; returns the largest.
+/// Writes the reaches of a cluster's records into them. Returns the largest.
 template <Kind kind>
 float store_reaches(const ClusterBuild& cluster, const SurfacePoints& points, std::size_t rank,
                     std::span<Record> records) {
@@ -88,7 +88,7 @@ void build_set(std::span<const std::uint32_t> order, const SurfacePoints& points
   });
 }
 
-/// Vertex positions along the Morton curve.
+/// Returns the vertex positions along the Morton curve.
 SurfacePoints surface_points(std::span<const Vec3d> positions, const SiteOrder& order, const Context& context) {
   SurfacePoints points;
   for (auto& coordinate : points.coordinate) coordinate.resize(order.vertices.size());
@@ -101,7 +101,7 @@ SurfacePoints surface_points(std::span<const Vec3d> positions, const SiteOrder& 
   return points;
 }
 
-/// Bounds each sixteen consecutive boxes. Boxes around nothing do not count, unless there is nothing else.
+/// Bounds each sixteen consecutive boxes. Empty boxes do not count, unless all are empty.
 void bound_children(const BoxArrays& children, const Context& context, BoxArrays& parents) {
   const std::size_t count = (children.count + cluster_size - 1) / cluster_size;
   parents.resize(count);
@@ -128,7 +128,7 @@ void bound_children(const BoxArrays& children, const Context& context, BoxArrays
 }  // namespace
 
 void BoxArrays::resize(std::size_t new_count) {
-  // Whole vectors of boxes are read at a time, so the tail is padded with boxes around nothing.
+  // Whole vectors of boxes are read at a time, so the tail is padded with empty boxes.
   const std::size_t padded = (new_count + cluster_size - 1) / cluster_size * cluster_size;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (auto* side : {&lower[axis], &upper[axis]}) {

@@ -23,12 +23,12 @@ constexpr std::size_t fewest_worth_culling = 12;         // candidates of a leaf
 constexpr std::size_t fewest_worth_culling_in_box = 64;  // candidates of a box of 8^3 nodes
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
-/// Distances at a box's centre are trusted to prove that no surface meets the box only beyond this margin.
+/// Returns true if no surface meets a box. A distance at the box's centre proves this only beyond a margin.
 bool is_free_of_surface(float distance_at_center, const Vec3f& half) {
   return distance_at_center > length(half) * 1.0001F + box_slack;
 }
 
-/// Works on one tile: owns nothing, holds what the recursion passes along.
+/// Computes one tile. It owns nothing, and holds the data that the recursion passes along.
 class TileWorker {
  public:
   TileWorker(const FieldJob& job, TileScratch& scratch)
@@ -64,8 +64,8 @@ class TileWorker {
   }
 
  private:
-  /// Learns what the closest site at a box's centre says of the whole box: its side, if no surface meets it (then
-  /// `side` is set), and whether it lies beyond the band (then it is written and true is returned).
+  /// Finds what the closest site at a box's centre implies for the whole box. If no surface meets the box, its side
+  /// follows, and `side` is set. If the box lies beyond the band, it is written and true is returned.
   bool settle(const NodeBox& box, const Vec3f& half, const Witness& closest, const Vec3f& center, int& side) {
     const float distance = std::sqrt(closest.squared_distance);
     if (!is_free_of_surface(distance, half)) return false;
@@ -91,7 +91,7 @@ class TileWorker {
     });
   }
 
-  /// Writes the buffered box to the field: as whole lines past the caches, where rows are whole aligned lines.
+  /// Writes the buffered box to the field. Rows that are whole aligned lines are written past the caches.
   void flush(const NodeBox& box) {
     constexpr std::size_t line = 64;
     const bool is_streamed = job_.is_streamed && box.count[0] == BoxOutput::side;
@@ -130,10 +130,10 @@ class TileWorker {
     }
   }
 
-  /// Where in a leaf the row starts that has this place in the output buffer.
+  /// Returns the start in a leaf of the row that has this place in the output buffer.
   static std::size_t leaf_row(std::size_t place) { return place / 16 % 4 * 4 + place / 256 % 4 * 16; }
 
-  /// What is known of a child before its candidates are listed.
+  /// State of a child before its candidates are listed.
   struct Child {
     CenteredBox place;
     Vec3f p0;
@@ -143,7 +143,7 @@ class TileWorker {
 
   using Children = std::array<Child, 8>;
 
-  /// Where the children lie, their surface points, and which of them are settled.
+  /// Finds where the children lie, their surface points, and which of them are settled.
   Children meet_children(const Halving& parts, const Candidates& candidates, const ClosestAtCenters& closest,
                          const Vec3f& parent_p0, int side) {
     Children children;
@@ -165,7 +165,7 @@ class TileWorker {
     return children;
   }
 
-  /// The points next door are the best at beating what lies beyond them.
+  /// Returns the points of a child and of those next to it, which are the best at beating sites beyond them.
   static Dominators dominators_of(const Children& children, std::size_t c) {
     return {{children[c].p0, children[c ^ 1].p0, children[c ^ 2].p0, children[c ^ 4].p0}, Dominators::most};
   }
@@ -201,7 +201,7 @@ class TileWorker {
     const Halving parts = halve(job_, box, 2 * leaf_size);
     const BlockTest<8> test(parts, dominators);
     TileScratch::Impl::Level& here = scratch_.levels.back();
-    // With few candidates, evaluating them costs less than knowing the surface point that would beat some of them.
+    // With few candidates, evaluating them costs less than finding the surface point that would beat some of them.
     const std::size_t count =
         candidates[vertex_kind].count() + candidates[edge_kind].count() + candidates[face_kind].count();
     const bool is_worth_culling =
@@ -234,7 +234,7 @@ class TileWorker {
     }
   }
 
-  /// Tests the candidates of a box of 8^3 nodes against its leaves, and writes them out for these.
+  /// Tests the candidates of a box of 8^3 nodes against its leaves, and writes them out for the leaves.
   template <class Closest>
   void prepare_leaves(const BlockTest<8>& test, const Candidates& candidates, Closest& closest) {
     halve_kinds(test, candidates, scratch_.levels.back().bits, closest,
@@ -254,7 +254,7 @@ class TileWorker {
     return {first, job_.spacing};
   }
 
-  /// Drops candidates that a leaf's dominators beat, where there are enough of them to pay for looking.
+  /// Drops candidates that a leaf's dominators beat, if there are enough candidates to pay for the test.
   void dominate_leaf(const LeafInput& input, const Halving& parts, const Child& child,
                      const Dominators& dominators) const {
     if (candidate_count(input) < fewest_worth_culling) return;
@@ -291,7 +291,7 @@ class TileWorker {
       if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
       state.squared[node] = squared;
       state.id[node] = sliver.id;
-      if (asks_sides) state.side[node] = 0;  // too flat to tell: left to the exact query
+      if (asks_sides) state.side[node] = 0;  // too flat to decide: left to the exact query
     }
   }
 

@@ -19,7 +19,7 @@
 
 namespace blum::cpu {
 
-/// Everything that tiles read, and where they write. The same for all tiles of a field.
+/// Input of all tiles of a field, and the output of their results. It is the same for all of them.
 struct FieldJob {
   const SiteRecords* sites = nullptr;
   const ClusterForest* forest = nullptr;
@@ -27,26 +27,26 @@ struct FieldJob {
   Vec3d first_node;                                     ///< normalised
   Vec3d spacing;                                        ///< normalised
   float band = std::numeric_limits<float>::infinity();  ///< half-width, normalised
-  float to_world = 1;                                   ///< mesh units per normalised unit, a power of two
-  /// Unit pseudonormals of all vertices; empty where the field gets no sign from them.
+  float to_world = 1;                                   ///< Mesh units per normalised unit, a power of two.
+  /// Unit pseudonormals of all vertices; empty if the field gets no sign from them.
   std::vector<Vec3f> vertex_sides;
-  /// Write past the caches: for fields that do not fit them.
+  /// True to write past the caches: for fields that do not fit them.
   bool is_streamed = false;
   /// A tile that sees a request to stop leaves the rest of its nodes unwritten.
   std::stop_token cancel;
 
   [[nodiscard]] bool has_sides() const { return !vertex_sides.empty(); }
-  /// What nodes beyond the band get.
+  /// Returns the distance of nodes beyond the band.
   [[nodiscard]] float band_distance() const { return static_cast<float>(request.band); }
 };
 
-/// A box of nodes: the first one and how many along each axis.
+/// Box of nodes: the first one, and the number along each axis.
 struct NodeBox {
   std::array<std::int64_t, 3> first{};
   std::array<std::int64_t, 3> count{};
 };
 
-/// Memory that a worker keeps from tile to tile, and what it found that the tile kernel leaves to exact queries.
+/// Memory that a worker keeps from tile to tile, and the nodes that the tile kernel leaves to exact queries.
 class TileScratch {
  public:
   TileScratch();
@@ -64,16 +64,17 @@ class TileScratch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Nodes along a side of the largest tiles: what one call of compute_tile should get.
+/// Returns the number of nodes along a side of the largest tiles. One call of compute_tile should get such a tile.
 [[nodiscard]] int tile_size(const std::array<std::int64_t, 3>& grid_size);
 
-/// Computes distance, site and (with sides) sign of every node of a box whose sides are at most 64 and whose first node
-/// lies at multiples of 64 or 32.
+/// Computes distance, site and (with sides) sign of every node of a box. The box's sides are at most 64, and its first
+/// node lies at multiples of 64 or 32.
 void compute_tile(const FieldJob& job, const NodeBox& tile, TileScratch& scratch);
 
-/// Instruction sets that this machine can run the kernel with, best first, by Highway's names (for example "AVX2").
+/// Returns the instruction sets with which this machine can run the kernel, best first, by Highway's names (for example
+/// "AVX2").
 [[nodiscard]] std::vector<std::string> simd_targets();
-/// Makes the kernel use one of simd_targets() from now on; an empty name restores the best one. For tests and
+/// Makes the kernel use one of simd_targets() from now on. An empty name restores the best one. For tests and
 /// benchmarks.
 void use_simd_target(std::string_view name);
 

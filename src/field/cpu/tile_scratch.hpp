@@ -11,7 +11,7 @@
 
 namespace blum::cpu {
 
-/// Records of one kind that may matter in a box, in rising order of site id (so that ties go to the smaller id).
+/// Records of one kind that may matter in a box, in ascending order of site id (so that ties go to the smaller id).
 /// Once finished, whole vectors may be read past the end.
 class RecordList {
  public:
@@ -28,14 +28,14 @@ class RecordList {
     for (; lane_bits != 0; lane_bits &= lane_bits - 1) append(block[std::countr_zero(lane_bits)]);
   }
 
-  /// Moves a record to an earlier place, for lists that are thinned out; shorten() ends that.
+  /// Moves a record to an earlier place, to thin out the list; shorten() ends that.
   void move(std::size_t from, std::size_t to) { records_[to] = records_[from]; }
   void shorten(std::size_t count) {
     count_ = count;
     finish();
   }
 
-  /// Makes the padding readable; to be called once the list is complete.
+  /// Makes the padding readable. It is called once the list is complete.
   void finish() { std::memset(static_cast<void*>(records_.data() + count_), 0, padding * sizeof(Record)); }
 
   [[nodiscard]] std::size_t count() const { return count_; }
@@ -50,8 +50,8 @@ class RecordList {
 /// Candidates of all kinds for one box.
 using Candidates = std::array<RecordList, kind_count>;
 
-/// For each of a box's eight children, one bit per candidate of the box: whether it may matter there. Bits are kept in
-/// one word per block of `lanes` candidates.
+/// Per child of a box: one bit for each candidate of the box, set if it may matter there. Bits are kept in one word per
+/// block of `lanes` candidates.
 class ChildBits {
  public:
   void reset(std::size_t blocks) {
@@ -93,14 +93,14 @@ struct BoxOutput {
 
 struct TileScratch::Impl {
   BoxOutput output;
-  /// What one level of the recursion needs: which candidates go to which child, and the list of the child at hand.
+  /// Data of one level of the recursion: which candidates go to which child, and the list of the current child.
   struct Level {
     std::array<ChildBits, kind_count> bits;
     Candidates child;
   };
   std::array<Level, 4> levels;  // boxes of 64, 32 and 16 nodes, and last those of 8, have children
   Candidates gathered;
-  std::array<std::vector<std::uint32_t>, kind_count> clusters;  // of the tile at hand
+  std::array<std::vector<std::uint32_t>, kind_count> clusters;  // of the current tile
   std::vector<detail::KeyedIndex> order, order_scratch;
   std::array<LeafColumns, 3> leaf;  // vertices, edges, faces
 };

@@ -21,7 +21,7 @@ HWY_INLINE Vec unit(const Vec& v) {
   return {hn::Mul(v.x, scale), hn::Mul(v.y, scale), hn::Mul(v.z, scale)};
 }
 
-/// The fans of `lanes` vertices, from `lane` on.
+/// Fans of `lanes` vertices, from `lane` on.
 class FanLanes {
  public:
   FanLanes(const VertexFans& fans, std::size_t lane, VertexFanCones& out)
@@ -97,7 +97,7 @@ class FanLanes {
   std::size_t lane_;
   VertexFanCones& out_;
   VI counts_;
-  std::size_t end_ = 1;  ///< of the directions of the lane that has most
+  std::size_t end_ = 1;  ///< largest number of directions of a lane
   Vec e_[VertexFans::most];
 };
 

@@ -1,4 +1,4 @@
-// Blum: the cones of sixteen vertices at a time. SPDX-License-Identifier: Apache-2.0
+// Blum: cones of sixteen vertices at a time. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -8,29 +8,29 @@
 
 namespace blum::cpu {
 
-/// Sixteen vertices with three to `most` edges each; a lane without a vertex has none.
+/// Sixteen vertices with three to `most` edges each; a lane without a vertex has no edges.
 struct alignas(64) VertexFans {
   static constexpr std::size_t most = 8;
-  /// From the vertex along its edges, of any length but zero. Those beyond a lane's count repeat its first.
+  /// Vectors from the vertex along its edges, of any length but zero. Those beyond a lane's count repeat its first.
   std::array<SixteenVectors, most> along{};
   std::array<std::uint32_t, cluster_size> count{};
 };
 
-/// The cones {w : w . e <= 0 for all edge directions e} of the sixteen.
+/// Cones {w : w . e <= 0 for all edge directions e} of the sixteen vertices.
 struct alignas(64) VertexFanCones {
   static constexpr std::size_t most_rays = 8;
-  /// `along`, made unit vectors.
+  /// Unit vectors of `along`.
   std::array<SixteenVectors, VertexFans::most> direction;
-  /// Bit k: direction k bounds the cone.
+  /// Bit k is set if direction k bounds the cone.
   std::array<std::uint32_t, cluster_size> facets;
-  /// Extreme rays found (those beyond most_rays are not kept), and the rays.
+  /// Number of extreme rays found (those beyond most_rays are not kept), and the rays.
   std::array<std::uint32_t, cluster_size> ray_count;
   std::array<std::array<Vec3f, most_rays>, cluster_size> rays;
-  /// Bit per lane: two directions are nearly parallel, so a ray may be missing.
+  /// One bit per lane, set if two directions are nearly parallel, so that a ray may be missing.
   std::uint32_t is_uncertain = 0;
 };
 
-/// What kernels::VertexCone::find_facets does for one vertex, for sixteen, up to rounding.
+/// Computes for sixteen vertices, up to rounding, what kernels::VertexCone::find_facets computes for one.
 void find_fan_cones(const VertexFans& fans, VertexFanCones& out);
 
 }  // namespace blum::cpu

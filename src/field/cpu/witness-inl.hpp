@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// The closest site at a child's centre, among those that the lanes have seen.
+/// Returns the closest site at a child's centre, among those that the lanes have seen.
 HWY_INLINE Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
                                      const Vec3f& center) {
   alignas(64) std::array<std::uint32_t, lanes> index;
@@ -26,7 +26,7 @@ HWY_INLINE Witness closest_candidate(const Candidates& candidates, const Closest
   witness.kind = static_cast<Kind>(index[best] >> 28);
   witness.record = &candidates[witness.kind][index[best] & 0x0fffffffU];
   if (!closest_on_record(witness.kind, *witness.record, center, witness.point)) {
-    // Rounding put the centre just outside of the prism: the point over it still lies on the face's plane, within it.
+    // Rounding put the centre just outside of the prism. Its projection still lies on the face, within rounding.
     const Vec3f normal = vec_at(*witness.record, FaceColumns::normal);
     witness.point = center - normal * dot(center - vec_at(*witness.record, FaceColumns::anchor), normal);
   }
@@ -34,7 +34,7 @@ HWY_INLINE Witness closest_candidate(const Candidates& candidates, const Closest
   return witness;
 }
 
-/// Slivers are rare: they are looked at one by one.
+/// Offers slivers one by one, because they are rare.
 HWY_INLINE void offer_slivers(const RecordList& slivers, const Vec3f& center, Witness& witness) {
   for (std::size_t k = 0; k < slivers.count(); ++k) {
     const Vec3d query = to_double(center);
@@ -44,7 +44,8 @@ HWY_INLINE void offer_slivers(const RecordList& slivers, const Vec3f& center, Wi
   }
 }
 
-/// Lists the slivers that may be closest somewhere in a box. @param p0  a point of the surface.
+/// Lists the slivers that may be closest somewhere in a box.
+/// @param p0  a point of the surface.
 HWY_INLINE void list_slivers(const RecordList& slivers, const CenteredBox& box, const Vec3f& p0, RecordList& out) {
   out.reset(slivers.count());
   const Vec3d center = to_double(box.center);

@@ -7,8 +7,8 @@
 
 namespace blum::cuda {
 
-/// Back ends on the CUDA device with this index.
-/// @throws DeviceError where there is no CUDA module, no driver or no such device.
+/// Returns a back end on the CUDA device with this index.
+/// @throws DeviceError if the CUDA module, the driver or the device is missing.
 [[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(int index);
 [[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(int index);
 

@@ -1,4 +1,4 @@
-// Blum: warps and blocks of kernels, as field/kernels writes for them. SPDX-License-Identifier: Apache-2.0
+// Blum: CUDA's warps and blocks, with the interface that field/kernels uses. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>

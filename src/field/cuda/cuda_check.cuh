@@ -9,10 +9,11 @@
 
 namespace blum::cuda {
 
+/// Throws if a call of the CUDA runtime failed.
 /// @throws OutOfMemory, DeviceError.
 inline void check(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
-  (void)cudaGetLastError();  // or the next call would report it again
+  (void)cudaGetLastError();  // clears the error, or the next call would report it again
   const std::string text = std::string("CUDA: ") + what + ": " + cudaGetErrorString(status);
   if (status == cudaErrorMemoryAllocation) throw OutOfMemory(text);
   throw DeviceError(text);

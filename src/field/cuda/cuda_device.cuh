@@ -22,7 +22,7 @@
 
 namespace blum::cuda {
 
-/// Memory of the current device. It grows, and shrinks no more: frames that follow each other allocate nothing.
+/// Memory of the current device. It grows and never shrinks, so that frames that follow each other allocate nothing.
 template <class T>
 class CudaArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -38,7 +38,9 @@ class CudaArray {
   CudaArray& operator=(const CudaArray&) = delete;
   ~CudaArray() { (void)cudaFree(data_); }
 
-  /// What was there is lost where the array grows. @param room  for at least so many. @throws OutOfMemory.
+  /// Sets the size. If the array grows beyond its capacity, its content is lost.
+  /// @param room  least capacity to allocate.
+  /// @throws OutOfMemory.
   void resize(std::size_t count, std::size_t room = 0) {
     room = std::max(room, count);
     if (room > capacity_) {
@@ -80,7 +82,8 @@ __global__ void for_each_kernel(const __grid_constant__ Body body, const std::si
   if (index < count) body(index);
 }
 
-/// Whether the current device can run what this file was compiled to. @throws DeviceError.
+/// Checks that the current device can run the code that this file was compiled to.
+/// @throws DeviceError.
 template <class Body>
 void expect_runnable() {
   cudaFuncAttributes attributes{};
@@ -96,7 +99,8 @@ __global__ void __launch_bounds__(Body::threads, Body::blocks_per_processor)
   body(CudaBlock<Body::threads>{}, shared, blockIdx.x);
 }
 
-/// Everything is queued on one stream; only download() and wait() wait for it.
+/// Queues everything on one stream. download() and wait() wait for all of it, await() for a mark. fetch() copies on a
+/// stream of its own.
 class CudaDevice {
  public:
   template <class T>
@@ -113,7 +117,7 @@ class CudaDevice {
     (void)cudaStreamDestroy(copies_);
   }
   [[nodiscard]] cudaStream_t stream() const { return stream_; }
-  /// Queues on another stream from here on.
+  /// Queues later work on another stream.
   void use(cudaStream_t stream) { stream_ = stream; }
 
   template <class T>
@@ -153,7 +157,7 @@ class CudaDevice {
   template <class Key>
   void sort_pairs(Array<Key>& keys, Array<std::uint32_t>& values, int bits) {
     Array<Key>& sorted_keys = sorted_keys_of(Key{});
-    // Buffers change places below: with room for the largest sort in each, the frames that follow allocate nothing.
+    // Buffers are swapped below. With room for the largest sort in each, later frames allocate nothing.
     largest_sort_ = std::max(largest_sort_, keys.size());
     sorted_keys.resize(keys.size(), largest_sort_);
     sorted_values_.resize(keys.size(), largest_sort_);
@@ -172,7 +176,8 @@ class CudaDevice {
   }
   template <class T, class Load, class Combine>
   void reduce(std::size_t count, const Load& load, const T& first, const Combine& combine, T* out) {
-    // DeviceReduce::TransformReduce is there from CUDA 12.5 on only. Counts fit an int: there are fewer than 2^31 ids.
+    // DeviceReduce::TransformReduce exists only from CUDA 12.5 on. Counts fit an int, because there are fewer than 2^31
+    // ids.
     const auto values = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0), load);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceReduce::Reduce(scratch, bytes, values, out, static_cast<int>(count), combine, first, stream_);
@@ -188,7 +193,7 @@ class CudaDevice {
   }
 
  private:
-  /// Calls work twice, as CUB wants it: to learn how much scratch memory it needs, and with that much.
+  /// Calls work twice, as CUB requires: first for the size of its scratch memory, then with that memory.
   template <class Work>
   void with_scratch(const Work& work) {
     std::size_t bytes = 0;

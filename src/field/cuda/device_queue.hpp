@@ -1,4 +1,4 @@
-// Blum: an engine of the CUDA module that works on arrays of others. SPDX-License-Identifier: Apache-2.0
+// Blum: an engine of the CUDA module that works on memory of the caller. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,11 @@
 
 namespace blum::cuda {
 
-/// The index of the CUDA device that is asked for. @throws InvalidOption for the CPU.
+/// Returns the index of the requested CUDA device.
+/// @throws InvalidOption for the CPU.
 [[nodiscard]] int cuda_index(const Device& device);
 
-/// What the solvers of device_*.hpp share.
+/// Common part of the solvers of device_*.hpp.
 class DeviceQueue {
  public:
   /// @throws DeviceError, OutOfMemory, InvalidOption.

@@ -1,4 +1,4 @@
-// The CUDA module: nothing is thrown across its border.
+// The CUDA module. No exception crosses its border.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 namespace blum::cuda {
 namespace {
 
-/// A stream that ends with its owner.
+/// Stream that is destroyed with its owner.
 class Stream {
  public:
   Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream"); }
@@ -22,7 +22,7 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// An event likewise.
+/// Event that is destroyed with its owner.
 class Event {
  public:
   Event() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
@@ -35,7 +35,7 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-/// Queues on a stream of its own, or on one that is lent: its memory is used by one piece of work after the other.
+/// Queues work on a stream of its own, or on one that is lent. One piece of work after the other uses its memory.
 class CudaQueue {
  public:
   CudaQueue() : device_(stream_.get()) {}
@@ -49,12 +49,13 @@ class CudaQueue {
     device_.use(other);
   }
   void leave() {
-    // With all events in use, the oldest has to come to pass before it is used again.
+    // If all events are in use, wait for the oldest one before it is used again.
     if (queued_ - finished_ == events) {
       (void)cudaEventSynchronize(event_of(finished_));
       ++finished_;
     }
-    // Without an event, whoever asks for it must not be told of an older one.
+    // If the event cannot be recorded, wait for the device, so that the slot's older event does not stand for this
+    // work.
     if (cudaEventRecord(event_of(queued_++), device_.stream()) != cudaSuccess) (void)cudaDeviceSynchronize();
     device_.use(stream_.get());
   }
@@ -81,7 +82,7 @@ class CudaQueue {
   [[nodiscard]] cudaEvent_t event_of(std::uint64_t number) const { return done_[number % events].get(); }
 
   Stream stream_;
-  Event done_[events];  ///< of the last pieces of work on lent streams
+  Event done_[events];  ///< one per recent piece of work on lent streams
   Event other_;         ///< for the streams of others
   std::uint64_t queued_ = 0;
   std::uint64_t finished_ = 0;
@@ -92,7 +93,7 @@ struct CudaPlatform {
   using Device = CudaDevice;
   using Queue = CudaQueue;
 
-  /// The host's choice of a device is left as it was.
+  /// Makes a device the current one, and restores the host's choice at its end.
   class Choice {
    public:
     explicit Choice(int device) : device_(device) {
@@ -103,7 +104,7 @@ struct CudaPlatform {
     Choice& operator=(const Choice&) = delete;
     ~Choice() {
       if (had_device_ && before_ != device_) (void)cudaSetDevice(before_);
-      (void)cudaGetLastError();  // or the next launch would report what was ignored here
+      (void)cudaGetLastError();  // clears ignored errors, or the next launch would report them
     }
 
    private:

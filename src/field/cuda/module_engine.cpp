@@ -13,12 +13,12 @@
 namespace blum::cuda {
 namespace {
 
-/// The folder of the program or library that this function is in; empty where the system does not say.
+/// Returns the folder of the program or library that contains this function; empty if the system does not report it.
 std::filesystem::path own_folder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0 || info.dli_fname == nullptr) return {};
   const std::filesystem::path name = info.dli_fname;
-  // A program has the name that it was called by, which without a folder was looked up in PATH.
+  // A program has the name that it was called by. A name without a folder was looked up in PATH.
   std::error_code error;
   const std::filesystem::path file =
       std::filesystem::canonical(name.has_parent_path() ? name : "/proc/self/exe", error);
@@ -29,7 +29,7 @@ std::vector<std::string> places() {
   if (const char* named = std::getenv("BLUM_CUDA_MODULE"); named != nullptr && *named != '\0') return {named};
   std::vector<std::string> result;
   if (const std::filesystem::path folder = own_folder(); !folder.empty()) {
-    // Programs lie in bin beside lib, and in Python's package one folder below the library.
+    // Programs lie in bin beside lib. In Python's package they lie one folder below the library.
     for (const char* where : {".", "../lib", ".."}) {
       result.push_back((folder / where / module_file).lexically_normal().string());
     }
@@ -38,7 +38,7 @@ std::vector<std::string> places() {
   return result;
 }
 
-/// Collects why there is no module.
+/// Collects the reasons why no module was found.
 class Reasons {
  public:
   void missing(const std::string& place) { missing_ += (missing_.empty() ? "" : ", ") + place; }
@@ -64,7 +64,7 @@ const Module& find_module() {
       reasons.missing(place);
       continue;
     }
-    // Stays loaded until the process ends, as the CUDA runtime in it must.
+    // Stays loaded until the process ends, because the CUDA runtime in it must.
     void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
       const char* why = dlerror();

@@ -6,19 +6,21 @@
 
 namespace blum::cuda {
 
-/// The module, loaded at the first call: the file that BLUM_CUDA_MODULE names, else libblum_cuda.so beside the library
-/// or program that Blum is part of, else where the system looks for libraries.
-/// @throws DeviceError saying where it was looked for and why it could not be loaded.
+/// Returns the module, which the first call loads. If BLUM_CUDA_MODULE is set, it names the file. Otherwise
+/// libblum_cuda.so is looked for beside the library or program that contains Blum, then where the system looks for
+/// libraries.
+/// @throws DeviceError that lists the places searched, and why the module could not be loaded.
 [[nodiscard]] const Module& load_module();
 
-/// Puts another table in the module's place, for tests; nullptr restores it. What was made before keeps its own.
+/// Replaces the module by another table, for tests; nullptr restores it. Engines made before keep their own table.
 void replace_module(const Module* module);
 
 [[nodiscard]] Call call_of(const Context& context);
-/// Throws what a status stands for. @throws Error.
+/// Throws the error that a status stands for.
+/// @throws Error.
 void check(Status status, const Call& call);
 
-/// An engine of the module on one device.
+/// Engine of the module on one device.
 class ModuleEngine {
  public:
   /// @throws DeviceError, OutOfMemory.
@@ -30,7 +32,7 @@ class ModuleEngine {
   ModuleEngine& operator=(const ModuleEngine&) = delete;
   ~ModuleEngine() { module_.destroy(engine_); }
 
-  /// Calls a function of the module with the engine, arguments and a call.
+  /// Calls a function of the module with the engine, the arguments and a Call.
   template <class Function, class... Arguments>
   void run(Function function, const Context& context, Arguments... arguments) const {
     Call call = call_of(context);

@@ -1,4 +1,4 @@
-// Blum: the functions of the module, for any platform that kernels run on. SPDX-License-Identifier: Apache-2.0
+// Blum: functions of the module, for any platform that runs kernels. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,19 @@
 
 namespace blum::cuda {
 
-/// What is thrown becomes a status. Platform is CudaPlatform; the tests have one that runs on the host. It has
-///   Device       what kernels are launched with
-///   Queue        a Device and the stream it queues on: device(), enter(stream), leave(), queued(), finished(), wait(),
-///                follow(pieces, stream), order(before, after)
-///   Choice       makes a device the current one while it is alive
-///   static void expect_device(int index)              throws DeviceError, as the next one does
-///   static void expect_runnable()                     of the current device
-///   static int device_of(const void* memory)          -1 for the host's
-///   static void* allocate(std::size_t bytes), static void release(void*)
-///   static std::string name_of(int index), static std::uint64_t memory_of(int index)
-///   static std::size_t slab_nodes()                   of fields that go to the host's memory
+/// Functions of the module. Exceptions become a status. Platform is CudaPlatform; the tests have one that runs on the
+/// host. It has these members:
+///
+///   `Device` launches kernels.
+///   `Queue` holds a Device and the stream it queues on. Members: device(), enter(stream), leave(), queued(),
+///     finished(), wait(), follow(pieces, stream), order(before, after).
+///   `Choice` makes a device the current one while it is alive.
+///   `static void expect_device(int index)` throws DeviceError, as does the next one.
+///   `static void expect_runnable()` checks the current device.
+///   `static int device_of(const void* memory)` returns -1 for the host's memory.
+///   `static void* allocate(std::size_t bytes)`, `static void release(void*)`.
+///   `static std::string name_of(int index)`, `static std::uint64_t memory_of(int index)`.
+///   `static std::size_t slab_nodes()` is for fields that go to the host's memory.
 template <class Platform>
 class ModuleFunctions {
  public:
@@ -38,7 +40,7 @@ class ModuleFunctions {
   }
 
  private:
-  /// One device and what it keeps for a solver.
+  /// One device, and the data it keeps for a solver.
   struct Engine {
     explicit Engine(int device_index)
         : index(device_index), fields(queue.device(), Platform::slab_nodes()), images(queue.device()) {}
@@ -49,7 +51,7 @@ class ModuleFunctions {
     kernels::ImageEngine<typename Platform::Device> images;
   };
 
-  /// Lets an engine queue its work on a stream of others.
+  /// Lets an engine queue its work on a stream of the caller.
   class Visit {
    public:
     Visit(Engine& engine, void* stream) : engine_(engine) { engine_.queue.enter(stream); }
@@ -88,7 +90,7 @@ class ModuleFunctions {
     }
     return Status::done;
   }
-  /// With the engine's device.
+  /// Runs work with an engine, on its device.
   template <class Work>
   static Status with(void* engine, Call* call, const Work& work) {
     auto& own = *static_cast<Engine*>(engine);

@@ -11,7 +11,7 @@
 
 namespace blum::kernels {
 
-/// An edge that triangles do not run along as often one way as the other.
+/// Edge that triangles do not run along equally often in both directions.
 struct BoundaryEdge {
   std::uint32_t from;
   std::uint32_t to;
@@ -34,7 +34,7 @@ struct ListBoundary {
   }
 };
 
-/// The two ends of an edge by position, in an order that its direction does not change.
+/// The two ends of an edge by position, in an order that does not depend on its direction.
 struct EdgePositions {
   Vec3d low, high;
   bool is_reversed;  ///< `from` is the higher end
@@ -63,7 +63,7 @@ struct EdgePositions {
     return a.y != b.y ? a.y < b.y : a.z < b.z;
   }
   [[nodiscard]] BLUM_HD static std::uint64_t bits(double x) {
-    x += 0.0;  // -0 is 0
+    x += 0.0;  // turns -0 into 0
 #if defined(__CUDA_ARCH__)
     return static_cast<std::uint64_t>(__double_as_longlong(x));
 #else
@@ -90,7 +90,7 @@ struct HashEdges {
   }
 };
 
-/// Gives the first edge of those at the same place, in the order of their keys, the sum of their counts.
+/// Gives the sum of the counts of edges at one place to the first of them, in the order of their keys.
 struct SumCoincident {
   const BoundaryEdge* edges;
   const Vec3d* vertices;
@@ -131,14 +131,14 @@ struct KeepEdges {
   }
 };
 
-/// The boundary of a mesh: by its indices once per connectivity, and each frame without the edges that lie upon each
-/// other and cancel, as those of triangles that do not share their vertices do.
+/// Boundary of a mesh. Its edges by index are found once per connectivity. Each frame removes edges that lie upon each
+/// other and cancel, as between triangles that do not share their vertices.
 template <class Device>
 class Boundary {
  public:
   explicit Boundary(Device& device) : device_(device) {}
 
-  /// Waits for the device.
+  /// Finds the edges by index. Waits for the device.
   void set_connectivity(const ConnectivityView& connectivity) {
     flags_.resize(connectivity.edge_count);
     device_.for_each(connectivity.edge_count, FlagBoundary{connectivity.balance, flags_.data()});
@@ -149,10 +149,10 @@ class Boundary {
     device_.for_each(connectivity.edge_count,
                      ListBoundary{connectivity.edges, connectivity.balance, sums_.data(), edges_.data()});
   }
-  /// Edges by index: with none, winding numbers are whole.
+  /// Returns the number of edges by index. Without any, winding numbers are whole.
   [[nodiscard]] std::uint32_t count() const { return count_; }
 
-  /// Once per frame. Cost: a sort.
+  /// Removes the edges that cancel, once per frame. Cost: a sort.
   void place(const Vec3d* vertices) {
     key_.resize(count_);
     edge_.resize(count_);
@@ -167,10 +167,10 @@ class Boundary {
     device_.for_each(count_,
                      KeepEdges{sum_.data(), flags_.data(), sums_.data(), count_, kept_.data(), kept_count_.data()});
   }
-  /// Of the last place(), in the device's memory.
+  /// Returns the edges of the last place(), in the device's memory.
   [[nodiscard]] const BoundaryEdge* kept() const { return kept_.data(); }
   [[nodiscard]] const std::uint32_t* kept_count() const { return kept_count_.data(); }
-  /// Waits for the device.
+  /// Returns their number. Waits for the device.
   [[nodiscard]] std::uint32_t download_kept_count() {
     std::uint32_t count = 0;
     device_.download(kept_count_.data(), 1, &count);
@@ -190,15 +190,15 @@ class Boundary {
 
 inline constexpr double pi = 3.141592653589793;
 
-/// The direction u to a vertex as a quotient (y, z) / weight, so that it may be infinite.
+/// Direction u to a vertex as a quotient (y, z) / weight, so that it may be infinite.
 struct ProjectedDirection {
   double weight = 1;
   double y = 0;
   double z = 0;
 
-  /// @param v  from the query to the vertex.
+  /// @param v  vector from the query to the vertex.
   BLUM_HD explicit ProjectedDirection(const Vec3d& v) {
-    const double across = hypot(v.y, v.z);  // whose squares may underflow
+    const double across = hypot(v.y, v.z);  // hypot, because the squares may underflow
     const double distance = norm(v);
     if (v.x > 0) {
       weight = distance + v.x;
@@ -219,18 +219,19 @@ struct ProjectedDirection {
   }
 };
 
-/// What an edge of the boundary adds to the winding number at a node, and how fast that may change around it.
+/// Terms that the edges of the boundary add to the winding number at a node, with bounds on their gradient.
 class BoundaryTerms {
  public:
   BoundaryTerms() = default;
   /// @param edges, count  in the device's memory.
-  /// @param places        of the vertices, in units of nodes.
+  /// @param places        positions of the vertices, in units of nodes.
   BoundaryTerms(const BoundaryEdge* edges, const std::uint32_t* count, const Vec3d* places, const Vec3d& spacing,
                 bool is_mirrored)
       : edges_(edges), count_(count), places_(places), spacing_(spacing), is_mirrored_(is_mirrored) {}
 
   [[nodiscard]] BLUM_HD std::uint32_t count() const { return *count_; }
 
+  /// Returns the term of an edge at a node.
   /// @param node  in units of nodes: whole numbers.
   [[nodiscard]] BLUM_HD double term(std::uint32_t index, const Vec3d& node) const {
     const BoundaryEdge edge = edges_[index];
@@ -238,9 +239,9 @@ class BoundaryTerms {
     return is_mirrored_ ? -winding : winding;
   }
 
-  /// A bound on the gradient of the term along paths that cross no strip, within a distance of a node; infinite where
-  /// the edge may be that close. The winding number's gradient is the Biot-Savart field of the boundary.
-  /// @param reach  mesh units.
+  /// Returns a bound on the gradient of the term within a distance of a node, along paths that cross no strip. It is
+  /// infinite if the edge may be that close. The winding number's gradient is the Biot-Savart field of the boundary.
+  /// @param reach  that distance, mesh units.
   [[nodiscard]] BLUM_HD double gradient_bound(std::uint32_t index, const Vec3d& node, double reach) const {
     const BoundaryEdge edge = edges_[index];
     const Vec3d a = scaled(places_[edge.from] - node);
@@ -258,11 +259,12 @@ class BoundaryTerms {
     return {v.x * spacing_.x, v.y * spacing_.y, v.z * spacing_.z};
   }
 
-  /// How far the edge turns to the left around the ray of a node, seen from +x (y to the right, z up).
+  /// Returns the angle by which the edge turns to the left around the ray of a node, seen from +x (y to the right, z
+  /// up).
   ///
-  /// The angles of edges that share a vertex have the same rounded direction in common, so their sums are right but for
-  /// whole turns, however close the ray comes to the vertex. Which whole turn is due, the crossings decide: by the
-  /// comparison that tells which rows cross a triangle with this edge, and not by a rounded angle's sign.
+  /// Edges that share a vertex use the same rounded direction to it. So the sum of their angles is right except for
+  /// whole turns, however close the ray comes to the vertex. The crossings decide which whole turn is due. They use the
+  /// comparison that finds the rows that cross a triangle with this edge, not the sign of a rounded angle.
   [[nodiscard]] BLUM_HD double angle(const Vec3d& from, const Vec3d& to, const Vec3d& node) const {
     const Vec3d a = from - node;
     const Vec3d b = to - node;
@@ -293,19 +295,20 @@ class BoundaryTerms {
   bool is_mirrored_ = false;
 };
 
-/// Negates the distances of nodes whose winding number is above level + 1/2. One block per tile of 8^3 nodes.
+/// Negates the distances of nodes whose winding number is above level + 1/2. One block computes a tile of 8^3 nodes.
 ///
-/// Where no triangle comes into a tile, its winding numbers differ by less than the bound on their gradient allows:
-/// most tiles ask at one node. Elsewhere each row of the tile asks once, as along a row the winding number changes by
-/// the counted crossings and no more than that bound; nodes too close to call ask for themselves. Cost: tiles, and rows
-/// of those that triangles come into, times edges of the boundary; nodes times edges where the boundary is all over, as
-/// in soups.
+/// In a tile without triangles, winding numbers differ by less than the bound on their gradient allows. Most of these
+/// tiles evaluate one node. In other tiles each row evaluates one node, because the winding number changes along it by
+/// the counted crossings and at most that bound. Nodes too close to call are evaluated themselves.
+///
+/// Cost: tiles, and rows of tiles with triangles, times edges of the boundary. If the boundary is all over, as in
+/// soups: nodes times edges.
 struct SignTiles {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 2;
   static constexpr std::uint32_t warps = threads / warp_size;
   static constexpr std::int32_t side = 8;
-  /// Rounding of a winding number, far more than there is.
+  /// Bound on the rounding of a winding number, far above the real error.
   static constexpr double slack = 1e-9;
 
   struct Sum {
@@ -322,20 +325,20 @@ struct SignTiles {
   const NormalFrame* frame;
   TileGrid tiles;
   Vec3d spacing;
-  const std::int32_t* crossings;  ///< of the ray from each node of the slab to -x
+  const std::int32_t* crossings;  ///< per node of the slab: signed crossings of its ray to -x
   std::int32_t level;
   float* distance;
 
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
     using Warp = typename Block::Warp;
-    if (frame->fault != NormalFrame::Fault::none) return;  // there are no distances
+    if (frame->fault != NormalFrame::Fault::none) return;  // no distances exist
     const NodeBox nodes = tiles.box(static_cast<std::uint32_t>(index));
     const GridIndex middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
                             nodes.first[2] + nodes.count[2] / 2}};
     const double reach = norm(
         Vec3d{spacing.x * (nodes.count[0] / 2), spacing.y * (nodes.count[1] / 2), spacing.z * (nodes.count[2] / 2)});
-    // Distances are good to 1e-6 of the diagonal, which is at most 1 in normalised units.
+    // Distances are accurate to 1e-6 of the diagonal, which is at most 1 in normalised units.
     const bool may_be_crossed = !(static_cast<double>(distance[offset(middle)]) > reach + 4e-6 / frame->scale);
     block.each_warp([&](const Warp& warp) {
       Sum sum;
@@ -382,7 +385,7 @@ struct SignTiles {
     return static_cast<double>(crossings[offset(p)] - level) - 0.5 + of_boundary;
   }
 
-  /// The terms of edges first, first + step, ..., of which each lane takes its share.
+  /// Sums the terms of edges first, first + step, and so on. Each lane takes its share.
   template <class Warp>
   [[nodiscard]] BLUM_HD Sum sum_over_edges(const Warp& warp, const GridIndex& place, double reach, std::uint32_t first,
                                            std::uint32_t step) const {
@@ -423,7 +426,7 @@ struct SignTiles {
       const auto x = static_cast<std::int32_t>(lane);
       if (x >= count) return false;
       const double above = winding_above(moved(first, x), sum.winding);
-      // Where the row has one node, there is nothing to bound.
+      // A row of one node has nothing to bound.
       if (magnitude(above) <= (reach > 0 ? sum.gradient * reach : 0.0) + slack) return true;
       if (above > 0) negate(moved(first, x));
       return false;

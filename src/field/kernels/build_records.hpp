@@ -1,4 +1,4 @@
-// Blum: builds the records of sites, one thread each. SPDX-License-Identifier: Apache-2.0
+// Blum: builds the records of sites, with one thread per site. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace blum::kernels {
 
-/// Normalised positions of the named vertices, and their places on the curve.
+/// Computes the normalised positions of the named vertices, and their places on the curve.
 struct PlaceVertices {
   const NormalFrame* frame;
   const Vec3d* vertices;
@@ -33,7 +33,7 @@ struct PlaceVertices {
   }
 };
 
-/// Where each vertex ended up, and the surface's vertices along the curve.
+/// Stores the rank of each vertex on the curve, and the surface's vertices in that order.
 struct RankVertices {
   const std::uint32_t* vertex;
   const Vec3d* positions;
@@ -46,7 +46,7 @@ struct RankVertices {
   }
 };
 
-/// Edges and faces go behind their first vertex on the curve.
+/// Keys that order edges, and below faces, by their first vertex on the curve.
 struct EdgeKeys {
   const Segment* edges;
   const std::uint32_t* rank;
@@ -79,12 +79,12 @@ struct SiteOrder {
 
   Array<std::uint32_t> vertices, edges, faces;
   Array<std::uint32_t> rank;    ///< place of each named vertex in `vertices`
-  Array<Vec3d> positions;       ///< normalised; of named vertices
-  Array<Vec3f> surface_points;  ///< of `vertices`, in their order
+  Array<Vec3d> positions;       ///< normalised positions of named vertices
+  Array<Vec3f> surface_points;  ///< positions of `vertices`, in their order
   Array<std::uint32_t> key;     ///< scratch
 };
 
-/// Cost: a radix sort of the sites of each kind.
+/// Orders the sites. Cost: a radix sort of the sites of each kind.
 template <class Device>
 void order_sites(Device& device, const DeviceMesh& mesh, const ConnectivityView& connectivity, const NormalFrame* frame,
                  SiteOrder<Device>& out) {
@@ -112,16 +112,17 @@ void order_sites(Device& device, const DeviceMesh& mesh, const ConnectivityView&
   device.sort_pairs(out.key, out.faces, rank_bits);
 }
 
-/// Finds how far from its site a Voronoi region can extend: beyond rho from a site with corners p, along its domain's
-/// directions w, a surface point y is closer, if
-///   rho = max over p of |y - p|^2 / (2 min over p, w of w . (y - p)),
-/// because |y - (p + r w)|^2 < r^2 is linear in r, p varies over a convex set, and w over a cone. The smallest rho over
-/// some dozens of vertices near `rank` on the Morton curve is taken.
+/// Finds how far a Voronoi region can extend from its site. Let p be the corners of the site, and w the directions of
+/// its domain. Beyond this rho a surface point y is closer:
+///   rho = max over p of |y - p|^2 / (2 min over p, w of w . (y - p)).
+/// The reason: |y - (p + r w)|^2 < r^2 is linear in r, p varies over a convex set, and w over a cone. The search takes
+/// the smallest rho over some dozens of vertices near `rank` on the Morton curve.
 struct ReachSearch {
   const Vec3f* points;
   std::uint32_t count;
 
-  /// @param directions  unit; between the two of them the domain lies, or along the only one.
+  /// Returns that bound for one site.
+  /// @param directions  unit vectors: the domain lies between the two of them, or along the only one.
   BLUM_HD float reach(const Vec3f* corners, int corner_count, const Vec3f* directions, int direction_count,
                       std::uint32_t rank) const {
     float best = far_away;
@@ -153,19 +154,19 @@ struct ReachSearch {
   }
 };
 
-/// What the builders of all kinds read.
+/// Input of the builders of all kinds.
 struct RecordSource {
   DeviceMesh mesh;
   ConnectivityView connectivity;
   const Vec3d* positions;
   const std::uint32_t* rank;
   ReachSearch reach;
-  Vec3d* face_normals;  ///< written by faces, read by edges; zero for triangles too flat to trust one
+  Vec3d* face_normals;  ///< written by faces, read by edges; zero for triangles too flat for a normal
 
   [[nodiscard]] BLUM_HD std::uint32_t first_face() const { return mesh.vertex_count + connectivity.edge_count; }
 };
 
-/// Sites that can own no node keep their place, as dead records in empty boxes.
+/// Builds the records of faces. Sites that can own no node keep their place, as dead records in empty boxes.
 struct BuildFaces {
   RecordSource source;
   const std::uint32_t* order;
@@ -325,7 +326,7 @@ Forest build_records(Device& device, const DeviceMesh& mesh, const ConnectivityV
     device.for_each(sites.size(), Body{source, sites.data(), set.records.data(), set.site_boxes.data()});
     forest.trees[kind] = build_tree(device, set);
   };
-  // Faces come first: edges read what they write of their normals.
+  // Faces come first, because edges read the normals that faces write.
   build(face_kind, order.faces, BuildFaces{});
   build(edge_kind, order.edges, BuildEdges{});
   build(vertex_kind, order.vertices, BuildVertices{});

@@ -14,12 +14,12 @@
 
 namespace blum::kernels {
 
-/// The closest site of a node so far.
+/// Closest site of a node so far.
 struct Winner {
   float squared = std::numeric_limits<float>::max();
   std::uint32_t id = dead_record;
 
-  /// Equal distances go to the smaller id, so that the order of the offers does not matter.
+  /// Offers a site. Equal distances go to the smaller id, so that the order of the offers does not matter.
   BLUM_HD void offer(float candidate, std::uint32_t candidate_id) {
     if (candidate < squared || (candidate == squared && candidate_id < id)) {
       squared = candidate;
@@ -43,7 +43,7 @@ BLUM_HD inline void offer_edge(const Record& record, const Vec3f& node, Winner& 
   const Vec3f b = vec_at(record, EdgeColumns::binormal);
   const float across_b = dot(to, b);
   const float across_n = dot(to, cross(t, b));
-  // Beyond its ends the edge is as far as its end: the excess keeps the distance exact within the slack.
+  // Beyond its ends the edge is as far as its end. The excess keeps the distance exact within the slack.
   const float excess = magnitude(dot(to, t)) - value_at(record, EdgeColumns::half_length);
   const float second =
       value_at(record, EdgeColumns::second_b) * across_b + value_at(record, EdgeColumns::second_n) * across_n;
@@ -66,7 +66,7 @@ BLUM_HD inline void offer_face(const Record& record, const Vec3f& node, Winner& 
   winner.offer(height * height, record.id);
 }
 
-/// Lets a site win a node that lies in its domain.
+/// Offers a site to a node; the site takes the node if the node lies in its domain.
 BLUM_HD inline void offer_site(std::uint32_t kind, const Record& record, const Vec3f& node, Winner& winner) {
   if (kind == vertex_kind) {
     offer_vertex(record, node, winner);
@@ -79,7 +79,7 @@ BLUM_HD inline void offer_site(std::uint32_t kind, const Record& record, const V
   }
 }
 
-/// A record in shared memory: 80 bytes apart, so that the lanes of a warp read from different banks.
+/// Record in shared memory. Records are 80 bytes apart, so that the lanes of a warp read from different banks.
 struct alignas(16) PackedRecord {
   float column[15];
   std::uint32_t id;
@@ -97,22 +97,23 @@ struct alignas(16) PackedRecord {
   }
 };
 
-/// One block per tile of 8^3 nodes. Its warps search the trees for sites that can matter to the tile, from a stack that
-/// they share, and collect their records; then each warp takes one leaf of 4^3 nodes, drops what cannot matter to it,
-/// and evaluates the rest at two nodes per lane. Where more sites matter than there is room for, the collected ones are
-/// evaluated before the search goes on, so that no list can overflow. A field does not depend on the order in which
-/// sites are met.
+/// Computes a field, with one block per tile of 8^3 nodes. The block's warps search the trees for sites that can matter
+/// to the tile, from a shared stack, and collect their records. Then each warp takes one leaf of 4^3 nodes, drops
+/// records that cannot matter to it, and evaluates the rest at two nodes per lane.
+///
+/// If more sites matter than there is room for, the collected ones are evaluated before the search goes on. So no list
+/// can overflow. A field does not depend on the order in which sites are met.
 struct ComputeTiles {
   static constexpr std::uint32_t threads = 256;
-  static constexpr std::uint32_t blocks_per_processor = 3;  ///< at least, by registers
+  static constexpr std::uint32_t blocks_per_processor = 3;  ///< at least this many, by registers
   static constexpr std::uint32_t warps = threads / warp_size;
   static constexpr std::int32_t side = 8;
   static constexpr std::int32_t leaf_side = 4;
   static constexpr std::uint32_t list_capacity = 512;
   static constexpr std::uint32_t stack_capacity = 1024;
-  /// What one entry taken at a time can add to the stack, all the way down a tree.
+  /// Largest number of entries that taking one entry at a time can add to the stack, all the way down a tree.
   static constexpr std::uint32_t stack_reserve = (warp_size - 1) * (Tree::most_levels + 1);
-  /// With fewer sites, to evaluate them costs less than to know the surface point that would beat some of them.
+  /// With fewer sites, evaluating them costs less than finding the surface point that would beat some of them.
   static constexpr std::uint32_t fewest_worth_dominating = 24;
   static_assert(warps * warp_size <= list_capacity && stack_reserve + warps * warp_size <= stack_capacity);
 
@@ -123,7 +124,7 @@ struct ComputeTiles {
     std::uint32_t taken_count;
     std::uint32_t list_count;
     std::uint32_t kind_count_of[kind_count];
-    std::uint16_t place[kind_count][list_capacity];  ///< of the records of each kind
+    std::uint16_t place[kind_count][list_capacity];  ///< per kind: places of its records in `list`
     SurfacePoint leaf_point[warps];
     CenteredBox box;  ///< of the tile, widened
     TileTest test;
@@ -140,7 +141,7 @@ struct ComputeTiles {
   const NormalFrame* frame;
   TileGrid tiles;
   const SurfacePoint* tile_points;
-  FieldRequest request;  ///< its memory is that of the slab's nodes
+  FieldRequest request;  ///< with the memory of the slab's nodes
 
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
@@ -148,13 +149,13 @@ struct ComputeTiles {
   }
 
  private:
-  /// The nodes of a lane, two of a leaf, and what they know.
+  /// Two nodes of a leaf that one lane computes, and their closest sites so far.
   struct LaneNodes {
     Vec3f node[2];
     Winner winner[2];
   };
 
-  /// The work of one block.
+  /// Work of one block.
   template <class Block>
   class Run {
     using Warp = typename Block::Warp;
@@ -204,7 +205,8 @@ struct ComputeTiles {
       return distance - norm(box_.half) * 1.0001F - box_slack > static_cast<float>(job_.request.band * scale());
     }
 
-    /// The points of this tile and of those next door, which are the best at beating what lies beyond them.
+    /// Returns the surface points of this tile and of the tiles next to it. They are the best at beating sites beyond
+    /// them.
     [[nodiscard]] BLUM_HD Dominators tile_dominators() const {
       Dominators out;
       out.point[0] = nearest_.point;
@@ -256,8 +258,8 @@ struct ComputeTiles {
       });
     }
 
-    /// Takes entries off the stack, one for each warp where the stack has room for what they may add; false where
-    /// there are none.
+    /// Takes entries off the stack: one for each warp if the stack has room for the entries that they may add. Returns
+    /// false if the stack is empty.
     BLUM_HD bool take() {
       const std::uint32_t top = block_.read(shared_.top);
       const std::uint32_t room = stack_capacity - stack_reserve;
@@ -321,7 +323,7 @@ struct ComputeTiles {
       });
     }
 
-    /// Looks for a surface point closer to the leaf's centre among the listed sites.
+    /// Looks among the listed sites for a surface point closer to the leaf's centre.
     BLUM_HD void find_leaf_point(const Warp& warp) {
       const NodeBox leaf = leaf_box(warp.index());
       if (leaf.is_empty()) return;
@@ -387,7 +389,7 @@ struct ComputeTiles {
       }
     }
 
-    /// Rounding can leave a node between the domains of all sites: it gets the closest of the closed sites.
+    /// Settles nodes that rounding left between the domains of all sites: each gets the closest of the closed sites.
     BLUM_HD void settle(const Warp& warp, const NodeBox& leaf) {
       for (std::uint32_t k = 0; k < 2; ++k) {
         std::uint32_t open = warp.ballot([&](std::uint32_t lane) {
@@ -406,7 +408,7 @@ struct ComputeTiles {
       }
     }
 
-    /// Rare, so it must not cost the others registers.
+    /// Not inlined: it is rare, and must not cost the other code registers.
     BLUM_HD BLUM_NOINLINE static SurfacePoint search(const Warp& warp, const Forest& forest, const Vec3f& query,
                                                      SurfacePoint best, SearchStack& stack) {
       best.squared_distance = squared_length(query - best.point);
@@ -414,7 +416,7 @@ struct ComputeTiles {
       return best;
     }
 
-    /// The k-th node of a lane: x and y differ from lane to lane, z too, and by two within a lane.
+    /// Returns the k-th node of a lane. Lanes differ in x, y and z; the two nodes of a lane differ by two in z.
     [[nodiscard]] BLUM_HD static GridIndex place_in(const NodeBox& leaf, std::uint32_t lane, std::uint32_t k) {
       return {{leaf.first[0] + static_cast<std::int32_t>(lane % 4),
                leaf.first[1] + static_cast<std::int32_t>(lane / 4 % 4),
@@ -428,7 +430,7 @@ struct ComputeTiles {
     [[nodiscard]] BLUM_HD float coordinate(int axis, const GridIndex& place) const {
       return static_cast<float>(job_.frame->at(axis, static_cast<double>(place.at[axis])));
     }
-    /// Where a node is in the output.
+    /// Returns the index of a node in the output.
     [[nodiscard]] BLUM_HD std::size_t offset(const GridIndex& place) const {
       const auto slice = static_cast<std::size_t>(place.at[2] - job_.tiles.first_slice);
       const auto row = slice * static_cast<std::size_t>(job_.tiles.size[1]) + static_cast<std::size_t>(place.at[1]);

@@ -1,4 +1,4 @@
-// Blum: the edges of a mesh and what meets at them, on a device. SPDX-License-Identifier: Apache-2.0
+// Blum: the edges of a mesh, with their triangles and neighbours, on a device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace blum::kernels {
 
 inline constexpr std::uint32_t no_index = 0xffffffff;
 
-/// A mesh in the memory of a device.
+/// Mesh in the memory of a device.
 struct DeviceMesh {
   const Vec3d* vertices = nullptr;
   const Triangle* triangles = nullptr;
@@ -24,12 +24,12 @@ struct DeviceMesh {
   std::uint32_t segment_count = 0;
   std::uint32_t point_count = 0;
 
-  /// Three per triangle, one per segment, in this order.
+  /// Returns the number of borders: three per triangle, then one per segment.
   [[nodiscard]] std::size_t border_count() const { return std::size_t{3} * triangle_count + segment_count; }
   [[nodiscard]] std::size_t corner_count() const {
     return std::size_t{3} * triangle_count + std::size_t{2} * segment_count + point_count;
   }
-  /// A vertex that the mesh names, as often as it names it.
+  /// Returns the k-th vertex that the mesh names. A vertex appears as often as the mesh names it.
   [[nodiscard]] BLUM_HD std::uint32_t corner(std::size_t k) const {
     const std::size_t of_triangles = std::size_t{3} * triangle_count;
     if (k < of_triangles) return triangles[k / 3][k % 3];
@@ -39,22 +39,22 @@ struct DeviceMesh {
   }
 };
 
-/// Connectivity that depends on the mesh's indices alone, so a deforming mesh keeps it. Edges are numbered as SiteTable
-/// numbers them.
+/// Connectivity of a mesh. It depends on the mesh's indices alone, so a deforming mesh keeps it. Edges are numbered as
+/// SiteTable numbers them.
 struct ConnectivityView {
   const Segment* edges = nullptr;  ///< smaller vertex first, sorted
-  /// Up to two triangles of each edge; no_index where there is none.
+  /// Up to two triangles of each edge; no_index if there are fewer.
   const std::array<std::uint32_t, 2>* edge_faces = nullptr;
-  const std::uint32_t* named_vertices = nullptr;  ///< rising
+  const std::uint32_t* named_vertices = nullptr;  ///< ascending
   const std::uint32_t* first_neighbour = nullptr;
-  const std::uint32_t* neighbours = nullptr;  ///< of v: [first_neighbour[v], first_neighbour[v + 1])
-  /// Of each edge: how many more triangles run from its smaller to its larger vertex than back.
+  const std::uint32_t* neighbours = nullptr;  ///< those of v: [first_neighbour[v], first_neighbour[v + 1]).
+  /// Per edge: how many more triangles run from its smaller to its larger vertex than back.
   const std::int32_t* balance = nullptr;
   std::uint32_t edge_count = 0;
   std::uint32_t named_count = 0;
 };
 
-/// Marks the vertices that are named.
+/// Marks the named vertices.
 struct MarkNamed {
   DeviceMesh mesh;
   std::uint32_t* is_named;
@@ -70,8 +70,8 @@ struct ListNamed {
   }
 };
 
-/// The key of each side of each triangle, and of each segment: both ends, the smaller one first. Sides without two ends
-/// come last.
+/// Computes the key of each side of each triangle, and of each segment: both ends, the smaller one first. Sides without
+/// two ends come last.
 struct BorderKeys {
   DeviceMesh mesh;
   int vertex_bits;
@@ -137,7 +137,7 @@ struct WriteEdges {
   }
 };
 
-/// Both ends of each edge, to be sorted by the first.
+/// Lists both ends of each edge, to be sorted by the first.
 struct NeighbourPairs {
   const Segment* edges;
   std::uint32_t* key;
@@ -148,7 +148,7 @@ struct NeighbourPairs {
   }
 };
 
-/// Where the pairs of each vertex begin.
+/// Finds the start of the pairs of each vertex.
 struct FirstNeighbour {
   const std::uint32_t* key;
   std::uint32_t count;
@@ -181,7 +181,7 @@ struct Connectivity {
   Array<std::int32_t> balance;
   std::uint32_t edge_count = 0;
   std::uint32_t named_count = 0;
-  /// Kept, so that the next mesh allocates nothing.
+  /// Scratch memory, kept so that the next mesh allocates nothing.
   struct Scratch {
     Array<std::uint32_t> flags, sums, border;
     Array<std::uint64_t> key;
@@ -200,7 +200,7 @@ struct Connectivity {
   }
 };
 
-/// The sum of flags from their exclusive sums. Waits for the device.
+/// Returns the sum of flags, from their exclusive sums. Waits for the device.
 template <class Device>
 std::uint32_t total_of(Device& device, const typename Device::template Array<std::uint32_t>& flags,
                        const typename Device::template Array<std::uint32_t>& sums) {
@@ -211,7 +211,7 @@ std::uint32_t total_of(Device& device, const typename Device::template Array<std
   return last[0] + last[1];
 }
 
-/// Cost: a sort of all sides of triangles and one of all ends of edges.
+/// Builds the connectivity of a mesh. Cost: a sort of all sides of triangles, and one of all ends of edges.
 template <class Device>
 void build_connectivity(Device& device, const DeviceMesh& mesh, Connectivity<Device>& out) {
   auto& [flags, sums, border, key] = out.scratch;

@@ -1,5 +1,5 @@
-// Blum: winding numbers of a closed mesh at the nodes of a slab, by scan conversion. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: winding numbers of a closed mesh at the nodes of a slab, by scan conversion.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/row_crossings.hpp"
 
-// The same exact counting as SignScan (field/sign/scan.hpp), with the crossings added up at the nodes behind them
-// instead of sorted: whole numbers, so that the order does not matter.
+// The same exact counting as SignScan (field/sign/scan.hpp). Crossings are not sorted, but added up at the nodes behind
+// them. They are whole numbers, so that the order does not matter.
 namespace blum::kernels {
 
 template <class T>
@@ -23,7 +23,7 @@ BLUM_HD void add_atomically(T& sum, T value) {
 #endif
 }
 
-/// Adds one and returns the sum before.
+/// Adds one to a counter and returns its value before.
 BLUM_HD inline std::uint32_t take_number(std::uint32_t& counter) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(&counter, 1U);
@@ -32,7 +32,7 @@ BLUM_HD inline std::uint32_t take_number(std::uint32_t& counter) {
 #endif
 }
 
-/// Once per vertex, so that all its triangles see the same numbers.
+/// Places each vertex once, so that all its triangles use the same numbers.
 struct PlaceInNodes {
   NodeUnits units;
   const Vec3d* vertices;
@@ -43,17 +43,17 @@ struct PlaceInNodes {
 /// Counts crossings of triangles with rows.
 struct CrossingCount {
   const Triangle* triangles;
-  const Vec3d* places;  ///< of the vertices, in nodes
+  const Vec3d* places;  ///< positions of the vertices, in nodes
   bool is_mirrored;
   std::int32_t size[3];
   std::int32_t first_slice;
   std::int32_t last_slice;
-  std::int32_t* change;  ///< of the winding number, at each node of the slab; to be added up along rows
+  std::int32_t* change;  ///< of the winding number at each node of the slab; to be added up along rows
 
   [[nodiscard]] BLUM_HD PlacedTriangle placed(std::uint32_t t) const {
     return {places[triangles[t][0]], places[triangles[t][1]], places[triangles[t][2]]};
   }
-  /// Slices of the slab that cut a triangle.
+  /// Returns the slices of the slab that cut a triangle.
   [[nodiscard]] BLUM_HD Cuts<std::int32_t> slices(const PlacedTriangle& t) const {
     Cuts<std::int32_t> cuts = t.slices(size[2]);
     cuts.begin = larger(cuts.begin, first_slice);
@@ -70,7 +70,7 @@ struct CrossingCount {
   }
 };
 
-/// One thread per triangle; triangles with many crossings are left to CrossLargeTriangles.
+/// Counts the crossings of one triangle per thread. Triangles with many crossings are left to CrossLargeTriangles.
 struct CrossTriangles {
   static constexpr std::int64_t most_rows = 256;
 
@@ -95,7 +95,7 @@ struct CrossTriangles {
   }
 };
 
-/// Large triangles are shared out among blocks, their slices among the warps, the rows among the lanes.
+/// Counts the crossings of large triangles. Blocks share out the triangles, warps their slices, and lanes the rows.
 struct CrossLargeTriangles {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 2;
@@ -129,7 +129,7 @@ struct CrossLargeTriangles {
   }
 };
 
-/// Adds up what crossings change along a row. Calls visit(lane, node, sum) for each node.
+/// Adds up the changes by crossings along a row. Calls visit(node, sum) for each node.
 template <class Warp, class Visit>
 BLUM_HD void add_up_row(const Warp& warp, const std::int32_t* change, std::int32_t width, const Visit& visit) {
   std::int32_t before = 0;
@@ -148,7 +148,7 @@ BLUM_HD void add_up_row(const Warp& warp, const std::int32_t* change, std::int32
   }
 }
 
-/// What the kernels below share: one warp per row.
+/// Common part of the kernels below: one warp per row.
 struct RowsOfWarps {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 4;
@@ -156,7 +156,7 @@ struct RowsOfWarps {
   struct Shared {};
 };
 
-/// Replaces what crossings change by the sums along each row.
+/// Replaces the changes by crossings by their sums along each row.
 struct SumCrossings : RowsOfWarps {
   std::int32_t* change;
   std::size_t rows;
@@ -173,7 +173,7 @@ struct SumCrossings : RowsOfWarps {
   }
 };
 
-/// Negates the distances of nodes whose winding number is above `level`, where winding numbers are whole.
+/// Negates the distances of nodes whose winding number is above `level`. Winding numbers must be whole.
 struct ApplyWinding : RowsOfWarps {
   const std::int32_t* change;
   std::size_t rows;
@@ -195,20 +195,21 @@ struct ApplyWinding : RowsOfWarps {
   }
 };
 
-/// Signs of slabs by winding numbers: counted crossings, and for meshes with a boundary what its edges add.
+/// Signs of slabs by winding numbers: counted crossings and, for meshes with a boundary, the terms of its edges.
 template <class Device>
 class CrossingSigns {
  public:
   explicit CrossingSigns(Device& device) : device_(device), boundary_(device) {}
 
-  /// Once per connectivity. Waits for the device.
+  /// Finds the boundary, once per connectivity. Waits for the device.
   void set_connectivity(const ConnectivityView& connectivity) { boundary_.set_connectivity(connectivity); }
-  /// Edges of the boundary by index: with none, winding numbers are whole.
+  /// Returns the number of boundary edges by index. Without any, winding numbers are whole.
   [[nodiscard]] std::uint32_t boundary_count() const { return boundary_.count(); }
-  /// Those of the last frame that others at the same place do not cancel, where there are any. Waits for the device.
+  /// Returns the number of boundary edges of the last frame that others at the same place do not cancel. The mesh must
+  /// have boundary edges by index. Waits for the device.
   [[nodiscard]] std::uint32_t download_boundary_count() { return boundary_.download_kept_count(); }
 
-  /// Once per frame.
+  /// Sets the mesh and the grid, once per frame.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
     mesh_ = mesh;
     units_ = NodeUnits(grid);
@@ -219,10 +220,10 @@ class CrossingSigns {
     if (boundary_.count() > 0) boundary_.place(mesh.vertices);
   }
 
-  /// Negates the unsigned distances of a slab inside: where the winding number is above the request's level, or with a
-  /// boundary above level + 1/2.
-  /// @param request  of the grid of the last prepare(); its memory is the device's, and that of these slices.
-  /// @param frame    of the distances, in the device's memory.
+  /// Negates the unsigned distances of a slab at nodes inside. Their winding number is above the request's level, or
+  /// with a boundary above level + 1/2.
+  /// @param request  of the grid of the last prepare(); its memory is the device's, for these slices only.
+  /// @param frame    frame of the distances, in the device's memory.
   void apply(std::int64_t first_slice, std::int64_t last_slice, const FieldRequest& request, const NormalFrame* frame) {
     const GridSpec& grid = request.grid;
     const auto width = static_cast<std::int32_t>(grid.size[0]);

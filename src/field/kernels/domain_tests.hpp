@@ -1,4 +1,4 @@
-// Blum: whether a site can matter to a box of nodes. SPDX-License-Identifier: Apache-2.0
+// Blum: tests if a site can matter to a box of nodes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace blum::kernels {
 
-/// Boxes are widened by this (normalised units), which covers all rounding in the tests that cull against them.
+/// Boxes are widened by this length (normalised units). It covers all rounding in the tests that cull against them.
 inline constexpr float box_slack = 3e-6F;
 
-/// A box of nodes as a centre and half-sizes in the normalised frame.
+/// Box of nodes as a centre and half-sizes in the normalised frame.
 struct CenteredBox {
   Vec3f center;
   Vec3f half;  ///< to the outermost nodes, not widened
@@ -19,15 +19,15 @@ struct CenteredBox {
   [[nodiscard]] BLUM_HD CenteredBox widened() const { return {center, half + Vec3f{box_slack, box_slack, box_slack}}; }
 };
 
-/// Surface points near a box, which may beat sites everywhere in it: the best first, others or the same again.
+/// Surface points near a box, which may beat sites everywhere in it. The best one comes first; points may repeat.
 struct Dominators {
   static constexpr int count = 4;
   Vec3f point[count];
 };
 
-/// Drops what a known surface point p0 beats everywhere in the box. With pi the projection of the centre c on a site's
-/// flat, |x - p0|^2 < distance(x, flat)^2 for all x of the box when |c - pi|^2 > |c - p0|^2 + 2 half . |p0 - pi| +
-/// (largest squared offset along the flat).
+/// Drops sites that a known surface point p0 beats everywhere in the box. Let pi be the projection of the centre c on a
+/// site's flat. Then |x - p0|^2 < distance(x, flat)^2 for all x of the box if |c - pi|^2 > |c - p0|^2 + 2 half . |p0 -
+/// pi| + (largest squared offset along the flat).
 struct Domination {
   /// One surface point: c - p0, and |c - p0|^2 with room for rounding.
   struct alignas(16) Point {
@@ -49,6 +49,7 @@ struct Domination {
     }
   }
 
+  /// Returns false if a surface point beats the site everywhere in the box.
   /// @param to_flat  c - pi.
   [[nodiscard]] BLUM_HD bool keeps(const Vec3f& to_flat, float squared_distance, float along_flat) const {
     const float rest = squared_distance - along_flat;
@@ -85,8 +86,8 @@ BLUM_HD inline bool edge_matters(const Record& record, const CenteredBox& box, c
   const float across_second = second_b * across_b + second_n * across_n;
   constexpr float slack = 2 * plane_slack;
   if (across_second > support(second, box.half) + slack) return false;
-  // The sum of both faces' directions cuts the corner that the box leaves; against it lies the middle of the wedge:
-  // going that way by more than the reach leaves the region.
+  // The sum of both faces' directions cuts the corner that the box leaves. The middle of the wedge lies in the opposite
+  // direction: going that way by more than the reach leaves the region.
   const Vec3f sum = b + second;
   const float across_sum = across_b + across_second;
   const float sum_support = support(sum, box.half) + slack;
@@ -106,7 +107,7 @@ BLUM_HD inline bool sliver_matters(const Record& record, const CenteredBox& box,
 BLUM_HD inline bool face_matters(const Record& record, const CenteredBox& box, const Domination& domination) {
   if (value_at(record, FaceColumns::is_sliver) != 0) return sliver_matters(record, box, domination);
   const Vec3f to_site = box.center - vec_at(record, FaceColumns::anchor);
-  // Each barycentric coordinate in [0, 1] up to the box's extent: |coordinate - 1/2| - extent <= 1/2.
+  // Each barycentric coordinate must lie in [0, 1] up to the box's extent: |coordinate - 1/2| - extent <= 1/2.
   const auto misses = [&](float minus_coordinate, const Vec3f& gradient) {
     return magnitude(minus_coordinate + 0.5F) - support(gradient, box.half) > 0.5F;
   };
@@ -126,7 +127,7 @@ BLUM_HD inline bool face_matters(const Record& record, const CenteredBox& box, c
   return domination.keeps(n * height, height * height, domination.squared_half);
 }
 
-/// Whether a live site can be the closest somewhere in a box.
+/// Returns true if a live site can be the closest somewhere in a box.
 /// @param box  widened.
 BLUM_HD inline bool site_matters(std::uint32_t kind, const Record& record, const CenteredBox& box,
                                  const Domination& domination) {
@@ -135,9 +136,10 @@ BLUM_HD inline bool site_matters(std::uint32_t kind, const Record& record, const
                              : face_matters(record, box, domination);
 }
 
-/// Keeps a box of surface unless p0 is closer than all of it to every point x of the tile: unless the minimum over x
-/// and over p in the box of |x - p|^2 - |x - p0|^2 is positive. It is separable; along an axis it is linear in x and
-/// convex in p, so it is found at an end of the tile with p as near to it as can be.
+/// Tests boxes of surface against a tile. A box is dropped if p0 is closer than all of it to every point x of the tile.
+/// This holds if |x - p|^2 - |x - p0|^2 is positive for all x, and for all p in the box. The minimum is separable.
+/// Along an axis the difference is linear in x and convex in p. So its minimum is at an end of the tile, with p as near
+/// to it as can be.
 struct TileTest {
   Vec3f low, high, low_p0, high_p0;
   float tolerance = 0;

@@ -15,8 +15,8 @@
 
 namespace blum::kernels {
 
-/// The lanes of a warp, one after the other. A kernel is a sequence of steps that all lanes take together, and of
-/// questions to all of them (ballot, smallest); what a lane keeps from step to step is in Lanes.
+/// Lanes of a warp, run one after the other. A kernel is a sequence of steps that all lanes take together, and of
+/// questions to all of them (ballot, smallest). A lane keeps its values from step to step in Lanes.
 class EmulatedWarp {
  public:
   template <class T>
@@ -42,7 +42,7 @@ class EmulatedWarp {
     for (std::uint32_t lane = 0; lane < warp_size; ++lane) result |= question(lane) ? 1U << lane : 0U;
     return result;
   }
-  /// The smallest of all lanes' values.
+  /// Returns the smallest of all lanes' values.
   template <class Value>
   [[nodiscard]] BLUM_HD std::uint64_t smallest(const Value& value) const {
     std::uint64_t result = value(0);
@@ -53,12 +53,12 @@ class EmulatedWarp {
   [[nodiscard]] BLUM_HD T broadcast(const Lanes<T>& values, std::uint32_t lane) const {
     return values[lane];
   }
-  /// Replaces each lane's value by the sum of those of the lanes up to it.
+  /// Replaces each lane's value by the sum over the lanes up to it.
   template <class T>
   BLUM_HD void add_up(Lanes<T>& values) const {
     for (std::uint32_t lane = 1; lane < warp_size; ++lane) values[lane] += values[lane - 1];
   }
-  /// Adds to a counter in shared memory; returns what it was.
+  /// Adds to a counter in shared memory and returns its value before.
   [[nodiscard]] BLUM_HD std::uint32_t claim(std::uint32_t& counter, std::uint32_t count) const {
     return std::exchange(counter, counter + count);
   }
@@ -67,14 +67,14 @@ class EmulatedWarp {
   std::uint32_t index_;
 };
 
-/// The threads of a block, warp after warp. Everything between two steps of a block must be the same for all threads.
+/// Threads of a block, run warp after warp. Everything between two steps of a block must be the same for all threads.
 template <std::uint32_t threads>
 class EmulatedBlock {
  public:
   using Warp = EmulatedWarp;
   static constexpr std::uint32_t warps = threads / warp_size;
 
-  /// What each thread keeps from step to step.
+  /// Value that each thread keeps from step to step.
   template <class T>
   class PerThread {
    public:
@@ -88,19 +88,19 @@ class EmulatedBlock {
   BLUM_HD void each_warp(const Step& step) const {
     for (std::uint32_t w = 0; w < warps; ++w) step(Warp(w));
   }
-  /// One thread does something for all.
+  /// Runs a step on one thread, for all threads.
   template <class Step>
   BLUM_HD void once(const Step& step) const {
     step();
   }
-  /// A value in shared memory, read by all threads before any goes on to change it.
+  /// Returns a value in shared memory. All threads read it before any of them changes it.
   template <class T>
   [[nodiscard]] BLUM_HD T read(const T& shared) const {
     return shared;
   }
 };
 
-/// Memory of a device, here the host's.
+/// Memory of a device, here of the host.
 template <class T>
 class EmulatedArray {
  public:
@@ -113,7 +113,7 @@ class EmulatedArray {
   std::vector<T> value_;
 };
 
-/// A device that launches kernels as loops: the same bodies, blocks and lists as on a graphics processor.
+/// Device that launches kernels as loops: the same bodies, blocks and lists as on a graphics processor.
 class EmulatedDevice {
  public:
   template <class T>
@@ -145,7 +145,7 @@ class EmulatedDevice {
     for (std::size_t k = 0; k < count; ++k) body(EmulatedBlock<Body::threads>{}, *shared, k);
   }
 
-  /// Sorts by the lowest `bits` bits of the keys; equal keys keep their order.
+  /// Sorts pairs by the lowest `bits` bits of their keys. Equal keys keep their order.
   template <class Key>
   void sort_pairs(Array<Key>& keys, Array<std::uint32_t>& values, int bits) const {
     const Key mask = bits >= static_cast<int>(8 * sizeof(Key)) ? ~Key{0} : (Key{1} << bits) - 1;
@@ -167,12 +167,12 @@ class EmulatedDevice {
     std::swap(keys, sorted_keys);
     std::swap(values, sorted_values);
   }
-  /// out[k] = in[0] + ... + in[k - 1].
+  /// Sets out[k] = in[0] + ... + in[k - 1].
   void exclusive_sum(const Array<std::uint32_t>& in, Array<std::uint32_t>& out) const {
     out.resize(in.size());
     std::exclusive_scan(in.data(), in.data() + in.size(), out.data(), std::uint32_t{0});
   }
-  /// *out = first combined with load(0), ..., load(count - 1), in any order and grouping.
+  /// Sets *out to `first` combined with load(0), ..., load(count - 1), in any order and grouping.
   template <class T, class Load, class Combine>
   void reduce(std::size_t count, const Load& load, const T& first, const Combine& combine, T* out) const {
     T result = first;
@@ -180,10 +180,10 @@ class EmulatedDevice {
     *out = result;
   }
   void wait() const {}
-  /// Marks a place in the queue of work, and waits until the device has reached it.
+  /// mark() marks a place in the queue of work; await() waits until the device has reached it.
   void mark(int) const {}
   void await(int) const {}
-  /// Copies to the host what is complete, past the queue of work.
+  /// Copies complete results to the host, past the queue of work.
   template <class T>
   void fetch(const T* from, std::size_t count, T* to) const {
     download(from, count, to);

@@ -23,7 +23,7 @@ namespace blum::kernels {
 using MemoryArray = DeviceArrayView;
 using MemoryMesh = DeviceMeshView;
 
-/// Vertices in double, whatever they come in.
+/// Copies vertices of either float type as double.
 struct CopyVertices {
   MemoryArray from;
   Vec3d* to;
@@ -39,7 +39,7 @@ struct CopyVertices {
   }
 };
 
-/// Indices in 32 bits. Those that no vertex has become 0, and are told of.
+/// Copies indices as 32-bit numbers. An index without a vertex becomes 0 and sets `faults`.
 struct CopyIndices {
   MemoryArray from;
   std::size_t limit;
@@ -66,7 +66,7 @@ struct CopyIndices {
   }
 };
 
-/// The smallest triangle at each vertex. One thread per corner.
+/// Finds the smallest triangle at each vertex, with one thread per corner.
 struct FindVertexTriangles {
   const Triangle* triangles;
   std::uint32_t* vertex_triangle;
@@ -82,7 +82,7 @@ struct FindVertexTriangles {
   }
 };
 
-/// The smallest triangle that a site lies on.
+/// Replaces a site by the smallest triangle that it lies on.
 struct ShowTriangle {
   const std::uint32_t* vertex_triangle;
   const std::array<std::uint32_t, 2>* edge_faces;
@@ -103,10 +103,10 @@ struct ShowTriangle {
   }
 };
 
-/// Slabs of whole tiles of both sizes, so that they do not change which tile a node is in.
+/// Slabs of whole tiles of both sizes, so that slabs do not change which tile a node is in.
 class Slabs {
  public:
-  /// @param nodes  of a slab at most, but for grids whose slices are too large.
+  /// @param nodes  largest number of nodes of a slab; grids with too large slices exceed it.
   Slabs(const GridSpec& grid, std::size_t nodes)
       : per_slice_(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1])),
         size_(grid.size[2]) {
@@ -131,14 +131,14 @@ class Slabs {
   std::int64_t slices_ = 0;
 };
 
-/// Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory, slab by slab, or
-/// stay on the device.
+/// Computes fields. Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory,
+/// slab by slab, or stay on the device.
 template <class Device>
 class FieldEngine {
  public:
-  /// Nodes of a slab: two of them are on the device at a time, 8 bytes per node each.
+  /// Nodes of a slab. Two slabs are on the device at a time, with 8 bytes per node each.
   static constexpr std::size_t default_slab_nodes = std::size_t{1} << 23;
-  /// Nodes of a slab where the field stays on the device: they need 5 bytes more per node while they are computed.
+  /// Nodes of a slab if the field stays on the device. A slab needs 5 bytes more per node while it is computed.
   static constexpr std::size_t device_slab_nodes = std::size_t{1} << 28;
 
   explicit FieldEngine(Device& device, std::size_t slab_nodes = default_slab_nodes)
@@ -151,8 +151,8 @@ class FieldEngine {
     vertices_.resize(mesh.vertices.size());
     build();
   }
-  /// Of indices in the device's memory, which are copied. Waits for the device.
-  /// @throws InvalidMesh where an index is out of range.
+  /// Sets the connectivity from indices in the device's memory, which are copied. Waits for the device.
+  /// @throws InvalidMesh if an index is out of range.
   void set_connectivity(const MemoryMesh& mesh) {
     constexpr std::size_t kinds = 3;
     faults_.resize(kinds);
@@ -174,11 +174,11 @@ class FieldEngine {
 
   /// Computes the field of a mesh with the current connectivity.
   /// @param request     its memory is the host's, and gets feature ids.
-  /// @param is_stopped  callable: whether to give up.
-  /// @param report      callable: fraction done.
-  /// @return  whether there are signs: those of winding numbers, unless the boundary has so many edges that to sum them
-  ///          up at every node would take too long.
-  /// @throws InvalidGrid, Cancelled, and what the device throws.
+  /// @param is_stopped  callable: returns true to give up.
+  /// @param report      callable: gets the fraction done.
+  /// @return  true if the field has signs. It has those of winding numbers, unless the boundary has too many edges to
+  ///          sum up at every node.
+  /// @throws InvalidGrid, Cancelled, and the errors of the device.
   template <class IsStopped, class Report>
   bool compute(const MeshView& mesh, const FieldRequest& request, const IsStopped& is_stopped, const Report& report) {
     check_size(request.grid);
@@ -205,7 +205,7 @@ class FieldEngine {
       part.site = request.site != nullptr ? to.site.data() : nullptr;
       compute_slab(slabs, slab, part, is_signed);
       device_.mark(static_cast<int>(slab % 2));
-      // The slab before this one travels while this one is computed.
+      // The slab before this one is copied while this one is computed.
       if (slab > 0) {
         device_.await(static_cast<int>((slab - 1) % 2));
         fetch(slab - 1);
@@ -216,10 +216,10 @@ class FieldEngine {
     return is_signed;
   }
 
-  /// The same from vertices in the device's memory to arrays there; queued, without waiting for the device. Where mesh
-  /// and grid span too much or too little for 32-bit distances, or a vertex is not finite, every node gets NaN and no
-  /// site.
-  /// @throws InvalidGrid, InvalidMesh where vertices are not as many as the connectivity was made for.
+  /// Computes the same from vertices in the device's memory to arrays there. The work is queued, without waiting for
+  /// the device. Faulty input gives every node NaN and no site. It is faulty if mesh and grid span too much or too
+  /// little for 32-bit distances, or if a vertex is not finite.
+  /// @throws InvalidGrid; InvalidMesh if there are not as many vertices as in the connectivity.
   void compute(const MemoryArray& vertices, const FieldRequest& request) {
     check_size(request.grid);
     if (vertices.rows != mesh_.vertex_count) {
@@ -246,7 +246,7 @@ class FieldEngine {
     typename Device::template Array<std::uint32_t> site;
   };
 
-  /// Replaces sites, in the device's memory, by the smallest triangle that each lies on. Queued.
+  /// Replaces sites in the device's memory by the smallest triangle that each lies on. The work is queued.
   void show_triangles(std::size_t count, std::uint32_t* site) {
     if (!has_vertex_triangles_) {
       vertex_triangle_.resize(mesh_.vertex_count);
@@ -267,7 +267,7 @@ class FieldEngine {
     }
   }
 
-  /// Of the current arrays.
+  /// Builds the connectivity of the current arrays.
   void build() {
     mesh_ = {vertices_.data(),
              triangles_.data(),
@@ -291,13 +291,13 @@ class FieldEngine {
   }
   void copy_vertices(const MemoryArray& from) { device_.for_each(from.rows, CopyVertices{from, vertices_.data()}); }
 
-  /// Whether signs are asked for that are found here.
+  /// Returns true if the requested signs are found here, and prepares them.
   bool prepare_signs(const FieldRequest& request) {
     if (!sign::is_by_winding(request.sign)) return false;
     signs_.prepare(mesh_, request.grid);
     return true;
   }
-  /// Waits for the device.
+  /// Returns true if the boundary has few enough edges to sum up at every node. Waits for the device.
   bool has_few_boundary_edges(const FieldRequest& request) {
     constexpr std::uint32_t most_edges = 1U << 14U;
     constexpr double most_nodes_times_edges = 0x1p36;
@@ -306,7 +306,8 @@ class FieldEngine {
     return edges <= most_edges &&
            static_cast<double>(edges) * static_cast<double>(request.grid.node_count()) <= most_nodes_times_edges;
   }
-  /// @param request  its memory is the device's, and that of the slab.
+  /// Computes a slab.
+  /// @param request  its memory is the device's, for this slab only.
   void compute_slab(const Slabs& slabs, std::int64_t slab, const FieldRequest& request, bool is_signed) {
     const std::int64_t first = slabs.first_slice(slab);
     const std::int64_t last = slabs.last_slice(slab);

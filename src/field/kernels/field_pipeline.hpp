@@ -14,10 +14,10 @@
 
 namespace blum::kernels {
 
-/// One warp per tile.
+/// Finds a close surface point for each tile, with one warp per tile.
 struct FindTilePoints {
   static constexpr std::uint32_t threads = 256;
-  static constexpr std::uint32_t blocks_per_processor = 3;  ///< at least, by registers
+  static constexpr std::uint32_t blocks_per_processor = 3;  ///< at least this many, by registers
   static constexpr std::uint32_t warps = threads / warp_size;
   struct Shared {
     SearchStack stack[warps];
@@ -26,9 +26,9 @@ struct FindTilePoints {
   Forest forest;
   const NormalFrame* frame;
   TileGrid tiles;
-  const SurfacePoint* coarse;  ///< points of coarser tiles, to begin with; none at the coarsest level
+  const SurfacePoint* coarse;  ///< points of coarser tiles, to begin with; null at the coarsest level
   TileGrid coarse_tiles;
-  std::uint32_t count;  ///< of tiles
+  std::uint32_t count;  ///< number of tiles
   SurfacePoint* out;
 
   template <class Block>
@@ -54,7 +54,7 @@ struct FindTilePoints {
   }
 };
 
-/// The box around a named vertex, in the grid's axes.
+/// Returns the box around a named vertex, in the grid's axes.
 struct VertexBounds {
   const Vec3d* vertices;
   const std::uint32_t* named;
@@ -75,7 +75,7 @@ struct JoinBounds {
   }
 };
 
-/// Finds the frame on the device, so that no step waits for the host.
+/// Computes the frame on the device, so that no step waits for the host.
 struct MakeFrame {
   const Bounds* bounds;
   GridSpec grid;
@@ -85,17 +85,17 @@ struct MakeFrame {
 
 /// Unsigned fields of a mesh in a device's memory. Device is CudaDevice, or EmulatedDevice in the tests.
 ///
-/// Once per connectivity: set_connectivity(). Once per frame: prepare(). Then compute() for slabs of the grid, in any
-/// order.
+/// Call set_connectivity() once per connectivity, and prepare() once per frame. Then call compute() for slabs of the
+/// grid, in any order.
 template <class Device>
 class FieldPipeline {
  public:
   explicit FieldPipeline(Device& device) : device_(device) {}
 
-  /// Waits for the device (the number of edges decides the sizes of what follows).
+  /// Builds the connectivity. Waits for the device, because the number of edges decides later sizes.
   void set_connectivity(const DeviceMesh& mesh) { build_connectivity(device_, mesh, connectivity_); }
   [[nodiscard]] ConnectivityView connectivity() const { return connectivity_.view(); }
-  /// Of the last prepare(), in the device's memory.
+  /// Returns the forest of the last prepare(), in the device's memory. frame() does so for the frame.
   [[nodiscard]] const Forest& forest() const { return forest_; }
   [[nodiscard]] const NormalFrame* frame() const { return frame_.data(); }
 
@@ -111,16 +111,17 @@ class FieldPipeline {
     forest_ = build_records(device_, mesh, connectivity_.view(), order_, records_);
   }
 
-  /// @throws InvalidGrid where mesh and grid are too large or small for 32-bit distances. Waits for the device.
+  /// Checks the frame. Waits for the device.
+  /// @throws InvalidGrid if mesh and grid are too large or small for 32-bit distances.
   void check_frame() {
     NormalFrame frame;
     device_.download(frame_.data(), 1, &frame);
     throw_if_faulty(frame);
   }
 
-  /// Writes the slices [first_slice, last_slice) of the grid, that of the last prepare(). Where the frame is faulty,
-  /// distances are NaN and there are no sites.
-  /// @param request  its memory is the device's, and that of these slices.
+  /// Writes the slices [first_slice, last_slice) of the grid of the last prepare(). A faulty frame gives NaN distances
+  /// and no sites.
+  /// @param request  its memory is the device's, for these slices only.
   void compute(std::int64_t first_slice, std::int64_t last_slice, const FieldRequest& request) {
     const std::array<std::int64_t, 3>& size = request.grid.size;
     const TileGrid coarse{size, first_slice, last_slice, 4 * ComputeTiles::side};

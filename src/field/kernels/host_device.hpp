@@ -1,4 +1,4 @@
-// Blum: what the bodies of kernels are written with, for host and device alike. SPDX-License-Identifier: Apache-2.0
+// Blum: helpers for the bodies of kernels, for host and device alike. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <bit>
@@ -8,8 +8,8 @@
 
 #include "blum/core/vec3.hpp"
 
-// Functions of kernels run on the host too: there the tests run them through EmulatedDevice (emulated_device.hpp).
-// Constexpr functions of the standard library and of Vec3 may be used as they are (nvcc --expt-relaxed-constexpr).
+// Functions of kernels also run on the host, where the tests run them through EmulatedDevice (emulated_device.hpp).
+// They may use constexpr functions of the standard library and of Vec3 (nvcc --expt-relaxed-constexpr).
 #if defined(__CUDACC__)
 #define BLUM_HD __host__ __device__
 #define BLUM_NOINLINE __noinline__
@@ -20,7 +20,7 @@
 
 namespace blum::kernels {
 
-/// Lanes of a warp; also how many sites a cluster has, and how many children a box.
+/// Number of lanes of a warp, of sites of a cluster, and of children of a box.
 inline constexpr std::uint32_t warp_size = 32;
 
 template <class T>
@@ -57,7 +57,7 @@ BLUM_HD constexpr Vec3f to_float(const Vec3d& v) {
 BLUM_HD constexpr Vec3d to_double(const Vec3f& v) {
   return {v.x, v.y, v.z};
 }
-/// The largest value of v . x over the box |x| <= half.
+/// Returns the largest value of v . x over the box |x| <= half.
 BLUM_HD inline float support(const Vec3f& v, const Vec3f& half) {
   return magnitude(v.x) * half.x + magnitude(v.y) * half.y + magnitude(v.z) * half.z;
 }
@@ -69,7 +69,7 @@ BLUM_HD inline std::uint32_t count_bits(std::uint32_t x) {
   return static_cast<std::uint32_t>(std::popcount(x));
 #endif
 }
-/// The index of the lowest set bit of x, which is not 0.
+/// Returns the index of the lowest set bit of x, which is not 0.
 BLUM_HD inline std::uint32_t lowest_bit(std::uint32_t x) {
 #if defined(__CUDA_ARCH__)
   return static_cast<std::uint32_t>(__ffs(static_cast<int>(x)) - 1);
@@ -77,7 +77,7 @@ BLUM_HD inline std::uint32_t lowest_bit(std::uint32_t x) {
   return static_cast<std::uint32_t>(std::countr_zero(x));
 #endif
 }
-/// The index of the highest set bit of x, which is not 0.
+/// Returns the index of the highest set bit of x, which is not 0.
 BLUM_HD inline std::uint32_t highest_bit(std::uint32_t x) {
 #if defined(__CUDA_ARCH__)
   return static_cast<std::uint32_t>(31 - __clz(static_cast<int>(x)));
@@ -85,11 +85,11 @@ BLUM_HD inline std::uint32_t highest_bit(std::uint32_t x) {
   return static_cast<std::uint32_t>(31 - std::countl_zero(x));
 #endif
 }
-/// Set bits below bit `lane`.
+/// Returns the number of set bits below bit `lane`.
 BLUM_HD inline std::uint32_t bits_below(std::uint32_t mask, std::uint32_t lane) {
   return count_bits(mask & ((1U << lane) - 1U));
 }
-/// The bits of a float that is not negative: they are in the same order.
+/// Returns the bits of a float that is not negative. They are in the same order as the floats.
 BLUM_HD inline std::uint32_t bits_of(float x) {
 #if defined(__CUDA_ARCH__)
   return __float_as_uint(x);
@@ -97,7 +97,7 @@ BLUM_HD inline std::uint32_t bits_of(float x) {
   return std::bit_cast<std::uint32_t>(x);
 #endif
 }
-/// A float of these bits, whatever they mean.
+/// Returns the float with these bits, whatever they are.
 BLUM_HD inline float float_of(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
   return __uint_as_float(bits);
@@ -106,8 +106,8 @@ BLUM_HD inline float float_of(std::uint32_t bits) {
 #endif
 }
 
-// Sums and products that are rounded by themselves: where a result must be the same on every device, the compiler must
-// not fuse them. (On the host, none of the flags that kernels are tested with allows fused operations.)
+// Sums and products that are rounded by themselves. The compiler must not fuse them where a result must be the same on
+// every device. On the host, none of the flags that kernels are tested with allows fused operations.
 BLUM_HD inline double rounded_sum(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dadd_rn(a, b);

@@ -8,7 +8,7 @@
 
 namespace blum::kernels {
 
-/// One axis of a transform.
+/// Pass along one axis of a transform.
 template <class Costs_>
 struct ColumnPass {
   using Costs = Costs_;
@@ -19,13 +19,13 @@ struct ColumnPass {
   std::uint32_t stride;       ///< voxels between rows
   std::uint32_t mask_stride;  ///< words of the mask between rows
   std::uint32_t columns;
-  std::uint32_t band_rows;  ///< of each band but the last
+  std::uint32_t band_rows;  ///< rows of each band but the last
   std::uint32_t bands;
-  std::uint32_t* site;  ///< in: nearest in the row or the plane; out: nearest also along the column
-  float* slots;         ///< 32 bits per voxel, held as floats: the memory of the distances
-  // Per band and column, of the run that comes first in the band, which may go on from the band before:
-  std::uint32_t* bottom;  ///< slot of its lowest entry
-  std::uint32_t* change;  ///< the row where it ends
+  std::uint32_t* site;  ///< In: nearest in the row or the plane. Out: nearest also along the column.
+  float* slots;         ///< Slots of 32 bits per voxel, held as floats: the memory of the distances.
+  // Per band and column, of the first run in the band, which may continue from the band before:
+  std::uint32_t* bottom;  ///< Slot of its lowest entry.
+  std::uint32_t* change;  ///< Row at which it ends.
 
   [[nodiscard]] BLUM_HD std::uint32_t band_begin(std::uint32_t band) const { return band * band_rows; }
   [[nodiscard]] BLUM_HD std::uint32_t band_end(std::uint32_t band) const {
@@ -33,7 +33,7 @@ struct ColumnPass {
   }
 };
 
-/// A column as its thread sees it.
+/// Column as its thread uses it.
 template <class Costs, bool along_z>
 class Column {
  public:
@@ -57,7 +57,7 @@ class Column {
   }
   [[nodiscard]] BLUM_HD bool kind_in(std::uint32_t mask_word) const { return ((mask_word >> (x_ % 32)) & 1U) != 0; }
   [[nodiscard]] BLUM_HD bool kind(std::uint32_t row) const { return kind_in(mask_word(row)); }
-  /// Whether voxels of a kind are their own sites.
+  /// Returns true if voxels of a kind are their own sites.
   [[nodiscard]] BLUM_HD bool is_settled(bool kind) const { return kind && !pass_.shape.is_signed; }
 
   [[nodiscard]] BLUM_HD Value height(const Entry& entry, std::uint32_t row) const {
@@ -67,7 +67,7 @@ class Column {
     return pass_.costs.hides(axis, a, b, c);
   }
   [[nodiscard]] BLUM_HD Entry wall(std::uint32_t row) const { return {row, voxel(row), 0}; }
-  /// The entry of a site that the pass before found for a row.
+  /// Returns the entry of the site that the pass before found for a row.
   [[nodiscard]] BLUM_HD Entry entry(std::uint32_t row, std::uint32_t site) const {
     if constexpr (along_z) {
       const std::uint32_t in_plane = site - row * pass_.shape.plane;
@@ -86,7 +86,7 @@ class Column {
     return entry(pass_.shape.by_row.quotient(site - other_ * pass_.shape.plane), site);
   }
   BLUM_HD void set_slot(std::uint32_t slot, std::uint32_t site) const { pass_.slots[voxel(slot)] = float_of(site); }
-  /// The slot after the last entry of the run, or of the part of it in a band, that ends before a row.
+  /// Returns the slot after the last entry of a run, or of its part in a band. The run or part ends before row `end`.
   [[nodiscard]] BLUM_HD std::uint32_t top(std::uint32_t end) const {
     const std::uint32_t last = bits_of(pass_.slots[voxel(end - 1)]);
     return (last & is_top) != 0 ? last & ~is_top : end;
@@ -101,12 +101,12 @@ class Column {
     return pass_.change[std::size_t{band} * pass_.columns + column_];
   }
 
-  /// A place between entries: below it come slot - 1, slot - 2, ..., then what lies in the bands before `band`.
+  /// Place between entries. Below it come slot - 1, slot - 2, ..., then the entries in the bands before `band`.
   struct Cursor {
     std::uint32_t slot = 0;
     std::uint32_t band = 0;
   };
-  /// Takes the next lower entry of a run; false where there is none. The cursor then points at its slot.
+  /// Takes the next lower entry of a run; returns false if none is left. The cursor then points at its slot.
   template <bool banded>
   BLUM_HD bool descend(Cursor& at, bool run_kind, Entry& out) const {
     while (at.slot > 0) {
@@ -137,26 +137,27 @@ class Column {
   const std::uint32_t* mask_;
 };
 
-// A column pass (along y or z) asks, for each row r of a column, for the row s that minimises cost(s) + w (r - s)^2:
-// for the lower envelope of parabolas (Maurer, Qi, Raghavan 2003). Of several the lowest row wins.
+// A column pass (along y or z) solves the rows r of a column. For each it finds the row s that minimises cost(s) + w (r
+// - s)^2. This is the lower envelope of parabolas (Maurer, Qi, Raghavan 2003). Among equal rows the lowest wins.
 //
-// Rows fall into runs of one kind. A voxel next to a run, of the other kind, costs nothing, and hides all that lies
-// beyond it from the run's rows. So each run has an envelope of its own: of its own rows and the voxels at its ends
-// ("walls", which need no memory). Inside and outside of a signed transform thus take one pass, and the work and memory
-// of one. In an unsigned transform the runs of selected voxels are their own sites.
+// Rows fall into runs of one kind. A voxel next to a run, of the other kind, costs nothing, and hides everything beyond
+// it from the run's rows. So each run has an envelope of its own: of its own rows and the voxels at its ends ("walls",
+// which need no memory). Inside and outside of a signed transform thus take one pass, and the work and memory of one.
+// In an unsigned transform the runs of selected voxels are their own sites.
 //
-// A thread takes a column, or where there are few columns one band of it; neighbouring threads take neighbouring
-// columns, so that a warp reads and writes whole lines. As in parallel banding (Cao, Tang, Mohamed, Tan 2010):
+// A thread takes a column, or one band of it if there are few columns. Neighbouring threads take neighbouring columns,
+// so that a warp reads and writes whole lines. The kernels are those of parallel banding (Cao, Tang, Mohamed, Tan
+// 2010).
 //   BuildEnvelopes  makes the envelopes of each band's rows. Reads 4 + 1/8 bytes per voxel, writes at most 4.
 //   MergeBands      drops parabolas that those of other bands hide. Touches few.
 //   AssignSites     walks down the envelopes. Reads at most 4 + 1/8 bytes per voxel, writes 4.
-// What parabolas stand for is found again from the linear index of their site, so that an entry takes 4 bytes. Sites
-// are read and written in whole lines. Envelopes of neighbouring columns differ in height, so that 32 threads write 1
-// to 4 times the 32-byte sectors that 32 entries fill (counted for balls, noise and sparse points of 128^3 voxels);
-// most meet in the cache.
+// An entry takes 4 bytes, because its parabola is computed again from the linear index of its site. Sites are read and
+// written in whole lines. Envelopes of neighbouring columns differ in height, so that 32 threads write 1 to 4 times the
+// 32-byte sectors that 32 entries fill. (This was counted for balls, noise and sparse points of 128^3 voxels.) Most of
+// these writes meet in the cache.
 //
-// Entries of a run that begins at row a are in slots a, a + 1, ...; where a run ends, or a band cuts it, the last slot
-// of it says where the entries end, unless it is an entry itself.
+// Entries of a run that begins at row a are in slots a, a + 1, and so on. Where a run ends, or a band cuts it, its last
+// slot holds the end of its entries, unless that slot is an entry itself.
 
 /// Makes the envelopes of a band of a column.
 template <class Costs, bool along_z>
@@ -182,7 +183,7 @@ struct BuildEnvelopes {
       std::uint32_t change = end;
       kind_ = column_.kind(begin);
       start(begin, begin > 0 && column_.kind(begin - 1) != kind_);
-      // Rows are read some time before they are needed: a thread has little else to wait with.
+      // Rows are read some time before they are needed: a thread has little else to do while it waits.
       Rows next = read(begin, end);
       for (std::uint32_t first = begin; first < end; first += rows_at_once) {
         const Rows now = next;
@@ -231,7 +232,7 @@ struct BuildEnvelopes {
       top_ = column_.wall(row - 1);
       depth_ = 1;
     }
-    /// Drops entries that the wall at the end of a run hides, and says where the others end.
+    /// Drops entries that the wall at the end of a run hides, and stores the end of the others.
     BLUM_HD void finish(std::uint32_t row, bool has_wall) {
       if (has_wall) make_room(column_.wall(row));
       column_.set_top(row, slot_);
@@ -243,7 +244,7 @@ struct BuildEnvelopes {
       ++depth_;
       column_.set_slot(slot_++, entry.site);
     }
-    /// Drops entries that the one below them and a new one hide.
+    /// Drops entries that the entry below them and a new one hide.
     BLUM_HD void make_room(const Entry& entry) {
       while (depth_ >= 2 && column_.hides(second_, top_, entry)) {
         top_ = second_;
@@ -257,15 +258,15 @@ struct BuildEnvelopes {
     const ColumnPass<Costs>& pass_;
     Column<Costs, along_z> column_;
     bool kind_ = false;
-    std::uint32_t begin_ = 0;  ///< of the run
-    std::uint32_t slot_ = 0;   ///< after the last entry
-    std::uint32_t depth_ = 0;  ///< entries, the wall counted in
+    std::uint32_t begin_ = 0;  ///< first row of the run
+    std::uint32_t slot_ = 0;   ///< slot after the last entry
+    std::uint32_t depth_ = 0;  ///< number of entries, with the wall
     Entry top_, second_;
   };
 };
 
-/// Joins the envelopes of runs that bands cut. One thread per column goes from band to band: it takes entries off the
-/// end of what it has, and off the beginning of what comes next, while others hide them.
+/// Joins the envelopes of runs that bands cut. One thread per column goes from band to band. It drops entries at the
+/// end of the envelope so far, and at the beginning of the next one, while others hide them.
 template <class Costs, bool along_z>
 struct MergeBands {
   ColumnPass<Costs> pass;
@@ -321,7 +322,7 @@ struct MergeBands {
   }
 };
 
-/// Gives each row of a band the lowest entry.
+/// Gives each row of a band the site of the lowest entry.
 template <class Costs, bool along_z, bool banded>
 struct AssignSites {
   ColumnPass<Costs> pass;
@@ -364,7 +365,8 @@ struct AssignSites {
    private:
     using Cursor = typename Column<Costs, along_z>::Cursor;
 
-    /// Begins with the rows of a run that end before `end`, from its wall, or from the entry that is lowest there.
+    /// Begins with the rows of a run that end before `end`. It starts from the run's wall, or from the entry that is
+    /// lowest there.
     BLUM_HD void start(std::uint32_t end, bool kind, bool has_wall) {
       if (column_.is_settled(kind)) return;
       cursor_ = {column_.top(end), band_};
@@ -379,7 +381,7 @@ struct AssignSites {
     }
     BLUM_HD bool descend(bool kind, Entry& out) { return column_.template descend<banded>(cursor_, kind, out); }
 
-    /// Looks for lower entries in the bands that a run goes on to.
+    /// Looks for lower entries in the bands into which a run continues.
     BLUM_HD void climb(std::uint32_t row, bool kind) {
       for (std::uint32_t band = band_ + 1; band < pass_.bands; ++band) {
         const std::uint32_t change = column_.change(band);
@@ -394,7 +396,7 @@ struct AssignSites {
         }
       }
     }
-    /// False where the entry, and so those above it, are higher.
+    /// Returns false if the entry, and so those above it, are higher.
     BLUM_HD bool offer_from_above(std::uint32_t row, const Entry& entry, const Cursor& below) {
       const Value height = column_.height(entry, row);
       const Value lowest = is_empty_ ? height : column_.height(best_, row);
@@ -419,8 +421,8 @@ struct AssignSites {
         has_next_ = descend(kind, next_);
       }
     }
-    /// The next entry is higher than the best one by no more than rounding may make it: whether one below is as low as
-    /// the best. It is made the next one.
+    /// Looks for an entry as low as the best one, below a next entry that is higher by no more than rounding may make
+    /// it. Makes it the next entry, and returns true if it was found.
     BLUM_HD bool look_below(std::uint32_t row, bool kind, Value lowest) {
       Cursor cursor = cursor_;
       Entry entry;
@@ -441,7 +443,7 @@ struct AssignSites {
     bool is_empty_ = true;
     bool has_next_ = false;
     Entry best_, next_;
-    Cursor cursor_;  ///< below next
+    Cursor cursor_;  ///< below next_
   };
 };
 

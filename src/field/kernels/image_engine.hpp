@@ -18,7 +18,8 @@ class ImageEngine {
  public:
   explicit ImageEngine(Device& device) : device_(device), transform_(device) {}
 
-  /// Uploads an image. @throws OutOfMemory where the device cannot hold it.
+  /// Uploads an image.
+  /// @throws OutOfMemory if the device cannot hold it.
   void set_image(const VoxelImageView& image, const detail::ImageRequest& request) {
     image_ = image.values;
     transform_.set_request(request);
@@ -28,7 +29,7 @@ class ImageEngine {
     site_.resize(voxels_);
   }
 
-  /// How many voxels are selected.
+  /// Returns the number of selected voxels.
   std::uint64_t select(const detail::ImageRequest& request) {
     std::visit(
         [&]<class T>(const std::span<const T>&) {
@@ -38,14 +39,14 @@ class ImageEngine {
     return transform_.selected_count();
   }
 
-  /// Of the last selection, to the host's memory.
+  /// Transforms the last selection, into the host's memory.
   void transform(const detail::ImageRequest& request) {
     transform_.run(distance_.data(), site_.data());
     device_.download(distance_.data(), voxels_, request.distance);
     device_.download(site_.data(), voxels_, request.site);
   }
 
-  /// Transforms an image in the device's memory to arrays there. Queued, without waiting.
+  /// Transforms an image in the device's memory into arrays there. The work is queued, without waiting.
   void transform_there(const DeviceArrayView& values, const detail::ImageRequest& request) {
     transform_.set_request(request);
     with_type(values.type,
@@ -83,7 +84,7 @@ class ImageEngine {
 
   Device& device_;
   ImageTransform<Device> transform_;
-  VoxelImageView::Values image_;  ///< for its type
+  VoxelImageView::Values image_;  ///< used for its type
   std::size_t voxels_ = 0;
   typename Device::template Array<std::byte> values_;
   typename Device::template Array<float> distance_;

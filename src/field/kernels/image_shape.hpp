@@ -9,10 +9,10 @@
 
 namespace blum::kernels {
 
-/// No voxel; linear indices of voxels are below 2^31.
+/// Stands for no voxel; linear indices of voxels are below 2^31.
 inline constexpr std::uint32_t no_voxel = 0xffffffffU;
 
-/// Divides numbers below 2^31 by one that is the same for all of them, with a product and a shift.
+/// Divides numbers below 2^31 by one divisor, with a product and a shift.
 struct Divisor {
   std::uint32_t factor = 0x80000001U;
   std::uint32_t shift = 31;
@@ -28,12 +28,12 @@ struct Divisor {
   }
 };
 
-/// Where a voxel is, along the axes of the request.
+/// Position of a voxel along the axes of the request.
 struct Voxel {
   std::uint32_t x, y, z;
 };
 
-/// The image of a request, and which of its voxels are selected: bit x % 32 of word x / 32 of a row.
+/// Image of a request, with its selected voxels: bit x % 32 of word x / 32 of a row.
 struct ImageShape {
   std::uint32_t size[3] = {1, 1, 1};
   std::uint32_t plane = 1;  ///< voxels of a slice
@@ -64,7 +64,7 @@ struct ImageShape {
   }
 };
 
-/// A parabola over the rows of a column: `cost` + weight * (row - this row)^2 is the squared distance to `site`.
+/// Parabola over the rows of a column: `cost` + weight * (row - this row)^2 is the squared distance to `site`.
 template <class Value>
 struct Parabola {
   std::uint32_t row = 0;
@@ -91,7 +91,7 @@ struct IntegerCosts {
   }
   [[nodiscard]] BLUM_HD Value square(std::size_t axis, std::int32_t step) const { return step * step * weight[axis]; }
   [[nodiscard]] BLUM_HD static Value sum(Value a, Value b) { return a + b; }
-  /// Whether the parabola b is nowhere lower than both a, of a lower row, and c, of a higher one.
+  /// Returns true if the parabola b is nowhere lower than both a, of a lower row, and c, of a higher one.
   [[nodiscard]] BLUM_HD bool hides(std::size_t axis, const Parabola<Value>& a, const Parabola<Value>& b,
                                    const Parabola<Value>& c) const {
     const std::int32_t from_a = offset(b.row, a.row);
@@ -104,18 +104,19 @@ struct IntegerCosts {
   }
 
  private:
-  /// How much higher b is than a at row 0, where all are below 2^30; the lower of two meets at rise / (2 weight step).
+  /// Returns how much higher b is than a at row 0, where all are below 2^30. The two meet at row rise / (2 weight
+  /// step).
   [[nodiscard]] BLUM_HD Value rise(std::size_t axis, const Parabola<Value>& a, const Parabola<Value>& b) const {
     return b.cost - a.cost + weight[axis] * offset(b.row, a.row) * static_cast<std::int32_t>(a.row + b.row);
   }
 };
 
-/// Squared distances in double, rounded as on the CPU. A parabola is dropped only where it is out of doubt that the
-/// others are lower as computed; where several are about equally low, all of them are looked at.
+/// Squared distances in double, rounded as on the CPU. A parabola is dropped only if the others are certainly lower as
+/// computed. If several are about equally low, all of them are evaluated.
 struct RealCosts {
   using Value = double;
   static constexpr bool is_exact = false;
-  Value slack = 0;  ///< many times what costs are rounded by
+  Value slack = 0;  ///< many times the rounding error of costs
   Value weight[3];
   double unit;
 
@@ -135,7 +136,7 @@ struct RealCosts {
                                    const Parabola<Value>& c) const {
     const double from_a = offset(b.row, a.row);
     const double to_c = offset(c.row, b.row);
-    // At every row, b less the lower of a and c is at least this over from_a + to_c.
+    // At every row, b minus the lower of a and c is at least this, divided by from_a + to_c.
     return rise(axis, a, b) * to_c - rise(axis, b, c) * from_a >= slack * (from_a + to_c);
   }
   [[nodiscard]] BLUM_HD float distance(Value squared) const {

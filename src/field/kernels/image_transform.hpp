@@ -61,9 +61,9 @@ struct AddCounts {
   BLUM_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
 };
 
-/// x pass: the nearest target of each voxel in its row, as a linear index; the left one of two. Targets are voxels of
-/// the other kind, or in an unsigned transform the selected ones. A warp per row.
-/// Reads 1/8 byte per voxel (1/4 in rows of more than 1024), writes 4.
+/// x pass: finds the nearest target of each voxel in its row, as a linear index. The left one of two equally near
+/// targets wins. Targets are voxels of the other kind, or in an unsigned transform the selected ones. One warp computes
+/// a row. Reads 1/8 byte per voxel (1/4 in rows of more than 1024), writes 4.
 struct TransformRows {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 6;
@@ -83,11 +83,11 @@ struct TransformRows {
   }
 
  private:
-  // Further away than any voxel, in unsigned arithmetic, as rows are shorter than 2^31.
+  // Further away than any voxel in unsigned arithmetic, because rows are shorter than 2^31.
   static constexpr std::uint32_t no_left = 0x80000000U;
   static constexpr std::uint32_t no_right = 0xffffffffU;
 
-  /// A word of a row's voxels of one kind.
+  /// Returns a word of a row's voxels of one kind.
   [[nodiscard]] BLUM_HD std::uint32_t bits(const std::uint32_t* words, std::uint32_t word, bool selected) const {
     if (word >= shape.words_per_row) return 0;
     if (selected) return words[word];
@@ -95,7 +95,7 @@ struct TransformRows {
     return ~words[word] & (rest >= warp_size ? ~0U : (1U << rest) - 1);
   }
 
-  /// The first voxel of a kind from a word on.
+  /// Returns the first voxel of a kind from a word on.
   template <class Warp>
   [[nodiscard]] BLUM_HD std::uint32_t find(const Warp& warp, const std::uint32_t* words, std::uint32_t word,
                                            bool selected) const {
@@ -109,15 +109,15 @@ struct TransformRows {
     return no_right;
   }
 
-  /// What lies around the word that a warp is at, of one kind.
+  /// Voxels of one kind around the word that a warp is at.
   template <class Warp>
   struct Kind {
-    typename Warp::template Lanes<std::uint32_t> word;  ///< of 32 words
-    std::uint32_t present = 0;                          ///< which of them hold any
-    std::uint32_t bits = 0;                             ///< of the word that the warp is at
-    std::uint32_t left = no_left;                       ///< last voxel before it
-    std::uint32_t right = no_right;                     ///< first voxel after it
-    std::uint32_t beyond = 0;                           ///< first voxel after the 32 words; before them: not yet known
+    typename Warp::template Lanes<std::uint32_t> word;  ///< 32 words, one per lane.
+    std::uint32_t present = 0;                          ///< Bits of the words that hold any.
+    std::uint32_t bits = 0;                             ///< The word that the warp is at.
+    std::uint32_t left = no_left;                       ///< Last voxel before it.
+    std::uint32_t right = no_right;                     ///< First voxel after it.
+    std::uint32_t beyond = 0;                           ///< First voxel after the 32 words; if before them, not known.
 
     BLUM_HD void go_to(const Warp& warp, std::uint32_t first, std::uint32_t k) {
       bits = warp.broadcast(word, k);
@@ -180,13 +180,14 @@ struct TransformRows {
   }
 };
 
-/// Distances of the sites that the other passes found, and the band. Reads 4 bytes per voxel, writes 4 (8 beyond the
-/// band): less than to carry distances along, and the passes may use the memory of the distances until now.
+/// Writes the distances to the sites that the other passes found, and applies the band. Reads 4 bytes per voxel, writes
+/// 4 (8 beyond the band). This is less than carrying distances along. It also lets the passes use the memory of the
+/// distances until now.
 template <class Costs>
 struct WriteDistances {
   ImageShape shape;
   Costs costs;
-  float band;  ///< infinite where there is none
+  float band;  ///< infinite without a band
   std::uint32_t* site;
   float* distance;
 
@@ -207,17 +208,17 @@ struct WriteDistances {
   }
 };
 
-/// How columns are cut into bands.
+/// Rules for cutting columns into bands.
 struct BandTuning {
-  std::size_t threads = std::size_t{1} << 17U;  ///< that keep the device busy
-  std::uint32_t fewest_rows = 32;               ///< of a band
+  std::size_t threads = std::size_t{1} << 17U;  ///< enough to keep the device busy
+  std::uint32_t fewest_rows = 32;               ///< least number of rows of a band
 };
 
-/// Exact distance transforms of an image in a device's memory; see distance_transform for what they promise. Device is
-/// CudaDevice, or EmulatedDevice in the tests. Nothing but selected_count() waits for the device.
+/// Exact distance transforms of an image in a device's memory; see distance_transform for their promises. Device is
+/// CudaDevice, or EmulatedDevice in the tests. Only selected_count() waits for the device.
 ///
-/// Memory moved, in bytes per voxel: 4 (rows) + 16 (columns along y) + 16 (along z) + 8 (distances), at most, and 1/8
-/// each for the mask; and one reading of the image. The memory of the distances is the passes' working memory.
+/// Memory moved, at most, in bytes per voxel: 4 (rows) + 16 (columns along y) + 16 (along z) + 8 (distances), and 1/8
+/// each for the mask. The image is read once. The memory of the distances is the passes' working memory.
 ///
 /// The result is the CPU's, byte for byte: neither fuses products with sums.
 template <class Device>
@@ -225,7 +226,7 @@ class ImageTransform {
  public:
   explicit ImageTransform(Device& device, const BandTuning& tuning = {}) : device_(device), tuning_(tuning) {}
 
-  /// Device memory that a transform takes, beside 8 bytes per voxel for its result and the image itself.
+  /// Returns the bytes of device memory that a transform takes, besides the image and 8 bytes per voxel for its result.
   [[nodiscard]] static std::size_t scratch_bytes(const detail::ImageRequest& request, const BandTuning& tuning = {}) {
     const ImageShape shape(request);
     std::size_t words = shape.mask_words();
@@ -238,6 +239,7 @@ class ImageTransform {
     return words * sizeof(std::uint32_t) + sizeof(std::uint64_t);
   }
 
+  /// Sets the request and allocates the mask.
   /// @throws OutOfMemory.
   void set_request(const detail::ImageRequest& request) {
     request_ = request;
@@ -246,7 +248,9 @@ class ImageTransform {
     shape_.mask = mask_.data();
   }
 
-  /// Makes the mask. @param values  one per voxel, in the device's memory. @throws InvalidOption (NaN threshold).
+  /// Makes the mask.
+  /// @param values  one per voxel, in the device's memory.
+  /// @throws InvalidOption if the threshold is NaN.
   template <class T>
   void select(const T* values, const LabelSelection& selection) {
     std::visit(
@@ -258,7 +262,7 @@ class ImageTransform {
         },
         detail::make_voxel_test<T>(selection));
   }
-  /// For masks that come from elsewhere: rows of 32-bit words, the bits beyond a row clear.
+  /// Returns the mask, for masks made elsewhere: rows of 32-bit words, with the bits beyond a row clear.
   [[nodiscard]] std::uint32_t* mask() { return mask_.data(); }
   [[nodiscard]] std::size_t mask_words() const { return shape_.mask_words(); }
 
@@ -270,8 +274,8 @@ class ImageTransform {
     return count;
   }
 
-  /// Writes one distance and one site per voxel. Some voxel must be selected, and in a signed transform not all: else
-  /// distances are infinite, or the band's.
+  /// Writes one distance and one site per voxel. Some voxel must be selected, and in a signed transform not all.
+  /// Otherwise distances are infinite, or the band's.
   void run(float* distance, std::uint32_t* site) {
     request_.integer ? run_with(IntegerCosts(request_), distance, site) : run_with(RealCosts(request_), distance, site);
   }
@@ -279,7 +283,7 @@ class ImageTransform {
  private:
   struct Bands {
     std::size_t columns = 0;
-    std::uint32_t rows = 0;  ///< of a band
+    std::uint32_t rows = 0;  ///< rows of a band
     std::size_t count = 0;
   };
 

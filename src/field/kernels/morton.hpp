@@ -17,13 +17,13 @@ BLUM_HD constexpr std::uint32_t spread_bits(std::uint32_t x) {
   return x;
 }
 
-/// Place on a Morton curve of 1024 cells a side around the origin, for coordinates in [-1/2, 1/2]; others go to
-/// the nearest cell, and what is not a number to the first.
+/// Returns the place on a Morton curve of 1024 cells a side around the origin, for coordinates in [-1/2, 1/2]. Other
+/// coordinates go to the nearest cell, and NaN to the first.
 BLUM_HD constexpr std::uint32_t morton_code(const Vec3d& p) {
   std::uint32_t code = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double x = (p[axis] + 0.5) * 1023.0;
-    // What is not a number lies in the first cell: it has no integer to become.
+    // NaN goes to the first cell, because it has no integer value.
     const auto cell = x > 0 ? static_cast<std::uint32_t>(smaller(x, 1023.0)) : 0U;
     code |= spread_bits(cell) << axis;
   }

@@ -9,14 +9,14 @@
 
 namespace blum::kernels {
 
-/// A point of the surface and a site that it lies on.
+/// Point of the surface, and a site that it lies on.
 struct SurfacePoint {
   Vec3f point{};
   float squared_distance = std::numeric_limits<float>::max();  ///< to the query
   std::uint32_t id = dead_record;
 };
 
-/// What a warp still has to look at, nearest on top.
+/// Entries that a warp still has to search, nearest on top.
 struct SearchStack {
   /// A box leaves at most warp_size - 1 others open at each level.
   static constexpr std::uint32_t capacity = kind_count + (Tree::most_levels + 1) * (warp_size - 1);
@@ -30,7 +30,8 @@ BLUM_HD inline float squared_distance_to_box(const Vec3f& q, const ReachBox& box
   return squared_length(gap);
 }
 
-/// Closest point of a record's closed site; false for a face whose prism the query lies outside of, and dead records.
+/// Finds the closest point of a record's closed site. Returns false for dead records, and for a face if the query lies
+/// outside of its prism.
 BLUM_HD inline bool closest_on_record(std::uint32_t kind, const Record& record, const Vec3f& query, Vec3f& point) {
   if (record.id == dead_record) return false;
   if (kind == vertex_kind) {
@@ -45,7 +46,7 @@ BLUM_HD inline bool closest_on_record(std::uint32_t kind, const Record& record, 
   return true;
 }
 
-/// Nearest-first search of a warp. Everything but what is in Lanes is the same for all lanes.
+/// Nearest-first search by a warp. All values are the same for all lanes, except those in Lanes.
 template <class Warp>
 class NearestSearch {
  public:
@@ -55,12 +56,12 @@ class NearestSearch {
   BLUM_HD NearestSearch(const Warp& warp, const Forest& forest, SearchStack& stack)
       : warp_(warp), forest_(forest), stack_(stack) {}
 
-  /// Improves on a known point, if there is a closer one. Of equally close sites the one with the smallest id wins.
+  /// Improves on a known point, if there is a closer one. Among equally close sites the one with the smallest id wins.
   BLUM_HD void run(const Vec3f& query, SurfacePoint& best) {
     std::uint32_t top = 0;
     warp_.each([&](std::uint32_t lane) {
       if (lane >= kind_count) return;
-      // Vertices on top: each gives a point, whereas a face gives none to queries beside its prism.
+      // Vertices are on top: each gives a point, but a face gives none to queries beside its prism.
       const std::uint32_t kind = kind_count - 1 - lane;
       const std::uint32_t levels = forest_.trees[kind].levels;
       stack_.code[lane] = Entry::make(kind, levels, 0).code;

@@ -9,10 +9,10 @@
 
 namespace blum::kernels {
 
-/// Maps the world so that float32 loses nothing: the grid's axes become x, y, z, the box around mesh and grid is
+/// Maps the world so that float32 loses nothing. The grid's axes become x, y, z. The box around mesh and grid is
 /// centred on the origin, and its diagonal lies in (1/2, 1]. The scale is a power of two, so that it is exact.
 struct NormalFrame {
-  enum class Fault : std::uint8_t { none, too_large, too_small };  // too_large: also vertices that are not finite
+  enum class Fault : std::uint8_t { none, too_large, too_small };  // too_large: or a vertex is not finite
 
   Mat3 direction;
   Vec3d center;      ///< of the common box, in grid axes
@@ -24,14 +24,14 @@ struct NormalFrame {
   [[nodiscard]] BLUM_HD Vec3d to_normal(const Vec3d& world) const {
     return (direction.transposed_times(world) - center) * scale;
   }
-  /// Normalised coordinate of the nodes with this index along an axis; halves lie between two nodes.
+  /// Returns the normalised coordinate of the nodes with this index along an axis. Halves lie between two nodes.
   [[nodiscard]] BLUM_HD double at(int axis, double index) const {
     const auto a = static_cast<std::size_t>(axis);
     return first_node[a] + spacing[a] * index;
   }
 };
 
-/// Lower and upper corner.
+/// Lower and upper corner of a box.
 struct Bounds {
   Vec3d lower{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3d upper{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -40,7 +40,7 @@ struct Bounds {
     lower = min(lower, p);
     upper = max(upper, p);
   }
-  /// What is not a number, no comparison would show.
+  /// Extends the box, to everything if p is not finite: no comparison would reveal NaN.
   BLUM_HD void extend_if_finite(const Vec3d& p) {
     if (dot(p, p) < HUGE_VAL) {
       extend(p);
@@ -51,6 +51,7 @@ struct Bounds {
   }
 };
 
+/// Returns the frame of a mesh and a grid.
 /// @param box  around the mesh, in the grid's axes.
 BLUM_HD inline NormalFrame make_normal_frame(Bounds box, const GridSpec& grid) {
   NormalFrame frame;
@@ -74,7 +75,8 @@ BLUM_HD inline NormalFrame make_normal_frame(Bounds box, const GridSpec& grid) {
   return frame;
 }
 
-/// @throws InvalidGrid where mesh and grid are too large or too small for 32-bit distances.
+/// Throws if a frame is faulty.
+/// @throws InvalidGrid if mesh and grid are too large or too small for 32-bit distances.
 inline void throw_if_faulty(const NormalFrame& frame) {
   if (frame.fault == NormalFrame::Fault::too_large) {
     throw InvalidGrid("mesh and grid span more than 1e37, too far for 32-bit distances: scale them down");

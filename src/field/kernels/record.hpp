@@ -1,4 +1,4 @@
-// Blum: sites as the kernels see them. SPDX-License-Identifier: Apache-2.0
+// Blum: records of sites for the kernels. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -9,25 +9,26 @@
 
 namespace blum::kernels {
 
-/// One site with its domain, in one cache line; all lengths in the normalised frame. What the columns mean depends on
-/// the kind (see the structs below).
+/// One site with its domain, in one cache line. All lengths are in the normalised frame. The meaning of the columns
+/// depends on the kind (see the structs below).
 struct alignas(64) Record {
   std::array<float, 15> column{};
   std::uint32_t id = 0;  ///< SiteId
 };
 static_assert(sizeof(Record) == 64);
 
-/// Vertex: its position and up to four directions e of the edges that bound its domain, (q - p) . e <= 0. Unused: 0.
+/// Vertex: its position and up to four directions e of the edges that bound its domain, (q - p) . e <= 0. Unused ones
+/// are 0.
 struct VertexColumns {
   static constexpr int position = 0;   // 3
   static constexpr int direction = 3;  // 4 x 3
 };
 
-/// Edge: midpoint m, unit direction t, half-length, and an orthonormal frame (t, b, n = t x b). b leaves the edge
-/// into its first face, whose half-space is (q - m) . b <= first_limit (+huge where there is no face); the second
-/// face's is second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both 0 where there is none). side is +-1
-/// where both faces agree that their side of n points out of (or into) a closed solid, see edge_side(); else 0. The
-/// site is beaten everywhere further than reach from it.
+/// Edge: midpoint m, unit direction t, half-length, and an orthonormal frame (t, b, n = t x b). `b` leaves the edge
+/// into its first face, whose half-space is (q - m) . b <= first_limit (+huge without a face). The half-space of the
+/// second face is second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both 0 without one). `side` is +-1 if both
+/// faces agree that their side of n points out of (or into) a closed solid, see edge_side(); otherwise 0. The site is
+/// beaten everywhere further than reach from it.
 struct EdgeColumns {
   static constexpr int midpoint = 0;  // 3
   static constexpr int tangent = 3;   // 3
@@ -40,9 +41,9 @@ struct EdgeColumns {
   static constexpr int reach = 14;
 };
 
-/// Face: anchor (the corner opposite the longest edge, so that slivers do not amplify errors), unit normal, and the
-/// negated gradients of the barycentric coordinates u and v of the two other corners: the face is -u, -v < 0, u + v
-/// < 1.
+/// Face: anchor, unit normal, and the negated gradients of the barycentric coordinates u and v of the two other
+/// corners. The anchor is the corner opposite the longest edge, so that slivers do not amplify errors. The face is -u,
+/// -v < 0, u + v < 1.
 struct FaceColumns {
   static constexpr int anchor = 0;   // 3
   static constexpr int normal = 3;   // 3
@@ -53,18 +54,18 @@ struct FaceColumns {
   static constexpr int is_sliver = 14;  ///< not 0: the columns are SliverColumns (device only)
 };
 
-/// A face too flat for float32 barycentrics: its three corners. Evaluated as a closed triangle in double.
+/// Face too flat for float32 barycentrics: its three corners. It is evaluated as a closed triangle in double.
 struct SliverColumns {
   static constexpr int corners = 0;  // 3 x 3
 };
 
 inline constexpr std::uint32_t dead_record = 0xffffffff;
 
-/// Stands for no distance: what lies this far away matters to nothing.
+/// Stands for no distance: content this far away affects nothing.
 inline constexpr float far_away = 1e18F;
 
-/// Rounding of normalised positions and of affine functions of them stays below this; planes are widened by it where
-/// widening is harmless (vertices, sides of edges), so that no node falls between two domains.
+/// Bound on the rounding of normalised positions and of affine functions of them. Planes are widened by it if that is
+/// harmless (vertices, sides of edges), so that no node falls between two domains.
 inline constexpr float plane_slack = 1e-6F;
 
 BLUM_HD inline Vec3f vec_at(const Record& record, int column) {

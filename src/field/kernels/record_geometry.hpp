@@ -12,7 +12,7 @@ BLUM_HD inline Vec3d closest_on_segment(const Vec3d& query, const Vec3d& a, cons
   return a + direction * clamped(dot(query - a, direction) / squared, 0.0, 1.0);
 }
 
-/// Closest point of a closed, possibly very flat triangle, in double.
+/// Returns the closest point of a closed, possibly very flat triangle, in double.
 BLUM_HD inline Vec3d closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d normal = cross(b - a, c - a);
   const double squared_normal = squared_length(normal);
@@ -40,7 +40,7 @@ BLUM_HD inline Vec3d closest_on_sliver(const Record& record, const Vec3d& query)
                                   vec_at(record, SliverColumns::corners + 6));
 }
 
-/// Closest point of a closed edge.
+/// Returns the closest point of a closed edge.
 BLUM_HD inline Vec3f closest_on_edge(const Record& record, const Vec3f& query) {
   const Vec3f midpoint = vec_at(record, EdgeColumns::midpoint);
   const Vec3f tangent = vec_at(record, EdgeColumns::tangent);
@@ -48,8 +48,8 @@ BLUM_HD inline Vec3f closest_on_edge(const Record& record, const Vec3f& query) {
   return midpoint + tangent * clamped(dot(query - midpoint, tangent), -half, half);
 }
 
-/// Closest point of a face; false where the query lies outside of its prism (its edges and corners, or theirs, are
-/// closer).
+/// Finds the closest point of a face. Returns false if the query lies outside of its prism, because an edge or corner
+/// of it is closer.
 BLUM_HD inline bool closest_on_face(const Record& record, const Vec3f& query, Vec3f& point) {
   const Vec3f from_anchor = query - vec_at(record, FaceColumns::anchor);
   const float minus_u = dot(from_anchor, vec_at(record, FaceColumns::minus_u));

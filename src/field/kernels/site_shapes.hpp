@@ -6,20 +6,20 @@
 
 namespace blum::kernels {
 
-/// Shorter or flatter than this, in a frame whose diagonal is about one, float32 cannot tell a site from its border.
+/// Sites shorter or flatter than this look like their border in float32, in a frame whose diagonal is about one.
 inline constexpr double negligible_length = 1e-12;
 inline constexpr double negligible_altitude = 1e-7;
 /// Above this, rounding of a face's barycentrics would reach beyond its corners (docs/theory/fields.md).
 inline constexpr double largest_condition = 64;
-/// A normal is trusted only if rounding in double cannot have turned it by more than about 1e-9.
+/// Above this, rounding in double cannot have turned a normal by more than about 1e-9, so the normal is trusted.
 inline constexpr double smallest_relative_altitude = 1e-7;
 
-/// One division for three.
+/// Returns the unit vector, with one division instead of three.
 BLUM_HD inline Vec3d unit(const Vec3d& v, double length_of_v) {
   return v * (1 / length_of_v);
 }
 
-/// A face's shape as its record needs it: corners with the anchor first, and how well-conditioned they are.
+/// Shape of a face as its record needs it: corners with the anchor first, and their condition.
 struct FaceShape {
   Vec3d anchor, to_u, to_v, normal;
   double doubled_area = 0;
@@ -53,7 +53,7 @@ BLUM_HD inline FaceShape shape_of_face(const Vec3d& a, const Vec3d& b, const Vec
   return shape;
 }
 
-/// All columns but the reaches and the id.
+/// Writes all columns but the reaches and the id.
 BLUM_HD inline void write_face(const FaceShape& shape, Record& record) {
   store(record, FaceColumns::anchor, shape.anchor);
   store(record, FaceColumns::normal, shape.normal);
@@ -61,11 +61,11 @@ BLUM_HD inline void write_face(const FaceShape& shape, Record& record) {
   store(record, FaceColumns::minus_v, unit(cross(shape.to_u, shape.normal), shape.doubled_area));
 }
 
-/// An edge and the directions in which up to two faces leave it.
+/// Edge, and the directions in which up to two faces leave it.
 struct EdgeShape {
   Vec3d start, end, tangent;
   double length = 0;
-  Vec3d first, second;  ///< unit; second only beside first
+  Vec3d first, second;  ///< unit; second only if first exists
   bool has_first = false;
   bool has_second = false;
 };
@@ -76,19 +76,20 @@ BLUM_HD inline Vec3d any_perpendicular(const Vec3d& t) {
   return b / norm(b);
 }
 
-/// Whether a triangle's border runs from the edge's first end to its second.
+/// Returns true if a triangle's border runs from the edge's first end to its second.
 BLUM_HD constexpr bool runs_along(const Triangle& t, const Segment& edge) {
   return (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
          (t[2] == edge[0] && t[0] == edge[1]);
 }
 
-/// Unit direction that leaves an edge with this tangent into a triangle on its left (`is_forward`) or right.
+/// Returns the unit direction that leaves an edge with this tangent into a triangle on its left (`is_forward`) or
+/// right.
 BLUM_HD inline Vec3d in_face_direction(const Vec3d& normal, const Vec3d& tangent, bool is_forward) {
   return is_forward ? cross(normal, tangent) : cross(tangent, normal);
 }
 
-/// All columns but the reach and the id.
-/// @param normal  of the edge's first triangle.
+/// Writes all columns but the reach and the id.
+/// @param normal  normal of the edge's first triangle.
 BLUM_HD inline void write_edge(const EdgeShape& edge, const Vec3d& normal, Record& record) {
   const Vec3d b = edge.has_first ? edge.first : any_perpendicular(edge.tangent);
   const Vec3d n = cross(edge.tangent, b);
@@ -100,20 +101,21 @@ BLUM_HD inline void write_edge(const EdgeShape& edge, const Vec3d& normal, Recor
   if (edge.has_second) {
     store(record, EdgeColumns::second_b, dot(edge.second, b));
     store(record, EdgeColumns::second_n, dot(edge.second, n));
-    // Between faces that nearly fold together float32 cannot tell the pseudonormal: left to exact queries.
+    // Between faces that nearly fold together, float32 cannot decide the pseudonormal: such edges are left to exact
+    // queries.
     const bool is_folded = 1 - dot(edge.second, b) < 1e-5;
     store(record, EdgeColumns::side, is_folded ? 0.0 : dot(normal, n) > 0 ? 1.0 : -1.0);
   }
 }
 
-/// The two unit directions between which an edge's domain lies: perpendicular to each of its faces, away from the
-/// other. False where it may be a half-plane or more.
+/// Finds the two unit directions between which an edge's domain lies: perpendicular to each of its faces, away from the
+/// other. Returns false if the domain may be a half-plane or more.
 BLUM_HD inline bool edge_borders(const EdgeShape& edge, Vec3d borders[2]) {
   if (!edge.has_first || !edge.has_second) return false;
   const Vec3d first_normal = cross(edge.tangent, edge.first);
   const Vec3d second_normal = cross(edge.tangent, edge.second);
-  // Of the two perpendiculars of a face, the domain's border is the one that does not lead into the other face. Where
-  // the faces are nearly in one plane both may pass in rounding: then the domain may be a half-plane or more.
+  // Each face has two perpendiculars. The domain's border is the one that does not lead into the other face. If the
+  // faces are nearly in one plane, both may pass in rounding: then the domain may be a half-plane or more.
   const double side = dot(first_normal, edge.second);
   if (!(magnitude(side) > 1e-5)) return false;
   borders[0] = side < 0 ? first_normal : -first_normal;

@@ -9,7 +9,7 @@
 
 namespace blum::kernels {
 
-/// A box of nodes: the first one and how many along each axis (some may be 0).
+/// Box of nodes: the first one, and the number along each axis (some may be 0).
 struct NodeBox {
   std::int32_t first[3];
   std::int32_t count[3];
@@ -28,12 +28,12 @@ BLUM_HD inline CenteredBox centered(const NormalFrame& frame, const NodeBox& box
   return out;
 }
 
-/// Where a node or a tile along each axis.
+/// Index of a node or a tile along each axis.
 struct GridIndex {
   std::int32_t at[3];
 };
 
-/// Cuts the slices [first_slice, last_slice) of a grid into tiles of `side` nodes a side.
+/// Cuts the slices [first_slice, last_slice) of a grid into tiles of `side` nodes per side.
 struct TileGrid {
   std::int32_t size[3] = {};  ///< nodes of the whole grid
   std::int32_t first_slice = 0;

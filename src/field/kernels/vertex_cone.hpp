@@ -10,13 +10,13 @@
 
 namespace blum::kernels {
 
-/// Which directions of a vertex are kept as planes of its domain.
+/// Directions of a vertex that are kept as planes of its domain.
 struct ChosenPlanes {
   static constexpr std::size_t most = 4;
   std::array<std::size_t, most> index{};
   std::size_t count = 0;
 
-  /// Picks up to four of the directions whose bit is set in `open`, each as far from the picked ones as can be.
+  /// Picks up to four of the directions whose bit is set in `open`, each as far from the picked ones as possible.
   /// @param direction  callable: index -> unit Vec3f.
   template <class Direction>
   BLUM_HD void choose(std::uint32_t open, Direction direction) {
@@ -43,15 +43,15 @@ struct ChosenPlanes {
   }
 };
 
-/// The cone {w : w . e <= 0 for all edge directions e} of a vertex: which of its planes bound it, and its extreme rays.
+/// Cone {w : w . e <= 0 for all edge directions e} of a vertex, with the planes that bound it and its extreme rays.
 class VertexCone {
  public:
-  /// Two directions whose cross product has a smaller squared length are taken to be parallel.
+  /// Two directions whose cross product has a smaller squared length count as parallel.
   static constexpr float parallel = 1e-8F;
-  /// Rounding of w . e for the cross product w of two directions.
+  /// Bound on the rounding of w . e for the cross product w of two directions.
   static constexpr float tolerance = 2e-6F;
   static constexpr std::size_t max_rays = 8;
-  /// More edges than this are left out, which only widens the cone.
+  /// Further edges are left out, which only widens the cone.
   static constexpr std::size_t max_directions = 16;
 
   BLUM_HD void add(const Vec3d& unit_direction) {
@@ -62,13 +62,13 @@ class VertexCone {
     ++count_;
   }
 
-  /// Finds the cone's extreme rays; false if the cone {w : w . e <= 0 for all e} is provably just its apex.
+  /// Finds the cone's extreme rays. Returns false if the cone {w : w . e <= 0 for all e} is provably just its apex.
   BLUM_HD bool find_facets() {
     if (count_ < 3) {
       choose(all());
       return true;
     }
-    for (std::size_t k = count_; k < max_directions; ++k) {  // copies, so that whole vectors can be looked at
+    for (std::size_t k = count_; k < max_directions; ++k) {  // copies, so that whole vectors can be tested
       x_[k] = x_[0];
       y_[k] = y_[0];
       z_[k] = z_[0];
@@ -92,15 +92,15 @@ class VertexCone {
     return true;
   }
 
-  /// Up to four directions whose planes hold the cone.
+  /// Returns up to four directions whose planes hold the cone.
   [[nodiscard]] BLUM_HD const ChosenPlanes& planes() const { return chosen_; }
   [[nodiscard]] BLUM_HD Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
 
-  /// The unit extreme rays; empty where they are too many or not known for certain.
+  /// Returns the unit extreme rays; empty if they are too many or not certain.
   [[nodiscard]] BLUM_HD std::span<const Vec3f> rays() const { return {rays_.data(), are_rays_known_ ? ray_count_ : 0}; }
 
  private:
-  /// Bit 0: w (no longer than one) lies in the cone, up to rounding; bit 1: -w does. In doubt they do.
+  /// Sets bit 0 if w (no longer than one) lies in the cone, up to rounding, and bit 1 if -w does. In doubt they do.
   [[nodiscard]] BLUM_HD int extreme_ray(const Vec3f& w) const {
     const std::size_t end = count_ <= 8 ? 8 : max_directions;
     int beyond = 0;

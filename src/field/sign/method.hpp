@@ -1,4 +1,4 @@
-// Blum: how the sides of points are found. SPDX-License-Identifier: Apache-2.0
+// Blum: methods that find the sides of points. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,13 @@
 namespace blum::sign {
 
 enum class Method : std::uint8_t {
-  none,          ///< unsigned
-  crossings,     ///< winding numbers, which are whole: every edge is run along equally often both ways
-  sums,          ///< generalized winding numbers of a surface with a boundary
-  pseudonormals  ///< the side of the closest site that its normal tells
+  none,          ///< Unsigned.
+  crossings,     ///< Whole winding numbers: every edge is run along equally often both ways.
+  sums,          ///< Generalized winding numbers of a surface with a boundary.
+  pseudonormals  ///< Side of the closest site, by its pseudonormal.
 };
 
-/// Whether a method goes by winding numbers.
+/// Returns true if a method uses winding numbers.
 [[nodiscard]] constexpr bool is_by_winding(Method method) {
   return method == Method::crossings || method == Method::sums;
 }

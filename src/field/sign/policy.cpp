@@ -21,7 +21,7 @@ Plan by_winding(std::string reason) {
   return {SignRule::winding, std::move(reason), Method::sums};
 }
 
-/// Whether the mesh would face outwards if all triangles were turned.
+/// Returns true if the mesh faces outwards once all its triangles are reversed.
 bool faces_inwards(const MeshView& mesh) {
   const std::vector<Triangle> turned = reversed_triangles(mesh.triangles);
   MeshView view = mesh;
@@ -44,7 +44,7 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
             "orientation, as asked for, of a mesh whose shells cross each other or do not all face away from the "
             "solid: flip it if the sign looks inverted",
             Method::pseudonormals};
-  // Inside out, it has a winding number of -1 in the solid, and 0, which these signs call inside, around it.
+  // An inside-out mesh has winding number -1 in the solid and 0 around it. These signs call the space around it inside.
   if (faces_inwards(mesh)) {
     plan.method = Method::crossings;
     plan.level = -1;
@@ -52,8 +52,8 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
   return plan;
 }
 
-/// Whether every edge of the triangles is traversed equally often in both directions, so that winding numbers are whole
-/// off the surface.
+/// Returns true if every edge of the triangles is traversed equally often in both directions. Winding numbers are then
+/// whole off the surface.
 bool is_balanced(const MeshView& mesh, const SiteTable& sites) {
   std::vector<std::int32_t> forward(sites.edge_count(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

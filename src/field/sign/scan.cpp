@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t triangles_per_range = 2048;
 constexpr std::size_t vertices_per_range = 16384;
 constexpr std::size_t rows_per_range = 256;
-/// Crossings are counted together after this many of one thread.
+/// A thread adds its crossings to the common total after this many.
 constexpr std::size_t counted_at_once = std::size_t{1} << 16;
 
 struct Crossing {
@@ -22,7 +22,7 @@ struct Crossing {
   std::uint64_t key;  ///< as in SignScan::crossings_
 };
 
-/// Finds the crossings of triangles, given in units of nodes.
+/// Finds the crossings of triangles in units of nodes.
 class Scanner {
  public:
   Scanner(const std::array<std::int64_t, 3>& size, bool is_mirrored, std::vector<Crossing>& out)
@@ -48,10 +48,11 @@ class Scanner {
   std::vector<Crossing>& out_;
 };
 
-/// Crossings of each stretch of triangles.
+/// Crossings, one list per range of triangles.
 using Found = std::vector<std::vector<Crossing>>;
 
-/// @return  nothing where there are more than `most`.
+/// Finds the crossings of a mesh with the rows of a grid.
+/// @return  nothing if there are more than `most`.
 std::optional<Found> find_crossings(const MeshView& mesh, const GridSpec& grid, std::size_t most,
                                     const Context& context) {
   const kernels::NodeUnits units(grid);
@@ -78,7 +79,7 @@ std::optional<Found> find_crossings(const MeshView& mesh, const GridSpec& grid, 
   return found;
 }
 
-/// Negates what is not zero.
+/// Negates positive distances.
 void negate(float* distance, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) distance[i] = distance[i] > 0 ? -distance[i] : distance[i];
 }

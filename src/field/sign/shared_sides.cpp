@@ -13,22 +13,22 @@
 namespace blum::sign {
 namespace {
 
-/// Fewer have too little in common for a bound on the gradient, which costs as much as several of their answers.
+/// Fewer points have too little in common to pay for a bound on the gradient, which costs as much as several answers.
 constexpr std::size_t few = 48;
-/// The same where answers cost next to nothing.
+/// With at most this many triangles, answers cost next to nothing and are not shared.
 constexpr std::size_t few_triangles = 256;
-/// Changes of the winding number over a group beyond which smaller groups are better.
+/// If the winding number may change by more than this over a group, smaller groups are better.
 constexpr double large_change = 1;
 
-/// What a point is told that asks for itself, and by how much the winding number may change for another point to be
-/// told the same.
+/// Answer of an evaluated point. Another point gets the same answer if the winding number changes by less than
+/// `margin`.
 template <class Value>
 struct Answer {
   Value value;
   double margin = 0;
 };
 
-/// Asks for the side of a point.
+/// Evaluates the side of a point.
 struct AskSide {
   const WindingNumber& winding;
 
@@ -38,14 +38,14 @@ struct AskSide {
     const WindingNumber::Decision found = winding.decide(point.at, point.distance);
     return {found.is_inside, found.margin};
   }
-  /// What rounding may do to a point that asks for itself: it takes the answer of another where that could not change
-  /// it, so that all get what they would get alone.
+  /// Returns the rounding error of the point's own evaluation. A point takes over an answer only if this error could
+  /// not change it. So all points get the answers that they would get alone.
   [[nodiscard]] double rounding_at(const SidedPoint& point) const {
     return winding.rounding_at(point.at, point.distance);
   }
 };
 
-/// Asks for a rough winding number.
+/// Evaluates a rough winding number.
 struct AskNumber {
   const WindingNumber& winding;
 
@@ -55,11 +55,11 @@ struct AskNumber {
     const WindingNumber::Estimate found = winding.estimate(point.at, 0.6 * WindingNumber::rough_error);
     return {found.value, (1 - 1e-9) * WindingNumber::rough_error - found.error};
   }
-  /// Any rough number will do.
+  /// Any rough number is accurate enough.
   [[nodiscard]] static double rounding_at(const NumberedPoint& /*point*/) { return 0; }
 };
 
-/// Answers of a group, which those of it that have none yet may share.
+/// Answers of a group, which its other points may share.
 template <class Ask>
 class SharedAnswers {
  public:
@@ -71,12 +71,12 @@ class SharedAnswers {
     reach_.fill(-HUGE_VAL);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const double rounding = ask.rounding_at(points[k]);
-      // Without a boundary winding numbers are whole: answers have a margin of nearly 1/2, wherever they come from.
+      // Without a boundary, winding numbers are whole, so all answers have a margin of nearly 1/2.
       needed_[k] = gradient_ > 0 ? rounding / gradient_ : rounding < 0.25 ? 0.0 : HUGE_VAL;
     }
   }
 
-  /// The answer of a point; once for each.
+  /// Returns the answer of a point. It is called once for each point.
   [[nodiscard]] Value of(std::size_t k) {
     if (const std::optional<std::size_t> other = sharing(k)) {
       const double way = length(points_[k].at - points_[*other].at) * (1 + 1e-12);
@@ -91,10 +91,10 @@ class SharedAnswers {
 
  private:
   static constexpr double everywhere = std::numeric_limits<double>::max();
-  /// How far in the order of the points neighbours are looked for.
+  /// Number of steps in the order of the points within which neighbours are looked for.
   static constexpr std::size_t most_steps = 12;
 
-  /// A point that has an answer, which holds here, too: neighbours first, then those that asked.
+  /// Returns a point whose answer also holds for k. Neighbours come first, then the evaluated points.
   [[nodiscard]] std::optional<std::size_t> sharing(std::size_t k) const {
     for (std::size_t step = 1; step <= most_steps; ++step) {
       if (k >= step && holds(k - step, k)) return k - step;
@@ -106,7 +106,7 @@ class SharedAnswers {
     return std::nullopt;
   }
 
-  /// Whether the answer of one point is that of another.
+  /// Returns true if the answer of one point is also that of another.
   [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
     const double free = std::min(points_[from].distance + points_[to].distance - slack_, reach_[from] - needed_[to]);
     return free > 0 && squared_length(points_[to].at - points_[from].at) < free * free * (1 - 1e-12);
@@ -116,9 +116,9 @@ class SharedAnswers {
   std::span<const Point> points_;
   double gradient_;
   double slack_;
-  /// Of each point: as far as this its answer holds, unless a triangle lies between; negative where it has none yet.
+  /// Per point: how far its answer holds, unless a triangle lies between; negative if it has none yet.
   std::array<double, most_shared> reach_;
-  /// Of each point: how much of that reach must be left for it to take an answer.
+  /// Per point: how much of that reach must be left for it to take over an answer.
   std::array<double, most_shared> needed_;
   std::array<Value, most_shared> value_;
   InlineList<std::uint16_t, 64> asked_;

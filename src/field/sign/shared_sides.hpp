@@ -1,5 +1,5 @@
-// Blum: sides and winding numbers of points that lie close together, by those of a few. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: sides and winding numbers of points that lie close together, from those of a few of them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -10,32 +10,32 @@
 
 namespace blum::sign {
 
-/// A point off the surface, and whether its winding number is above 1/2.
+/// Point off the surface. It is inside if its winding number is above 1/2.
 struct SidedPoint {
   Vec3d at;
-  double distance = 0;  ///< from the surface, > 0, off by no more than the slack
+  double distance = 0;  ///< from the surface, > 0, off by at most the slack
   bool is_inside = false;
 };
 
-/// At most so many at once.
+/// Largest number of points per call.
 inline constexpr std::size_t most_shared = 256;
 
-/// Decides as WindingNumber::is_inside() does, for points in an order in which neighbours come together.
+/// Decides sides as WindingNumber::is_inside() does. The points come in an order in which neighbours follow each other.
 ///
-/// A few points ask for themselves, those far from the surface first. Others take their answer from one of these where
-/// nothing can lie between: no triangle, as the distances of both add up to more than the way between them, and no
-/// change of the winding number across 1/2, as its gradient on the way is bounded (WindingNumber::gradient_bound). Next
-/// to the rims of holes the bound is useless, and each asks for itself.
+/// Only a few points are evaluated, those furthest from the surface first. Other points take over such an answer if
+/// nothing can lie between. No triangle lies between two points whose distances add up to more than the way between
+/// them. The winding number does not cross 1/2 on the way if the bound of its gradient excludes it
+/// (WindingNumber::gradient_bound). Next to the rims of holes this bound is useless, and each point is evaluated.
 ///
 /// @param points  at most most_shared.
-/// @param slack   how far the sum of two distances may be off, mesh units.
+/// @param slack   bound on the error of the sum of two distances, mesh units.
 /// Allocates nothing.
 void decide_sides(const WindingNumber& winding, std::span<SidedPoint> points, double slack);
 
-/// A point off the surface, and its winding number to within WindingNumber::rough_error.
+/// Point off the surface, and its winding number to within WindingNumber::rough_error.
 struct NumberedPoint {
   Vec3d at;
-  double distance = 0;  ///< as of SidedPoint
+  double distance = 0;  ///< as in SidedPoint
   double number = 0;
 };
 

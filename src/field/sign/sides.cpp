@@ -21,25 +21,25 @@ namespace {
 
 inline constexpr std::uint32_t no_patch = 0xffffffff;
 
-/// Sets of triangles that are connected across edges which two of them share in opposite directions, none of which is
-/// too flat, or touches or crosses another triangle that is no neighbour.
+/// Sets of triangles that are connected across edges. Exactly two triangles share such an edge, in opposite directions.
+/// No triangle of a set is too flat, or touches or crosses a triangle that is not a neighbour.
 struct Patches {
   std::uint32_t count = 0;
-  /// Of each site: that of all the triangles at it. no_patch where they are not of one patch, or where another vertex
-  /// or edge lies in the same place.
+  /// Per site: the patch of all triangles at it. It is no_patch if they are not of one patch, or if another vertex or
+  /// edge lies in the same place.
   std::vector<std::uint32_t> of_site;
-  /// The largest triangle of each patch.
+  /// Largest triangle of each patch.
   std::vector<std::uint32_t> largest;
 };
 
-/// How often an edge is run along, and by which triangle last.
+/// Number of uses of an edge, balance of their directions, and the last triangle that uses it.
 struct EdgeUse {
   std::uint32_t count = 0;
   std::int32_t balance = 0;
   std::uint32_t triangle = 0;
 };
 
-/// Triangles that nothing touches and that have a normal; empty where too many touch.
+/// Finds triangles that nothing touches and that have a normal. The result is empty if too many triangles touch.
 std::vector<bool> find_free_triangles(const MeshView& mesh, const Context& context) {
   const std::size_t most = 1000 + mesh.triangles.size() / 4;
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
@@ -53,7 +53,7 @@ std::vector<bool> find_free_triangles(const MeshView& mesh, const Context& conte
   return is_free;
 }
 
-/// Vertices at whose place there is another one that something names.
+/// Finds the vertices at places with more than one vertex that primitives use.
 std::vector<bool> find_shared_places(const MeshView& mesh) {
   const std::vector<std::uint32_t> place = weld_clusters(mesh.vertices);
   std::vector<bool> is_named(mesh.vertices.size(), false);
@@ -65,7 +65,7 @@ std::vector<bool> find_shared_places(const MeshView& mesh) {
   return is_shared;
 }
 
-/// The common patch of what is added.
+/// Adds a patch to those of a site. Different patches give no_patch.
 void add(std::uint32_t patch, bool is_first, std::uint32_t& common) {
   if (is_first) common = patch;
   if (common != patch) common = no_patch;
@@ -154,7 +154,7 @@ class Finder {
         is_seen[e] = true;
       }
     }
-    // Free segments are no boundary, but what is closest to one is not closest to a triangle.
+    // Free segments are not a boundary, but a point closest to one is not closest to a triangle.
     for (const Segment& s : mesh_.segments) out.of_site[s[0]] = out.of_site[s[1]] = no_patch;
     for (const std::uint32_t v : mesh_.points) out.of_site[v] = no_patch;
   }
@@ -165,9 +165,9 @@ class Finder {
   std::vector<EdgeUse> uses_;
 };
 
+/// Finds the patches of a mesh.
 /// @throws Cancelled.
-/// Cost: that of find_self_intersections(); where there are more pairs than 1,000 and a quarter of the triangles, no
-/// patches.
+/// Cost: that of find_self_intersections(). More pairs than 1,000 plus a quarter of the triangles give no patches.
 Patches find_patches(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   std::vector<bool> is_free = find_free_triangles(mesh, context);
   if (is_free.empty()) return {0, std::vector<std::uint32_t>(sites.size(), no_patch), {}};
@@ -176,7 +176,7 @@ Patches find_patches(const MeshView& mesh, const SiteTable& sites, const Context
 
 constexpr std::size_t patches_per_range = 16;
 
-/// The winding number in front of a triangle's middle; nothing where that is not certain.
+/// Returns the winding number in front of a triangle's middle, or nothing if it is not certain.
 std::optional<int> winding_in_front(const MeshView& mesh, const SiteTable& sites, const Bvh& bvh,
                                     const WindingNumber& winding, std::uint32_t triangle) {
   const SiteId face = sites.id({SiteKind::face, triangle});
@@ -188,7 +188,7 @@ std::optional<int> winding_in_front(const MeshView& mesh, const SiteTable& sites
   const double size = length(normal);
   if (!(size > 0)) return std::nullopt;
   const Vec3d middle = a + (u + v) * (1.0 / 3);
-  // Steps off the triangle get shorter until nothing else is as close.
+  // Steps off the triangle get shorter until no other site is as close.
   double step = 0.1 * std::sqrt(size);
   for (int k = 0; k < 24; ++k, step *= 0.25) {
     const Vec3d place = middle + normal * (step / size);
@@ -240,7 +240,7 @@ bool Sides::is_inside(const Vec3d& query, const NearestSite& nearest) const {
 
 std::optional<bool> Sides::is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const {
   if (method_ == Method::none) return false;
-  // Of far sites rounding may name any, and the normal of the wrong one looks away.
+  // Outside of the bounds the side is known. Far away, rounding may name a wrong site, whose normal faces away.
   const bool is_beyond = min(query, bounds_.lower) != bounds_.lower || max(query, bounds_.upper) != bounds_.upper;
   if (method_ == Method::crossings && is_beyond) return level_ < 0;
   if (method_ == Method::sums) return std::nullopt;

@@ -16,30 +16,30 @@
 
 namespace blum::sign {
 
-/// Tells sides as planned. What it needs it copies; the mesh may go away.
+/// Finds sides as planned. It copies the data it needs, so the mesh may be destroyed.
 ///
-/// Where winding numbers are whole, the one of a query is that of the side of the surface that it looks at, since
-/// nothing lies between it and its closest point. So triangles that nothing touches are gathered in patches, connected
-/// across edges that two of them share: in front of a patch the winding number is the same everywhere, and by one more
-/// behind it. It is found once per patch; which side a query looks at, the pseudonormal of its closest site tells.
-/// Queries that are closest to a triangle that others touch or cross (or where a patch is not certain) ask for
-/// themselves.
+/// If winding numbers are whole, the one of a query is that of the side of the surface that it faces. Nothing lies
+/// between the query and its closest point. So triangles that nothing touches are gathered in patches, connected across
+/// edges that two of them share. In front of a patch the winding number is the same everywhere; behind it, it is
+/// greater by one. It is computed once per patch. The pseudonormal of a query's closest site decides which side the
+/// query faces. Some queries are evaluated themselves: those closest to a triangle that others touch or cross, and
+/// those of a patch that is not certain.
 class Sides {
  public:
-  /// @param bvh  of this mesh, to find places beside patches with.
+  /// @param bvh  tree of this mesh, to find places beside patches.
   /// @throws Cancelled.
-  /// Cost: with Method::crossings, unless plan.is_simple, all pairs of triangles that touch are searched for.
+  /// Cost: with Method::crossings, unless plan.is_simple, the search for all pairs of triangles that touch.
   Sides(const Plan& plan, const MeshView& mesh, const SiteTable& sites, const Bvh& bvh, const Context& context);
 
-  /// Whether a query that is not on the surface lies inside. Allocates nothing.
+  /// Returns true if a query that is not on the surface lies inside. Allocates nothing.
   [[nodiscard]] bool is_inside(const Vec3d& query, const NearestSite& nearest) const;
 
-  /// The same as far as it takes no winding number of the query itself: where that is above 1/2 decides, nullopt.
+  /// Returns the same, or nullopt if the caller must decide: inside if the query's own winding number is above 1/2.
   [[nodiscard]] std::optional<bool> is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const;
-  /// Null where all sides are told by sites.
+  /// Returns the winding numbers; null if sites decide all sides.
   [[nodiscard]] const WindingNumber* winding() const { return winding_ ? &*winding_ : nullptr; }
 
-  /// How many sites have queries that ask for themselves.
+  /// Returns the number of sites whose queries are evaluated themselves.
   [[nodiscard]] std::size_t open_site_count() const;
 
  private:
@@ -50,7 +50,7 @@ class Sides {
   Box3 bounds_;
   std::optional<Pseudonormals> normals_;
   std::optional<WindingNumber> winding_;
-  std::vector<std::uint32_t> patch_;  ///< of each site; empty where all are in one patch with 0 in front
+  std::vector<std::uint32_t> patch_;  ///< per site; empty if all are in one patch with 0 in front
   std::vector<int> in_front_;         ///< winding number in front of each patch
 };
 

@@ -21,11 +21,12 @@
 namespace blum::sign {
 namespace {
 
-/// Nodes along each side of a block.
+/// Number of nodes along each side of a block.
 inline constexpr std::int64_t block_side = 8;
 inline constexpr std::size_t block_nodes = 512;
 
-/// Unsigned distances at the nodes of a block, node (x, y, z) at x + 8 y + 64 z; -infinity outside the grid.
+/// Unsigned distances at the nodes of a block. Node (x, y, z) is at x + 8 y + 64 z. Nodes outside the grid have
+/// -infinity.
 struct NodeBlock {
   alignas(64) std::array<float, block_nodes> distance;
 };
@@ -34,52 +35,52 @@ struct NodeBlock {
 struct BlockParts {
   /// Part of each node.
   std::array<std::uint16_t, block_nodes> part;
-  /// Per part: its node with the largest distance, and the length of a path (in steps of the largest spacing) that
-  /// suffices between any two of its nodes.
+  /// Per part: its node with the largest distance, and the length of a path that suffices between any two of its nodes.
+  /// Lengths are in steps of the largest spacing.
   std::array<std::uint16_t, block_nodes> representative;
   std::array<std::uint16_t, block_nodes> path;
   std::size_t count = 0;
 };
 
-/// Steps between nodes are safe where their distances add up to more than `limit` for the step's direction.
+/// Limits of safe steps. A step between nodes is safe if their distances add up to more than `limit` for its direction.
 struct StepLimits {
   Vec3d spacing;
-  double slack = 0;  ///< added to each step's length: what rounding may have added to two distances
+  double slack = 0;  ///< added to each step's length: possible rounding of two distances
 
   [[nodiscard]] float limit(std::size_t axis) const { return static_cast<float>(spacing[axis] + slack); }
 };
 
-/// The blocks of a grid, x fastest.
+/// Blocks of a grid, x fastest.
 struct BlockGrid {
   GridSpec grid;
   std::array<std::int64_t, 3> size{};  ///< number of blocks along each axis
 
   explicit BlockGrid(const GridSpec& nodes);
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(size[0] * size[1] * size[2]); }
-  /// First node of a block.
+  /// Returns the first node of a block.
   [[nodiscard]] std::array<std::int64_t, 3> first(std::size_t block) const;
-  /// One past the last node of a block, cut at the grid's end.
+  /// Returns one past the last node of a block, cut at the grid's end.
   [[nodiscard]] std::array<std::int64_t, 3> last(std::size_t block) const;
 };
 
-/// Nodes that are known to lie on the same side: the winding number differs by at most `spread` between them.
+/// Nodes known to lie on the same side. The winding number differs by at most `spread` between them.
 struct Component {
-  std::uint64_t node = 0;  ///< where to ask: linear index
-  float distance = 0;      ///< there
+  std::uint64_t node = 0;  ///< node to evaluate: linear index
+  float distance = 0;      ///< distance at that node
   float spread = 0;
 };
 
-/// Sets of nodes of the grid with a common side. Blocks are either whole, or have parts with a number per node.
+/// Sets of nodes of the grid with a common side. A block is either whole, or has parts with a number per node.
 class Components {
  public:
   Components(const Field& field, const WindingNumber& winding, double slack, const Context& context);
 
   [[nodiscard]] const BlockGrid& blocks() const { return blocks_; }
-  /// Component roots, rising.
+  /// Returns the component roots, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
   [[nodiscard]] const Component& component(std::uint32_t root) const { return components_[root]; }
   [[nodiscard]] bool is_whole(std::size_t block) const { return parts_at_[block] == whole; }
-  /// Root of a node of a block, given by its place x + 8 y + 64 z there; any place for a whole block.
+  /// Returns the root of a node of a block. `place` is x + 8 y + 64 z in the block; for a whole block any place works.
   [[nodiscard]] std::uint32_t root(std::size_t block, std::size_t place) const {
     return parent_[first_component_[block] + (is_whole(block) ? 0u : part_[parts_at_[block] * block_nodes + place])];
   }
@@ -105,11 +106,11 @@ class Components {
   const WindingNumber& winding_;
   BlockGrid blocks_;
   StepLimits limits_;
-  double longest_step_ = 0;                     ///< largest spacing
-  std::vector<float> change_;                   ///< per block: bound on the change of w along one step in or out of it
-  std::vector<std::uint32_t> parts_at_;         ///< per block: where its parts are, or `whole`
-  std::vector<std::uint16_t> part_;             ///< per node of blocks with parts
-  std::vector<std::uint32_t> first_component_;  ///< per block
+  double longest_step_ = 0;                     ///< Largest spacing.
+  std::vector<float> change_;                   ///< Per block: bound on the change of w along a step in or out of it.
+  std::vector<std::uint32_t> parts_at_;         ///< Per block: index of its parts, or `whole`.
+  std::vector<std::uint16_t> part_;             ///< Per node of blocks with parts.
+  std::vector<std::uint32_t> first_component_;  ///< Per block.
   std::vector<Component> components_;
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint32_t> roots_;
@@ -120,7 +121,7 @@ using NodeSet = std::array<std::uint64_t, 8>;
 
 constexpr std::array<std::size_t, 3> stride{1, 8, 64};
 
-/// Bit of a node is set where the step to its next neighbour along an axis is safe.
+/// Returns a set with the bit of a node set if the step to its next neighbour along an axis is safe.
 NodeSet safe_steps(const NodeBlock& block, std::size_t axis, float limit) {
   NodeSet steps{};
   for (std::size_t node = 0; node + stride[axis] < block_nodes; ++node) {
@@ -137,7 +138,7 @@ NodeSet safe_steps(const NodeBlock& block, std::size_t axis, float limit) {
   return steps;
 }
 
-/// All nodes within one safe step of a set, and the set itself.
+/// Returns the set and all nodes within one safe step of it.
 NodeSet grown(const NodeSet& set, const std::array<NodeSet, 3>& steps) {
   NodeSet out;
   for (std::size_t z = 0; z < 8; ++z) {
@@ -159,7 +160,7 @@ NodeSet nodes_in_grid(const NodeBlock& block) {
   return out;
 }
 
-/// Gives the nodes of a set the next part.
+/// Assigns the nodes of a set to the next part.
 void add_part(const NodeBlock& block, const NodeSet& set, std::size_t steps, BlockParts& out) {
   const auto part = static_cast<std::uint16_t>(out.count++);
   std::size_t best = block_nodes;
@@ -174,8 +175,8 @@ void add_part(const NodeBlock& block, const NodeSet& set, std::size_t steps, Blo
   out.path[part] = static_cast<std::uint16_t>(2 * steps);
 }
 
-/// A neighbour across a face or space diagonal that a lone node can reach safely and that is not alone itself;
-/// block_nodes where there is none.
+/// Returns a neighbour across a face or space diagonal that a lone node can reach safely and that is not alone itself.
+/// Returns block_nodes if none exists.
 std::size_t diagonal_neighbour(const NodeBlock& block, const StepLimits& limits, const BlockParts& parts,
                                std::size_t node) {
   const auto x = static_cast<int>(node % 8), y = static_cast<int>(node / 8 % 8), z = static_cast<int>(node / 64);
@@ -199,7 +200,7 @@ std::size_t diagonal_neighbour(const NodeBlock& block, const StepLimits& limits,
   return block_nodes;
 }
 
-/// Lets lone nodes join a part across a diagonal, and closes the gaps in the numbering.
+/// Joins lone nodes to a part across a diagonal, and closes the gaps in the numbering.
 void join_lone_nodes(const NodeBlock& block, const StepLimits& limits, BlockParts& parts) {
   std::array<std::uint16_t, block_nodes> target;
   bool any = false;
@@ -218,7 +219,7 @@ void join_lone_nodes(const NodeBlock& block, const StepLimits& limits, BlockPart
     if (target[p] != p) continue;
     number[p] = static_cast<std::uint16_t>(count);
     parts.representative[count] = parts.representative[p];
-    // Two lone nodes of a part are a diagonal (at most 2 steps long) each away from it.
+    // Two lone nodes of a part are each one diagonal (at most 2 steps long) away from it.
     parts.path[count] = static_cast<std::uint16_t>(parts.path[p] == 0 ? 0 : parts.path[p] + 4);
     ++count;
   }
@@ -229,11 +230,11 @@ void join_lone_nodes(const NodeBlock& block, const StepLimits& limits, BlockPart
 }
 
 constexpr std::size_t blocks_per_range = 64;
-/// The winding number may change by this much over a block's part, and by this much over a component.
+/// Largest change of the winding number over a block's part, and over a component.
 constexpr double part_spread = 0.2;
 constexpr double component_spread = 0.4;
-/// Where a step may change the winding number by more, a block's parts would be little more than its nodes: the block
-/// is no part of anything, and is asked in smaller and smaller boxes, most of which lie further from the boundary.
+/// If a step may change the winding number by more, a block's parts would be little more than its nodes. Such a block
+/// joins no component. It is evaluated in smaller and smaller boxes, most of which lie further from the boundary.
 constexpr float change_to_ask_at = 0.05F;
 /// Longer than any path within a block.
 constexpr std::size_t unlimited_steps = 511;
@@ -243,7 +244,7 @@ float rounded_up(double value) {
 }
 
 /// Finds the parts of a block: nodes joined by safe steps along the axes, at most `max_steps` from the part's first
-/// node; lone nodes then join a neighbour across a diagonal where that is safe too.
+/// node. Lone nodes then join a neighbour across a diagonal if that is safe.
 /// @param max_steps  0 leaves every node on its own.
 void find_parts(const NodeBlock& block, const StepLimits& limits, std::size_t max_steps, BlockParts& out) {
   out.count = 0;
@@ -284,10 +285,10 @@ std::array<std::int64_t, 3> BlockGrid::last(std::size_t block) const {
   return out;
 }
 
-/// A safe step between neighbouring blocks.
+/// Safe step between neighbouring blocks.
 struct Components::Join {
   std::uint32_t a = 0, b = 0;
-  float change = 0;  ///< of the winding number, at most
+  float change = 0;  ///< largest change of the winding number
 };
 
 Components::Components(const Field& field, const WindingNumber& winding, double slack, const Context& context)
@@ -303,7 +304,7 @@ Box3 Components::world_box(std::size_t block) const {
   const std::array<std::int64_t, 3> last = blocks_.last(block);
   Box3 box;
   for (int corner = 0; corner < 8; ++corner) {
-    // One step further on all sides, so that steps to neighbouring blocks are inside.
+    // One step further on all sides, so that the box contains steps to neighbouring blocks.
     box.extend(blocks_.grid.position((corner & 1) != 0 ? last[0] : first[0] - 1,
                                      (corner & 2) != 0 ? last[1] : first[1] - 1,
                                      (corner & 4) != 0 ? last[2] : first[2] - 1));
@@ -326,7 +327,7 @@ NodeBlock Components::load(std::size_t block) const {
   return out;
 }
 
-/// Whether every step within the block is safe, and w changes little enough over it.
+/// Returns true if every step within the block is safe, and w changes little enough over it.
 bool Components::is_whole_block(std::size_t block) const {
   const std::array<std::int64_t, 3> first = blocks_.first(block);
   const std::array<std::int64_t, 3> last = blocks_.last(block);
@@ -374,7 +375,7 @@ void Components::classify(const Context& context) {
 }
 
 void Components::split_blocks(const Context& context) {
-  // Components of each range of blocks, then numbered in the order of blocks.
+  // Components are found per range of blocks, then numbered in the order of blocks.
   const std::size_t range_count = (blocks_.count() + blocks_per_range - 1) / blocks_per_range;
   std::vector<std::vector<Component>> found(range_count);
   first_component_.assign(blocks_.count(), 0);
@@ -496,7 +497,7 @@ void Components::join_blocks(const Context& context) {
   });
   parent_.resize(components_.size());
   for (std::size_t c = 0; c < parent_.size(); ++c) parent_[c] = static_cast<std::uint32_t>(c);
-  // On one thread and in the order of blocks: which joins fit into the allowed spread depends on the order.
+  // On one thread and in the order of blocks, because the order decides which joins fit into the allowed spread.
   for (const std::vector<Join>& range : joins) {
     for (const Join& step : range) join(step);
   }
@@ -523,7 +524,7 @@ enum class Side : std::uint8_t { outside, inside, varies };
 
 using Corner = std::array<std::int64_t, 3>;
 
-/// Signs of the nodes of one grid.
+/// Writes the signs of the nodes of one grid.
 class SignWriter {
  public:
   SignWriter(Field& field, const WindingNumber& winding, double slack)
@@ -542,8 +543,8 @@ class SignWriter {
     if (winding_.is_inside(field_.grid.position(at[0], at[1], at[2]))) negate(node);
   }
 
-  /// A box of nodes over which the winding number may cross 1/2: shares one answer where the change over it, from the
-  /// middle, is too small for that; else it is cut in eight.
+  /// Evaluates a box of nodes over which the winding number may cross 1/2. If its change from the middle is too small
+  /// for that, the nodes share one answer. Otherwise the box is split into eight.
   void ask_box(const Corner& first, const Corner& last) {
     const Corner size{last[0] - first[0], last[1] - first[1], last[2] - first[2]};
     const Corner middle{first[0] + size[0] / 2, first[1] + size[1] / 2, first[2] + size[2] / 2};
@@ -614,7 +615,7 @@ double common_diagonal(const MeshView& mesh, const GridSpec& grid) {
   return box.diagonal();
 }
 
-/// The side of every component, by root.
+/// Returns the side of every component, indexed by root.
 std::vector<Side> ask_components(const Components& components, const WindingNumber& winding, const GridSpec& grid,
                                  const Context& context) {
   const std::vector<std::uint32_t>& roots = components.roots();
@@ -658,7 +659,7 @@ void write_block(const Components& components, const std::vector<Side>& sides, s
 
 WindingSignCounts apply_winding_sign(Field& field, const MeshView& mesh, const WindingNumber& winding,
                                      const Context& context) {
-  // Two distances, each off by at most 1e-6 of the diagonal, and rounding of their sum.
+  // Covers two distances, each off by at most 1e-6 of the diagonal, and rounding of their sum.
   const double slack = 4e-6 * common_diagonal(mesh, field.grid);
   const Components components(field, winding, slack, context);
   const std::vector<Side> sides = ask_components(components, winding, field.grid, context);

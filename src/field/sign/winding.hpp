@@ -11,27 +11,27 @@
 
 namespace blum {
 
-/// What the sign of a field has cost.
+/// Cost of the sign of a field.
 struct WindingSignCounts {
   std::size_t queries = 0;     ///< winding numbers evaluated
-  std::size_t components = 0;  ///< sets of nodes that were known to share a sign
+  std::size_t components = 0;  ///< sets of nodes known to share a sign
 };
 
 /// Negates the distances of nodes inside: those whose winding number is above 1/2.
 ///
-/// Nodes that certainly share a sign are found first and ask once: distances are 1-Lipschitz, so no triangle separates
-/// two nodes whose distances add up to more than their distance from each other; along such steps the winding number
-/// changes only by the field of the mesh's boundary, which WindingNumber::gradient_bound() bounds. Steps are joined as
-/// long as the sum of their bounds leaves the side decidable. On a closed mesh the bound is 0; near the rim of a hole
-/// every node asks for itself, so that nothing floods through it.
+/// Nodes that certainly share a sign are grouped first, and one node per group is evaluated. Distances are 1-Lipschitz:
+/// no triangle separates two nodes whose distances add up to more than their distance from each other. Along such steps
+/// the winding number changes only by the field of the mesh's boundary, which WindingNumber::gradient_bound() bounds.
+/// Steps are joined as long as the sum of their bounds leaves the side decidable. On a closed mesh the bound is 0. Near
+/// the rim of a hole every node is evaluated, so that no sign leaks through the hole.
 ///
-/// @param field  unsigned distances of this mesh, off by at most 1e-6 of the diagonal of the box around mesh and grid;
-///               with a band, +band beyond it. Only `distance` is changed.
-/// @return       the same for any number of threads.
+/// @param field  unsigned distances of this mesh, with a band +band beyond it. They may be off by at most 1e-6 of the
+///               diagonal of the box around mesh and grid. Only `distance` is changed.
+/// @return       counts; results are the same for any number of threads.
 /// Cost: about two passes over the distances, and one winding number for every set of nodes.
 WindingSignCounts apply_winding_sign(Field& field, const MeshView& mesh, const WindingNumber& winding,
                                      const Context& context);
-/// The same with the winding numbers built on the way.
+/// Does the same, and builds the winding numbers.
 WindingSignCounts apply_winding_sign(Field& field, const MeshView& mesh, const SiteTable& sites,
                                      const Context& context);
 

@@ -20,7 +20,8 @@ using Place = std::array<std::int64_t, 3>;
 
 constexpr std::size_t steps_between_looks = std::size_t{1} << 16U;
 
-/// The cells at a lattice node that a voxel ahead of it (0), or behind it (1), along each axis has: bits by axes.
+/// Returns the cells at a lattice node, as bits by axes, that one voxel around the node has. Along each axis the voxel
+/// lies ahead of the node (0) or behind it (1).
 constexpr std::uint8_t cells_towards(unsigned behind) {
   std::uint8_t bits = 0;
   for (unsigned axes = 0; axes < 8; ++axes) {
@@ -29,7 +30,8 @@ constexpr std::uint8_t cells_towards(unsigned behind) {
   return bits;
 }
 
-/// The neighbours that have the cell of a voxel that spans `axes` from its corner `corner` (bits x, y, z: far side).
+/// Table of the neighbours that share a cell of a voxel. The cell spans `axes` from the corner `corner` (bits x, y, z:
+/// far side).
 constexpr auto make_sharers() {
   std::array<std::array<Neighbourhood, 8>, 8> table{};
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -93,7 +95,8 @@ class Thinner {
   }
 
  private:
-  /// Whether the depths are above zero for the voxels, and only for these: not where some are extra cells of the model.
+  /// Returns true if the depths are above zero for exactly the voxels. This fails if some voxels are extra cells of the
+  /// model.
   static bool is_depth_enough(const VoxelSolid& solid, const VoxelSet& voxels, const Context& context) {
     const auto layers = static_cast<std::size_t>(solid.grid.size[2]);
     std::vector<std::uint8_t> is_enough(layers, 1);
@@ -112,7 +115,7 @@ class Thinner {
     return std::all_of(is_enough.begin(), is_enough.end(), [](std::uint8_t is) { return is != 0; });
   }
 
-  /// Depths that are above zero for the voxels, and only for these.
+  /// Returns depths that are above zero for exactly the voxels.
   static Buffer<float> depth_of(const VoxelSolid& solid, const VoxelSet& voxels) {
     Buffer<float> depth = solid.depth.clone();
     std::size_t at = 0;
@@ -128,13 +131,13 @@ class Thinner {
     return depth;
   }
 
-  /// Whether a voxel is simple among those around, and none of its cells is needed.
+  /// Returns true if a voxel is simple among those around it and none of its cells is needed.
   [[nodiscard]] bool may_go(std::uint32_t voxel, const Place& at, Neighbourhood around, SimpleCache& simple) const {
     if (attached_.contain(at[0], at[1], at[2])) return attached_.may_go(voxel, around);
     return simple.is_simple(around) && !is_needed(at, around);
   }
 
-  /// Whether some cell of a voxel has importance, and is no other voxel's of those around.
+  /// Returns true if a cell of a voxel has importance and belongs to none of the voxels around.
   [[nodiscard]] bool is_needed(const Place& at, Neighbourhood around) const {
     const std::size_t node = lattice_.node(at[0], at[1], at[2]);
     for (unsigned corner = 0; corner < 8; ++corner) {
@@ -170,7 +173,7 @@ constexpr unsigned middle = place_of_voxel;
 
 using Place = std::array<std::int64_t, 3>;
 
-/// Whether one cell of a voxel is a face of another, by their places.
+/// Returns true if one cell of a voxel is a face of another. Both are given by their places.
 constexpr bool is_face(unsigned face, unsigned cell) {
   const auto f = along_axes(face);
   const auto c = along_axes(cell);
@@ -202,7 +205,8 @@ constexpr BorderTables make_tables() {
 }
 constexpr BorderTables tables = make_tables();
 
-/// Whether a part of the border of a voxel, with all its faces, is contractible: connected, of Euler number 1.
+/// Returns true if a part of the border of a voxel, closed under faces, is contractible: connected, with Euler number
+/// 1.
 bool is_contractible(std::uint32_t cells) {
   if (cells == 0) return false;
   if (bit_count(cells & tables.even) != bit_count(cells & ~tables.even) + 1) return false;
@@ -247,7 +251,7 @@ void AttachedVoxels::find_plain(const VoxelSet& voxels) {
   }
 }
 
-/// Those around a cell of the lattice that has an extra face or coface.
+/// Finds voxels around cells of the lattice that have an extra face or coface.
 void AttachedVoxels::find_attached() {
   attached_ = VoxelSet(plain_.size());
   const ExtraIncidence& extra = *structure_.extra();
@@ -287,7 +291,7 @@ void AttachedVoxels::for_each_attached(const Visit& visit) const {
   }
 }
 
-/// The cells of a voxel: itself, then its border.
+/// Lists the cells of a voxel: first itself, then its border.
 void AttachedVoxels::find_closure(const Place& voxel, std::vector<Cell>& cells) const {
   cells.assign(1, cell_at(structure_.lattice().node(voxel[0], voxel[1], voxel[2]), 7));
   for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -297,7 +301,8 @@ void AttachedVoxels::find_closure(const Place& voxel, std::vector<Cell>& cells) 
   }
 }
 
-/// Adds the cells of the lattice around an extra one, which may be gone, that no voxel has.
+/// Adds the cells of the lattice around an extra cell that no voxel contains. The extra cell itself may already be
+/// removed.
 void AttachedVoxels::find_without_voxel(Cell polyhedron, std::vector<Cell>& found) {
   structure_.for_each_face(polyhedron, [&](Cell polygon) {
     const auto look_at = [&](Cell cell) {

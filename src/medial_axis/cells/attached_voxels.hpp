@@ -1,4 +1,4 @@
-// Blum: voxels of a model that extra cells are attached to. SPDX-License-Identifier: Apache-2.0
+// Blum: voxels of a model with extra cells attached. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@
 
 namespace blum::detail {
 
-/// The border of a voxel has a place for each of its cells, x + 3 y + 9 z: along each axis 0 at the low side, 1 where
-/// the cell spans it, 2 at the high side. Neighbours have the same places.
+/// Place of the voxel itself. The place of a cell of its border is x + 3 y + 9 z. Along each axis 0 is the low side, 2
+/// the high side; 1 means that the cell spans the axis. The 26 neighbours are numbered in the same way.
 inline constexpr unsigned place_of_voxel = 13;
 
-/// Along each axis, where a place lies: 0, 1, 2.
+/// Coordinates of a place along the axes: 0, 1 or 2.
 constexpr std::array<unsigned, 3> along_axes(unsigned place) {
   return {place % 3, place / 3 % 3, place / 9};
 }
 
-/// The place of the cell that spans `axes` from a corner (bits x, y, z: the high side).
+/// Returns the place of the cell that spans `axes` from a corner (bits x, y, z: the high side).
 constexpr unsigned place_on_border(unsigned corner, unsigned axes) {
   unsigned place = 0;
   for (unsigned a = 3; a-- > 0;) {
@@ -35,7 +35,7 @@ constexpr unsigned place_on_border(unsigned corner, unsigned axes) {
   return place;
 }
 
-/// For each place the neighbours that have the cell there, too.
+/// For each place, the neighbours that contain the cell at that place, too.
 inline constexpr std::array<Neighbourhood, 27> sharers_of_place = [] {
   std::array<Neighbourhood, 27> sharers{};
   for (unsigned p = 0; p < 27; ++p) {
@@ -50,34 +50,35 @@ inline constexpr std::array<Neighbourhood, 27> sharers_of_place = [] {
   return sharers;
 }();
 
-/// The voxels of a model whose neighbours do not tell what they share with the rest: where walls pass between voxels,
-/// or extra cells are attached to them. Extra cells that are no faces of voxels stay while voxels go.
+/// Voxels of a model whose 26 neighbours do not determine what they share with the rest: walls pass between voxels, or
+/// extra cells are attached. Extra cells that are not faces of voxels stay when voxels are removed.
 class AttachedVoxels {
  public:
-  /// @param model  with all its voxels. It must stay.
+  /// @param model  contains all its voxels. It must outlive this object.
   AttachedVoxels(const CellComplex& model, const VoxelSet& voxels, const Importance& importance);
 
-  /// The voxels that are cells of the lattice: others are extra cells.
+  /// Voxels that are cells of the lattice. Other voxels of the model are extra cells.
   [[nodiscard]] const VoxelSet& voxels() const { return plain_; }
   [[nodiscard]] bool contain(std::int64_t i, std::int64_t j, std::int64_t k) const {
     return attached_.contains(i, j, k);
   }
-  /// Whether a voxel can go by elementary collapses, and takes no cell of importance along.
-  /// @param voxel  one of these.  @param around  the neighbours that are there.
+  /// Returns true if elementary collapses can remove a voxel without removing a cell of importance.
+  /// @param voxel  one of these.
+  /// @param around  the neighbours that are still present.
   [[nodiscard]] bool may_go(std::uint32_t voxel, Neighbourhood around) const;
 
-  /// What is left of the model: some of its voxels, and the extra cells that stay.
+  /// Returns the rest of the model: `kept` voxels and the extra cells that stay.
   [[nodiscard]] CellComplex rest(const VoxelSet& kept, const Context& context) const;
 
  private:
-  /// A cell in the border of a voxel.
+  /// Cell in the border of a voxel.
   struct BorderCell {
     Cell cell = 0;
-    Neighbourhood sharers = 0;  ///< the neighbours that have it, too
-    bool stays = false;         ///< whether an extra cell that stays has it
+    Neighbourhood sharers = 0;  ///< neighbours that contain it, too
+    bool stays = false;         ///< true if it is a cell, or a face of one, that stays
     bool is_important = false;
   };
-  /// A voxel, and its border: place x + 3 y + 9 z, where 1 is the middle along an axis.
+  /// Voxel and its border, by place: x + 3 y + 9 z, where 1 is the middle along an axis.
   struct Attached {
     std::uint32_t voxel = 0;
     std::array<BorderCell, 27> border;
@@ -101,19 +102,19 @@ class AttachedVoxels {
   const CellStructure& structure_;
   VoxelSet plain_;
   VoxelSet attached_;
-  std::vector<Attached> list_;                         ///< by rising voxel
-  std::vector<std::uint8_t> stays_;                    ///< extra cells: whether it stays, or is a face of one that does
-  std::unordered_set<Cell> plain_staying_;             ///< the same of cells of the lattice
-  std::vector<std::vector<std::uint32_t>> voxels_of_;  ///< extra cells: voxels of list_ that have it
+  std::vector<Attached> list_;                         ///< By ascending voxel.
+  std::vector<std::uint8_t> stays_;                    ///< Extra cells: 1 if the cell, or a coface of it, stays.
+  std::unordered_set<Cell> plain_staying_;             ///< Cells of the lattice that stay for the same reason.
+  std::vector<std::vector<std::uint32_t>> voxels_of_;  ///< Extra cells: voxels of list_ that contain them.
 };
 
-/// What is left of a solid's voxels when simple ones go, the shallowest first, each looked at once. A voxel stays where
-/// its removal would change the topology, or take away a cell that has importance. The closed voxels collapse to those
-/// that are left: a simple voxel's cells go by elementary collapses (Couprie, Bertrand 2009).
+/// Thins the voxels of a solid and returns those that are left. Each voxel is examined once, the shallowest first. A
+/// voxel stays if its removal would change the topology or take away a cell of importance. The closed voxels collapse
+/// to the result: the cells of a simple voxel can be removed by elementary collapses (Couprie, Bertrand 2009).
 ///
-/// Where all shallower neighbours of a voxel go, only deeper ones are left at its turn: such voxels are judged in any
-/// order, in parallel. The others, near what stays, follow one by one.
-/// @param attached  of the model: its voxels, and which of them extra cells are attached to.
+/// If all shallower neighbours of a voxel are removed, only deeper ones are present at its turn. Such voxels are judged
+/// in any order, in parallel. Voxels near those that stay follow one by one.
+/// @param attached  of the model: its voxels, and those with extra cells attached.
 /// @return  the same for any number of threads.
 /// @throws Cancelled, OutOfMemory. Cost: about 30 ns per voxel, and 150 ns per voxel near what stays.
 [[nodiscard]] VoxelSet thin_voxels(const VoxelSolid& solid, const AttachedVoxels& attached, const CellLattice& lattice,

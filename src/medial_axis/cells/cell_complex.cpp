@@ -11,7 +11,7 @@ namespace {
 
 using Pair = std::array<Cell, 2>;
 
-/// The second items of pairs, in a row for each first one.
+/// Returns the second items of pairs, in one row for each first item.
 IndexRows rows_of(std::vector<Pair> pairs, std::size_t rows) {
   std::sort(pairs.begin(), pairs.end());
   std::vector<std::size_t> first(rows + 1, 0);
@@ -25,8 +25,8 @@ IndexRows rows_of(std::vector<Pair> pairs, std::size_t rows) {
   return {std::move(first), std::move(items)};
 }
 
-/// The cells at a lattice node, from the eight voxels around it: bit x + 2 y + 4 z of `voxels` is the voxel at
-/// (i - 1 + x, j - 1 + y, k - 1 + z). A cell is there where a voxel around it is.
+/// Returns the cells at a lattice node that the eight voxels around it have. Bit x + 2 y + 4 z of `voxels` is the voxel
+/// at (i - 1 + x, j - 1 + y, k - 1 + z).
 std::uint8_t cells_at(unsigned voxels) {
   std::uint8_t cells = 0;
   for (CellAxes axes = 0; axes < 8; ++axes) {
@@ -97,7 +97,7 @@ CellComplex::CellComplex(const VoxelSet& voxels, CellStructure structure, const 
       for (std::int64_t j = 0; j < size[1]; ++j) {
         unsigned around = 0;
         for (std::int64_t i = 0; i < size[0]; ++i) {
-          around = around >> 1U & 0x55U;  // what lay ahead lies behind now
+          around = around >> 1U & 0x55U;  // voxels ahead of the last node lie behind this one
           for (unsigned v = 0; v < 4; ++v) {
             const auto y = static_cast<std::int64_t>(v & 1U);
             const auto z = static_cast<std::int64_t>(v >> 1U);

@@ -1,4 +1,4 @@
-// Blum: complexes of voxels, and of cells beside them. SPDX-License-Identifier: Apache-2.0
+// Blum: complexes of voxels and extra cells. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@
 
 namespace blum::detail {
 
-/// The faces and cofaces of the extra cells of a model (see BodyCells), and those that cells of the voxels have among
-/// the extra ones. An extra cell is named by `first()` and its number.
+/// Faces and cofaces of the extra cells of a model (see BodyCells). Also contains the extra faces and cofaces of cells
+/// of the voxels. The name of an extra cell is `first()` plus its number.
 class ExtraIncidence {
  public:
   explicit ExtraIncidence(BodyCells cells);
@@ -32,16 +32,16 @@ class ExtraIncidence {
   [[nodiscard]] std::span<const Cell> faces_of(Cell extra) const { return faces_[extra - first_]; }
   [[nodiscard]] std::span<const Cell> cofaces_of(Cell extra) const { return cofaces_[extra - first_]; }
 
-  /// Whether a cell of the voxels has a face or coface that is extra.
+  /// Returns true if a cell of the voxels has an extra face or coface.
   [[nodiscard]] bool is_mixed(Cell cell) const { return mixed_.contains(cell); }
-  /// All of these, rising.
+  /// All mixed cells, ascending.
   [[nodiscard]] std::vector<Cell> mixed() const { return mixed_.cells(); }
-  /// The extra ones of a mixed cell.
+  /// Extra faces of a mixed cell.
   [[nodiscard]] std::span<const Cell> extra_faces_of(Cell mixed) const { return faces_of_mixed_[mixed_.number(mixed)]; }
   [[nodiscard]] std::span<const Cell> extra_cofaces_of(Cell mixed) const {
     return cofaces_of_mixed_[mixed_.number(mixed)];
   }
-  /// Cells of the voxels that are none of the model, rising.
+  /// Cells of the voxels that are not part of the model, ascending.
   [[nodiscard]] std::span<const Cell> replaced() const { return replaced_; }
   [[nodiscard]] bool is_replaced(Cell cell) const {
     return std::binary_search(replaced_.begin(), replaced_.end(), cell);
@@ -58,7 +58,7 @@ class ExtraIncidence {
   std::vector<Cell> replaced_;
 };
 
-/// How the cells of a lattice, and extra ones where a model has any, touch each other.
+/// Incidence of the cells of a lattice and of the extra cells of a model, if any.
 class CellStructure {
  public:
   CellStructure() = default;
@@ -67,18 +67,18 @@ class CellStructure {
       : lattice_(lattice), extra_(std::move(extra)) {}
 
   [[nodiscard]] const CellLattice& lattice() const { return lattice_; }
-  /// Null where there are none.
+  /// Null without extra cells.
   [[nodiscard]] const ExtraIncidence* extra() const { return extra_.get(); }
   [[nodiscard]] std::size_t extra_count() const { return extra_ ? extra_->size() : 0; }
-  /// The first extra cell.
+  /// Index of the first extra cell.
   [[nodiscard]] Cell first_extra() const { return static_cast<Cell>(8 * lattice_.node_count()); }
   [[nodiscard]] bool is_extra(Cell cell) const { return extra_ && cell >= extra_->first(); }
   [[nodiscard]] int dimension(Cell cell) const {
     return is_extra(cell) ? extra_->cell(cell).dimension : dimension_of(cell);
   }
 
-  /// Calls visit(face) for the cells of one dimension less in a cell's border. Of a cell of the lattice, all faces in
-  /// the lattice are visited, also those that extra ones stand for, which no complex holds.
+  /// Calls visit(face) for the cells of one dimension less in a cell's border. For a cell of the lattice this includes
+  /// faces that extra cells replace. No complex contains those.
   template <class Visit>
   void for_each_face(Cell cell, const Visit& visit) const {
     if (is_extra(cell)) {
@@ -89,7 +89,8 @@ class CellStructure {
     if (!extra_ || !extra_->is_mixed(cell)) return;
     for (const Cell face : extra_->extra_faces_of(cell)) visit(face);
   }
-  /// The same for the cells of one dimension more around a cell; none in the lattice may lie beyond it.
+  /// Calls visit(coface) for the cells of one dimension more around a cell. All cofaces of a cell of the lattice must
+  /// lie in the lattice.
   template <class Visit>
   void for_each_coface(Cell cell, const Visit& visit) const {
     if (is_extra(cell)) {
@@ -106,16 +107,16 @@ class CellStructure {
   std::shared_ptr<const ExtraIncidence> extra_;
 };
 
-/// A set of cells that holds the faces of each of its cells. One byte per lattice node, and one per extra cell.
+/// Set of cells that contains the faces of each of its cells. Memory: one byte per lattice node and one per extra cell.
 class CellComplex {
  public:
   CellComplex() = default;
-  /// The union of the closed voxels of a set, none of which may lie in the outermost layer of its box.
+  /// Union of the closed voxels of a set. No voxel may lie in the outermost layer of its box.
   CellComplex(const VoxelSet& voxels, const Context& context);
-  /// A whole model: voxels and all its extra cells.
+  /// Whole model: voxels and all its extra cells.
   CellComplex(const VoxelSet& voxels, std::shared_ptr<const ExtraIncidence> extra, const Context& context);
 
-  /// Voxels of a model, without any extra cells.
+  /// Voxels of a model without extra cells.
   CellComplex(const VoxelSet& voxels, CellStructure structure, const Context& context);
 
   [[nodiscard]] CellComplex clone() const {
@@ -138,11 +139,12 @@ class CellComplex {
       cells_[node_of(cell)] &= static_cast<std::uint8_t>(~(1U << axes_of(cell)));
     }
   }
-  /// Adds a cell of the structure and all its faces. @param cell  none of the lattice that extra cells stand for.
+  /// Adds a cell of the structure and all its faces.
+  /// @param cell  not a cell of the lattice that extra cells replace.
   void insert_closure(Cell cell);
-  /// Bit a of byte n: whether cell (n, axes a) is in the complex.
+  /// Bit a of byte n is set if cell (n, axes a) is in the complex.
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return cells_.span(); }
-  /// Calls visit(cell) for all cells, those of the lattice first, rising.
+  /// Calls visit(cell) for all cells, ascending; cells of the lattice come first.
   template <class Visit>
   void for_each_cell(const Visit& visit) const {
     for (std::size_t node = 0; node < cells_.size(); ++node) {
@@ -154,7 +156,7 @@ class CellComplex {
       if (extra_[k] != 0) visit(structure_.first_extra() + static_cast<Cell>(k));
     }
   }
-  /// The only coface of a cell; the cell itself where there is none, or more than one.
+  /// Returns the only coface of a cell, or the cell itself if it has none or several.
   [[nodiscard]] Cell only_coface(Cell cell) const {
     Cell found = cell;
     int count = 0;
@@ -169,7 +171,7 @@ class CellComplex {
  private:
   CellStructure structure_;
   Buffer<std::uint8_t> cells_;
-  std::vector<std::uint8_t> extra_;  ///< 1 where it is in the complex
+  std::vector<std::uint8_t> extra_;  ///< 1 if in the complex
 };
 
 }  // namespace blum::detail

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t removals_between_looks = std::size_t{1} << 16U;
 
-/// Free faces by depth, in steps; among those of a step, first come, first served.
+/// Queue of free faces by depth, in steps. Within a step, the first pushed is the first popped.
 class DepthQueue {
  public:
   void push(Cell face, double depth) {
@@ -71,7 +71,7 @@ class Collapser {
     run([](Cell, Cell, float) {}, [&](Cell cube, Cell) { offer_faces(cube); });
   }
 
-  /// Removes squares, edges and vertices of importance zero; what is left after that, in order.
+  /// Removes squares, edges and vertices of importance zero. remove_rest() then removes the others in order.
   void remove_unimportant() {
     level_ = 0;
     offer_all(0, 1);
@@ -85,7 +85,7 @@ class Collapser {
   }
 
  private:
-  /// The mean depth of the voxels around a cell, those beyond the solid negative.
+  /// Returns the mean depth of the voxels around a cell; depths outside the solid are negative.
   [[nodiscard]] double depth_of(Cell cell) const {
     if (structure_.is_extra(cell)) return depth_of_extra_[cell - structure_.first_extra()];
     const CellLattice& lattice = structure_.lattice();
@@ -105,7 +105,7 @@ class Collapser {
     return sum / count;
   }
 
-  /// Puts a face in line if it is free.
+  /// Queues a face if it is free.
   void offer(Cell face) {
     if (complex_.contains(face) && complex_.only_coface(face) != face) enter(face);
   }
@@ -118,7 +118,7 @@ class Collapser {
       unimportant_.push(face, depth * per_step_ + 1);
     }
   }
-  /// All cells of some dimensions, those of the lattice first, rising.
+  /// Queues all free cells of some dimensions, ascending; cells of the lattice come first.
   void offer_all(int least_dimension, int most_dimension) {
     constexpr std::size_t grain = std::size_t{1} << 16U;
     unsigned wanted = 0;  // bit a: the cells that span `a` from a node
@@ -186,7 +186,7 @@ class Collapser {
   float level_ = 0;
   double most_level_ = HUGE_VAL;
   std::size_t removals_ = 0;
-  /// After a removal, what its cells held may have become free.
+  /// Offers the faces of both removed cells, which may have become free.
   struct Next {
     Collapser& collapser;
     void operator()(Cell cell, Cell face) const {

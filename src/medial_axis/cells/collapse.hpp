@@ -1,4 +1,4 @@
-// Blum: collapses of cubical complexes in the order of an importance. SPDX-License-Identifier: Apache-2.0
+// Blum: collapses of cubical complexes in order of importance. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace blum::detail {
 
-/// An elementary collapse: a cell, and a face of it that no other cell had, leave together.
+/// Elementary collapse: removes a cell together with a face that no other cell has.
 struct Removal {
   Cell cell;
   Cell face;
@@ -18,31 +18,31 @@ struct Removal {
   float level;
 };
 
-/// What collapsing left, and in which order the rest of it can go.
+/// Result of collapsing a complex, and the order of its further removals.
 struct CollapseOrder {
-  /// The cells of importance zero that homotopy does not need are gone, and all cubes.
+  /// Contains no cubes and no cells of importance zero that homotopy does not need.
   CellComplex base;
-  /// What follows, by level, up to the largest one asked for: after those of level <= theta, what is left of the base
-  /// is the complex at theta.
+  /// Removals that follow, by level, up to the largest requested one. After those of level <= theta, the base has
+  /// become the complex at theta.
   std::vector<Removal> removals;
 };
 
-/// How deep in the solid the cells of a complex lie, mesh units.
+/// Depths of the cells of a complex in the solid, mesh units.
 struct CellDepths {
-  std::span<const float> of_voxels;      ///< of the lattice, x fastest; negative beyond the solid
+  std::span<const float> of_voxels;      ///< of the lattice, x fastest; negative outside the solid
   std::span<const float> of_extra = {};  ///< of each extra cell
 };
 
-/// Removes extra cells of importance zero together with faces that are extra, too, while there are such that are free.
-/// The result has the homotopy type of the complex, and all its voxels.
+/// Removes extra cells of importance zero together with free faces that are also extra, until none is left. The result
+/// has the homotopy type of the complex and contains all its voxels.
 void collapse_extra(CellComplex& complex, const Importance& importance);
 
-/// Collapses a complex: cubes first, then squares, edges and vertices, least important first and outermost first among
-/// equals, until nothing can be removed. Each step is an elementary collapse, so that every complex on the way has the
-/// homotopy type of the first (Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009), whatever the numbers are.
-/// What is shallow goes first.
+/// Collapses a complex until nothing can be removed. Cubes are removed first, then squares, edges and vertices. The
+/// least important cells come first, and the shallowest among equals. Each step is an elementary collapse. So
+/// every complex on the way has the homotopy type of the first, whatever the numbers are (Liu, Chambers, Letscher, Ju
+/// 2010; Chaussard, Couprie 2009).
 /// @param importance  of cells, in degrees; at least that of their cofaces.
-/// @param most_level  degrees: of what is more important, no order is told.
+/// @param most_level  degrees; removals of larger importance are not listed.
 /// @throws Cancelled. Cost: about linear in the cells, n log n in the important ones.
 [[nodiscard]] CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double depth_step,
                                      const Importance& importance, double most_level, const Context& context);

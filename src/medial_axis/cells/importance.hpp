@@ -1,4 +1,4 @@
-// Blum: how much each cell of a solid looks like a piece of its medial axis. SPDX-License-Identifier: Apache-2.0
+// Blum: importance of each cell of a solid as a piece of its medial axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace blum::detail {
 
-/// Degrees for some cells, and 0 for the others. One byte per node, and 4 more per cell that has a value or is extra.
+/// Degrees for some cells, 0 for the others. Memory: one byte per node, and 4 more per cell that has a value or is
+/// extra.
 class Importance {
  public:
   struct Entry {
@@ -19,7 +20,7 @@ class Importance {
   };
 
   Importance() = default;
-  /// Gives each cell the largest value of its entries and of the entries of cells that it is a face of.
+  /// Assigns to each cell the largest value of its own entries and of those of cells that it is a face of.
   Importance(const CellStructure& structure, std::span<const Entry> entries);
   Importance(const CellLattice& lattice, std::span<const Entry> entries)
       : Importance(CellStructure(lattice, nullptr), entries) {}
@@ -29,14 +30,14 @@ class Importance {
     if (cell >= first_extra_) return extra_.empty() ? 0 : extra_[cell - first_extra_];
     return (words_[cell >> 6U] >> (cell & 63U) & 1U) == 0 ? 0 : values_[rank(cell)];
   }
-  /// Bit a: whether the cell that spans `a` from a node has a value.
+  /// Bit a is set if the cell that spans `a` from a node has a value.
   [[nodiscard]] std::uint8_t cells_at(std::size_t node) const {
     return static_cast<std::uint8_t>(words_[node >> 3U] >> (8 * (node & 7U)));
   }
   [[nodiscard]] std::size_t count() const { return values_.size(); }
 
  private:
-  /// The number of cells with a value before this one.
+  /// Returns the number of cells with a value before this one.
   [[nodiscard]] std::size_t rank(Cell cell) const {
     const std::uint64_t below = words_[cell >> 6U] & ((std::uint64_t{1} << (cell & 63U)) - 1);
     return first_[cell >> 6U] + bit_count(below);

@@ -1,4 +1,4 @@
-// Blum: what thinning voxels by depth takes. SPDX-License-Identifier: Apache-2.0
+// Blum: order and tests for thinning voxels by depth. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace blum::detail {
 
-/// Remembers which neighbourhoods are simple: few of all that there are turn up.
+/// Cache of simple neighbourhoods: only a few of all possible ones occur.
 class SimpleCache {
  public:
   [[nodiscard]] bool is_simple(Neighbourhood around) {
@@ -30,11 +30,11 @@ class SimpleCache {
  private:
   static constexpr unsigned bits = 14;
   static constexpr std::uint32_t middle = 1U << 13U;
-  static constexpr std::uint32_t known = 1U << 31U;  // tells a key from an empty slot
+  static constexpr std::uint32_t known = 1U << 31U;  // distinguishes a key from an empty slot
   std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(std::size_t{1} << bits, 0);
 };
 
-/// A voxel in line, shallowest first; among equally deep ones, the first.
+/// Voxel that waits for its turn. The order is by depth, shallowest first, then by index.
 struct Waiting {
   float depth;
   std::uint32_t voxel;
@@ -43,7 +43,7 @@ struct Waiting {
   }
 };
 
-/// Voxels by rising depth, where those put in line are never before the one last taken.
+/// Queue of voxels by ascending depth. A pushed voxel must not come before the one popped last.
 class Line {
  public:
   explicit Line(double step) : per_step_(1 / step) {}
@@ -53,7 +53,7 @@ class Line {
     steps_[step].push_back(voxel);
     if (step == first_ && is_heap_) std::push_heap(steps_[step].begin(), steps_[step].end(), std::greater<>());
   }
-  /// Moves the next voxel to `next`; false where there is none.
+  /// Moves the next voxel to `next`. Returns false if the queue is empty.
   bool pop(Waiting& next) {
     while (first_ < steps_.size() && steps_[first_].empty()) {
       steps_[first_].shrink_to_fit();
@@ -77,10 +77,10 @@ class Line {
   bool is_heap_ = false;
 };
 
-/// The order in which voxels are looked at: by depth; among equally deep ones, by their indices.
+/// Order in which voxels are examined: by depth, then by index.
 class DepthOrder {
  public:
-  /// @param depth  above zero for the voxels to be thinned, and only for these; none of them at the border of the box.
+  /// @param depth  above zero for exactly the voxels to be thinned; none of them lies at the border of the box.
   DepthOrder(std::span<const float> depth, const std::array<std::int64_t, 3>& size) : depth_(depth), size_(size) {
     for (std::size_t n = 0; n < 27; ++n) {
       const auto at = static_cast<std::int64_t>(n);
@@ -89,14 +89,14 @@ class DepthOrder {
   }
 
   [[nodiscard]] float depth(std::uint32_t voxel) const { return depth_[voxel]; }
-  /// The neighbour of a voxel that a bit of Neighbourhood stands for.
+  /// Returns the neighbour of a voxel that a bit of Neighbourhood stands for.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t voxel, std::size_t bit) const {
     return static_cast<std::uint32_t>(voxel + offset_[bit]);
   }
   [[nodiscard]] bool is_deeper(std::uint32_t a, std::uint32_t b) const {
     return depth_[a] != depth_[b] ? depth_[a] > depth_[b] : a > b && depth_[a] > 0;
   }
-  /// The voxels around one that are there at its turn: the deeper ones, and those kept of the others.
+  /// Returns the neighbours that are present at the turn of a voxel: the deeper ones, and the kept ones of the others.
   [[nodiscard]] Neighbourhood present_around(std::uint32_t voxel, const VoxelSet& kept) const {
     const auto at = kept.place(voxel);
     Neighbourhood around = neighbourhood(kept, at[0], at[1], at[2]);
@@ -106,8 +106,8 @@ class DepthOrder {
     return around & ~(1U << 13U);
   }
 
-  /// The voxels that stay, or whose turn tells, if all shallower ones go. Where all shallower neighbours of a voxel go,
-  /// only deeper ones are left at its turn: such voxels are judged in any order, in parallel.
+  /// Returns the voxels that may not be removed after all shallower ones are removed. If all shallower neighbours of a
+  /// voxel are removed, only deeper ones are present at its turn. Such voxels are judged in any order, in parallel.
   /// @param may_go  (voxel, place, neighbourhood, SimpleCache) -> bool; called by several threads.
   template <class Judge>
   [[nodiscard]] std::vector<std::uint32_t> stuck(const VoxelSet& voxels, const Judge& may_go,
@@ -142,7 +142,7 @@ class DepthOrder {
   }
 
  private:
-  /// For the voxels of a row that starts at `first`, which ones around are deeper.
+  /// Finds the deeper neighbours of each voxel of a row that starts at `first`.
   void find_deeper(std::size_t first, std::vector<Neighbourhood>& deeper) const {
     const std::size_t length = deeper.size();
     const float* own = depth_.data() + first;
@@ -152,7 +152,7 @@ class DepthOrder {
       if (n == 13) continue;
       const float* other = own + offset_[n];
       const Neighbourhood bit = 1U << n;
-      // Linear indices rise with n, so that later ones win among equals.
+      // Linear indices ascend with n, so later neighbours count as deeper among equals.
       if (n < 13) {
         for (std::size_t i = 1; i + 1 < length; ++i) out[i] |= other[i] > own[i] ? bit : 0;
       } else {

@@ -13,19 +13,19 @@
 
 namespace blum::detail {
 
-/// The voxels of a solid, and for each voxel of the box the closest site of the surface. The outermost voxels of the
-/// box are not in the solid.
+/// Voxels of a solid, and the closest site of the surface for each voxel of the box. The outermost voxels of the box
+/// are not in the solid.
 struct VoxelSolid {
-  GridSpec grid;        ///< its nodes are the voxel centres
-  VoxelSet voxels;      ///< those that make the solid
-  Buffer<float> depth;  ///< distance to the surface, positive inside; mesh units
-  Buffer<SiteId> site;  ///< the closest one
-  /// Of a polyhedron: what its model has beside the voxels of `voxels`. Null for others, which are their voxels.
+  GridSpec grid;        ///< Its nodes are the voxel centres.
+  VoxelSet voxels;      ///< Voxels of the solid.
+  Buffer<float> depth;  ///< Distance to the surface, positive inside; mesh units.
+  Buffer<SiteId> site;  ///< Closest site.
+  /// Cells of a polyhedron's model beside `voxels`. Null for other solids, which equal their voxels.
   std::shared_ptr<const ExtraIncidence> extra = {};
-  bool is_exact = false;  ///< whether the solid is the union of the closed voxels, as those of images are
+  bool is_exact = false;  ///< true if the solid is the union of the closed voxels, as for images
 };
 
-/// Makes a set that of the voxels deeper than a limit, those of the box's outermost layer left out.
+/// Fills a set with the voxels deeper than a limit, except those of the outermost layer of the box.
 /// @param depth  per voxel, x fastest: distance to the surface, positive inside, mesh units.  @throws Cancelled.
 void take_deeper_than(std::span<const float> depth, double limit, VoxelSet& voxels, const Context& context);
 

@@ -19,11 +19,12 @@
 namespace blum::detail {
 namespace {
 
-/// Layers of voxels around a mesh: what is taken in beyond it lies within one diagonal, and one layer stays free.
+/// Layers of voxels around a mesh. Voxels added outside the mesh lie within one diagonal of it, and one layer stays
+/// empty.
 constexpr int margin = 3;
 
-/// How far, in voxels, the grid is moved off the middle of a body: planes of symmetry and their diagonals would pass
-/// through voxel centres, where rounding would tell to which side a voxel belongs, and so make ragged sheets.
+/// Displacement of the grid off the middle of a body, in voxels. Otherwise planes of symmetry and their diagonals would
+/// pass through voxel centres. Rounding would then decide on which side voxels lie, which makes ragged sheets.
 constexpr Vec3d off_middle{0.11, 0.27, 0.37};
 
 using Place = std::array<std::int64_t, 3>;
@@ -42,8 +43,8 @@ GridSpec voxels_around(const Box3& box, double spacing, double shift) {
   return grid;
 }
 
-/// Depths that are above zero for voxels of a set, and only for these: where a surface passes within rounding of a
-/// centre, the field may see it on the other side than the model.
+/// Makes depths positive for exactly the voxels of a set. If a surface passes within rounding of a centre, field and
+/// model may disagree on its side.
 void agree_with(const VoxelSet& inside, Buffer<float>& depth, const Context& context) {
   const Place& size = inside.size();
   parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
@@ -60,7 +61,7 @@ void agree_with(const VoxelSet& inside, Buffer<float>& depth, const Context& con
   });
 }
 
-/// Distances become depths: positive inside.
+/// Returns a solid whose depths are the negated distances of a field: positive inside.
 VoxelSolid solid_of(Field field) {
   VoxelSolid solid;
   solid.grid = field.grid;
@@ -71,7 +72,7 @@ VoxelSolid solid_of(Field field) {
   return solid;
 }
 
-/// The smallest box that holds all voxels of a set: its lower corner, and beyond its upper one.
+/// Smallest box that contains all voxels of a set. The upper corner is exclusive.
 struct Extent {
   Place lower{std::numeric_limits<std::int64_t>::max(), 0, 0};
   Place upper{0, 0, 0};
@@ -106,7 +107,7 @@ Extent extent_of(const VoxelSet& voxels) {
   return out;
 }
 
-/// 1 for the voxels of a set, 0 for the others, in a box with a layer more on each side.
+/// Returns an image with 1 for the voxels of a set, 0 for the others, in the box plus a layer on each side.
 VoxelImage cut_out(const VoxelSet& voxels, const Extent& extent, const GridSpec& grid) {
   VoxelImage image;
   image.grid = grid;
@@ -132,7 +133,7 @@ BodyReport report_of(const VoxelSolid& solid, const Context& context) {
   return report;
 }
 
-/// What a model has beside its voxels.
+/// Moves the extra cells and failures of a model to `voxelized`.
 void take_extra(BodyCells cells, Voxelized& voxelized) {
   voxelized.report.topology_matches = cells.failures.empty();
   voxelized.report.extra_cells = cells.extra.size();

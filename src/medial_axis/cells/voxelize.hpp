@@ -13,26 +13,28 @@
 
 namespace blum::detail {
 
-/// A solid as voxels, and how it came to be.
+/// Solid as voxels, and a report of its construction.
 struct Voxelized {
   VoxelSolid solid;
   BodyReport report;
 };
 
-/// Voxels of a body with its Betti numbers, as choose_voxels finds them.
-/// @param spacing  mesh units. @param shift  how far the grid is moved along each axis, voxels.
+/// Returns the cellular model of a body: voxels and extra cells. The report contains places where the model may lack
+/// the body's topology.
+/// @param spacing  mesh units.
+/// @param shift  displacement of the grid along each axis, voxels.
 [[nodiscard]] Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift = 0);
 
-/// Splits the model of a body further than it had to be: see body_cells(). Voxels, depths and sites stay.
+/// Splits the model of a body in the boxes `finer`, too: see body_cells(). Voxels, depths and sites stay.
 void split_further(Voxelized& voxelized, const SolidBody& body, std::span<const Box3> finer, const Context& context);
 
-/// The voxels whose centre has a winding number above 1/2.
+/// Returns the voxels whose centre has a winding number above 1/2.
 [[nodiscard]] Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context,
                                             double shift = 0);
 
-/// Voxels of an image, with a layer of others around the smallest box that holds them.
-/// @param first  the place in the image of the box's voxel (0, 0, 0); may be -1.
-/// @param all  its voxels, at least one; on the grid of their centres.
+/// Returns the voxels of an image, in the smallest box that contains them plus a layer of empty voxels.
+/// @param first  output: place in the image of the box's voxel (0, 0, 0); may be -1.
+/// @param all  voxels of the image, at least one; `grid` has their centres as nodes.
 [[nodiscard]] Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<std::int64_t, 3>& first,
                                        const Context& context);
 

@@ -38,15 +38,15 @@ namespace {
 
 using Place = std::array<std::int64_t, 3>;
 
-/// The voxels of one value.
+/// Number of voxels of one value, and the box around them.
 struct LabelBox {
   std::int64_t label = 0;
   std::uint64_t voxels = 0;
-  Place low{};   ///< of the box around them
-  Place high{};  ///< likewise, within
+  Place low{};   ///< lower corner
+  Place high{};  ///< upper corner, within the box
 };
 
-/// How far voxel 0 of a crop is before that of its box.
+/// Voxel 0 of a crop is this many voxels before that of its box.
 inline constexpr std::int64_t margin = 2;
 
 constexpr double exact_integer_limit = 9007199254740992.0;  // 2^53
@@ -80,7 +80,7 @@ void join(LabelBox& box, const LabelBox& other) {
   box.voxels += other.voxels;
 }
 
-/// Calls visit(value, begin, end, j, k) for the runs of equal values of one layer.
+/// Calls visit(value, begin, end, j) for the runs of equal values of one layer.
 template <class T, class Visit>
 void for_each_run(std::span<const T> values, const Place& size, std::int64_t k, const Visit& visit) {
   for (std::int64_t j = 0; j < size[1]; ++j) {
@@ -88,7 +88,7 @@ void for_each_run(std::span<const T> values, const Place& size, std::int64_t k, 
     for (std::int64_t i = 0; i < size[0];) {
       const std::int64_t begin = i;
       const T value = row[i];
-      ++i;  // also past what equals nothing: NaN
+      ++i;  // also past NaN, which equals nothing
       while (i < size[0] && row[i] == value) ++i;
       visit(value, begin, i, j);
     }
@@ -131,12 +131,13 @@ std::vector<LabelBox> boxes(std::span<const T> values, const Place& size, const 
   return out;
 }
 
-/// All values but 0, rising. @throws InvalidImage where one is no whole number; Cancelled.
+/// Returns the boxes of all values except 0, ascending.
+/// @throws InvalidImage if a value is not a whole number; Cancelled.
 std::vector<LabelBox> label_boxes(const VoxelImageView& image, const Context& context) {
   return std::visit([&](const auto& values) { return boxes(values, image.grid.size, context); }, image.values);
 }
 
-/// The voxels that a rule selects; none: an empty box.
+/// Returns the box of the voxels that a rule selects; an empty box if it selects none.
 LabelBox selection_box(const VoxelImageView& image, const LabelSelection& selection, const Context& context) {
   const Place& size = image.grid.size;
   std::vector<LabelBox> layers(static_cast<std::size_t>(size[2]));
@@ -161,7 +162,8 @@ LabelBox selection_box(const VoxelImageView& image, const LabelSelection& select
   return box;
 }
 
-/// The selected voxels within a box, and two layers of others around. The border's voxels are never selected.
+/// Returns the selected voxels within a box, surrounded by two layers of others. Voxels at the border are never
+/// selected.
 /// @throws Cancelled.
 VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, const LabelBox& box,
               const Context& context) {
@@ -214,7 +216,7 @@ Warning warning_of(const Centreline& line) {
 namespace centrelines {
 namespace {
 
-constexpr std::int64_t small_box = std::int64_t{1} << 18U;  // voxels: labels in such boxes share the threads
+constexpr std::int64_t small_box = std::int64_t{1} << 18U;  // voxels; labels in such boxes run one per thread
 
 std::string counted(std::int64_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -235,7 +237,8 @@ void judge_homotopy(Centreline& out) {
                  (out.label_betti[2] > 0 ? ": curves hold no voids, so that these were filled" : "");
 }
 
-/// Adds voxels of which at least five of the six beside them are there: pits one voxel wide, as noise makes them.
+/// Adds voxels of which at least five of the six neighbours beside them are in the set: pits one voxel wide, as noise
+/// makes them.
 VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
   VoxelSet out = voxels;
   const auto& size = voxels.size();
@@ -255,7 +258,7 @@ VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
           const std::uint64_t b = beside[1][w];
           const std::uint64_t c = beside[2][w];
           const std::uint64_t d = beside[3][w];
-          // Of three and three bits: two or more on both sides, and on one of them three or one besides.
+          // At least two of each three bits, and all three of at least one side.
           const std::uint64_t two_here = (left & right) | (left & a) | (right & a);
           const std::uint64_t two_there = (b & c) | (b & d) | (c & d);
           to[w] |= two_here & two_there & ((left ^ right ^ a) | (b ^ c ^ d));
@@ -268,9 +271,9 @@ VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
 
 constexpr float most_shift = 1.0F / 4096;  // of a voxel: below the steps of distances up to a thousand voxels
 
-/// Makes equal depths differ, by less than most_shift of a voxel, and those of other voxels zero. In the order of their
-/// indices equally deep voxels would go from one end of a tube to the other, and the tube with them: a bar of two by
-/// two voxels has no deeper ones.
+/// Makes equal depths differ, by less than most_shift of a voxel, and sets those of other voxels to zero. Otherwise
+/// equally deep voxels would be removed in the order of their indices, from one end of a tube to the other. The tube
+/// would vanish: a bar of two by two voxels has no deeper ones.
 void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
   const auto& size = voxels.size();
   const float scale = most_shift * static_cast<float>(std::min({spacing.x, spacing.y, spacing.z})) / 65536.0F;
@@ -281,7 +284,7 @@ void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing
         const auto row = voxels.row(j, static_cast<std::int64_t>(k));
         for (std::int64_t i = 0; i < size[0]; ++i, ++at) {
           const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
-          // Murmur's finalizer: bits that tell nothing of the place.
+          // Murmur's finalizer: its bits show no pattern of the place.
           std::uint32_t bits = static_cast<std::uint32_t>(at) * 0x85ebca6bU;
           bits = (bits ^ bits >> 13U) * 0xc2b2ae35U;
           bits ^= bits >> 16U;
@@ -292,7 +295,7 @@ void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing
   });
 }
 
-/// The distance of each voxel to the closest one that is not there.
+/// Returns the distance of each voxel to the closest one outside of the set.
 Buffer<float> depth_of(const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
   const auto& size = voxels.size();
   Buffer<std::uint8_t> is_in(static_cast<std::size_t>(size[0] * size[1] * size[2]));
@@ -317,7 +320,7 @@ Buffer<float> depth_of(const VoxelSet& voxels, const Vec3d& spacing, const Conte
   return std::move(distance_transform(image, options, context).distance);
 }
 
-/// The phases of all labels; a label's own where several run at once are not told.
+/// Phases of all labels. Those of labels that run at the same time are not recorded.
 struct Times {
   std::vector<PhaseTime> phases;
   PhaseTimer timer{phases};
@@ -345,7 +348,7 @@ Centreline centreline_of(VoxelSet voxels, const Vec3d& spacing, double spur, con
   return out;
 }
 
-/// From the box of a label to the world.
+/// Moves a centreline from the box of a label to the world.
 void move_to_world(const GridSpec& grid, const LabelBox& box, Centreline& line) {
   const Vec3d shift{static_cast<double>(box.low[0] - margin) * grid.spacing.x,
                     static_cast<double>(box.low[1] - margin) * grid.spacing.y,

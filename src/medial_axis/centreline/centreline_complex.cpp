@@ -6,7 +6,7 @@
 namespace blum {
 namespace {
 
-/// Branch by branch.
+/// Builds a complex branch by branch.
 class Builder {
  public:
   explicit Builder(const Centrelines& lines) {

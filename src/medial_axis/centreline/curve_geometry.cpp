@@ -16,23 +16,23 @@
 namespace blum::centrelines {
 namespace {
 
-/// How a curve ends.
+/// End of a curve.
 struct CurveEnd {
   enum class Kind : std::uint8_t { free, junction, closed };
   Kind kind = Kind::free;
   Vec3d centre{};     ///< of a junction's ball
-  double radius = 0;  ///< likewise
+  double radius = 0;  ///< of a junction's ball
 };
 
-/// Points outside of the balls of its junctions: at least one. Of a closed curve the first is also the last.
+/// Points of a curve outside of the balls of its junctions: at least one. In a closed curve the first is also the last.
 struct Curve {
   std::vector<Vec3d> points;
   std::vector<double> radii;  ///< of the circle with the area of the section there
 };
 
 constexpr int rounds = 3;            // of moving to centroids
-constexpr int smoothings = 2;        // after each
-constexpr double tail = 2;           // depths from a free end: how far its width is compared
+constexpr int smoothings = 2;        // before each of these
+constexpr double tail = 2;           // depths: part at a free end in which the width is compared
 constexpr double full_depth = 0.9;   // of the largest depth there
 constexpr double least_step = 1e-9;  // of the voxel
 
@@ -73,7 +73,7 @@ class CurveMaker {
   }
 
  private:
-  /// Leaves out the points from each end on that lie in its ball; where none is left, the one in the middle stays.
+  /// Removes the points at each end that lie in its ball. If none is left, the one in the middle stays.
   void leave_balls() {
     std::size_t first = 0;
     std::size_t last = start_.size();
@@ -91,7 +91,7 @@ class CurveMaker {
                                 start_.begin() + static_cast<std::ptrdiff_t>(last));
   }
 
-  /// The index of a point some places on; closed curves go on from their start, others stop.
+  /// Returns the index of a point some places on. Closed curves go on from their start, others stop.
   [[nodiscard]] std::size_t on(std::size_t i, std::ptrdiff_t places) const {
     const auto count = static_cast<std::ptrdiff_t>(points_.size());
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) + places;
@@ -99,7 +99,7 @@ class CurveMaker {
     return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, count - 1));
   }
 
-  /// Each point goes half way to the middle of its neighbours, within its reach.
+  /// Moves each point half way to the middle of its neighbours, within its reach.
   void smooth() {
     std::vector<Vec3d> next = points_;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -115,7 +115,7 @@ class CurveMaker {
     return distance > reach_ ? start_[i] + (reach_ / distance) * off : point;
   }
 
-  /// The direction of the chord over about a radius to both sides.
+  /// Computes tangents: directions of the chord over about a radius to both sides.
   void find_tangents() {
     tangents_.resize(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -128,7 +128,7 @@ class CurveMaker {
     }
   }
 
-  /// The first point in one direction that is so far away along the curve.
+  /// Returns the first point in one direction that is at least `wanted` away along the curve.
   [[nodiscard]] std::size_t walk(std::size_t i, std::ptrdiff_t step, double wanted) const {
     double way = 0;
     std::size_t at = i;
@@ -152,7 +152,7 @@ class CurveMaker {
     points_ = std::move(next);
   }
 
-  /// Puts the first point, a free end, to where its ball touches the tip.
+  /// Moves the first point, a free end, to where its ball touches the tip.
   void place_end() {
     if (points_.size() < 3) return;
     const std::size_t root = end_of_tail();
@@ -176,7 +176,7 @@ class CurveMaker {
     points_ = std::move(kept);
   }
 
-  /// From the first point on: where the label is as wide as behind it. What is before may lead into a corner.
+  /// Returns the first point at which the label is as wide as behind it. Points before it may lead into a corner.
   [[nodiscard]] std::size_t end_of_tail() const {
     double deepest = 0;
     double way = 0;
@@ -191,7 +191,7 @@ class CurveMaker {
 
   [[nodiscard]] static double radius_of(double area) { return std::sqrt(area / std::numbers::pi); }
 
-  /// Of the sections' areas, smoothed along the curve as the points are.
+  /// Returns the radii of the sections' areas, which are smoothed along the curve like the points.
   std::vector<double> radii() const {
     std::vector<double> areas(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -209,35 +209,35 @@ class CurveMaker {
     return areas;
   }
 
-  std::vector<Vec3d> start_;  ///< where the points came from
+  std::vector<Vec3d> start_;  ///< original places of the points
   std::array<CurveEnd, 2> ends_;
   const LabelShare& label_;
   double reach_;
   bool is_closed_;
-  bool is_in_balls_ = false;  ///< whether all of it lies in the balls of its junctions
+  bool is_in_balls_ = false;  ///< true if all of it lies in the balls of its junctions
   std::vector<Vec3d> points_;
   std::vector<Vec3d> tangents_;
 };
 
-/// @param voxels  the centres of a chain, from end to end.
-/// @param reach   no point is moved further from these.
+/// @param voxels  centres of a chain, from end to end.
+/// @param reach   greatest distance of a point from its voxel.
 Curve make_curve(const std::vector<Vec3d>& voxels, const std::array<CurveEnd, 2>& ends, const LabelShare& label,
                  double reach) {
   return CurveMaker(voxels, ends, label, reach).make();
 }
 
 constexpr double section_blur = 1.5;    // voxels: sections closer to the ball of a junction see other branches
-constexpr double pull_to_voxel = 1e-3;  // of a node, beside the pull of each branch: where all of them are parallel
+constexpr double pull_to_voxel = 1e-3;  // of a node, relative to that of a branch; decides if all are parallel
 
-/// A point and a direction.
+/// Point and direction.
 struct Ray {
   Vec3d from;
   Vec3d along;
 };
 
-/// The point closest to all lines and, weakly, to `start`; at most `reach` from that.
+/// Returns the point closest to all lines and, weakly, to `start`; at most `reach` away from `start`.
 Vec3d meeting_point(const std::vector<Ray>& rays, const Vec3d& start, double reach) {
-  // The normal equations of sum |(I - t t')(p - q)|^2 + weight |p - start|^2, solved by Cramer's rule.
+  // Normal equations of sum |(I - t t')(p - q)|^2 + weight |p - start|^2, solved by Cramer's rule.
   std::array<Vec3d, 3> rows{Vec3d{pull_to_voxel, 0, 0}, Vec3d{0, pull_to_voxel, 0}, Vec3d{0, 0, pull_to_voxel}};
   Vec3d right{};
   for (const Ray& ray : rays) {
@@ -256,7 +256,7 @@ Vec3d meeting_point(const std::vector<Ray>& rays, const Vec3d& start, double rea
   return length > reach ? start + (reach / length) * shift : start + shift;
 }
 
-/// The line of a branch where sections see it alone, a little outside of the ball of a node.
+/// Returns the line of a branch a little outside of the ball of a node, where sections see it alone.
 std::optional<Ray> ray_at(const Curve& curve, bool at_end) {
   constexpr std::size_t first = 3;
   constexpr std::size_t last = 10;
@@ -270,8 +270,8 @@ std::optional<Ray> ray_at(const Curve& curve, bool at_end) {
   return Ray{from, (to - from) / length};
 }
 
-/// Mean and least radius along a branch, further than `margin` from the balls of its junctions; where there is no such
-/// part, along what lies outside of the balls.
+/// Computes mean and least radius along a branch, further than `margin` from the balls of its junctions. If no such
+/// part exists, it uses all points outside of the balls.
 void measure_radii(const Curve& curve, const std::array<CurveEnd, 2>& ends, double margin, CentrelineBranch& branch) {
   const auto is_free = [&](const Vec3d& point) {
     return std::none_of(ends.begin(), ends.end(), [&](const CurveEnd& end) {
@@ -313,7 +313,7 @@ class Placer {
   [[nodiscard]] bool is_free(std::int32_t node) const {
     return node != no_node && graph_.nodes[static_cast<std::size_t>(node)].chains.size() == 1;
   }
-  /// The ball of a junction; of other nodes, none.
+  /// Returns the ball of a junction; other nodes have none.
   [[nodiscard]] CurveEnd end_of(std::int32_t node) const {
     if (node == no_node) return {CurveEnd::Kind::closed, {}, 0};
     const std::uint32_t voxel = graph_.nodes[static_cast<std::size_t>(node)].voxel;

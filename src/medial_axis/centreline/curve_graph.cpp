@@ -24,7 +24,7 @@ struct Edge {
   std::uint32_t b;  ///< > a
 };
 
-/// An edge at one of its voxels.
+/// Edge as seen from one of its voxels.
 struct Link {
   std::uint32_t to;
   std::uint32_t edge;
@@ -47,7 +47,7 @@ std::vector<std::uint32_t> listed(const VoxelSet& voxels) {
   return out;
 }
 
-/// All pairs of neighbours, the shortest first.
+/// Returns all pairs of neighbours, the shortest first.
 std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::uint32_t>& list, const Vec3d& spacing,
                                 const Context& context) {
   std::vector<Edge> edges;
@@ -72,7 +72,7 @@ std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::u
   return edges;
 }
 
-/// Which edges the graph keeps.
+/// Selects the edges that the graph keeps.
 class Tunnels {
  public:
   Tunnels(std::size_t voxels, const std::vector<Edge>& edges, const Context& context)
@@ -99,7 +99,7 @@ class Tunnels {
     }
   }
 
-  /// Adds the border of a triangle, edges falling; its last one that no earlier triangle closes is closed by it.
+  /// Adds the border of a triangle, edges descending. It closes its longest edge that no earlier triangle closes.
   void add(std::vector<std::uint32_t> border) {
     while (!border.empty()) {
       const auto [at, is_new] = closing_.try_emplace(border.front());
@@ -118,7 +118,7 @@ class Tunnels {
   const std::vector<Edge>& edges_;
   std::vector<std::vector<Link>> links_;
   std::vector<bool> is_kept_;
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> closing_;  ///< by its first edge
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> closing_;  ///< borders by their first edge
 };
 
 /// Walks along the edges of voxels that have two.

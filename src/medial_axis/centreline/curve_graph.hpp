@@ -17,13 +17,13 @@ inline constexpr std::int32_t no_node = -1;
 /// Voxels in a row, each a neighbour of the next.
 struct Chain {
   std::array<std::int32_t, 2> nodes{no_node, no_node};
-  std::vector<std::uint32_t> voxels;  ///< those of its nodes included; of a closed one, the first is also the last
+  std::vector<std::uint32_t> voxels;  ///< those of its nodes included; in a closed chain the first is also the last
   bool is_there = true;
 };
 
 struct ChainNode {
   std::uint32_t voxel = 0;
-  std::vector<std::uint32_t> chains;  ///< one that comes back is there twice
+  std::vector<std::uint32_t> chains;  ///< one that comes back is listed twice
   bool is_there = true;
 };
 
@@ -32,16 +32,16 @@ struct CurveGraph {
   std::vector<Chain> chains;
 };
 
-/// The graph of thin voxels, by their linear indices. Its edges join neighbours: a spanning forest of the shortest
-/// ones, and one for each tunnel.
+/// Returns the graph of thin voxels, by their linear indices. Its edges join neighbours: a spanning forest of the
+/// shortest edges, and one edge for each tunnel.
 ///
-/// The union of the closed voxels has the homotopy type of the complex of those that touch one another pairwise, since
-/// boxes that do so have a point in common. Of its edges beside the forest those stay that no triangle closes: pairs by
-/// reduction modulo 2, as in persistent homology. So the graph has the components and tunnels of the voxels, and of
-/// neighbours that touch crosswise it keeps no small loops.
+/// Boxes that touch one another pairwise have a point in common. So the union of the closed voxels has the homotopy
+/// type of the complex of voxels that touch pairwise. An edge outside of the forest is kept if no triangle closes it:
+/// pairs are found by reduction modulo 2, as in persistent homology. So the graph has the components and tunnels of the
+/// voxels. It keeps no small loops of neighbours that touch crosswise.
 [[nodiscard]] CurveGraph curve_graph(const VoxelSet& voxels, const Vec3d& spacing, const Context& context);
 
-/// Components and loops.
+/// Returns the numbers of components and loops.
 [[nodiscard]] BettiNumbers betti_numbers(const CurveGraph& graph);
 
 }  // namespace blum::centrelines

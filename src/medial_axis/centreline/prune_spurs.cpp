@@ -22,7 +22,7 @@ class Pruner {
   void prune() {
     std::vector<std::uint32_t> order(graph_.nodes.size());
     std::iota(order.begin(), order.end(), 0U);
-    // Small balls first, so that what lies in a large one is judged when it is clean.
+    // Small balls come first, so that the contents of a large one are judged when they are clean.
     std::sort(order.begin(), order.end(),
               [this](std::uint32_t a, std::uint32_t b) { return std::pair(radius(a), a) < std::pair(radius(b), b); });
     for (bool has_changed = true; has_changed;) {
@@ -51,7 +51,7 @@ class Pruner {
     return end != node && graph_.nodes[end].chains.size() == 1;
   }
 
-  /// The branches of a node with free ends that are at most so long, the shortest first.
+  /// Returns the branches of a node with free ends that `is_short` accepts, the shortest first.
   template <class Limit>
   std::vector<std::uint32_t> free_branches(std::uint32_t node, const Limit& is_short) const {
     std::vector<std::uint32_t> found;
@@ -76,7 +76,7 @@ class Pruner {
     return !spurs.empty();
   }
 
-  /// Whether no voxel of a branch is further from a node.
+  /// Returns true if no voxel of a branch is further from a node than `distance`.
   [[nodiscard]] bool lies_within(std::uint32_t c, std::uint32_t node, double distance) const {
     const Vec3d centre = measure_.position(graph_.nodes[node].voxel);
     const auto is_near = [&](std::uint32_t voxel) { return length(measure_.position(voxel) - centre) <= distance; };
@@ -95,7 +95,7 @@ class Pruner {
     return true;
   }
 
-  /// A branch with two free ends, of which neither lies far beyond the largest ball on it.
+  /// Contracts a branch with two free ends to a point if neither lies far beyond the largest ball on it.
   bool drop_blob(std::uint32_t node) {
     if (spur_ == 0 || graph_.nodes[node].chains.empty()) return false;
     const std::uint32_t c = graph_.nodes[node].chains.front();
@@ -127,14 +127,14 @@ class Pruner {
   }
   void drop(std::uint32_t chain) { graph_.chains[chain] = {{no_node, no_node}, {}, false}; }
 
-  /// The voxels of a chain from a node on.
+  /// Returns the voxels of a chain from a node on.
   [[nodiscard]] std::vector<std::uint32_t> from(std::uint32_t chain, std::uint32_t node) const {
     std::vector<std::uint32_t> voxels = graph_.chains[chain].voxels;
     if (graph_.chains[chain].nodes[0] != static_cast<std::int32_t>(node)) std::reverse(voxels.begin(), voxels.end());
     return voxels;
   }
 
-  /// Makes the two branches of a node one.
+  /// Joins the two branches of a node.
   void join_two(std::uint32_t node) {
     if (graph_.nodes[node].chains.size() != 2) return;
     const std::uint32_t a = graph_.nodes[node].chains[0];
@@ -157,7 +157,7 @@ class Pruner {
     drop(b);
   }
 
-  /// Makes two junctions one whose balls hold each other's centres.
+  /// Merges two junctions if the branch between them is at most a voxel longer than the smaller radius of their balls.
   bool contract(std::uint32_t chain) {
     const auto [first, last] = graph_.chains[chain].nodes;
     if (first == no_node || first == last) return false;
@@ -181,7 +181,7 @@ class Pruner {
     return true;
   }
 
-  /// Leads one end of a chain from a node along `way` to where that starts.
+  /// Extends one end of a chain from a node along `way` to the start of `way`.
   void move_end(std::uint32_t c, std::uint32_t from_node, std::uint32_t to, const std::vector<std::uint32_t>& way) {
     Chain& chain = graph_.chains[c];
     if (chain.nodes[0] == static_cast<std::int32_t>(from_node)) {
@@ -200,7 +200,7 @@ class Pruner {
   std::vector<double> length_;  ///< of each chain
 };
 
-/// Leaves out what is gone.
+/// Removes nodes and chains that are gone.
 CurveGraph compact(CurveGraph&& graph) {
   CurveGraph out;
   std::vector<std::int32_t> node_of(graph.nodes.size(), no_node);

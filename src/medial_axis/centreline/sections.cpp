@@ -13,7 +13,7 @@ constexpr int most_rays = 64;
 
 }  // namespace
 
-/// A cell of eight voxel centres, and where in it a point lies.
+/// Cell of eight voxel centres, and the place of a point in it.
 struct LabelShare::Corner {
   std::size_t index = 0;  ///< of the voxel with the smallest indices
   Vec3d share{};          ///< 0 to 1 along each axis
@@ -40,7 +40,8 @@ bool LabelShare::locate(const Vec3d& point, Corner& corner) const {
 
 namespace {
 
-/// Trilinear between eight values. @param value  of a linear index.
+/// Interpolates between eight values, trilinearly.
+/// @param value  of a linear index.
 template <class Value>
 double blend(std::size_t index, std::size_t row, std::size_t layer, const Vec3d& share, const Value& value) {
   const auto along = [&](std::size_t at) { return value(at) + share.x * (value(at + 1) - value(at)); };

@@ -80,7 +80,7 @@ class Thinner {
     }
   }
 
-  /// What stayed while deeper ones were there may go now. Until nothing does.
+  /// Looks again at voxels that stayed while deeper ones were present, until none may be removed.
   void look_again() {
     SimpleCache simple;
     std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> line(std::greater<>(), std::move(left_));

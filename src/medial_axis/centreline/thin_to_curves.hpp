@@ -1,4 +1,4 @@
-// Blum: voxels thinned to curves. SPDX-License-Identifier: Apache-2.0
+// Blum: thinning of voxels to curves. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace blum::centrelines {
 
-/// What is left when simple voxels go, the shallowest first, and those with one neighbour stay as ends. The closed
-/// voxels collapse to those that are left.
-/// @param voxels   none of the border of their box.
-/// @param depth    above zero for them, and only for these; one per voxel of the box.
+/// Removes simple voxels, the shallowest first, and returns those that are left. Voxels with one neighbour stay as
+/// ends. The closed voxels collapse to the result.
+/// @param voxels   none at the border of their box.
+/// @param depth    above zero for exactly these voxels; one value per voxel of the box.
 /// @param spacing  of the voxels.
 /// @return  the same for any number of threads. @throws Cancelled.
 [[nodiscard]] VoxelSet thin_to_curves(const VoxelSet& voxels, std::span<const float> depth, const Vec3d& spacing,

@@ -14,18 +14,18 @@ constexpr int most_steps = 24;
 constexpr double equal_distances = 1e-9;  ///< voxels
 /// Walls further than the closest one by more than this do not take part, in voxels.
 constexpr double nearly_as_close = 3;
-/// Squared sine between what two walls ask for, below which these say the same; the same for three, as a volume.
+/// Squared sine between two equations, below which they count as dependent; the same for three equations, as a volume.
 constexpr double least_sine_squared = 0.02;
 constexpr double least_volume = 0.1;
 
-/// Where a wall asks for x to move: slope * move = difference makes it as close as the closest one.
+/// Equation of a wall: after a move with slope * move = difference, it is as close as the closest one.
 struct Equation {
   Vec3d slope;
   double difference = 0;
   std::size_t wall = 0;
 };
 
-/// The shortest move that solves some equations, and how long it is.
+/// Shortest move that solves some equations, and its squared length.
 struct Move {
   Vec3d by;
   double squared = std::numeric_limits<double>::infinity();
@@ -54,7 +54,7 @@ std::optional<Vec3d> solve(const Equation& e, const Equation& f, const Equation&
   return (fg * e.difference + cross(g.slope, e.slope) * f.difference + cross(e.slope, f.slope) * g.difference) / volume;
 }
 
-/// The shortest move over all choices of walls.
+/// Returns the shortest move over all choices of walls.
 Move shortest(std::span<const Equation> equations, std::size_t count) {
   Move best;
   const auto offer = [&](const std::optional<Vec3d>& move, std::array<std::size_t, 3> walls) {
@@ -75,7 +75,7 @@ Move shortest(std::span<const Equation> equations, std::size_t count) {
   return best;
 }
 
-/// The vertex at a point, with the two footprints that are seen furthest apart.
+/// Returns the vertex at a point, with the two footprints that are seen furthest apart.
 AxisVertex vertex_at(const Surface& surface, const Vec3d& x, const NearestPoint& nearest,
                      std::span<const Footprint> feet) {
   AxisVertex vertex = vertex_of_one_wall(x, nearest);
@@ -96,7 +96,7 @@ AxisVertex vertex_at(const Surface& surface, const Vec3d& x, const NearestPoint&
   return vertex;
 }
 
-/// What the walls other than the closest one ask for.
+/// Returns the equations of the walls other than the closest one.
 std::vector<Equation> equations_of(const Walls& walls, const Vec3d& x, double voxel) {
   std::vector<Equation> equations;
   const Walls::Wall& closest = walls.closest();

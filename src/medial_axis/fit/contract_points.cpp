@@ -20,7 +20,7 @@ Pair ordered(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// The edges whose ends are at the same place, each once, rising.
+/// Returns the edges whose ends are at the same place, each once, ascending.
 std::vector<Pair> points_of(const Complex& axis, const Incidence& incidence) {
   std::vector<Pair> points;
   for (const Pair& edge : incidence.edges()) {
@@ -34,7 +34,7 @@ class Contractor {
   explicit Contractor(Complex& axis) : axis_(axis), cells_(axis.view()), merged_into_(axis.positions.size(), none) {}
 
   void contract(std::vector<Pair> points) {
-    // What one contraction forbids another one may allow.
+    // A contraction may allow others that were forbidden before.
     for (bool is_changed = true; is_changed && !points.empty();) {
       std::vector<Pair> left;
       for (const Pair& point : points) {
@@ -65,12 +65,12 @@ class Contractor {
     return found;
   }
 
-  /// Moves all of the second vertex to the first one.
+  /// Moves all cells of the second vertex to the first one.
   void contract(const Pair& edge) {
     const auto [to, from] = edge;
     const auto angles = std::as_const(axis_.triangle_columns).get<float>(medial_columns::separation_angle);
     merged_into_[from] = to;
-    // Of two sides of a triangle that goes one is left: a curve where no other triangle has it.
+    // Two sides of a removed triangle become one, which is a curve if no other triangle has it.
     for (const auto& [triangle, third] : cells_.contract(from, to)) {
       if (!is_side(to, third)) add_curve(to, third, angles[triangle]);
     }
@@ -85,7 +85,7 @@ class Contractor {
     axis_.edge_columns.edit<std::int32_t>(medial_columns::role)[e] = static_cast<std::int32_t>(MedialRole::curve);
   }
 
-  /// Takes what is gone out of the complex.
+  /// Takes removed cells out of the complex.
   void sweep() { axis_ = cells_.rest_of(axis_); }
 
   Complex& axis_;

@@ -29,26 +29,26 @@
 namespace blum::detail {
 namespace {
 
-/// Directions in which vertices of rims, and ends of seams and curves, may slide; of unit length, or zero where none is
-/// told.
+/// Directions in which vertices of rims, and ends of seams and curves, may slide. They have unit length, or are zero if
+/// unknown.
 class BorderDirections {
  public:
-  /// @param kinds  of the vertices. All must stay.
+  /// @param kinds  of the vertices. All arguments must outlive this object.
   BorderDirections(const AxisLists& lists, const Incidence& incidence, const std::vector<Kind>& kinds)
       : lists_(lists), incidence_(incidence), kinds_(kinds) {}
 
-  /// Away from the sheet, from edges of the rim near by.
+  /// Returns the direction away from the sheet, from nearby edges of the rim.
   [[nodiscard]] Vec3d of_rim(std::uint32_t v) const;
-  /// Along the sheet to where it is less deep: over convex edges that it ends at.
+  /// Returns the direction along the sheet to where it is less deep: over convex edges at which it ends.
   [[nodiscard]] Vec3d towards_surface(std::uint32_t v) const;
-  /// Away from the only neighbour along a seam (of at least so many triangles) or curve (of none).
+  /// Returns the direction away from the only neighbour along a seam (at least `triangles` triangles) or curve (0).
   [[nodiscard]] Vec3d of_end(std::uint32_t v, std::size_t triangles) const;
-  /// Whether a curve that ends at a vertex comes back there beside a longer edge: it is to be taken away, and not to
-  /// follow the other one.
+  /// Returns true if a curve that ends at a vertex comes back there beside a longer edge. It will be removed, so it
+  /// must not follow the other edge.
   [[nodiscard]] bool comes_back(std::uint32_t v) const;
 
  private:
-  /// From a triangle outwards through its side, as long as the side.
+  /// Returns a vector from a triangle outwards through its side, as long as the side.
   [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const;
 
   const AxisLists& lists_;
@@ -131,11 +131,12 @@ bool BorderDirections::comes_back(std::uint32_t v) const {
   return false;
 }
 
-/// A hash of what a step sees, of 64 bits: another sight has the same one of 10^6 in 10^-7 of all runs.
+/// Hash of the data that a step depends on, of 64 bits. Among 10^6 different data, two share a hash in 10^-7 of all
+/// runs.
 class SightHash {
  public:
   void add(std::uint64_t word) {
-    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // of the golden ratio
+    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // from the golden ratio
     state_ = std::rotl(state_ ^ word, 29) * odd;
     state_ ^= state_ >> 32U;
   }
@@ -154,10 +155,11 @@ class SightHash {
   std::uint64_t state_ = 0;
 };
 
-/// Hashes of what a step saw where it left the vertex as it was.
+/// Hashes of the data with which a step left the vertex as it was.
 using Settled = std::unordered_set<std::uint64_t>;
 
-/// Whether a vertex is the same but for rounding. @param voxel  mesh units.
+/// Returns true if two vertices are the same up to rounding.
+/// @param voxel  mesh units.
 inline bool is_same_vertex(const AxisVertex& a, const AxisVertex& b, double voxel) {
   constexpr double next_to_nothing = 1e-6;  // voxels, degrees
   const double most = next_to_nothing * voxel;
@@ -165,36 +167,37 @@ inline bool is_same_vertex(const AxisVertex& a, const AxisVertex& b, double voxe
          std::abs(a.radius - b.radius) <= most && std::abs(a.separation_angle - b.separation_angle) <= next_to_nothing;
 }
 
-/// Moves vertices of lists, which keep their cells but in bend_curves(). What cells tell of each is found once.
+/// Moves vertices of lists, whose cells stay except in bend_curves(). Results that depend only on the cells are
+/// computed once.
 class Fitter {
-  // How far things go.
+  // Limits of all steps.
   static constexpr std::size_t vertices_per_range = 64;
-  /// Voxels that a vertex of a seam may move.
+  /// Voxels that a vertex may move: on a seam, to a curve, to the middle of a round part.
   static constexpr double most_moved = 1.5;
   static constexpr double most_moved_to_curve = 2.5;
   static constexpr double most_moved_to_centre = 4;
-  /// Radius where sheets end that reach the surface, in voxels.
+  /// Radius at which sheets end that reach the surface, in voxels.
   static constexpr double least_radius = 0.02;
   static constexpr std::array short_radii{0.2, 0.1, 0.05};
   /// Separation angle, in degrees, between walls that do not meet near by.
   static constexpr double parallel = 175;
-  /// How much more than theta is seen next to where nothing is any more, in degrees.
+  /// Next to the end of a sheet, at most this much more than theta is seen, in degrees.
   static constexpr double nearly_theta = 10;
-  /// Where the angle is looked at on the way outwards and inwards, in voxels.
+  /// Places on the way outwards and inwards at which the angle is evaluated, in voxels.
   static constexpr std::array outwards{0.25, 0.5, 1.0, 1.5, 2.0, 2.5};
   static constexpr std::array inwards{-0.25, -0.5, -1.0, -1.5, -2.0, -2.5};
   static constexpr int halvings = 9;
-  /// Borders that are this close to where they end stay, in voxels: as exactly as these halvings find it.
+  /// Borders stay if they are this close to where they end, in voxels. The halvings find that place this exactly.
   static constexpr double settled = 0.001;
-  /// How far from a vertex what lies opposite of a footprint is looked for, and how much further than this it may be,
-  /// in voxels.
+  /// Distance from a vertex at which the point opposite of a footprint is searched for, in voxels. `facets` is how much
+  /// further than the footprint this point may be.
   static constexpr double opposite_step = 0.3;
   static constexpr double facets = 0.02;
 
  public:
-  /// What was found out, and is kept for the next Fitter.
+  /// Results that are kept for the next Fitter.
   struct Known {
-    std::set<std::array<double, 3>> not_round;  ///< where centred() was asked in vain: nothing is found there again
+    std::set<std::array<double, 3>> not_round;  ///< places where centred() found nothing
     Settled seams, rims;                        ///< of place_seams() and cut_rims()
   };
 
@@ -212,15 +215,15 @@ class Fitter {
         sight_(lists.vertices.size(), 0),
         mover_(lists, incidence_, target.surface, context) {}
 
-  // ---- Steps that move vertices, and say how far the furthest one went, mesh units ----
+  // ---- Steps: they move vertices and return the largest move, mesh units ----
 
-  /// Puts vertices of ribbons in the middle of what is round, before what does not show is taken for excess.
+  /// Moves vertices of ribbons to the middle of a round part. Otherwise trim() would remove those that are not shown.
   double find_centres() {
     return move([&](std::uint32_t v) -> Moved {
       if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
       const Moved found = between(v, 3);
       if (!found || !is_shown(*found, 3)) return centred(v);
-      // Rims of sheets that know of one wall only are next to where they are between two.
+      // Rims of sheets that know of one wall only are next to a place between two walls.
       const Moved between_two = on_sheet(v);
       const Vec3d& at = lists_.vertices[v].position;
       const bool is_nearer =
@@ -228,13 +231,13 @@ class Fitter {
       return is_nearer && is_shown(*between_two, 2) ? between_two : found;
     });
   }
-  /// Puts vertices that know of one wall only between two.
+  /// Moves vertices that know of one wall only between two walls.
   double find_sheets() {
     return move([&](std::uint32_t v) { return lists_.vertices[v].separation_angle > 0 ? std::nullopt : on_sheet(v); });
   }
-  /// Of the lists, as long as none of their edges goes.
+  /// Incidence of the lists, valid as long as none of their edges is removed.
   [[nodiscard]] const Incidence& incidence() const { return incidence_; }
-  /// What each vertex sees, degrees.
+  /// Returns the angle that each vertex sees, degrees.
   [[nodiscard]] std::vector<double> angles() const {
     std::vector<double> out(lists_.vertices.size());
     parallel_for(context_, out.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
@@ -245,16 +248,16 @@ class Fitter {
   double place_seams() {
     return move_unsettled(known_.seams, [&](std::uint32_t v) { return balanced(v); });
   }
-  /// Only those of curves, where short edges beside them were contracted to others.
+  /// Moves only vertices of curves, after short edges beside them were contracted.
   double place_curves() {
     return move([&](std::uint32_t v) { return kinds_[v].curves > 0 ? balanced(v) : std::nullopt; });
   }
-  /// Vertices inside of a sheet that were put on another one beyond the seam go to this.
+  /// Moves vertices inside of a sheet to the seam if they were put on another sheet beyond it.
   double straighten() {
     return move([&](std::uint32_t v) { return is_bent(v) ? straightened(v) : std::nullopt; });
   }
-  /// Borders that leave what is round between two vertices that show go back there, and so does all next to it that is
-  /// in the middle of what is round but for its place.
+  /// Moves vertices that are not shown, next to shown ones, to the middle of a round part. If that fails, those of rims
+  /// and curves between two shown ones go to the nearest of these.
   double take_back() {
     return move([&](std::uint32_t v) -> Moved {
       if (is_shown(lists_.vertices[v], 3)) return std::nullopt;
@@ -274,8 +277,8 @@ class Fitter {
       return shown > 1 && kinds_[v].rims + kinds_[v].curves > 0 ? Moved(*nearest) : std::nullopt;
     });
   }
-  /// Puts vertices into edges of curves that leave the middle of what is round and bends.
-  /// @return  whether any was. The lists have other cells then: this is of no more use.
+  /// Inserts vertices into edges of curves that leave the bent middle of a round part.
+  /// @return  true if any was inserted. The lists then have other cells, and this object must not be used any more.
   bool bend_curves() {
     return split_curves(
         lists_, incidence_, surface_, voxel_, [&](const Vec3d& at) { return centred_at(at); }, context_);
@@ -283,8 +286,8 @@ class Fitter {
   double cut_rims() {
     return move_unsettled(known_.rims, [&](std::uint32_t v) { return cut(v); });
   }
-  /// Rims that stayed far from the surface, as edges between them would have cut off corners of holes: to where the
-  /// radius is a fifth of a voxel, a tenth, a twentieth. Each is taken where the one before was reached.
+  /// Moves rims that stayed far from the surface because edges between them would have cut off corners of holes. They
+  /// go to a radius of a fifth of a voxel, a tenth, a twentieth, as far as their edges allow.
   double cut_rims_short() {
     double furthest = 0;
     for (const double radius : short_radii) {
@@ -302,9 +305,9 @@ class Fitter {
  private:
   using Moved = std::optional<AxisVertex>;
 
-  // ---- Where vertices go ----
+  // ---- Places of vertices ----
 
-  /// Seams, junctions and curves: between as many walls as they should have.
+  /// Returns the place of a vertex of a seam, junction or curve: between as many walls as it should have.
   [[nodiscard]] Moved balanced(std::uint32_t v) {
     const Kind& kind = kinds_[v];
     const bool is_alone = kind.rims + kind.seams + kind.curves + kind.inner == 0;
@@ -320,12 +323,13 @@ class Fitter {
 
   [[nodiscard]] Moved between(std::uint32_t v, std::size_t walls) const {
     const AxisVertex& vertex = lists_.vertices[v];
-    // What does not show may lie beside what is round by more than a voxel.
+    // A vertex that is not shown may lie more than a voxel beside a round part.
     const double reach = is_shown(vertex, 3) ? most_moved : most_moved_to_curve;
     return balanced_at(vertex.position, feet_around(v), walls, {voxel_, reach * voxel_, true});
   }
 
-  /// Between the two walls that the rest of its sheet next to a vertex is between; where that is not told, between any.
+  /// Returns a place between the two walls of the rest of the sheet next to a vertex. If these are unknown, it is
+  /// between any two.
   [[nodiscard]] Moved on_sheet(std::uint32_t v) const {
     const AxisVertex& vertex = lists_.vertices[v];
     std::uint32_t beside = v;
@@ -343,7 +347,7 @@ class Fitter {
     return between(v, 2);
   }
 
-  /// In the middle of what is round around a vertex, if that shows.
+  /// Returns the middle of a round part around a vertex, if it is shown.
   [[nodiscard]] Moved centred(std::uint32_t v) {
     const Vec3d& at = lists_.vertices[v].position;
     if (known_.not_round.contains({at.x, at.y, at.z})) return std::nullopt;
@@ -355,7 +359,7 @@ class Fitter {
     const std::optional<RoundCentre> centre =
         round_centre(surface_, start, {voxel_, most_moved_to_centre * voxel_, target_.theta});
     if (!centre) return std::nullopt;
-    // Where three facets are equally far, if they are so next to the middle.
+    // Prefers a point where three facets are equally far, if it is next to the middle.
     const BalanceLimits next_to{voxel_, facets * voxel_, true};
     Moved found = balanced_at(centre->position, centre->feet, 3, next_to);
     if (found && is_shown(*found, 3)) return found;
@@ -367,7 +371,7 @@ class Fitter {
     return is_shown(*found, 3) ? found : std::nullopt;
   }
 
-  /// balance(), with sites of the input.
+  /// Returns the result of balance(), with sites of the input.
   [[nodiscard]] Moved balanced_at(const Vec3d& start, const std::vector<Footprint>& feet, std::size_t walls,
                                   const BalanceLimits& limits) const {
     Moved found = balance(surface_, start, feet, walls, limits);
@@ -377,35 +381,36 @@ class Fitter {
     return found;
   }
 
-  /// A vertex that is_bent(): on the seam, if it bends less then.
+  /// Returns a place on the seam for a vertex that is_bent(), if the sheet bends less then.
   [[nodiscard]] Moved straightened(std::uint32_t v) const {
-    constexpr double better = 0.5;  // of what is missing to 1
+    constexpr double better = 0.5;  // of the difference to 1
     const double bend = least_cosine(v, lists_.vertices[v].position);
     const Moved found = between(v, 3);
     if (!found || 1 - least_cosine(v, found->position) > better * (1 - bend)) return std::nullopt;
     return found;
   }
 
-  /// Whether a vertex lies inside of a sheet that bends there.
+  /// Returns true if a vertex lies inside of a sheet that bends there.
   [[nodiscard]] bool is_bent(std::uint32_t v) const {
     constexpr double sharp = 0.9;  // cosine: 25 degrees
     const Kind& kind = kinds_[v];
     return kind.seams + kind.curves + kind.rims == 0 && least_cosine(v, lists_.vertices[v].position) <= sharp;
   }
 
-  /// Of the angles by which the sheet bends at the edges of a vertex, were it elsewhere; 1 where it is flat.
+  /// Returns the least cosine of the angles by which the sheet would bend at the edges of a vertex; 1 if it is flat.
   [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
     return least_cosine_at(lists_, incidence_, v, position);
   }
 
-  /// What is closest a little further away from the first footprint of a vertex that is not on the surface.
+  /// Returns the closest point to a place a little further away from the first footprint. The vertex must not be on the
+  /// surface.
   [[nodiscard]] NearestPoint opposite_of(const AxisVertex& vertex) const {
     const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
     return surface_.nearest(vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius),
                             foot_of(vertex, 0));
   }
 
-  /// Of round things, the footprint opposite of the first one, where that is as close.
+  /// For round parts, takes the footprint opposite of the first one as the second, if it is as close.
   void widen(AxisVertex& vertex) const {
     const NearestPoint opposite = opposite_of(vertex);
     const double limit = vertex.radius + 1e-6 * voxel_ + 1e-9 * vertex.radius;
@@ -418,7 +423,7 @@ class Fitter {
     vertex.separation_angle = angle;
   }
 
-  /// Rims and ends: where the angle is theta, or the radius next to nothing.
+  /// Returns the place of a vertex of a rim or end: where the angle is theta or the radius almost zero.
   [[nodiscard]] Moved cut(std::uint32_t v) const {
     const Kind& kind = kinds_[v];
     if (kind.is_rim()) {
@@ -430,8 +435,8 @@ class Fitter {
     return kind.rims + kind.seams + kind.curves == 0 ? at_mouth(v) : std::nullopt;
   }
 
-  /// Where a thin wall begins that a vertex lies next to: there the angle drops to next to nothing, also inside of a
-  /// sheet that goes on beyond for homotopy alone.
+  /// Returns the mouth of a thin wall next to a vertex. There the angle drops to almost zero, also inside of a sheet
+  /// that goes on beyond for homotopy alone.
   [[nodiscard]] Moved at_mouth(std::uint32_t v) const {
     if (is_shown(lists_.vertices[v], 2) || incidence_.edges_of_vertex()[v].empty()) return std::nullopt;
     const std::uint32_t inner = best_neighbour(v);
@@ -439,19 +444,20 @@ class Fitter {
     constexpr double wider = 4;
     const bool is_thin = thin.radius < least_radius * voxel_ && thin.separation_angle >= parallel &&
                          wider * thin.radius < lists_.vertices[v].radius;
-    // Edges to what lies beyond come out of the wall: the mouth is met to well within the wall's thickness.
+    // Edges to vertices beyond come out of the wall, so the mouth must be found to well within the wall's thickness.
     return is_thin && is_shown(thin, 2) ? towards(v, inner, 2, 3 * halvings) : std::nullopt;
   }
 
-  /// @param walls  of what the vertex lies on: sheets have two footprints, which tell their angle.
+  /// Returns true if a vertex is shown: it sees more than theta, and the sheet does not end there.
+  /// @param walls  of what the vertex lies on: on sheets (2), the two footprints determine the angle.
   [[nodiscard]] bool is_shown(const AxisVertex& vertex, std::size_t walls) const {
-    // Sheets end where their two walls meet; between parallel ones the radius may be as small anywhere.
+    // Sheets end where their two walls meet. Between parallel walls the radius may be this small anywhere.
     if (vertex.radius < least_radius * voxel_ && vertex.separation_angle < parallel) return false;
     return (walls > 2 ? angle_seen(vertex) : vertex.separation_angle) > target_.theta;
   }
 
-  /// The largest angle between footprints of a vertex, or between the first one and what lies opposite and is as far
-  /// but for the facets of round things: few of these meet in any one point.
+  /// Returns the largest angle between footprints of a vertex. The point opposite of the first one counts if it is as
+  /// far to within `facets`. Few facets of round parts meet in one point.
   [[nodiscard]] double angle_seen(const AxisVertex& vertex) const {
     const double own = vertex.separation_angle;
     if (own > target_.theta || !(vertex.radius > 0)) return own;
@@ -460,24 +466,24 @@ class Fitter {
     return std::max(own, angle_at(vertex.position, vertex.footprints[0], opposite));
   }
 
-  /// The way of a vertex along its sheet, seam or curve, and what its last point told.
+  /// Way of a vertex along its sheet, seam or curve, and results at its last point.
   struct Way {
     Vec3d origin;
-    Vec3d direction;  ///< of unit length, or zero
+    Vec3d direction;  ///< Unit length, or zero.
     std::size_t walls = 0;
-    bool is_curve = false;  ///< that ends at the vertex
+    bool is_curve = false;  ///< True if it is a curve that ends at the vertex.
     std::vector<Footprint> feet;
-    const AxisVertex* sheet = nullptr;  ///< a vertex of the sheet that shows
-    double end_radius = least_radius;   ///< where it ends, in voxels
-    bool is_past = false;               ///< whether the last point is past the border, and not past something else
-    bool is_round = false;              ///< whether some point was in the middle of what is round
+    const AxisVertex* sheet = nullptr;  ///< A shown vertex of the sheet.
+    double end_radius = least_radius;   ///< Radius at which it ends, in voxels.
+    bool is_past = false;               ///< True if the last point is past the border, and not past something else.
+    bool is_round = false;              ///< True if some point was in the middle of a round part.
   };
   [[nodiscard]] bool is_shown_on(const Way& way, const AxisVertex& vertex) const {
     if (vertex.radius < way.end_radius * voxel_ && vertex.separation_angle < parallel) return false;
     // Where a curve ends, feet around it are seen at twice the angle that they make with the curve.
     return is_shown(vertex, way.walls) && (!way.is_curve || angle_ahead(vertex, way.direction) > target_.theta);
   }
-  /// The vertex that shows so many voxels on.
+  /// Returns the vertex that many voxels on, if it is shown.
   [[nodiscard]] Moved on(Way& way, double voxels) const {
     const Vec3d place = way.origin + way.direction * (voxels * voxel_);
     Moved found = balanced_at(place, way.feet, way.walls, {voxel_, most_moved * voxel_, true});
@@ -492,7 +498,8 @@ class Fitter {
     return found;
   }
 
-  /// The last vertex on the way from a vertex along its sheet or seam that shows, with a radius of some voxels.
+  /// Returns the last shown vertex on the way from a vertex along its sheet or seam, down to a radius of `end_radius`
+  /// voxels.
   [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls,
                             double end_radius = least_radius) const {
     const AxisVertex& own = lists_.vertices[v];
@@ -514,7 +521,7 @@ class Fitter {
   [[nodiscard]] Moved slide_outwards(Way& way, AxisVertex start) const {
     const auto at = [&](double t) { return on(way, t); };
     way.origin = start.position;
-    // Most were put where they belong already.
+    // Most vertices are in their place already.
     if (!at(settled) && way.is_past) return start;
     double good = 0;
     for (const double t : outwards) {
@@ -523,7 +530,7 @@ class Fitter {
         good = t;
         continue;
       }
-      // Where the ball does not reach, the surface may have been passed.
+      // Beyond the reach of the ball, the surface may have been passed.
       const bool is_beyond = way.is_past || start.radius <= (t - good) * voxel_;
       start = *last_shown(at, good, t, start);
       // Beyond the rim of a lens only one wall is near.
@@ -541,15 +548,15 @@ class Fitter {
     return std::nullopt;
   }
 
-  /// The angle at which feet all around a curve are seen, from the first one and the direction of the curve, degrees:
-  /// which one lies opposite of it depends on the facets.
+  /// Returns the angle at which feet all around a curve are seen, in degrees. It is computed from the first foot and
+  /// the direction of the curve, because the opposite foot depends on the facets.
   [[nodiscard]] static double angle_ahead(const AxisVertex& vertex, const Vec3d& direction) {
     if (!(vertex.radius > 0) || !(squared_length(direction) > 0)) return 180;
     const double cosine = dot(vertex.footprints[0] - vertex.position, direction) / vertex.radius;
     return cosine > 0 ? 2 * std::acos(std::min(cosine, 1.0)) * degrees_per_radian : 180;
   }
 
-  /// Whether two vertices lie on one smooth sheet, by the directions from one footprint to the other.
+  /// Returns true if two vertices lie on one smooth sheet. The directions from one footprint to the other decide.
   [[nodiscard]] static bool goes_on(const AxisVertex& a, const AxisVertex& b) {
     constexpr double least = 0.9;  // cosine
     const Vec3d p = a.footprints[1] - a.footprints[0];
@@ -557,7 +564,7 @@ class Fitter {
     return std::abs(dot(p, q)) >= least * length(p) * length(q);
   }
 
-  /// Between a place that shows and one that does not.
+  /// Returns the last shown vertex between a shown place and one that is not, by halving.
   template <class At>
   [[nodiscard]] Moved last_shown(const At& at, double good, double bad, Moved best, int times = halvings) const {
     for (int n = 0; n < times; ++n) {
@@ -572,7 +579,7 @@ class Fitter {
     return best;
   }
 
-  /// The last vertex that shows on the way from a neighbour that does.
+  /// Returns the last shown vertex on the way from a shown neighbour.
   [[nodiscard]] Moved towards(std::uint32_t v, std::uint32_t neighbour, std::size_t walls, int times = halvings) const {
     const AxisVertex& from = lists_.vertices[neighbour];
     const Vec3d way = lists_.vertices[v].position - from.position;
@@ -628,8 +635,8 @@ class Fitter {
     return feet;
   }
 
-  /// Moves all vertices that `where` has a place for, but for those whose edges would leave the solid.
-  /// @return  how far the furthest one went, mesh units.
+  /// Moves all vertices for which `where` returns a place, except those whose edges would leave the solid.
+  /// @return  largest move, mesh units.
   template <class Where>
   double move(const Where& where) {
     std::vector<VertexMove> moves = mover_.moves_to(where);
@@ -642,13 +649,13 @@ class Fitter {
     return mover_.make(std::move(moves));
   }
 
-  /// The same, but for vertices that stayed where they are when all that is around them was as it is now.
+  /// The same, but skips vertices that stayed before when all data around them were the same.
   template <class Where>
   double move_unsettled(Settled& settled, const Where& where) {
     const double furthest = move([&](std::uint32_t v) -> Moved {
       const Kind& kind = kinds_[v];
       const bool is_inside = kind.rims + kind.seams + kind.curves == 0 && kind.inner > 0;
-      if (is_inside) return where(v);  // most are, and are told by what they are
+      if (is_inside) return where(v);  // most are; their kind decides quickly
       const std::uint64_t sight = sight_of(v);
       if (settled.contains(sight)) return std::nullopt;
       Moved found = where(v);
@@ -661,7 +668,7 @@ class Fitter {
     }
     return furthest;
   }
-  /// Of what moves a vertex of a border.
+  /// Returns a hash of the data that determine the move of a vertex of a border.
   [[nodiscard]] std::uint64_t sight_of(std::uint32_t v) const {
     SightHash hash;
     const Kind& kind = kinds_[v];
@@ -683,25 +690,25 @@ class Fitter {
   std::vector<Kind> kinds_;
   BorderDirections directions_;
   Known& known_;
-  // What threads find out, for known_.
+  // Results of threads, for known_.
   std::vector<std::uint8_t> is_not_round_;
   std::vector<std::uint64_t> sight_;  ///< of vertices that stay; else 0
   VertexMover mover_;
 };
 
-/// Triangles this high are two of their sides, and curves this close are one, in voxels.
+/// Triangles up to this height count as two of their sides, and curves this close count as one, in voxels.
 constexpr double thin = 0.02;
 constexpr double thin_if_round = 0.2;
 constexpr double beside = 0.1;
 /// Radius in walls much thinner than cells, in voxels.
 constexpr double far_below_a_voxel = 0.05;
-/// Sheets up to this size, in square voxels, that lie this close to others, in voxels, go.
+/// Sheets up to this size, in square voxels, that lie this close to others, in voxels, are removed.
 constexpr double crumb = 16;
 constexpr double on_others = 0.2;
-/// Edges this long that stick out of a rim are a part of its sheet, in voxels.
+/// Edges up to this length that stick out of a rim count as a part of its sheet, in voxels.
 constexpr double whiskers = 1;
 
-/// The steps one after the other. What is told by the triangles alone is kept from step to step while these stay.
+/// Runs the steps one after the other. The Fitter is kept from step to step while the cells stay.
 class Fitting {
  public:
   Fitting(AxisLists& lists, const FitTarget& target, const Context& context)
@@ -709,7 +716,7 @@ class Fitting {
 
   using Step = double (Fitter::*)();
 
-  /// @return  how far the furthest vertex went, voxels.
+  /// @return  largest move of a vertex, voxels.
   double take(Step step) { return (fitter().*step)() / target_.voxel; }
   double take(Step step, const ShortLengths& lengths) {
     const double furthest = take(step);
@@ -721,8 +728,8 @@ class Fitting {
       fitter_.reset();
     }
   }
-  /// Takes away what lies beyond the angle and can go, or on other cells.
-  /// @return  whether there was anything.
+  /// Removes cells beyond the angle, and cells that lie on other cells, as far as possible.
+  /// @return  true if the number of triangles and edges changed.
   bool trim_excess() {
     const std::size_t before = lists_.triangles.size() + lists_.edges.size();
     const double voxel = target_.voxel;
@@ -735,14 +742,14 @@ class Fitting {
     if (fitter().bend_curves()) fitter_.reset();
     merge();
   }
-  /// @return  how far sheets moved, mesh units.
+  /// @return  largest move of sheets, mesh units.
   double thin_out() {
     if (!(target_.tolerance > 0)) return 0;
     const double moved = thin_insides(lists_, fitter().incidence(), target_, context_);
     fitter_.reset();
     return moved;
   }
-  /// @param most_radius  voxels: only where radii are this small.
+  /// @param most_radius  voxels; only vertices with radii up to this are treated.
   void take_folds_away(double most_radius) {
     const UnfoldLimits limits{target_.voxel, most_radius * target_.voxel};
     if (unfold(lists_, fitter().incidence(), target_.surface, limits, context_)) fitter_.reset();
@@ -779,10 +786,10 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
   Fitting fitting(lists, target, context);
   fitting.take(&Fitter::find_centres);
   fitting.trim_excess();
-  // Of vertices close beside each other one is put on its sheet, not all.
+  // If vertices are close together, only one of them is put on its sheet.
   fitting.contract(inside);
   fitting.take(&Fitter::find_sheets, nothing);
-  // Where walls are much closer than the cells, these tell nothing of the order of vertices along the walls.
+  // If walls are much closer than the cells, these do not determine the order of vertices along the walls.
   fitting.take_folds_away(far_below_a_voxel);
   const double moved = fitting.thin_out();
   fitting.take(&Fitter::place_seams, with_seams);
@@ -794,7 +801,7 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
   bool is_changed = fitting.trim_excess();
   fitting.take(&Fitter::place_seams, with_rims);
   fitting.bend_curves();
-  // What one round changes may show what the next one is for, and ends of curves go far in several steps.
+  // Changes of one round may require the next one, and ends of curves go far in several steps.
   constexpr int most_rounds = 3;
   constexpr double far = 0.5;
   for (int round = 0; round < most_rounds; ++round) {

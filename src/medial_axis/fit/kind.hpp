@@ -1,4 +1,4 @@
-// Blum: what vertices and triangles of an axis are by its edges. SPDX-License-Identifier: Apache-2.0
+// Blum: kinds of vertices and triangles of an axis, from its edges. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -14,17 +14,17 @@
 
 namespace blum::detail {
 
-/// The end of an edge that is not this one.
+/// Returns the end of an edge that is not the given one.
 inline std::uint32_t other_end(const std::array<std::uint32_t, 2>& edge, std::uint32_t v) {
   return edge[0] == v ? edge[1] : edge[0];
 }
-/// The corner of a triangle that is not on its side.
+/// Returns the corner of a triangle that is not on the given side.
 inline std::uint32_t third_corner(const std::array<std::uint32_t, 3>& triangle,
                                   const std::array<std::uint32_t, 2>& side) {
   return triangle[0] ^ triangle[1] ^ triangle[2] ^ side[0] ^ side[1];
 }
 
-/// What the edges at a vertex are.
+/// Numbers of edges of each kind at a vertex.
 struct Kind {
   std::uint32_t rims = 0, seams = 0, curves = 0, inner = 0;
 
@@ -36,7 +36,7 @@ struct Kind {
   [[nodiscard]] bool is_junction() const { return seams > 2 || (seams > 0 && curves > 0); }
 };
 
-/// Which triangles are of one sheet: those that edges of exactly two triangles join.
+/// Joins triangles of one sheet: those connected through edges of exactly two triangles.
 inline detail::UnionFind sheets_of(const Incidence& incidence) {
   detail::UnionFind sheets(incidence.sides().size());
   for (std::size_t e = 0; e < incidence.edges().size(); ++e) {
@@ -46,7 +46,8 @@ inline detail::UnionFind sheets_of(const Incidence& incidence) {
   return sheets;
 }
 
-/// @param incidence  of a complex of so many vertices.
+/// Returns the kind of each vertex.
+/// @param incidence  of a complex with `vertices` vertices.
 inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertices) {
   std::vector<Kind> kinds(vertices);
   for (std::uint32_t e = 0; e < incidence.edges().size(); ++e) {
@@ -58,21 +59,22 @@ inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertic
   return kinds;
 }
 
-/// Cosine of the angle by which two triangles of a sheet bend at their common side, -1 where one lies on the other; 1
-/// where they are flat, or one has no area.
+/// Returns the cosine of the angle by which two triangles of a sheet bend at their common side. It is -1 if one lies on
+/// the other, and 1 if they are flat or one has no area.
 /// @param p, q  their third corners.
 [[nodiscard]] inline double cosine_of_bend(const Vec3d& from, const Vec3d& to, const Vec3d& p, const Vec3d& q) {
   const Vec3d along = to - from;
   const Vec3d u = cross(along, p - from);
   const Vec3d v = cross(along, q - from);
   const double scale = length(u) * length(v);
-  // On both sides of the edge, so that these face opposite ways.
+  // The triangles lie on both sides of the edge, so that u and v point opposite ways.
   return scale > 0 ? -dot(u, v) / scale : 1;
 }
 
-/// Of the angles by which a sheet bends at the edges of a vertex inside of it, the least cosine; 1 where it is flat.
+/// Returns the least cosine of the angles by which a sheet bends at the edges of a vertex inside of it. It is 1 if the
+/// sheet is flat.
 /// @param incidence  of the lists.
-/// @param position   where the vertex is, or would be.
+/// @param position   actual or assumed position of the vertex.
 [[nodiscard]] inline double least_cosine_at(const AxisLists& lists, const Incidence& incidence, std::uint32_t v,
                                             const Vec3d& position) {
   double least = 1;

@@ -1,4 +1,4 @@
-// Blum: axes whose edges are contracted while they are put together. SPDX-License-Identifier: Apache-2.0
+// Blum: axes whose edges are contracted during their construction. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -17,52 +17,52 @@
 
 namespace blum::detail {
 
-/// An edge that is to be contracted to one of its ends.
+/// Edge that is to be contracted to one of its ends.
 struct Contraction {
   std::uint32_t from = 0, to = 0;
 };
 
-/// Contracts edges of lists where that keeps the homotopy type and edges in the solid.
+/// Contracts edges of lists if that keeps the homotopy type and keeps edges in the solid.
 class ShrinkingLists {
  public:
-  /// Vertices of seams and curves rank from here on, those of rims from 1 to there.
+  /// Least rank of vertices of seams and curves. Vertices of rims have ranks from 1 to below this.
   static constexpr int on_seam = 1024;
-  /// Those where one seam or curve ends rank from this many times that on.
+  /// Vertices at which one seam or curve ends have ranks from this many times `on_seam` on.
   static constexpr int end_of_seam = 9;
 
-  /// @param lists      is to be left as it is until write().
-  /// @param incidence  of the lists; outlives this.
-  /// @param reach      changed() tells of contractions this many edges away.
+  /// @param lists      must not be changed until write().
+  /// @param incidence  of the lists; must outlive this object.
+  /// @param reach      changed() reports contractions up to this many edges away.
   ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface, int reach);
 
   [[nodiscard]] const ShrinkingComplex& cells() const { return cells_; }
-  /// Of the lists at first.
+  /// Incidence of the original lists.
   [[nodiscard]] const Incidence& incidence() const { return incidence_; }
   [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
-  /// The separation angle at a vertex, 0 where that knows of one wall only.
+  /// Separation angle at a vertex; 0 if only one wall is known.
   [[nodiscard]] double angle(std::uint32_t v) const { return lists_.vertices[v].separation_angle; }
   [[nodiscard]] double radius(std::uint32_t v) const { return lists_.vertices[v].radius; }
   [[nodiscard]] int rank(std::uint32_t v) const { return rank_[v]; }
-  /// The vertex that another one was contracted to, or itself.
+  /// Returns the vertex that another one was contracted to, or the vertex itself.
   [[nodiscard]] std::uint32_t now(std::uint32_t v) const;
 
-  /// Whether the edge between two vertices may be contracted to the second one. Any number of threads may look while
-  /// nothing is contracted.
+  /// Returns true if the edge between two vertices may be contracted to the second one. Any number of threads may call
+  /// this while nothing is contracted.
   [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const;
   void contract(std::uint32_t from, std::uint32_t to);
 
-  /// 1, and one more for each contraction.
+  /// Number of contractions plus 1.
   [[nodiscard]] std::uint32_t contractions() const { return contractions_; }
-  /// contractions() after the last one within reach of a vertex; 0 for none.
+  /// Value of contractions() after the last contraction within reach of a vertex; 0 if there was none.
   [[nodiscard]] std::uint32_t changed(std::uint32_t v) const { return changed_[v]; }
 
-  /// Puts what is left into the lists.
+  /// Writes the remaining cells to the lists.
   void write();
 
  private:
-  /// Whether edges stay in the solid, and nothing of the surface is passed over.
+  /// Returns true if edges stay in the solid and no part of the surface is passed over.
   [[nodiscard]] bool stays_in_solid(std::uint32_t from, std::uint32_t to) const;
-  /// Prepared for questions about what is around a vertex that goes.
+  /// Returns paths that are prepared for queries around a vertex that is contracted.
   [[nodiscard]] SolidPaths paths_around(std::uint32_t from, const Stop& target) const;
   void note_change_at(std::uint32_t v);
   [[nodiscard]] bool is_joined(std::uint32_t a, std::uint32_t b) const;
@@ -77,21 +77,21 @@ class ShrinkingLists {
   std::vector<std::uint32_t> into_;
   std::vector<std::uint32_t> changed_;
   std::uint32_t contractions_ = 1;
-  std::vector<std::uint32_t> noted_;  ///< of note_change_at(), kept so that no new memory is needed each time
+  std::vector<std::uint32_t> noted_;  ///< of note_change_at(), kept to avoid allocations
 };
 
-/// What is to be done at an edge, as it was when it was looked at.
+/// Step at an edge, as chosen when the edge was examined.
 struct ContractionStep {
-  bool is_gone = false;                 ///< nothing: the edge was contracted before
-  std::array<std::uint32_t, 2> near{};  ///< vertices: while nothing changes around them, the step stays as it is
+  bool is_gone = false;                 ///< no step: the edge was contracted before
+  std::array<std::uint32_t, 2> near{};  ///< vertices; while nothing changes around them, the step stays the same
   std::optional<Contraction> contraction{};
 };
 
-/// So many edges are chosen at a time.
+/// Number of edges for which steps are chosen at a time.
 inline constexpr std::size_t edges_in_batch = 1024;
 
-/// A list cut into as many strands as a batch has edges, of which each batch gets one each: edges that are next to each
-/// other in the list stay in order, as good contractions want, but are not in one batch, as they would be in each
+/// Cuts a list into as many strands as a batch has edges; each batch takes one edge of each strand. Adjacent edges of
+/// the list stay in order, which makes for good contractions. They are not in one batch, where they would be in each
 /// other's way.
 inline std::vector<std::uint32_t> in_strands(const std::vector<std::uint32_t>& list) {
   const std::size_t batches = (list.size() + edges_in_batch - 1) / edges_in_batch;
@@ -104,10 +104,11 @@ inline std::vector<std::uint32_t> in_strands(const std::vector<std::uint32_t>& l
 }
 
 /// Makes the steps of `count` edges in their order, as if each were chosen right before it is made. All threads choose
-/// those of some hundred edges at a time; one around which something has changed since is chosen again.
-/// @param lists    that steps are chosen in.
-/// @param step_of  ContractionStep(k, worker), called from many threads, worker being below thread_count().
-/// @param make     void(k, step) contracts, or does what else there is to do.
+/// the steps of `edges_in_batch` edges at a time. If something has changed around an edge since, its step is chosen
+/// again.
+/// @param lists    in which steps are chosen.
+/// @param step_of  ContractionStep(k, worker), called from many threads; worker is below thread_count().
+/// @param make     void(k, step) contracts, or does what else is needed.
 /// @throws Cancelled.
 template <class StepOf, class Make>
 void take_in_batches(const Context& context, std::size_t count, const ShrinkingLists& lists, const StepOf& step_of,

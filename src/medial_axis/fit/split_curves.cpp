@@ -16,7 +16,7 @@
 namespace blum::detail {
 namespace {
 
-/// Edges that leave a vertex at more than 18 degrees go to different places, however short they are.
+/// Cosine of 18 degrees. Edges that leave a vertex at a larger angle go to different places, however short they are.
 constexpr double same_way = 0.95;
 
 class CurveMerger {
@@ -28,7 +28,7 @@ class CurveMerger {
     }
   }
 
-  /// @return  whether any edge begins elsewhere now.
+  /// @return  true if any edge begins elsewhere now.
   bool run() {
     bool is_changed = false;
     std::vector<std::uint32_t> open;
@@ -117,19 +117,19 @@ class CurveMerger {
   SolidPaths paths_;
   double beside_;
   const Context& context_;
-  std::vector<std::vector<std::uint32_t>> curves_at_;  ///< listed edges
-  std::vector<Edge> sides_;                            ///< of triangles, between vertices of curves, sorted
+  std::vector<std::vector<std::uint32_t>> curves_at_;  ///< Listed edges.
+  std::vector<Edge> sides_;                            ///< Sides of triangles between vertices of curves, sorted.
 };
 
 constexpr std::size_t edges_per_range = 16;
 constexpr int most_halvings = 5;
-/// Edges of this length, in voxels, that are this far from the middle are split.
+/// Edges at least this long, in voxels, are split if they are at least this far from the middle.
 constexpr double least_length = 1;
 constexpr double least_bend = 0.02;
-/// The middle of an edge is not next to its ends, which would make for shorter and shorter ones.
+/// The middle of an edge must not be next to its ends. Otherwise edges would become shorter and shorter.
 constexpr double least_share = 0.2;
 
-/// Where an edge is to be split.
+/// Returns the vertex at which an edge is to be split.
 std::optional<AxisVertex> split_of(const AxisVertex& a, const AxisVertex& b, const SolidPaths& paths, double voxel,
                                    const std::function<std::optional<AxisVertex>(const Vec3d&)>& middle) {
   const Vec3d way = b.position - a.position;

@@ -12,17 +12,18 @@
 
 namespace blum::detail {
 
-/// Curves that leave a vertex beside each other become one: of two edges on no triangle the longer one is taken to
-/// begin where the shorter one ends, again and again. The homotopy type stays, since the triangle between both is in
-/// the solid.
-/// @param beside  mesh units: how far the end of the shorter edge may be from the longer one.
-/// @return  whether any did.  @throws Cancelled. Cost: near-linear in the edges of curves.
+/// Merges curves that leave a vertex beside each other. Their edges are on no triangle. The longer edge is made to
+/// begin where the shorter one ends, again and again. The homotopy type stays, because the triangle between both lies
+/// in the solid.
+/// @param beside  mesh units: greatest distance of the end of the shorter edge from the longer one.
+/// @return  true if any edge was changed.  @throws Cancelled. Cost: near-linear in the edges of curves.
 bool merge_curves(AxisLists& lists, const Surface& surface, double beside, const Context& context);
 
-/// Puts vertices into edges of curves, those on no triangle, where these cut short what bends, again and again.
+/// Inserts vertices into edges of curves, which are on no triangle, if the edges cut short a bend. The halves are split
+/// in turn.
 /// @param incidence  of the lists.
-/// @param middle  the vertex that a curve has near a point; nullopt where there is none. Called from many threads.
-/// @return  whether any was split.  @throws Cancelled.
+/// @param middle  returns the vertex of a curve near a point, or nullopt if it has none. Called from many threads.
+/// @return  true if any edge was split.  @throws Cancelled.
 bool split_curves(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
                   const std::function<std::optional<AxisVertex>(const Vec3d&)>& middle, const Context& context);
 

@@ -27,13 +27,15 @@
 namespace blum::detail {
 namespace {
 
-/// How far sheets may move, one level after the other: parts of the tolerance.
+/// Allowed moves of sheets, one level after the other, as parts of the tolerance.
 constexpr std::array levels{1.0 / 256, 1.0 / 16};
-/// So many edges from what fitting may move, vertices stay; edges up to this length, in voxels, do not count.
+/// Vertices up to this many edges from those that fitting may move stay. Edges up to `no_step` voxels long do not
+/// count.
 constexpr int rings = 3;
 constexpr double no_step = 0.3;
-/// What fitting may move, apart from borders: where a sheet bends by more than 18 degrees, where so many degrees more
-/// than theta are not seen, and where the radius is below this part of a voxel, unless between parallel walls.
+/// Apart from borders, fitting may move vertices where a sheet bends by more than 18 degrees. It may move vertices that
+/// see less than theta plus `nearly_theta` degrees. It may also move vertices with a radius below `least_radius`
+/// voxels, unless they lie between parallel walls.
 constexpr double least_cosine = 0.95;
 constexpr double nearly_theta = 10;
 constexpr double least_radius = 0.05;
@@ -67,7 +69,7 @@ class InsideThinner {
     return input;
   }
 
-  /// What fitting may move.
+  /// Returns 1 for each vertex that fitting may move, else 0.
   [[nodiscard]] std::vector<std::uint8_t> movable() const {
     constexpr std::size_t grain = 1024;
     const std::vector<Kind> kinds = kinds_of(incidence_, lists_.vertices.size());
@@ -82,15 +84,15 @@ class InsideThinner {
         const auto flatness = [&] {
           return least_cosine_at(lists_, incidence_, static_cast<std::uint32_t>(v), vertex.position);
         };
-        // Between such walls nothing goes far, however these bend.
+        // Between such walls nothing moves far, however these bend.
         const bool is_thin = vertex.radius < least_radius * target_.voxel;
         out[v] = is_inside && is_shown && (is_thin || flatness() >= least_cosine) ? 0 : 1;
       }
     });
     return out;
   }
-  /// Some vertices and all next to them. Short edges are gone over first, so that each vertex is reached by the fewest
-  /// steps.
+  /// Returns some vertices and all next to them. Short edges are followed first, so that each vertex is reached by the
+  /// fewest steps.
   [[nodiscard]] std::vector<std::uint8_t> next_to(std::vector<std::uint8_t> chosen) const {
     const double shortest = no_step * target_.voxel;
     std::vector<std::uint8_t> steps(chosen.size(), rings + 1);
@@ -203,8 +205,8 @@ class CrumbTaker {
     }
   }
 
-  /// Of each small sheet, whether the middles of its triangles and its corners lie on triangles of larger sheets that
-  /// it is attached to, near by.
+  /// Returns true for each small sheet that lies on nearby triangles of larger sheets to which it is attached. The
+  /// middles of its triangles and its corners decide.
   [[nodiscard]] std::vector<bool> which_lie_on_others() const {
     TriangleMesh around;
     std::vector<bool> is_around(lists_.triangles.size(), false);
@@ -241,7 +243,7 @@ class CrumbTaker {
     return static_cast<std::size_t>(
         std::count_if(at.begin(), at.end(), [&](std::uint32_t t) { return has_triangle_[t]; }));
   }
-  /// The edge that alone ends at a vertex, on no triangle.
+  /// Returns the edge on no triangle that is the only edge at a vertex.
   [[nodiscard]] std::optional<std::uint32_t> whisker_at(std::uint32_t v) const {
     std::optional<std::uint32_t> only;
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
@@ -252,9 +254,9 @@ class CrumbTaker {
     return only;
   }
 
-  /// Collapses a sheet with its free sides and corners; not at all where that leaves anything that nothing else has.
+  /// Collapses a sheet with its free sides and corners. If anything would be left that nothing else has, does nothing.
   bool collapse(const Sheet& sheet) {
-    std::vector<std::uint32_t> edges, vertices;  // gone
+    std::vector<std::uint32_t> edges, vertices;  // removed
     for (std::size_t left = sheet.size(), before = 0; left != before && left > 0;) {
       before = left;
       for (const std::uint32_t t : sheet) {
@@ -342,24 +344,24 @@ class Trimmer {
  private:
   [[nodiscard]] double angle(std::uint32_t v) const { return angles_[v]; }
 
-  /// The largest angle of a triangle's vertices; infinite where it is there for what no vertex sees.
+  /// Returns the largest angle of a triangle's vertices, or the angle of the triangle if no vertex sees two walls.
   [[nodiscard]] double angle_of_triangle(std::uint32_t t) const {
     double largest = 0;
     for (const std::uint32_t v : lists_.triangles[t]) largest = std::max(largest, angle(v));
-    // Where no vertex knows two walls, the cell may know better.
+    // If no vertex knows two walls, the cell may know better.
     return largest > 0 ? largest : lists_.triangle_angles[t];
   }
   [[nodiscard]] double angle_of_edge(std::uint32_t e) const {
     return std::max(angle(incidence_.edges()[e][0]), angle(incidence_.edges()[e][1]));
   }
 
-  // ---- What others lie on ----
+  // ---- Cells that lie on others ----
 
   [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
   [[nodiscard]] double length_of(std::uint32_t e) const {
     return length(position(incidence_.edges()[e][0]) - position(incidence_.edges()[e][1]));
   }
-  /// Whether a triangle lies on its two other sides but for next to nothing.
+  /// Returns true if a triangle practically lies on its two other sides.
   [[nodiscard]] bool is_covered(std::uint32_t t, std::uint32_t side) const {
     const auto& sides = incidence_.sides()[t];
     const double longest = length_of(side);
@@ -372,16 +374,17 @@ class Trimmer {
     return length(cross(position(b) - position(a), position(c) - position(a))) <= thin * longest;
   }
 
-  /// Whether the end of a curve lies on a sheet, or sticks out of a rim, which goes out to it instead.
+  /// Returns true if the end of a curve lies on a sheet, or sticks out of a rim. In the second case the rim goes out to
+  /// it instead.
   [[nodiscard]] bool is_whisker(std::uint32_t end, std::uint32_t own) const {
     if (is_on_sheet_[end]) return true;
     const auto at = incidence_.edges_of_vertex()[other_end(incidence_.edges()[own], end)];
     const bool is_at_rim = std::any_of(at.begin(), at.end(), [&](std::uint32_t e) { return triangles_left_[e] == 1; });
     return is_at_rim && length_of(own) <= limits_.whiskers;
   }
-  /// Of vertices that lie on no triangle, those that are next to one.
+  /// Finds vertices that lie on no triangle but are next to one.
   void find_what_is_on_sheets() {
-    std::vector<std::pair<double, std::uint32_t>> alone;  // and where along x
+    std::vector<std::pair<double, std::uint32_t>> alone;  // x and vertex
     for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) {
       if (incidence_.triangles_of_vertex()[v].empty()) alone.emplace_back(position(v).x, v);
     }
@@ -395,7 +398,7 @@ class Trimmer {
     for (std::size_t k = 0; k < alone.size(); ++k)
       is_on_sheet_[alone[k].second] = closest[k].distance <= limits_.beside;
   }
-  /// Those whose boxes are next to any of some vertices, which are sorted along x.
+  /// Returns triangles whose boxes are next to any of some vertices, which are sorted along x.
   [[nodiscard]] TriangleMesh triangles_near(const std::vector<std::pair<double, std::uint32_t>>& alone) const {
     constexpr std::size_t grain = 4096;
     const Vec3d reach{limits_.beside, limits_.beside, limits_.beside};
@@ -426,7 +429,7 @@ class Trimmer {
     return *std::find_if(at.begin(), at.end(), [&](std::uint32_t e) { return has_edge_[e]; });
   }
 
-  /// Enters what is free and outside.
+  /// Queues a triangle or edge that is free and outside.
   void look_at_edge(std::uint32_t e) {
     if (!has_edge_[e] || triangles_left_[e] != 1) return;
     const std::uint32_t t = triangle_left_at(e);
@@ -464,8 +467,8 @@ class Trimmer {
     for (const std::uint32_t v : incidence_.edges()[e]) --edges_left_[v];
   }
 
-  /// Whether nothing was taken, and edges are listed as write() would list them: curves only, rising, the smaller end
-  /// first.
+  /// Returns true if nothing was removed and edges are listed as write() would list them: curves only, ascending, the
+  /// smaller end first.
   [[nodiscard]] bool stays_as_it_is() const {
     const auto& listed = incidence_.edge_of_listed();
     for (std::size_t n = 0; n < listed.size(); ++n) {
@@ -476,7 +479,7 @@ class Trimmer {
     return !has_taken_;
   }
 
-  /// What is left, in the same order; edges in that of the incidence.
+  /// Writes the remaining cells, in the same order; edges in that of the incidence.
   void write() {
     std::vector<float> angle_of_edge(has_edge_.size(), 0);
     for (std::size_t n = 0; n < lists_.edges.size(); ++n) {
@@ -502,7 +505,7 @@ class Trimmer {
   const Incidence& incidence_;
   std::vector<std::uint32_t> triangles_left_, edges_left_;
   std::vector<bool> has_triangle_, has_edge_, has_vertex_, is_on_sheet_;
-  bool has_taken_ = false;  ///< anything
+  bool has_taken_ = false;  ///< true if anything was removed
   using Entry = std::tuple<double, int, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };

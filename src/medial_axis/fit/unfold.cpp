@@ -19,10 +19,10 @@
 namespace blum::detail {
 namespace {
 
-/// Sheets of up to so many triangles are crumbs.
+/// Sheets of up to this many triangles are crumbs.
 constexpr std::uint32_t most_of_crumb = 8;
 
-/// The edges of sheets of a few triangles, and of curves that end next to a sheet.
+/// Returns the edges of sheets of a few triangles, and of curves that end next to a sheet.
 std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const Incidence& incidence) {
   detail::UnionFind sheets = sheets_of(incidence);
   std::vector<std::uint32_t> size(incidence.sides().size(), 0);
@@ -42,7 +42,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const Incidence& incid
   return edges;
 }
 
-/// Height of a triangle whose corners lie on a line, in voxels.
+/// Height of a triangle, in voxels, up to which its corners count as lying on a line.
 constexpr double sliver = 0.1;
 
 class ShortEdges {
@@ -64,10 +64,10 @@ class ShortEdges {
     find_short();
   }
 
-  /// @return  whether any edge was contracted.
+  /// @return  true if any edge was contracted.
   bool run() {
     const std::size_t all = short_.size();
-    // What one contraction forbids another one may allow.
+    // A contraction may allow others that were forbidden before.
     for (bool is_changed = true; is_changed && !short_.empty();) {
       const std::size_t count = short_.size();
       std::vector<ShortEdge> left;
@@ -96,7 +96,7 @@ class ShortEdges {
   struct ShortEdge {
     double length;
     std::uint32_t a, b;
-    std::uint32_t looked = 0;  ///< ShrinkingLists::contractions() when it was looked at in vain
+    std::uint32_t looked = 0;  ///< ShrinkingLists::contractions() when it was examined in vain
     bool operator<(const ShortEdge& other) const {
       return std::tie(length, a, b) < std::tie(other.length, other.a, other.b);
     }
@@ -130,7 +130,7 @@ class ShortEdges {
     detail::sort_unique(slivers_);
   }
 
-  /// Up to which length an edge may be contracted for what it is a side of, in voxels.
+  /// Returns the length up to which an edge may be contracted because of the cells that it is a side of, in voxels.
   [[nodiscard]] double longest(std::uint32_t a, std::uint32_t b) const {
     const Edge edge{std::min(a, b), std::max(a, b)};
     const bool is_of_sliver = std::binary_search(slivers_.begin(), slivers_.end(), edge);
@@ -145,8 +145,8 @@ class ShortEdges {
     return std::max({voxels, least_voxels, is_at_corner(a, b) ? lengths_.at_corners : 0}) * voxel_;
   }
 
-  /// Whether an edge goes from the rim of a sheet, or from where one comes to a seam, to the end of a seam next to the
-  /// surface: in a corner of the solid.
+  /// Returns true if an edge leads to the end of a seam next to the surface: in a corner of the solid. It must come
+  /// from the rim of a sheet, or from where a rim comes to a seam.
   [[nodiscard]] bool is_at_corner(std::uint32_t a, std::uint32_t b) const {
     constexpr double next_to = 2;  // voxels
     if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
@@ -156,8 +156,8 @@ class ShortEdges {
            lists_.radius(b) < next_to * voxel_;
   }
 
-  /// Whether the rim of a sheet would come to a seam that goes on: a notch in the sheet. Where a sheet has borders only
-  /// it may be a ribbon in the middle of what is round, which is to become a curve.
+  /// Returns true if the rim of a sheet would come to a seam that goes on, which cuts a notch into the sheet. A sheet
+  /// without inner vertices may be a ribbon in the middle of a round part, which is to become a curve.
   [[nodiscard]] bool would_notch(std::uint32_t a, std::uint32_t b) const {
     if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
     const bool is_at_seam =
@@ -170,7 +170,7 @@ class ShortEdges {
     return has_inside;
   }
 
-  /// What is to be done with an edge.
+  /// Returns the step at an edge.
   [[nodiscard]] ContractionStep step_of(const ShortEdge& edge, LinkScratch& scratch) const {
     std::uint32_t from = lists_.now(edge.a);
     std::uint32_t to = lists_.now(edge.b);
@@ -181,7 +181,8 @@ class ShortEdges {
     const double of_its_cells = longest(edge.a, edge.b);
     if (size > 2 * limit(from, to, of_its_cells)) return step;
     if (of_its_cells == 0 && would_notch(from, to)) return step;
-    // Seams and curves stay before rims, these before the insides of sheets, and there what knows its two walls.
+    // Seams and curves stay before rims, rims before the insides of sheets, and among these the vertices that know two
+    // walls.
     const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
     if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);
     if (!lists_.may_contract(from, to, scratch)) {
@@ -204,11 +205,11 @@ class ShortEdges {
 
 using Triangle3 = std::array<std::uint32_t, 3>;
 
-/// Cosine of the angle by which a sheet bends at an edge, from which on it is folded.
+/// Cosine of the angle by which a sheet bends at an edge, below which it counts as folded.
 constexpr double folded = 0.3;
 constexpr double most_moved = 2;  ///< voxels
 constexpr int most_rounds = 4;
-/// What is looked at around an edge are triangles with a corner up to three steps from its ends.
+/// The triangles that are examined around an edge have a corner up to three steps from its ends.
 constexpr int reach = 4;
 
 class Unfolder {
@@ -221,7 +222,7 @@ class Unfolder {
         context_(context),
         scratch_(static_cast<std::size_t>(thread_count(context))) {}
 
-  /// @return  whether anything was contracted.
+  /// @return  true if anything was contracted.
   bool run() {
     const std::uint32_t before = lists_.contractions();
     looked_.assign(lists_.incidence().edges().size(), 0);
@@ -248,21 +249,21 @@ class Unfolder {
     std::uint32_t third;
     bool operator<(const Side& other) const { return ends < other.ends; }
   };
-  /// Triangles around a vertex, ready to tell how they fold wherever this one goes.
+  /// Triangles around a vertex, prepared to count their folds for any position of the vertex.
   struct Around {
-    std::vector<Side> fixed;                            ///< of the triangles that do not have the vertex; sorted
+    std::vector<Side> fixed;                            ///< of the triangles without the vertex; sorted
     std::size_t fixed_folds = 0;                        ///< at these
-    std::vector<std::array<std::uint32_t, 2>> corners;  ///< the other two, of the triangles that have it
+    std::vector<std::array<std::uint32_t, 2>> corners;  ///< the other two, of the triangles with the vertex
   };
 
-  /// Of one thread, kept so that no new memory is needed each time.
+  /// Memory of one thread, kept to avoid allocations.
   struct Scratch {
     LinkScratch links;
     std::vector<Side> moved, at_edge;  ///< of folds()
   };
 
-  /// The edges where a sheet is folded now, but for those around which nothing has changed since they were looked at in
-  /// vain: each next to the one a batch before, and far from those right before it.
+  /// Returns the edges at which a sheet is folded now, without those around which nothing has changed since they were
+  /// examined in vain. They are ordered by in_strands(): next to each one is the one a batch before.
   [[nodiscard]] std::vector<std::uint32_t> folded_edges() {
     constexpr std::size_t grain = 4096;
     const auto& edges = lists_.incidence().edges();
@@ -284,7 +285,7 @@ class Unfolder {
     return step;
   }
 
-  /// Whether two triangles at an edge lie one over the other; one without area bends nothing.
+  /// Returns true if two triangles at an edge lie one over the other; false if one has no area.
   [[nodiscard]] bool is_folded(const std::array<std::uint32_t, 2>& edge, std::uint32_t p, std::uint32_t q) const {
     return cosine_of_bend(lists_.position(edge[0]), lists_.position(edge[1]), lists_.position(p), lists_.position(q)) <
            folded;
@@ -328,7 +329,7 @@ class Unfolder {
     for_each_edge(out.fixed, [&](std::span<const Side> at) { out.fixed_folds += is_folded(at) ? 1 : 0; });
     return out;
   }
-  /// Folds between the triangles around a vertex, were it at another one.
+  /// Returns the number of folds between the triangles around a vertex if it were at another one.
   [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to, Scratch& scratch) const {
     std::vector<Side>& moved = scratch.moved;
     moved.clear();
@@ -350,8 +351,8 @@ class Unfolder {
     return count;
   }
 
-  /// The triangles of a vertex, and those with an edge between two around it: what may fold when the vertex moves to
-  /// one of these.
+  /// Returns the triangles of a vertex, and those with an edge between two vertices around it. These may fold when the
+  /// vertex moves to one of the vertices around it.
   [[nodiscard]] std::vector<Triangle3> triangles_around(std::uint32_t v) const {
     std::vector<std::uint32_t> around{v};
     lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
@@ -381,7 +382,7 @@ class Unfolder {
         a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) { count += p == b || q == b ? 1 : 0; });
     return count;
   }
-  /// Whether a vertex leaves nothing behind that it bounds: inside of a sheet, or along its rim or seam.
+  /// Returns true if a vertex can move without leaving a border behind: inside of a sheet, or along its rim or seam.
   [[nodiscard]] bool keeps_borders(std::uint32_t from, std::uint32_t to) const {
     const int rank = lists_.rank(from);
     if (rank == 0) return true;
@@ -389,9 +390,9 @@ class Unfolder {
     return rank == 2 ? count == 1 : rank == 2 * ShrinkingLists::on_seam && count > 2;
   }
 
-  /// The contraction that takes most folds away around a folded edge, if any does.
+  /// Returns the contraction that removes most folds around a folded edge, or nullopt if none removes any.
   [[nodiscard]] std::optional<Contraction> unfolded_by(std::uint32_t a, std::uint32_t b, Scratch& scratch) const {
-    // Less folds, then a shorter edge.
+    // Fewer folds count first, then a shorter edge.
     using Found = std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>;
     std::optional<Found> best;
     std::vector<std::uint32_t> corners{a, b};
@@ -415,7 +416,7 @@ class Unfolder {
     return Contraction{std::get<2>(*best), std::get<3>(*best)};
   }
 
-  /// Whether nothing near an edge has changed since it was looked at in vain.
+  /// Returns true if nothing near an edge has changed since it was examined in vain.
   [[nodiscard]] bool stays_as_it_was(std::size_t e, std::uint32_t p, std::uint32_t q) const {
     return looked_[e] > 0 && std::max(lists_.changed(p), lists_.changed(q)) <= looked_[e];
   }
@@ -433,8 +434,8 @@ class Unfolder {
   double most_moved_;
   double most_radius_;
   const Context& context_;
-  std::vector<Scratch> scratch_;       ///< of each thread
-  std::vector<std::uint32_t> looked_;  ///< at each edge of the lists, in vain, after so many contractions; or 0
+  std::vector<Scratch> scratch_;       ///< Memory of each thread.
+  std::vector<std::uint32_t> looked_;  ///< Per edge of the lists: contractions() when it was examined in vain, or 0.
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Blum: folds in the sheets of an axis. SPDX-License-Identifier: Apache-2.0
+// Blum: removal of short edges and folds in the sheets of an axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -10,35 +10,36 @@
 
 namespace blum::detail {
 
-/// Up to which length edges are contracted, in voxels.
+/// Lengths up to which edges are contracted, in voxels.
 struct ShortLengths {
   double others = 0.15;
-  double on_seams = 0.15;  ///< between two vertices of seams or curves
-  double on_rims = 0.15;   ///< between two vertices of rims
-  double of_crumbs = 0;    ///< of sheets of a few triangles
-  double at_corners = 0;   ///< from a vertex of a rim to where a seam ends: rims meet there, and cut no corner
-  double of_slivers = 0;   ///< the shortest sides of triangles between borders whose corners lie on a line
+  double on_seams = 0.15;  ///< Between two vertices of seams or curves.
+  double on_rims = 0.15;   ///< Between two vertices of rims.
+  double of_crumbs = 0;    ///< Edges of sheets of a few triangles.
+  double at_corners = 0;   ///< From a vertex of a rim to the end of a seam: rims meet there and cut no corner.
+  double of_slivers = 0;   ///< Shortest sides of triangles between borders whose corners lie on a line.
 };
 
-/// Contracts edges much shorter than a voxel where that keeps the homotopy type and edges in the solid: ribbons become
-/// curves, and two seams beside each other one.
+/// Contracts edges much shorter than a voxel if that keeps the homotopy type and keeps edges in the solid. Ribbons
+/// become curves, and two adjacent seams become one.
 /// @param incidence  of the lists as they are.
 /// @param voxel      mesh units.
-/// @return           whether any edge was contracted.
+/// @return           true if any edge was contracted.
 /// @throws Cancelled. Cost: near-linear.
 bool contract_short(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
                     const ShortLengths& lengths, const Context& context);
 
-/// Where unfold() looks.
+/// Limits of unfold().
 struct UnfoldLimits {
   double voxel = 0;               ///< mesh units
-  double most_radius = HUGE_VAL;  ///< mesh units: at vertices with larger ones nothing is done
+  double most_radius = HUGE_VAL;  ///< mesh units: vertices with larger radii are left alone
 };
 
-/// Where two triangles of a sheet lie one over the other, as vertices that were moved leave them, contracts the edge
-/// next to them that takes most of such folds away. Seams stay on seams and rims on rims; homotopy type and solid as in
-/// contract_short(). @param incidence  of the lists as they are.
-/// @return  whether any was contracted.  @throws Cancelled. Cost: near-linear.
+/// Contracts edges where two triangles of a sheet lie one over the other, as moved vertices leave them. At each such
+/// fold it contracts the adjacent edge that removes most folds. Seams stay on seams and rims on rims. The homotopy type
+/// is kept and edges stay in the solid, as in contract_short().
+/// @param incidence  of the lists as they are.
+/// @return  true if any edge was contracted.  @throws Cancelled. Cost: near-linear.
 bool unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
             const Context& context);
 

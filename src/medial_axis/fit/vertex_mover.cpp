@@ -14,19 +14,19 @@
 namespace blum::detail {
 namespace {
 
-/// How far beside a point feet are looked for, in voxels and at most this share of its depth.
+/// Distances from a point at which feet are searched for, in voxels; at most `most_of_depth` of its depth.
 constexpr std::array beside{4.0, 2.0, 1.0, 0.5, 0.3};
 constexpr double most_of_depth = 0.4;
-/// Feet further than the closest one by more than this, in voxels, are none of a round thing.
+/// Feet further than the closest one by more than this, in voxels, do not belong to a round part.
 constexpr double equally_far = 0.02;
-/// What is round is seen in so many directions, no two of which are closer than this share of theta, and within these
-/// angles in degrees.
+/// A round part must be seen in at least this many directions. No two are closer than `share_of_theta` of theta,
+/// clamped to `least_apart` and `most_apart` degrees.
 constexpr std::size_t least_directions = 5;
 constexpr double share_of_theta = 0.25;
 constexpr double least_apart = 5;
 constexpr double most_apart = 30;
 
-/// The sides and the corners of a cube.
+/// Returns the directions to the sides and corners of a cube.
 std::array<Vec3d, 14> directions() {
   std::array<Vec3d, 14> out;
   for (std::size_t k = 0; k < 6; ++k) out[k][k / 2] = k % 2 == 0 ? 1 : -1;
@@ -47,7 +47,7 @@ std::vector<Footprint> feet_beside(const Surface& surface, const Vec3d& x, doubl
   return feet;
 }
 
-/// Feet no further from a point than a limit, one of each direction.
+/// Returns feet that are no further from a point than a limit, one of each direction.
 std::vector<Footprint> all_around(const Vec3d& x, const std::vector<Footprint>& feet, double limit,
                                   double same_direction) {
   std::vector<Footprint> kept;
@@ -64,7 +64,7 @@ std::vector<Footprint> all_around(const Vec3d& x, const std::vector<Footprint>& 
   return kept;
 }
 
-/// Two unit vectors across a direction and each other.
+/// Returns two unit vectors perpendicular to a direction and to each other.
 std::array<Vec3d, 2> directions_across(const Vec3d& direction) {
   const bool is_along_x = std::abs(direction.x) > 0.6;
   const Vec3d u = cross(direction, is_along_x ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0});
@@ -72,18 +72,18 @@ std::array<Vec3d, 2> directions_across(const Vec3d& direction) {
   return {u / length(u), v / length(v)};
 }
 
-/// Whether the surface may be all around, by what is seen from about the middle: a quick look that spares most of the
-/// work where nothing is round.
+/// Returns true if the surface may be all around, as seen from about the middle. This quick test saves most of the work
+/// if nothing is round.
 bool may_be_round(const Surface& surface, const Vec3d& start, const NearestPoint& nearest, const RoundLimits& limits,
                   double same_direction) {
-  constexpr double most_of_way = 0.9;   // to the depth: what is round has its other side beyond that
+  constexpr double most_of_way = 0.9;   // of the depth: the other side of round parts lies beyond
   constexpr double to_the_side = 0.05;  // of the radius: walls are seen in the same direction from there
   if (!(nearest.distance > 0)) return false;
   const Vec3d inwards = (start - nearest.point) / nearest.distance;
   const Vec3d beyond = start + inwards * std::min(1.25 * limits.reach, most_of_way * nearest.distance);
   Vec3d other = surface.nearest(beyond, {}).point;
   if (!(angle_at(start, nearest.point, start + (other - beyond)) > limits.theta)) return false;
-  // Inwards to where both sides are equally far: in the middle, were all this round.
+  // Inwards to where both sides are equally far. This would be the middle if all this were round.
   Vec3d middle = start;
   for (int n = 0; n < 2; ++n) {
     const Vec3d from_other = start - other;
@@ -117,7 +117,7 @@ std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& sta
     const double step = std::min(voxels * voxel, most_of_depth * depth);
     if (!(step > 0)) return std::nullopt;
     feet = feet_beside(surface, x, step);
-    // Beside the middle by less than a step, feet all around are no further than twice that.
+    // If the middle is less than a step away, feet all around are at most two steps further.
     if (all_around(x, feet, depth + 2 * step, same_direction).size() < least_directions) return std::nullopt;
     std::vector<Vec3d> points;
     for (const Footprint& foot : feet) points.push_back(foot.point);
@@ -139,7 +139,7 @@ double VertexMover::make(std::vector<VertexMove> moves) {
     move_of_[moves[k].vertex] = k + 1;
     changed.push_back(moves[k].vertex);
   }
-  // What goes back may let edges beside it leave the solid.
+  // A vertex that goes back may make edges beside it leave the solid.
   while (!changed.empty()) {
     const std::vector<std::uint32_t> edges = edges_of(changed);
     const std::vector<std::uint8_t> leaves = which_leave(edges, moves);
@@ -163,7 +163,7 @@ double VertexMover::make(std::vector<VertexMove> moves) {
   return furthest;
 }
 
-/// The edges that which_leave() may answer otherwise for once some vertices are elsewhere.
+/// Returns the edges for which which_leave() may change once some vertices are elsewhere.
 std::vector<std::uint32_t> VertexMover::edges_of(const std::vector<std::uint32_t>& vertices) const {
   std::vector<std::uint32_t> edges;
   for (const std::uint32_t v : vertices) {
@@ -201,7 +201,7 @@ std::vector<std::uint8_t> VertexMover::which_leave(const std::vector<std::uint32
   return leaves;
 }
 
-/// Whether a triangle at an edge moved over a void as a whole, which edges do not see.
+/// Returns true if a triangle at an edge moved over a void as a whole, which edges do not show.
 bool VertexMover::moves_over_void(std::uint32_t e, const std::vector<VertexMove>& moves) const {
   const auto around = incidence_.triangles_of_edge()[e];
   return !surface_.voids().empty() && std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {

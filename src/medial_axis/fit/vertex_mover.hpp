@@ -1,4 +1,4 @@
-// Blum: vertices of an axis that move, and what may not. SPDX-License-Identifier: Apache-2.0
+// Blum: moves vertices of an axis within a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -17,37 +17,37 @@
 
 namespace blum::detail {
 
-/// A point in the middle of a round tube near by; of a ball, if it is next to its middle.
+/// Point in the middle of a nearby round tube. A ball has one only next to its middle.
 struct RoundCentre {
   Vec3d position;
-  std::vector<Footprint> feet;  ///< on the surface all around, about as far from it
+  std::vector<Footprint> feet;  ///< on the surface all around, about equally far from it
 };
 
-/// What round_centre() looks for.
+/// Limits of round_centre().
 struct RoundLimits {
-  double voxel = 0;  ///< mesh units: feet count as equally far within 0.02 of it
+  double voxel = 0;  ///< mesh units; feet count as equally far within 0.02 voxels
   double reach = 0;  ///< mesh units, from the start
-  double theta = 0;  ///< degrees: the middle sees this, or more
+  double theta = 0;  ///< degrees; the middle sees at least this
 };
 
-/// The point that the surface all around is equally far from, by least squares over the closest points of places beside
-/// it. Facets of round things meet in no one point, but for next to nothing of them, so walls are not told apart.
+/// Returns the point from which the surface all around is equally far, by least squares over the closest points of
+/// places beside it. Walls are not distinguished, because facets of round parts hardly ever meet in one point.
 /// @param start  within the reach.
-/// @return       nullopt where the surface is not all around, as beside a sheet.
-/// Cost: some 80 closest points, 2 or 8 where nothing is round for the most part.
+/// @return       nullopt if the surface is not all around, as beside a sheet.
+/// Cost: some 80 closest points; mostly 2 or 8 if nothing is round.
 [[nodiscard]] std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& start,
                                                       const RoundLimits& limits);
 
-/// A vertex and what it is to be; while vertices move, what it was before.
+/// Vertex and its new data. While vertices move, it contains the old data.
 struct VertexMove {
   std::uint32_t vertex = 0;
   AxisVertex other;
 };
 
-/// Moves vertices of lists whose cells stay, as long as edges stay in the solid.
+/// Moves vertices of lists as long as edges stay in the solid. The cells of the lists stay.
 class VertexMover {
  public:
-  /// @param incidence  of the lists. All must stay.
+  /// @param incidence  of the lists. All arguments must outlive this object.
   VertexMover(AxisLists& lists, const Incidence& incidence, const Surface& surface, const Context& context)
       : lists_(lists),
         incidence_(incidence),
@@ -56,7 +56,7 @@ class VertexMover {
         context_(context),
         move_of_(lists.vertices.size(), 0) {}
 
-  /// What is to move, in the order of vertices.
+  /// Returns the moves, in the order of vertices.
   /// @param where  std::optional<AxisVertex>(vertex), called from many threads.
   template <class Where>
   [[nodiscard]] std::vector<VertexMove> moves_to(const Where& where) const {
@@ -68,9 +68,8 @@ class VertexMover {
                                       });
   }
 
-  /// Makes all moves but those whose edges would leave the solid, or sweep over a part of the surface.
-  /// @return  how far the furthest vertex went, mesh units.  @throws Cancelled. Cost: linear in the edges of what
-  /// moves.
+  /// Makes all moves except those whose edges would leave the solid or sweep over a part of the surface.
+  /// @return  largest move of a vertex, mesh units.  @throws Cancelled. Cost: linear in the edges of moved vertices.
   double make(std::vector<VertexMove> moves);
 
  private:
@@ -85,7 +84,7 @@ class VertexMover {
   const Surface& surface_;
   SolidPaths paths_;
   const Context& context_;
-  std::vector<std::uint32_t> move_of_;  ///< of each vertex, while they move: which of the moves, and one more; else 0
+  std::vector<std::uint32_t> move_of_;  ///< of each vertex, while they move: index of its move plus 1; else 0
 };
 
 }  // namespace blum::detail

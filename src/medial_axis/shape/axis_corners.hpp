@@ -1,4 +1,4 @@
-// Blum: the corners of the cells of a medial axis. SPDX-License-Identifier: Apache-2.0
+// Blum: corners of the cells of a medial axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -14,19 +14,20 @@
 
 namespace blum::detail {
 
-/// Which cells of a piece lie in which: found by their names.
+/// Corners and sides of the cells of a piece. Cells are looked up by their names.
 class AxisCorners {
  public:
-  /// @param piece  its cells and their structure; it must stay.
+  /// @param piece  with its cells and their structure. It must outlive this object.
   AxisCorners(const AxisPiece& piece, const Context& context);
 
-  /// Where a cell is among those of the piece.
+  /// Returns the place of a cell among those of the piece.
   [[nodiscard]] std::uint32_t index_of(Cell cell) const;
-  /// The vertices among the cells, rising: vertex places count these.
+  /// Vertices among the cells, ascending. A vertex place is an index into this list.
   [[nodiscard]] std::span<const Cell> vertex_cells() const { return vertex_cells_; }
-  /// Of each cell, as vertex places: itself; two ends; the corners of a polygon, in a circle.
+  /// Corners of each cell, as vertex places: a vertex itself, the two ends of an edge, or the corners of a polygon in
+  /// cyclic order.
   [[nodiscard]] const IndexRows& of_cells() const { return corners_; }
-  /// The edges of polygons, as places of cells: edge k joins corners k and k + 1.
+  /// Edges of polygons, as places of cells: edge k joins corners k and k + 1.
   [[nodiscard]] const IndexRows& sides() const { return sides_; }
 
  private:
@@ -42,8 +43,8 @@ class AxisCorners {
   IndexRows sides_;
 };
 
-/// The two triangles of a quadrangle, along its shorter diagonal, so that none is needlessly thin.
-/// @param corners  four, in a circle.
+/// Returns the two triangles of a quadrangle, split along its shorter diagonal so that none is needlessly thin.
+/// @param corners  four, in cyclic order.
 [[nodiscard]] std::array<std::array<std::uint32_t, 3>, 2> triangles_of(std::span<const std::uint32_t> corners,
                                                                        std::span<const AxisVertex> vertices);
 

@@ -9,7 +9,7 @@
 namespace blum::detail {
 namespace {
 
-/// The numbers of a column: what `numbers_of` gives for each vertex, one behind the other.
+/// Adds a column with the numbers that `numbers_of` returns for each vertex, one after the other.
 template <ColumnNumber T, class NumbersOf>
 void add_column(Columns& columns, const std::vector<AxisVertex>& vertices, std::string_view name,
                 std::size_t components, const NumbersOf& numbers_of) {
@@ -49,7 +49,7 @@ Columns columns_of(std::vector<float> angles) {
 
 namespace {
 
-/// @param edge, triangle  give the vertices of those that are left; nullopt for the others.
+/// @param edge, triangle  return the vertices of a cell that is kept; nullopt for the others.
 template <class HasVertex, class Edge, class Triangle>
 void keep_in_place(AxisLists& lists, const HasVertex& has_vertex, const Edge& edge, const Triangle& triangle) {
   std::vector<std::uint32_t> number(lists.vertices.size(), 0);

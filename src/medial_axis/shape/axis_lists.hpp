@@ -1,4 +1,4 @@
-// Blum: medial axes while they are put together. SPDX-License-Identifier: Apache-2.0
+// Blum: medial axes during their construction. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -14,17 +14,17 @@
 
 namespace blum::detail {
 
-/// All that is known of a vertex in one place; medial_columns says what the members are.
+/// All data of a vertex. medial_columns describes the members.
 struct AxisVertex {
   Vec3d position;
   double radius = 0;
   std::array<Vec3d, 2> footprints;
   std::array<SiteId, 2> sites;
   double separation_angle = 0;
-  std::array<std::uint32_t, 2> elements{};  ///< of the surface, that footprints lie on
+  std::array<std::uint32_t, 2> elements{};  ///< of the surface, that contain the footprints
 };
 
-/// A vertex that knows of one wall only.
+/// Returns a vertex for which only one wall is known.
 inline AxisVertex vertex_of_one_wall(const Vec3d& x, const NearestPoint& nearest) {
   return {x,
           nearest.distance,
@@ -34,7 +34,7 @@ inline AxisVertex vertex_of_one_wall(const Vec3d& x, const NearestPoint& nearest
           {nearest.element, nearest.element}};
 }
 
-/// The centre of a ball in a thin part.
+/// Returns a vertex at the centre of a ball in a thin part.
 inline AxisVertex vertex_of_ball(const ThinBall& ball) {
   return {ball.centre,
           ball.nearest.distance,
@@ -62,16 +62,17 @@ struct AxisLists {
   }
 };
 
-/// Adds lists at the end of others.
+/// Appends lists to others.
 void append(AxisLists more, AxisLists& lists);
 
-/// Keeps what is left of a complex that was made of lists: its edges are those of the lists, in their order, and maybe
-/// more.
+/// Keeps the remaining cells of a complex that was made of lists. Its edges are those of the lists, in their order, and
+/// maybe more.
 void keep(const ShrinkingComplex& cells, AxisLists& lists);
-/// Keeps some vertices and triangles, and all edges, which have only such vertices.
+/// Keeps some vertices and triangles, and all edges. All ends of edges must be among the kept vertices.
 void keep(const std::vector<bool>& has_vertex, const std::vector<bool>& has_triangle, AxisLists& lists);
 
-/// A complex with the columns of a medial axis, one sheet, and edges that are curves: to be labelled by label_sheets().
+/// Returns a complex with the columns of a medial axis, one sheet, and edges that are curves. label_sheets() must label
+/// it.
 [[nodiscard]] Complex complex_of(AxisLists lists);
 
 }  // namespace blum::detail

@@ -28,11 +28,12 @@ constexpr double on_a_face = 1e-7;  ///< voxels
 
 using Voxel = std::array<std::int64_t, 3>;
 
-/// The voxels that a segment can meet, as a box, both ends included; of a segment in a face, those on both sides.
+/// Box of the voxels that a segment can meet, both ends included. For a segment in a face, it contains the voxels on
+/// both sides.
 struct VoxelBox {
   Voxel lower, upper;
 
-  /// Whether there is a voxel between those at the ends.
+  /// Returns true if a voxel lies between those at the ends.
   [[nodiscard]] bool is_long() const {
     return upper[0] - lower[0] > 1 || upper[1] - lower[1] > 1 || upper[2] - lower[2] > 1;
   }
@@ -65,8 +66,8 @@ class GapFinder {
  public:
   explicit GapFinder(const VoxelSolid& solid) : grid_(solid.grid), voxels_(solid.voxels) {}
 
-  /// Whether a segment leaves the solid other than by cutting a corner: past the side of a voxel that only its end
-  /// belongs to, or into a voxel between those of its ends.
+  /// Returns true if a segment leaves the solid other than by cutting a corner. Then it meets a voxel between those of
+  /// its ends, or an end lies in no voxel of the solid that it passes through.
   [[nodiscard]] bool crosses_a_gap(const Vec3d& from, const Vec3d& to) const {
     const Vec3d a = in_voxels(from);
     const Vec3d b = in_voxels(to);
@@ -75,12 +76,12 @@ class GapFinder {
   }
 
  private:
-  /// Voxel (i, j, k) spans i to i + 1 along x, and so on.
+  /// Converts to voxels: voxel (i, j, k) spans i to i + 1 along x, and so on.
   [[nodiscard]] Vec3d in_voxels(const Vec3d& x) const {
     const Vec3d seen = grid_.direction.transposed_times(x - grid_.origin);
     return {seen.x / grid_.spacing.x + 0.5, seen.y / grid_.spacing.y + 0.5, seen.z / grid_.spacing.z + 0.5};
   }
-  /// Whether a voxel of the box that is in the solid holds an end.
+  /// Returns true if a voxel of the box that is in the solid contains an end.
   [[nodiscard]] bool has_end(const VoxelBox& box, const Vec3d& x) const {
     bool is_found = false;
     box.for_each([&](const Voxel& v) { is_found = is_found || (contains(v) && has(v, x)); });
@@ -100,7 +101,8 @@ class GapFinder {
   }
   [[nodiscard]] bool contains(const Voxel& v) const { return voxels_.contains(v[0], v[1], v[2]); }
 
-  /// Whether a segment lies in the closed voxels of the solid: its parts between planes of the lattice do.
+  /// Returns true if a segment lies in the closed voxels of the solid, as all its parts between planes of the lattice
+  /// do.
   [[nodiscard]] bool is_inside(const Vec3d& a, const Vec3d& b) const {
     std::vector<double> cuts{0, 1};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -126,13 +128,13 @@ class GapFinder {
   const VoxelSet& voxels_;
 };
 
-/// Two ends of an edge may have moved from their lattice corners into parts of an image that have a gap between them,
-/// as the tips of a U have. Such ends go back to their corners, whose edges lie in the solid: on its surface, where
-/// their radius is 0. Edges that only cut a corner of the solid stay.
+/// Moves ends of edges back to their lattice corners. In an image they may have moved into parts that have a gap
+/// between them, like the tips of a U. The edges of the corners lie in the solid: on its surface, where the radius of
+/// the vertices is 0. Edges that only cut a corner of the solid stay.
 void keep_edges_inside(AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors,
                        const Context& context) {
   const GapFinder gaps(governors.solid());
-  // Each round puts at least one vertex back for good; mostly there is nothing to do.
+  // Each round moves at least one vertex back for good. Mostly there is nothing to do.
   for (bool is_done = false; !is_done;) {
     std::vector<std::uint8_t> goes_back(piece.vertices.size(), 0);
     std::atomic<bool> is_found = false;
@@ -167,7 +169,7 @@ void keep_edges_inside(AxisPiece& piece, const AxisCorners& corners, const Gover
 
 constexpr double same_place = 1e-6;  ///< voxels
 
-/// The cells of a complex, rising.
+/// Returns the cells of a complex, ascending.
 std::vector<AxisCell> cells_of(const CellComplex& complex, const Importance& importance) {
   std::vector<AxisCell> cells;
   complex.for_each_cell([&](Cell cell) {
@@ -177,8 +179,8 @@ std::vector<AxisCell> cells_of(const CellComplex& complex, const Importance& imp
   return cells;
 }
 
-/// Half the length of the intervals that extra polygons stand for, and for their faces the largest of these: how deep
-/// in the solid extra cells lie.
+/// Returns the depths of extra cells in the solid. A polygon has half the length of its interval, a face the largest
+/// value of its polygons.
 std::vector<float> depths_of_extra(const CellStructure& structure) {
   std::vector<float> depths(structure.extra_count(), 0);
   const Cell first = structure.first_extra();
@@ -195,7 +197,8 @@ std::vector<float> depths_of_extra(const CellStructure& structure) {
   return depths;
 }
 
-/// Makes ends of edges that are as good as at the same place the same: those of a ribbon around a curve, say.
+/// Makes the ends of an edge equal if they are at practically the same place, for example those of a ribbon around a
+/// curve.
 void make_equal(AxisPiece& piece, const IndexRows& corners, double tolerance) {
   detail::UnionFind joined(piece.vertices.size());
   for (std::size_t c = 0; c < piece.cells.size(); ++c) {
@@ -208,7 +211,7 @@ void make_equal(AxisPiece& piece, const IndexRows& corners, double tolerance) {
   for (std::uint32_t v = 0; v < piece.vertices.size(); ++v) piece.vertices[v] = piece.vertices[joined.find(v)];
 }
 
-/// What is left of a piece at an angle.
+/// Part of a piece that is left at an angle.
 class Remainder {
  public:
   Remainder(const AxisPiece& piece, double theta, AxisLists& lists)
@@ -235,7 +238,7 @@ class Remainder {
  private:
   static constexpr std::uint32_t nobody = 0xffffffffU;
 
-  /// Of a vertex of the piece, in the lists.
+  /// Returns the number of a vertex of the piece in the lists, and adds it if it is new.
   [[nodiscard]] std::uint32_t number(std::uint32_t place) {
     if (vertex_[place] == nobody) {
       vertex_[place] = static_cast<std::uint32_t>(lists_.vertices.size());

@@ -16,34 +16,33 @@
 
 namespace blum::detail {
 
-/// A cell that a solid collapses to.
+/// Cell of the complex that a solid collapses to.
 struct AxisCell {
   Cell cell;
   int dimension;
-  float level;  ///< degrees: it goes where theta is at least this; infinite where it never goes
+  float level;  ///< degrees: it is removed if theta >= level; infinite if it is never removed
   float angle;  ///< degrees: its importance
 };
 
 struct AxisPiece {
   CellStructure structure;
-  std::vector<AxisCell> cells;       ///< by rising cell
-  std::vector<AxisVertex> vertices;  ///< of the vertices among the cells, in their order, then others; sites are the
-                                     ///< surface's
-  /// What each cell consists of, as places of vertices: a vertex; the corners of a chain of edges; corners of
-  /// triangles, three by three.
+  std::vector<AxisCell> cells;       ///< By ascending cell.
+  std::vector<AxisVertex> vertices;  ///< Those of the cells, in order, then others. Sites are of the surface.
+  /// Vertices of each cell, as places: a vertex; the corners of a chain of edges; the corners of triangles, three by
+  /// three.
   IndexRows shapes;
-  IndexRows sides;  ///< of each polygon: its edges, as places of cells; empty for others
-  /// Of a polyhedron, boxes of the model in which parts of cells leave the solid, as no better ones were found.
+  IndexRows sides;  ///< Edges of each polygon, as places of cells. Empty for other cells.
+  /// For a polyhedron: boxes of the model in which parts of cells leave the solid, because no better shapes were found.
   std::vector<Box3> leaving;
 };
 
 /// Collapses the cells of a solid to its medial axis.
-/// @param greatest_theta  degrees: of cells that are still there at that angle, nothing more is found out.
+/// @param greatest_theta  degrees. For cells that are left at this angle, no further order is computed.
 /// @throws Cancelled, OutOfMemory.
 [[nodiscard]] AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor, double greatest_theta,
                                         std::vector<PhaseTime>& phases, const Context& context);
 
-/// Adds what is left of a piece at theta, which is no more than the greatest; edges are those of curves only.
+/// Adds the cells of a piece that are left at theta, which is at most the greatest one. Only edges of curves are added.
 /// @throws Cancelled.
 void append_at(const AxisPiece& piece, double theta, AxisLists& lists, const Context& context);
 

@@ -16,15 +16,16 @@ namespace {
 
 constexpr std::size_t nodes_per_range = 256;
 constexpr int most_steps = 24;
-/// How far a vertex may move from its corner along each axis, in voxels: a corner of the squares nearest to a plane is
-/// no further from it than (1 + sqrt 3) / 4.
+/// Greatest move of a vertex from its corner along each axis, in voxels. A corner of the squares nearest to a plane is
+/// at most (1 + sqrt 3) / 4 away from it.
 constexpr double most_moved = 0.7;
-/// Two distances count as equal from here on, in voxels.
+/// Two distances count as equal from this difference on, in voxels.
 constexpr double equal_distances = 1e-9;
 constexpr double on_surface = 1e-9;    ///< voxels
 constexpr double least_radius = 1e-6;  ///< voxels
 
-/// Whether voxels around a corner, as bits, hang together through faces there, also those around each edge at it.
+/// Returns true if the voxels around a corner, as bits, are connected through faces at it. The voxels around each edge
+/// at the corner must be connected, too.
 bool are_joined_by_faces(unsigned voxels) {
   for (const unsigned axis : {1U, 2U, 4U}) {
     const unsigned u = axis == 1 ? 2 : 1;
@@ -55,7 +56,7 @@ AxisVertex vertex_on_surface(const NearestPoint& nearest) {
   return vertex;
 }
 
-/// A point that is as far from one footprint as from another, and not further from these than from others known.
+/// Point that is equally far from two footprints. No other known footprint is closer.
 struct Placed {
   Vec3d x;
   Footprint p;
@@ -72,7 +73,7 @@ class Placer {
     const GovernorsAround around = governors_.around(node);
     const Vec3d corner = corner_at(grid, node);
     if (const auto joint = joint_at(around, corner)) return *joint;
-    // Seams and axes first: a point that all footprints agree on; else the nearest sheet.
+    // Seams and axes come first: a point equally far from all footprints. Otherwise the nearest sheet is taken.
     std::array<Vec3d, 8> feet;
     for (std::size_t v = 0; v < 8; ++v) feet[v] = around[v].foot.point;
     const EquidistantPoints points(feet, corner);
@@ -95,7 +96,7 @@ class Placer {
     return true;
   }
 
-  /// The corner itself where it is what joins voxels of an image: elsewhere edges would leave the solid there.
+  /// Returns the corner itself if it alone joins voxels of an image. If it moved, edges would leave the solid there.
   [[nodiscard]] std::optional<AxisVertex> joint_at(const GovernorsAround& around, const Vec3d& corner) const {
     unsigned inside = 0;
     for (unsigned v = 0; v < 8; ++v) inside |= around[v].is_inside ? 1U << v : 0U;
@@ -105,7 +106,7 @@ class Placer {
     return vertex_on_surface(nearest);
   }
 
-  /// Newton steps to the nearest point between the closest wall and another one.
+  /// Makes Newton steps to the nearest point between the closest wall and another one.
   [[nodiscard]] std::optional<Placed> settle(const GovernorsAround& around, const Vec3d& start,
                                              const Vec3d& corner) const {
     const double voxel = governors_.voxel();
@@ -144,7 +145,8 @@ class Placer {
     return std::nullopt;
   }
 
-  /// Whether a point is in the solid: balls around it and around a voxel's centre that meet say so without more ado.
+  /// Returns true if a point is in the solid. If the balls around it and around a voxel's centre meet, no query is
+  /// needed.
   [[nodiscard]] bool is_inside(const GovernorsAround& around, const Vec3d& x, const NearestPoint& nearest) const {
     const bool meets = std::any_of(around.begin(), around.end(), [&](const Governor& g) {
       return g.is_inside && length(x - g.centre) < nearest.distance + length(g.centre - g.foot.point);
@@ -152,10 +154,11 @@ class Placer {
     return meets || surface_.is_inside(x, nearest);
   }
 
-  /// The vertex at a point, if that is inside: the exact closest point, and the other wall's where it is as close.
+  /// Returns the vertex at a point if that is inside. The first footprint is exact; the second one is that of the other
+  /// wall if it is as close.
   [[nodiscard]] std::optional<AxisVertex> vertex_at(const std::optional<Placed>& placed,
                                                     const GovernorsAround& around) const {
-    // On the surface, at a convex edge say, directions are rounding.
+    // On the surface, for example at a convex edge, directions are rounding errors.
     if (!placed || placed->nearest.distance < least_radius * governors_.voxel()) return std::nullopt;
     AxisVertex vertex = vertex_of_one_wall(placed->x, placed->nearest);
     if (!is_inside(around, placed->x, placed->nearest)) return std::nullopt;
@@ -172,14 +175,15 @@ class Placer {
     return vertex.separation_angle > 0 ? std::optional(vertex) : std::nullopt;
   }
 
-  /// The middle of a thin part next to a corner beyond the surface.
+  /// Returns the middle of a thin part next to a corner outside the solid.
   [[nodiscard]] std::optional<AxisVertex> in_thin_part(const NearestPoint& touched, const Vec3d& corner) const {
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, touched, corner, 2 * governors_.longest_voxel());
     return ball ? std::optional(vertex_of_ball(*ball)) : std::nullopt;
   }
 
-  /// Where no bisector is within reach: at the corner; where that is outside, in the middle of a thin part next to it;
-  /// else at the deepest voxel's centre; on the surface where that is outside, too.
+  /// Returns a vertex if no bisector is within reach. It is at the corner; if that is outside, it is in the middle of a
+  /// thin part next to it. Otherwise it is at the deepest voxel's centre. If that is outside, too, it is on the
+  /// surface.
   [[nodiscard]] AxisVertex without_bisector(const GovernorsAround& around, const Vec3d& corner) const {
     const NearestPoint nearest = surface_.nearest(corner, around[0].foot);
     if (is_inside(around, corner, nearest)) return vertex_of_one_wall(corner, nearest);
@@ -209,7 +213,8 @@ AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std
 
 namespace {
 
-/// Whether a vertex lies in the component that its cell stands for, as far as lines tell: others may have been closer.
+/// Returns true if a vertex lies in the component that its cell stands for, as far as straight lines show. The walls of
+/// other components may have been closer.
 bool is_in_component(const Witnesses& witnesses, Cell cell, const AxisVertex& vertex) {
   const GovernorField& governors = witnesses.governors();
   const CellStructure& structure = witnesses.structure();
@@ -228,7 +233,7 @@ bool is_in_component(const Witnesses& witnesses, Cell cell, const AxisVertex& ve
   return !home || SolidPaths(governors.surface()).is_straight(*home, stop_of(vertex));
 }
 
-/// In the middle of a thin part where there is one: the ball there holds the point that it was found from.
+/// Returns a vertex in the middle of a thin part, if any. The ball there contains the point that it was found from.
 AxisVertex place_in_component(const Witnesses& witnesses, Cell cell) {
   const GovernorField& governors = witnesses.governors();
   const Surface& surface = governors.surface();

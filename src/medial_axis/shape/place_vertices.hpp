@@ -1,4 +1,4 @@
-// Blum: where the vertices of a medial axis lie. SPDX-License-Identifier: Apache-2.0
+// Blum: positions of the vertices of a medial axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,23 +15,23 @@
 
 namespace blum::detail {
 
-/// The vertices of a complex: each of those of the lattice is moved from its lattice corner to a point within its
-/// voxel's reach that is as far from one wall as from another, and as far as the voxels around say from all of them; it
-/// stays where it is where only one wall is near. Extra ones lie in the middle of the component of the solid that they
-/// stand for. Radius and first footprint are those of an exact query.
+/// Returns the vertices of a complex. A vertex of the lattice moves from its lattice corner to a point within reach of
+/// its voxel. That point is equally far from two walls, or from all walls that the voxels around see. If only one wall
+/// is near, the vertex stays in place. Extra vertices lie in the middle of the component of the solid that they stand
+/// for. Radius and first footprint are those of an exact query.
 /// @param cells  vertices of the structure.
 [[nodiscard]] std::vector<AxisVertex> place_vertices(const Witnesses& witnesses, std::span<const Cell> cells,
                                                      const Context& context);
 
-/// The box of the grid that a vertex of a model stands for a component in, a little larger than it is.
+/// Returns the box of the grid in which a vertex of a model stands for a component, slightly enlarged.
 [[nodiscard]] Box3 box_of_vertex(const GovernorField& governors, const CellStructure& structure, Cell vertex);
 
-/// The place of a vertex, as paths begin and end there.
+/// Returns a vertex as a stop, at which paths begin and end.
 [[nodiscard]] inline Stop stop_of(const AxisVertex& vertex) {
   return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], vertex.elements[0]}};
 }
 
-/// A vertex at the corner of the lattice itself, which must lie in the solid.
+/// Returns a vertex at the corner of the lattice itself, which must lie in the solid.
 [[nodiscard]] AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node);
 
 }  // namespace blum::detail

@@ -20,7 +20,7 @@ namespace {
 
 using Words = std::span<const std::uint64_t>;
 
-/// The bits of a row, each also moved by up to so many places either way.
+/// Computes the bits of a row, each also moved by up to `within` places either way.
 void spread_along(Words from, int within, std::span<std::uint64_t> to) {
   for (std::size_t w = 0; w < from.size(); ++w) {
     const std::uint64_t before = w > 0 ? from[w - 1] : 0;
@@ -36,24 +36,24 @@ void add(Words from, std::span<std::uint64_t> to) {
   for (std::size_t w = 0; w < from.size(); ++w) to[w] |= from[w];
 }
 
-/// Rows end in bits of no voxel, which stay zero.
+/// Clears the bits at the end of a row that belong to no voxel.
 void clear_beyond(std::int64_t length, std::span<std::uint64_t> row) {
   const auto used = static_cast<std::size_t>(length);
   row[used / 64] &= (std::uint64_t{1} << (used % 64)) - 1;
 }
 
-/// How far, in voxels, a footprint may move when its point moves by less than one.
+/// Greatest move of a footprint, in voxels, when its point moves by less than one.
 constexpr double reach_around_axis = 1.5;
-/// How far beyond the closest distance a footprint may be to count, in voxels, at a point that all were fitted to.
+/// A footprint counts at a point fitted to all if it is at most this much further than the closest one, in voxels.
 constexpr double fitted_tolerance = 0.1;
-constexpr double fitted_reach = 0.5;  ///< of a point from the middle of its cell, in voxels along each axis
-/// The same for wires between the voxels: balls in these are found less surely.
+constexpr double fitted_reach = 0.5;  ///< Voxels along each axis, from the middle of the cell of a point.
+/// The same for wires between the voxels, because balls in these are found less reliably.
 constexpr double wire_reach = 0.7;
 constexpr int bisector_steps = 4;
 constexpr double opposite_step = 0.3;    ///< voxels
-constexpr double opposite_enough = 175;  ///< degrees: no need to look for a footprint that is further apart
+constexpr double opposite_enough = 175;  ///< degrees: no footprint further apart is searched for
 
-/// Where a floor of noise lets footprints that are close together count at clear angles: nowhere in thick parts.
+/// Thick parts: there, footprints that are close together do not count even at clear angles.
 class ThickParts {
  public:
   ThickParts(const GovernorField& governors, const NoiseFloor& floor, const Context& context) {
@@ -68,7 +68,7 @@ class ThickParts {
   [[nodiscard]] bool contain(const std::array<std::int64_t, 3>& voxel) const {
     return at_.contains(voxel[0], voxel[1], voxel[2]);
   }
-  /// A voxel and all its neighbours.
+  /// Returns true if a voxel and all its neighbours are contained.
   [[nodiscard]] bool contain_all_around(const std::array<std::int64_t, 3>& voxel) const {
     return all_around_.contains(voxel[0], voxel[1], voxel[2]);
   }
@@ -78,8 +78,8 @@ class ThickParts {
   VoxelSet all_around_;
 };
 
-/// The governors of the voxels around the nodes of a layer, row after row, each found once per layer and only where it
-/// is asked for.
+/// Governors of the voxels around the nodes of a layer, row after row. Each is found once per layer, and only when
+/// needed.
 class GovernorRows {
  public:
   GovernorRows(const GovernorField& governors, const NoiseFloor& floor, const ThickParts& thick, std::int64_t k)
@@ -95,7 +95,7 @@ class GovernorRows {
     for (Row& row : rows_) row.rough.resize(has_rough_ ? length : 0);
   }
 
-  /// To the nodes of row j, which must rise.
+  /// Moves to the nodes of row j, which must ascend.
   void go_to(std::int64_t j) {
     if (j == j_ + 1) {
       std::swap(rows_[0], rows_[1]);
@@ -107,7 +107,7 @@ class GovernorRows {
     j_ = j;
   }
 
-  /// Whether what the voxels around a node are closest to certainly counts as one wall.
+  /// Returns true if the footprints of the voxels around a node certainly count as one wall.
   [[nodiscard]] bool has_one_wall(std::int64_t i) {
     const VoxelSolid& solid = governors_.solid();
     const auto [x0, y0, z0] = place(i, 7);
@@ -136,7 +136,7 @@ class GovernorRows {
  private:
   struct Row {
     std::vector<Governor> governors;
-    std::vector<std::uint8_t> known;  ///< bit 0: of governors; bit 1: of rough footprints
+    std::vector<std::uint8_t> known;  ///< bit 0: governor is known; bit 1: rough footprint is known
     std::vector<Vec3d> rough;
   };
 
@@ -154,7 +154,7 @@ class GovernorRows {
 
   /// @param depth  of one of the voxels.
   [[nodiscard]] bool has_one_rough_wall(std::int64_t i, double depth) {
-    // Footprints lie up to half a voxel from where they are thought to be, the node up to one from the voxel.
+    // Rough footprints are off by up to half a voxel, and the node is up to one voxel from the voxel.
     const double voxel = governors_.longest_voxel();
     if (!thick_.contain_all_around(place(i, 7))) return false;
     const double limit = std::max((floor_.voxels - 1) * voxel, chord_ * (depth - voxel) - voxel);
@@ -193,8 +193,8 @@ class Measure {
 
   using Around = GovernorsAround;
 
-  /// Calls use(node, around) for the nodes of a layer that have cells, and voxels around them whose closest points lie
-  /// in different directions.
+  /// Calls use(node, around) for the nodes of a layer that have cells and whose voxels have closest points in different
+  /// directions.
   template <class Use>
   void for_each_uneven_node(std::int64_t k, const Use& use) const {
     const CellLattice& lattice = complex_.lattice();
@@ -211,12 +211,12 @@ class Measure {
     }
   }
 
-  /// The angle on the bisector between two voxels that share a square; 0 where both follow the same wall.
+  /// Returns the angle on the bisector between two voxels that share a square; 0 if both follow the same wall.
   [[nodiscard]] double between(const Governor& a, const Governor& b) const {
     if (a.foot.element == b.foot.element) return 0;
-    // Between two voxels beyond the surface the solid may still pass: a thin part.
+    // A thin part of the solid may pass between two voxels outside of it.
     if (!a.is_inside && !b.is_inside && dot(a.direction, b.direction) > 0) return 0;
-    double low = 0;  // where a's wall is the closer one
+    double low = 0;  // here a's wall is the closer one
     double high = 1;
     double t = 0.5;
     Vec3d x;
@@ -229,7 +229,7 @@ class Measure {
       const double difference = depth_of(x, a, p) - depth_of(x, b, q);
       if (std::abs(difference) < 1e-3 * voxel_) break;
       (difference < 0 ? low : high) = t;
-      // Where both distances change linearly, their slopes are those along the two directions.
+      // The slopes of both distances are those along the directions to their footprints, as if they changed linearly.
       const double slope = slope_along(a, b, x, a, p) - slope_along(a, b, x, b, q);
       const double next = slope > 0 ? t - difference / slope : -1;
       t = next > low && next < high ? next : 0.5 * (low + high);
@@ -238,7 +238,7 @@ class Measure {
     return above_floor(x, p.point, q.point);
   }
 
-  /// The angle that an extra polygon stands for: on the bisector between the ends of its interval.
+  /// Returns the angle of an extra polygon: on the bisector between the ends of its interval.
   [[nodiscard]] double between(const ExtraCell& polygon) const {
     std::array<Governor, 2> ends;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -247,7 +247,7 @@ class Measure {
     }
     return between(ends[0], ends[1]);
   }
-  /// The angle in the middle of a part that is so thin that no line between nodes meets it.
+  /// Returns the angle in the middle of a part that is so thin that no line between nodes meets it.
   [[nodiscard]] double in_wire(const ExtraCell& cell) const {
     const NearestPoint nearest = surface_.nearest(cell.witness, {});
     if (!surface_.is_inside(cell.witness, nearest)) return 0;
@@ -255,7 +255,7 @@ class Measure {
     return ball ? above_floor(ball->centre, ball->nearest.point, ball->other.point) : 0;
   }
 
-  /// The largest angle between any two voxels of a cell, as the voxels' own directions tell it.
+  /// Returns the largest angle between the directions of any two voxels of a cell.
   [[nodiscard]] static double coarse(const Around& around, CellAxes axes) {
     double least = 1;
     for (unsigned v = 0; v < 8; ++v) {
@@ -267,7 +267,8 @@ class Measure {
     return std::acos(std::clamp(least, -1.0, 1.0)) * degrees_per_radian;
   }
 
-  /// The angle at a point as far from all footprints around an edge or vertex, within half a voxel of its middle.
+  /// Returns the angle at a point equally far from all footprints around an edge or vertex. It lies within
+  /// `fitted_reach` of the middle, or `wire_reach` for wires.
   [[nodiscard]] double fitted(const Around& around, CellAxes axes) const {
     std::array<Vec3d, 8> feet;
     std::array<const Governor*, 8> governors{};
@@ -281,7 +282,7 @@ class Measure {
       feet[count++] = around[v].foot.point;
       middle += around[v].centre;
     }
-    // Squares tell what there is to tell about thin parts, but not about wires that pass between all voxels.
+    // Squares suffice for thin parts, but not for wires that pass between all voxels.
     if (inside != 0 && inside != count) return 0;
     middle *= 1.0 / static_cast<double>(count);
     const EquidistantPoints points({feet.data(), count}, middle);
@@ -292,7 +293,7 @@ class Measure {
       largest = std::max(largest, angle_of({governors.data(), count}, *x));
     }
     if (largest > 0 || inside != 0) return largest;
-    // A wire may be too thin for the footprints to tell its middle.
+    // A wire may be so thin that the footprints do not determine its middle.
     const NearestPoint nearest = surface_.nearest(middle, governors[0]->foot);
     if (nearest.distance > step_ || surface_.is_inside(middle, nearest)) return 0;
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, nearest, middle, step_);
@@ -311,30 +312,30 @@ class Measure {
     if (is_same) return false;
     const double size = length(sum);
     const double narrow = std::cos(0.5 * floor_.angle / degrees_per_radian);
-    if (size < 8 * narrow) return true;  // opposite walls, whose sum points nowhere
+    if (size < 8 * narrow) return true;  // opposite walls, whose sum has no direction
     for (const Governor& g : around) {
       if (dot(g.direction, sum) < narrow * size) return true;
     }
     return false;
   }
 
-  /// How far a point is from the footprint that follows it from a governor's; negative beyond the wall.
+  /// Returns the distance of a point from the footprint that follows it from a governor's; negative beyond the wall.
   [[nodiscard]] static double depth_of(const Vec3d& x, const Governor& g, const Footprint& foot) {
     return std::copysign(length(x - foot.point), dot(foot.point - x, g.direction));
   }
-  /// What that changes by where x goes all the way from a to b.
+  /// Returns the change of depth_of() when x moves all the way from a to b.
   [[nodiscard]] static double slope_along(const Governor& a, const Governor& b, const Vec3d& x, const Governor& g,
                                           const Footprint& foot) {
     const double depth = depth_of(x, g, foot);
     return depth != 0 ? dot(b.centre - a.centre, x - foot.point) / depth : 0;
   }
 
-  /// Whether a point near a voxel is on the inner side of the wall that the voxel is closest to.
+  /// Returns true if a point near a voxel is on the inner side of the wall that is closest to the voxel.
   [[nodiscard]] static bool is_inside(const Governor& g, const Vec3d& x) {
     return dot(x - g.foot.point, g.direction) < 0;
   }
 
-  /// Of a point of the surface.
+  /// Returns the governor of a point of the surface.
   [[nodiscard]] Governor governor_at(const ExtraCell::End& end) const {
     Governor g;
     g.centre = end.point;
@@ -402,7 +403,7 @@ class Measure {
       for (std::size_t b = a + 1; b < governors.size() && distance[a] <= limit; ++b) {
         if (distance[b] > limit) continue;
         const double cosine_scaled = dot(feet[a].point - x, feet[b].point - x);
-        if (cosine_scaled > least_cosine * distance[a] * distance[b]) continue;  // before the angle, which costs more
+        if (cosine_scaled > least_cosine * distance[a] * distance[b]) continue;  // cheaper than the angle
         const double angle = above_floor(x, feet[a].point, feet[b].point);
         if (angle <= largest) continue;
         largest = angle;
@@ -415,8 +416,8 @@ class Measure {
     return length(x - opposite) > limit ? largest : std::max(largest, above_floor(x, feet[widest].point, opposite));
   }
 
-  /// A footprint on the other side: what is closest a little further away from the first one. The voxels around an axis
-  /// see only some of the directions that there are.
+  /// Returns a footprint on the other side: the closest point to a place a little further away from the first
+  /// footprint. The voxels around an axis see only some of the directions.
   [[nodiscard]] Vec3d opposite_of(const Vec3d& x, const Footprint& foot) const {
     const Vec3d away = x - foot.point;
     const double distance = length(away);
@@ -432,12 +433,12 @@ class Measure {
   const CellComplex& complex_;
   const NoiseFloor& floor_;
   double voxel_;
-  double step_;  ///< of the grid's steps along a surface
+  double step_;  ///< longest side of a voxel
 };
 
 using Entries = std::vector<Importance::Entry>;
 
-/// Of extra polygons, and of extra edges that are no side of any.
+/// Returns the angles of extra polygons, and of extra edges that are not a side of any.
 Entries angles_of_extra(const Measure& measure, const CellStructure& structure, const Context& context) {
   std::vector<float> angles(structure.extra_count(), 0);
   const Cell first = structure.first_extra();
@@ -458,15 +459,15 @@ Entries angles_of_extra(const Measure& measure, const CellStructure& structure, 
   return entries;
 }
 
-/// One list of all layers' entries.
+/// Returns one list of the entries of all layers.
 Entries joined(const std::vector<Entries>& layers) {
   Entries all;
   for (const Entries& layer : layers) all.insert(all.end(), layer.begin(), layer.end());
   return all;
 }
 
-/// The largest value of the squares and their faces next to a node. No cell of the complex lies on the lattice's
-/// border.
+/// Returns the largest value of the squares next to a node and of their faces. No cell of the complex lies on the
+/// border of the lattice.
 double largest_around(const Importance& squares, const CellLattice& lattice, std::size_t node) {
   float largest = 0;
   for (std::size_t z = 0; z < 3; ++z) {
@@ -474,7 +475,7 @@ double largest_around(const Importance& squares, const CellLattice& lattice, std
       const std::size_t row =
           node + z * lattice.stride(2) + y * lattice.stride(1) - lattice.stride(2) - lattice.stride(1);
       for (std::size_t n = row - 1; n <= row + 1; ++n) {
-        // Vertices have at least what the squares around them have.
+        // Vertices have at least the values of the squares around them.
         largest = std::max(largest, squares.of(cell_at(n, 0)));
       }
     }
@@ -539,8 +540,8 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
   });
   found.push_back(angles_of_extra(measure, complex.structure(), context));
   const Importance squares(complex.structure(), joined(found));
-  constexpr double nearly_opposite = 170;  // degrees, on axes of round things
-  constexpr double wide = 100;             // degrees between two of few voxels, where others may be opposite
+  constexpr double nearly_opposite = 170;  // degrees, on axes of round parts
+  constexpr double wide = 100;             // degrees between two of few voxels; others may be opposite
   for_each_layer("separation angles of edges", [&](std::size_t k) {
     for (const std::uint32_t node : uneven[k]) {
       const double known = largest_around(squares, lattice, node);

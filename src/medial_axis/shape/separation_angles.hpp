@@ -8,28 +8,31 @@
 
 namespace blum::detail {
 
-/// The voxels of the box with one of a set at most so many steps away along each axis. @param within  voxels, 0 to 32.
+/// Returns the voxels of the box that have a voxel of the set at most `within` steps away along each axis.
+/// @param within  voxels, 0 to 32.
 [[nodiscard]] VoxelSet spread(const VoxelSet& from, int within, const Context& context);
 
-/// What decides whether two footprints mean a piece of the medial axis, or the noise of a grid and of facets.
+/// Criteria that distinguish a piece of the medial axis from noise of the grid and of facets, given two footprints.
 struct NoiseFloor {
-  double angle = 10;        ///< degrees; smaller separation angles count as zero
-  double clear_angle = 45;  ///< from here on, the distance of the footprints does not matter
-  double voxels = 2;  ///< footprints closer than this many (long sides of) voxels, at smaller angles, count as one
-  /// Footprints closer than `voxels` count, at clear angles, only where no voxel within this many is deeper than that:
-  /// in thin parts, and not in the steps that voxels make of a round surface. 0: everywhere.
+  double angle = 10;        ///< Degrees. Smaller separation angles count as zero.
+  double clear_angle = 45;  ///< Degrees. From here on, the distance of the footprints does not matter.
+  double voxels = 2;        ///< Long sides of voxels. At smaller angles, closer footprints count as one.
+  /// At clear angles, footprints closer than `voxels` count only if no voxel within this many is deeper than that. This
+  /// holds in thin parts, but not at the steps that voxels make of a round surface. 0: they count everywhere.
   int thin_within = 0;
-  /// Degrees: points off the lines between voxels count where they see this much more than such points around them.
+  /// Degrees: points off the lines between voxels count if they see this much more than points on such lines around
+  /// them.
   double clearly_more = 5;
-  double lambda = 0;  ///< mesh units: footprints closer than this count as one at any angle
+  double lambda = 0;  ///< mesh units; closer footprints count as one at any angle
 };
 
-/// The separation angle of each cell of a solid: the largest one at a point of the medial axis within half a voxel of
-/// it, in degrees; 0 where no such point shows.
+/// Computes the separation angle of each cell of a solid, in degrees. This is the largest one at a point of the medial
+/// axis within half a voxel of the cell. In parts that pass between all voxels, 0.7 voxels are allowed. The angle is 0
+/// if no such point is found.
 ///
-/// Squares lie between two voxels: where the parts of the surface that these are closest to, followed to the same point
-/// between the two, remain two. Edges and vertices also look for a point as far from the footprints of all voxels
-/// around them: axes of round things cross no line between two voxels.
+/// A square lies between two voxels. The parts of the surface closest to these are followed to the same point between
+/// the two. If they remain two parts, they give the angle. Edges and vertices also look for a point equally far from
+/// the footprints of all voxels around them. Axes of round parts cross no line between two voxels.
 /// @param complex  of the solid's voxels.
 [[nodiscard]] Importance separation_angles(const GovernorField& governors, const CellComplex& complex,
                                            const NoiseFloor& floor, const Context& context);

@@ -21,9 +21,9 @@
 namespace blum::detail {
 namespace {
 
-/// How many ways past the surface may be looked for while polygons are filled; counted down.
+/// Numbers of ways past the surface that may still be tried while polygons are filled.
 struct FillBudget {
-  int detours = 60;  ///< paths that take the place of edges
+  int detours = 60;  ///< paths that replace edges
   int fans = 8;      ///< points that see all corners
 };
 
@@ -32,24 +32,24 @@ class PolygonFiller {
  public:
   using Places = std::vector<std::uint32_t>;
 
-  /// @param stop_of  where a place is.
-  /// @param add      makes a vertex and tells its place; empty where there must be none.
-  /// @param budget   it must stay.
+  /// @param stop_of  returns the stop of a place.
+  /// @param add      makes a vertex and returns its place; empty if no vertex may be added.
+  /// @param budget   it must outlive this object.
   PolygonFiller(const SolidPaths& paths, std::function<Stop(std::uint32_t)> stop_of,
                 std::function<std::uint32_t(const Stop&)> add, FillBudget& budget)
       : paths_(paths), stop_of_(std::move(stop_of)), add_(std::move(add)), budget_(budget) {}
 
-  /// Cuts off the shortest ears, of these first such that no part of the surface comes through, then such that stay in
-  /// the solid; where there are none, one along a path of new vertices.
-  /// @param sides  groups of places that other polygons have, too. No edge joins two of a group: another polygon that
-  ///               has both may join them as well.
-  /// @return  whether all edges stay in the solid. They are of the complex in any case.
+  /// Cuts off ears, the shortest first: first those that the surface does not cross, then those that stay in the solid.
+  /// If none is left, cuts off one along a path of new vertices.
+  /// @param sides  groups of places that other polygons have, too. No edge joins two of a group, because another
+  /// polygon with both may join them as well.
+  /// @return  true if all edges stay in the solid. They belong to the complex in any case.
   bool fill(Places polygon, const std::vector<Places>& sides);
 
-  /// Whether none of the surface comes through the triangles: false also where that is not easy to see.
+  /// Returns true if the surface crosses none of the triangles. `false` may also mean that this is hard to decide.
   [[nodiscard]] bool is_all_open() const { return is_all_open_; }
 
-  /// Three places for each triangle, of all polygons.
+  /// Triangles of all polygons, three places for each.
   [[nodiscard]] const Places& triangles() const { return triangles_; }
 
  private:
@@ -73,14 +73,14 @@ bool has(const PolygonFiller::Places& places, std::uint32_t place) {
   return std::find(places.begin(), places.end(), place) != places.end();
 }
 
-/// A corner of a polygon and those next to it.
+/// Corner of a polygon and its two neighbours.
 struct PolygonFiller::Ear {
-  double squared_length = 0;  ///< of what joins the two next to the corner
+  double squared_length = 0;  ///< of the edge between the neighbours
   std::size_t corner = 0;     ///< in the polygon
   std::uint32_t before = 0, place = 0, after = 0;
 };
 
-/// A corner, and new places on a way between those next to it.
+/// Corner, and new places on a way between its neighbours.
 struct PolygonFiller::Detour {
   Ear over;
   Places places;
@@ -110,8 +110,8 @@ bool PolygonFiller::is_open(const Ear& ear) const {
   return is_joined(ear) && paths_.is_open(stop_of_(ear.before), stop_of_(ear.place), stop_of_(ear.after));
 }
 
-/// A corner to cut off, and new places on a way between the two next to it, the shortest ears first. A way that runs
-/// over a corner of the polygon, or through the ball around it, leaves about the same one to fill.
+/// Returns a corner to cut off and new places on a way between its neighbours; the shortest ears come first. Ways over
+/// a corner of the polygon, or through the ball around it, are left out: they leave about the same polygon to fill.
 std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon, std::span<const Ear> ears) {
   for (const Ear& ear : ears) {
     if (!add_ || budget_.detours-- <= 0) return std::nullopt;
@@ -129,9 +129,9 @@ std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon
   return std::nullopt;
 }
 
-/// Triangles around a new vertex that all corners of a polygon can be joined to; those that the surface comes through
-/// are filled in the same way. @return  whether there is a place for it.
-/// @param least_open  how many of the triangles none of the surface may come through.
+/// Adds triangles around a new vertex that all corners of a polygon can be joined to. Triangles that the surface
+/// crosses are filled in the same way. @return  true if a place for the vertex was found.
+/// @param least_open  least number of triangles that the surface does not cross.
 bool PolygonFiller::fan_out(const Places& polygon, std::size_t least_open) {
   if (!add_ || budget_.fans-- <= 0) return false;
   std::vector<Stop> corners;
@@ -156,7 +156,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
         const auto& [over, path] = *found;
         Places cut_off{over.before, over.place, over.after};
         cut_off.insert(cut_off.end(), path.rbegin(), path.rend());
-        // What is left over of the polygon has the path as well.
+        // The rest of the polygon has the path as well.
         std::vector<Places> sides_there = sides;
         Places& shared = sides_there.emplace_back(path);
         shared.push_back(over.before);
@@ -170,7 +170,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
       ear = ears.begin();
       stays = false;
     }
-    if (ear == ears.end()) {  // a vertex in the middle joins no two of them
+    if (ear == ears.end()) {  // no corners may be joined: take a vertex in the middle
       if (!add_) return false;
       Vec3d sum;
       for (const std::uint32_t place : polygon) sum += stop_of_(place).at;
@@ -192,23 +192,23 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
   return stays;
 }
 
-/// What is known of the corners of a piece that are extra cells, or next to such: there the solid may have holes
-/// narrower than a voxel, and a vertex may lie beyond one of them.
+/// Corners of a piece that are extra cells or next to such. There the solid may have holes narrower than a voxel, and a
+/// vertex may lie beyond one of them.
 class NearExtra {
  public:
   NearExtra(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context);
 
-  /// @param place  of a vertex; those beyond the corners count as near.
+  /// @param place  of a vertex. Places after those of the corners count as near.
   [[nodiscard]] bool is_near(std::uint32_t place) const { return place >= is_near_.size() || is_near_[place] != 0; }
-  /// A point of the component of a vertex that is near.
+  /// Returns a point of the component of a vertex that is near.
   [[nodiscard]] const std::optional<Stop>& home(std::uint32_t place) const { return homes_[place]; }
-  /// Whether an edge has the same ends as one before it. Files name edges by their ends.
+  /// Returns true if an edge has the same ends as an earlier one. Files name edges by their ends.
   [[nodiscard]] bool has_twin(std::uint32_t edge) const;
 
  private:
   void find_twins(const AxisPiece& piece, const AxisCorners& corners);
 
-  std::vector<std::uint32_t> twins_;   ///< rising
+  std::vector<std::uint32_t> twins_;   ///< ascending
   std::vector<std::uint8_t> is_near_;  ///< of each vertex place
   std::vector<std::optional<Stop>> homes_;
 };
@@ -257,12 +257,13 @@ void NearExtra::find_twins(const AxisPiece& piece, const AxisCorners& corners) {
 
 constexpr std::size_t cells_per_range = 512;
 
-/// The shape of a cell that is more than its corners tell: places from `own` on are those of its own vertices.
+/// Shape of a cell that is more than its corners. Places from `Shaper::first_own` on are those of its own vertices,
+/// `own`.
 struct Shape {
   std::vector<std::uint32_t> items;
   std::vector<AxisVertex> own;
-  bool leaves = false;      ///< the solid, somewhere
-  bool needs_more = false;  ///< with more effort, it may not
+  bool leaves = false;      ///< part of it leaves the solid
+  bool needs_more = false;  ///< with more effort, it might not
 };
 
 AxisVertex vertex_at(const Stop& stop) {
@@ -273,7 +274,7 @@ class Shaper {
  public:
   static constexpr std::uint32_t first_own = 0xf0000000U;
 
-  /// @param needs_more  null: with full effort; else with little, see SolidPaths.
+  /// @param needs_more  null for full effort, else little effort; see SolidPaths.
   Shaper(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const NearExtra& near,
          bool* needs_more)
       : piece_(piece),
@@ -284,7 +285,7 @@ class Shaper {
         needs_more_(needs_more),
         paths_(governors_.surface(), needs_more) {}
 
-  /// The chain of an edge that would leave the solid, or that has a twin; nullopt where it is a segment.
+  /// Returns the chain of an edge that would leave the solid or that has a twin; nullopt if a segment suffices.
   [[nodiscard]] std::optional<Shape> bent(std::uint32_t c) {
     const auto ends = corners_.of_cells()[c];
     const Stop a = stop_at(ends[0]);
@@ -311,8 +312,8 @@ class Shaper {
     return shape;
   }
 
-  /// The triangles of a polygon; nullopt where those of its corners alone, as triangles_of() has them, will do.
-  /// @param outline  its border, in a circle.
+  /// Returns the triangles of a polygon; nullopt if those of its corners alone suffice, see triangles_of().
+  /// @param outline  its border, in cyclic order.
   [[nodiscard]] std::optional<Shape> filled(std::uint32_t c, const std::vector<std::uint32_t>& outline,
                                             std::span<const AxisVertex> vertices) {
     if (touches_extra(c)) {
@@ -330,7 +331,7 @@ class Shaper {
         return std::nullopt;
       }
     }
-    // The polygon on the other side of a bent edge would cut off the same corners of it.
+    // Not if an edge is bent: the polygon on its other side would cut off the same corners of it.
     if (outline.size() == corners_.of_cells()[c].size()) {
       FillBudget budget;
       PolygonFiller filler(paths_, stop, {}, budget);
@@ -340,10 +341,10 @@ class Shaper {
   }
 
  private:
-  /// Whether more effort might have found a way that was looked for.
+  /// Returns true if more effort might have found a way.
   [[nodiscard]] bool has_given_up() const { return needs_more_ != nullptr && *needs_more_; }
 
-  /// Prepares for questions about the components of vertices, and what is between them.
+  /// Prepares for queries about the components of vertices and the space between them.
   void prepare(std::span<const std::uint32_t> places, std::span<const AxisVertex> vertices) {
     Box3 box;
     for (const std::uint32_t place : places) {
@@ -354,7 +355,7 @@ class Shaper {
     paths_.prepare(box);
   }
 
-  /// Whether a polygon is extra, or has such a corner: then others may have the same corners.
+  /// Returns true if a polygon is extra or has an extra corner. Other polygons may then have the same corners.
   [[nodiscard]] bool touches_extra(std::uint32_t c) const {
     if (piece_.structure.is_extra(piece_.cells[c].cell)) return true;
     const auto corners = corners_.of_cells()[c];
@@ -379,7 +380,7 @@ class Shaper {
     }
   }
 
-  /// A path from end to end of an edge over a point of the component that it stands for.
+  /// Returns a path from end to end of an edge over a point of the component that it stands for.
   [[nodiscard]] std::optional<std::vector<Stop>> through_middle(std::uint32_t c, const Stop& a, const Stop& b) const {
     const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
     if (!middle) return std::nullopt;
@@ -391,9 +392,9 @@ class Shaper {
     path->insert(path->end(), rest->begin(), rest->end());
     return path;
   }
-  /// The stops between the ends of an edge on a way that can be pulled, in the solid, over the one from component to
-  /// component that the edge stands for: of a straight one, none. nullopt where no way was found.
-  /// @param stops_there  whether a stop in the component of the edge stays in any case.
+  /// Returns the stops between the ends of an edge; none for a straight one. Within the solid, their way can be pulled
+  /// over the one from component to component that the edge stands for. Returns nullopt if no way was found.
+  /// @param stops_there  true if a stop in the component of the edge stays in any case.
   [[nodiscard]] std::optional<std::vector<Stop>> through_component(std::uint32_t c, bool stops_there) const {
     const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
     if (!middle) return std::nullopt;
@@ -410,8 +411,8 @@ class Shaper {
     return std::vector<Stop>(path->begin() + 1, path->end() - 1);
   }
 
-  /// A way from a point of the component of an edge or polygon to a vertex of it, both included, over a point of the
-  /// vertex's component; pulled tight.
+  /// Returns a way from a point of the component of an edge or polygon to a vertex of it, both included. It leads over
+  /// a point of the vertex's component and is pulled tight.
   [[nodiscard]] std::optional<std::vector<Stop>> from_component(const Stop& start, std::uint32_t vertex) const {
     const Stop end = stop_at(vertex);
     std::vector<Stop> way{start};
@@ -422,7 +423,7 @@ class Shaper {
     return paths_.pulled_over_open(std::move(way));
   }
 
-  /// Adds the stops to another one. @return  whether a way was found.
+  /// Adds the stops to another one. @return  true if a way was found.
   [[nodiscard]] bool add_way(std::vector<Stop>& way, const Stop& to, std::uint32_t vertex) const {
     if (way.back().at == to.at) return true;
     if (!paths_.is_straight(way.back(), to)) {
@@ -441,10 +442,10 @@ class Shaper {
     return witnesses_.landmarks_of(corners_.vertex_cells()[vertex]);
   }
 
-  /// A point of the component that a cell stands for.
+  /// Returns a point of the component that a cell stands for.
   [[nodiscard]] std::optional<Stop> home_of(Cell cell) const { return witnesses_.home_of(cell); }
 
-  /// Triangles around a vertex in the middle, the best of some.
+  /// Returns triangles around a vertex in the middle, the best of several.
   [[nodiscard]] Shape fan(std::uint32_t c, const std::vector<std::uint32_t>& outline,
                           std::span<const AxisVertex> vertices) const {
     std::vector<Stop> corners;
@@ -491,11 +492,11 @@ class Shaper {
     return shape;
   }
 
-  /// The stops between a middle and places of an outline, by place.
+  /// Stops between a middle and places of an outline, by place.
   using Chains = std::vector<std::pair<std::size_t, std::vector<Stop>>>;
 
-  /// Those to the corners of a polygon, and to what is between them, from a point of its component, through the
-  /// components of the corners; nullopt where one to a corner was not found.
+  /// Returns chains from a point of the component of a polygon to its corners and to places between them. They lead
+  /// through the components of the corners. Returns nullopt if one to a corner was not found.
   /// @param stops  at the outline.
   [[nodiscard]] std::optional<Chains> chains_from(const Stop& home, std::uint32_t c,
                                                   const std::vector<std::uint32_t>& outline,
@@ -527,7 +528,7 @@ class Shaper {
     return chains;
   }
 
-  /// A way between two points of the component of a vertex in the box that it lies in.
+  /// Returns a way between two points of the component of a vertex, in the box that the component lies in.
   [[nodiscard]] std::optional<std::vector<Stop>> within_component(const Stop& from, const Stop& to,
                                                                   std::uint32_t vertex) const {
     const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
@@ -537,8 +538,8 @@ class Shaper {
     return paths_.pulled_over_open(std::move(way));
   }
 
-  /// Those to places of an outline that a middle can be joined to, whatever the solid has between them.
-  /// @param leaves  set where one of them leaves the solid.
+  /// Returns chains to the places of an outline that a middle can be joined to, whatever lies between the chains.
+  /// @param leaves  set if one of them leaves the solid.
   [[nodiscard]] Chains any_chains(std::uint32_t c, const Stop& middle, std::span<const Stop> corners,
                                   bool& leaves) const {
     Chains chains;
@@ -557,7 +558,7 @@ class Shaper {
     return chains;
   }
 
-  /// Triangles around a middle, between chains to the corners that it is joined to.
+  /// Returns triangles around a middle, between chains to the corners that it is joined to.
   [[nodiscard]] Shape wheel(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
                             const Stop& middle, const Chains& chains) const {
     Shape shape;
@@ -580,7 +581,7 @@ class Shaper {
     };
     FillBudget budget;
     FillBudget second_budget{24, 4};
-    // A sector from one spoke along the border to the next. Its sides belong to others, too.
+    // A sector lies between two spokes and the border from one to the next. Its sides belong to others, too.
     for (std::size_t n = 0; n < spokes.size(); ++n) {
       const std::size_t next = (n + 1) % spokes.size();
       std::vector<std::uint32_t> border;
@@ -594,7 +595,7 @@ class Shaper {
       std::vector<std::vector<std::uint32_t>> sides{spokes[n], spokes[next], border};
       sides[0].push_back(border.front());
       sides[1].push_back(border.back());
-      // Beyond these boxes, triangles may be on the other side of a void: it is second choice.
+      // Beyond these boxes, triangles may be on the other side of a void. They are the second choice.
       const SolidPaths there = paths_.in(box_around(c, outline, chains[n].first, chains[next].first));
       const std::size_t own = shape.own.size();
       PolygonFiller filler(there, stop, add, budget);
@@ -618,8 +619,8 @@ class Shaper {
     return shape;
   }
 
-  /// A box around those of the vertices at a part of the outline of a polygon, and at the edges that it begins and ends
-  /// on.
+  /// Returns a box around the boxes of the vertices at a part of the outline of a polygon. This includes the vertices
+  /// of the edges on which the part begins and ends.
   [[nodiscard]] Box3 box_around(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::size_t first,
                                 std::size_t last) const {
     const auto corners = corners_.of_cells()[c];
@@ -639,7 +640,7 @@ class Shaper {
     }
   }
 
-  /// The landmarks of all corners of a polygon.
+  /// Returns the landmarks of all corners of a polygon.
   [[nodiscard]] std::vector<Stop> around(std::uint32_t c) const {
     std::vector<Stop> all;
     for (const std::uint32_t corner : corners_.of_cells()[c]) {
@@ -658,19 +659,20 @@ class Shaper {
   SolidPaths paths_;
 };
 
-/// Shapes of cells, where they are more than their corners.
+/// Shapes of cells that are more than their corners.
 using Shapes = std::vector<std::pair<std::uint32_t, Shape>>;
 
 /// Makes the shapes of the cells of a dimension.
-/// @param make  of an edge or polygon, with little effort; or, where the second argument is null, with full.
+/// @param make  makes the shape of an edge or polygon, with little effort; with full effort if the second argument is
+/// null.
 class ShapeMaker {
  public:
   using Make = std::function<std::optional<Shape>(std::uint32_t, bool*)>;
 
   ShapeMaker(const AxisPiece& piece, const Context& context) : piece_(piece), context_(context) {}
 
-  /// By rising cell: with full effort where little does not do. Not where parts leave the solid in many places: there
-  /// the model is to be finer.
+  /// Returns the shapes by ascending cell. Full effort follows if little effort is not enough, but not if parts leave
+  /// the solid in many places: then the model will be refined.
   [[nodiscard]] Shapes of(int dimension, const Make& make) const {
     constexpr std::ptrdiff_t most_leaving = 16;
     Shapes shapes = quick(dimension, make);
@@ -728,7 +730,7 @@ void take_vertices(AxisPiece& piece, Shapes& shapes) {
   }
 }
 
-/// The shape of each cell, or its corners.
+/// Outlines of polygons: the shape of each edge, or its corners.
 class Outlines {
  public:
   Outlines(const AxisCorners& corners, const Shapes& bent) : corners_(corners), bent_(bent) {}
@@ -738,7 +740,7 @@ class Outlines {
                                      [](const auto& entry, std::uint32_t value) { return entry.first < value; });
     return at != bent_.end() && at->first == edge ? &at->second : nullptr;
   }
-  /// The border of a polygon, in a circle.
+  /// Returns the border of a polygon, in cyclic order.
   [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t polygon) const {
     const auto corners = corners_.of_cells()[polygon];
     std::vector<std::uint32_t> outline;
@@ -760,8 +762,8 @@ class Outlines {
   const Shapes& bent_;
 };
 
-/// Boxes of the vertices of the cells whose shapes leave the solid, each once; less than their sides, so that boxes
-/// beside them have no inner points of them.
+/// Returns boxes of the vertices of the cells whose shapes leave the solid, each once. They are slightly shrunk, so
+/// that adjacent boxes contain none of their inner points.
 std::vector<Box3> boxes_where_left(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors,
                                    const std::array<const Shapes*, 2>& shapes) {
   constexpr double less = 0.05;

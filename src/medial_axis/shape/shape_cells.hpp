@@ -1,4 +1,4 @@
-// Blum: the edges and triangles that the cells of a medial axis consist of. SPDX-License-Identifier: Apache-2.0
+// Blum: edges and triangles of the cells of a medial axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "blum/core/context.hpp"
@@ -8,10 +8,10 @@
 
 namespace blum::detail {
 
-/// Makes segments of edges and triangles of polygons, between the vertices that were placed. Of a polyhedron none of
-/// these leaves the solid where that can be helped: edges that would are led through points of the components that
-/// they stand for, polygons that would get a vertex in their middle. Where that is not found, the piece has the boxes
-/// of the cell.
+/// Makes segments of edges and triangles of polygons, between the placed vertices. For a polyhedron, none of these
+/// leaves the solid if that can be avoided. Edges that would leave it are led through points of the components that
+/// they stand for. Polygons that would leave it get a vertex in their middle. If that fails, `piece.leaving` lists the
+/// boxes of the cell.
 void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context);
 
 }  // namespace blum::detail

@@ -22,7 +22,7 @@ std::optional<Stop> Witnesses::witness_of(Cell extra) const {
     return known.nearest ? std::optional(Stop{at, *known.nearest}) : std::nullopt;
   }
   const std::optional<Stop> stop = paths_.stop_at(at, {});
-  State expected = State::unknown;  // one thread writes; others that asked at the same time found the same
+  State expected = State::unknown;  // one thread writes; others that asked at the same time computed the same
   if (known.state.compare_exchange_strong(expected, State::being_written)) {
     if (stop) known.nearest = stop->nearest;
     known.state.store(State::known, std::memory_order_release);
@@ -53,7 +53,7 @@ void Witnesses::for_each_witness(Cell cell, const Use& use) const {
   if (structure_.is_extra(cell)) offer_cell(cell);
   const auto offer_cofaces = [&](Cell below) {
     structure_.for_each_coface(below, [&](Cell coface) {
-      // Cells of the lattice are found by their voxels, unless none of these is there.
+      // Cells of the lattice are found through their voxels, so only incidences with extra cells are followed.
       if (structure_.is_extra(below) || structure_.is_extra(coface)) offer_cell(coface);
     });
   };

@@ -1,4 +1,4 @@
-// Blum: points of a solid that its cells stand for. SPDX-License-Identifier: Apache-2.0
+// Blum: points of a solid in the components that cells stand for. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -21,18 +21,18 @@ void for_each_voxel_inside(const GovernorField& governors, const CellLattice& la
   });
 }
 
-/// What is known of the components of the solid that the cells of a model stand for: points in them. Those of extra
-/// cells are kept once they are looked up, as each is asked for by all cells around. May be asked from many threads.
+/// Known points of the components of the solid that the cells of a model stand for. Points of extra cells are stored at
+/// the first look-up, because all cells around need them. Functions may be called from many threads.
 class Witnesses {
  public:
   /// Cost: 56 bytes for each extra cell.
   Witnesses(const GovernorField& governors, const CellStructure& structure);
 
-  /// A point of the component of a cell, as deep as one known; nullopt where none is known that is not on the surface.
+  /// Returns the deepest known point of the component of a cell, or nullopt if no known point is off the surface.
   [[nodiscard]] std::optional<Stop> home_of(Cell cell) const;
-  /// The deepest voxel around a cell of the lattice.
+  /// Returns the deepest voxel around a cell of the lattice.
   [[nodiscard]] std::optional<Stop> deepest_voxel(Cell cell) const;
-  /// All points known of the component of a vertex, the deepest first.
+  /// Returns all known points of the component of a vertex, the deepest first.
   [[nodiscard]] std::vector<Stop> landmarks_of(Cell vertex) const;
 
   [[nodiscard]] const GovernorField& governors() const { return governors_; }
@@ -40,7 +40,7 @@ class Witnesses {
 
  private:
   enum class State : std::uint8_t { unknown, being_written, known };
-  /// The closest point to the witness of an extra cell, if that is inside.
+  /// Closest point of the surface to the witness of an extra cell, if the witness is inside.
   struct Known {
     std::atomic<State> state{State::unknown};
     std::optional<NearestPoint> nearest;

@@ -7,19 +7,20 @@
 namespace blum::detail {
 namespace {
 
-/// Of the strongest direction's square.
+/// Least strength of a direction relative to that of the strongest, both as squares.
 constexpr double weakest = 0.01;
-/// Of the squared distance from the start: what points closer together than a millionth say is rounding.
+/// Relative to the squared distance from the start. Differences of points that are closer together than a millionth are
+/// rounding errors.
 constexpr double rounding = 1e-12;
 
 struct Symmetric {
   double a[3][3] = {};
 };
 
-/// Eigenvectors as columns of v, eigenvalues on the diagonal of m, by Jacobi rotations.
+/// Computes eigenvectors as columns of v and eigenvalues on the diagonal of m, by Jacobi rotations.
 void diagonalise(Symmetric& m, Symmetric& v) {
   v.a[0][0] = v.a[1][1] = v.a[2][2] = 1;
-  // What is left beside the diagonal is less than rounding leaves of the largest eigenvalue.
+  // Smaller off-diagonal entries are below the rounding error of the largest eigenvalue.
   const double negligible = 1e-16 * (m.a[0][0] + m.a[1][1] + m.a[2][2]);
   bool is_done = false;
   for (int sweep = 0; sweep < 8 && !is_done; ++sweep) {

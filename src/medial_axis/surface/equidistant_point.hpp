@@ -1,4 +1,4 @@
-// Blum: the point that is as far from some points as from the others. SPDX-License-Identifier: Apache-2.0
+// Blum: points that are equally far from given points. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -9,21 +9,20 @@
 
 namespace blum::detail {
 
-/// The points near a start whose distances from given points differ least, moved only along the directions in which
-/// these say anything.
+/// Points near a start whose distances from given points differ least. The start moves only along directions that the
+/// given points determine.
 class EquidistantPoints {
  public:
   EquidistantPoints(std::span<const Vec3d> points, const Vec3d& start);
 
-  /// Moved along the strongest directions only.
-  /// @param rank  how many: 1, 2 or 3.
-  /// @return      nullopt where the points say less (a direction is weaker than a tenth of the strongest, or all are
-  /// one).
+  /// Returns the start moved along the strongest directions only.
+  /// @param rank  number of directions: 1, 2 or 3.
+  /// @return      nullopt if a direction is weaker than a tenth of the strongest, or if all given points coincide.
   [[nodiscard]] std::optional<Vec3d> of_rank(int rank) const;
 
  private:
   Vec3d start_;
-  std::array<Vec3d, 3> moves_;       ///< by falling strength
+  std::array<Vec3d, 3> moves_;       ///< by descending strength
   std::array<double, 3> strengths_;  ///< squares
 };
 

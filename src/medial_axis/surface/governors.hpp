@@ -1,4 +1,4 @@
-// Blum: what the voxels of a solid are closest to. SPDX-License-Identifier: Apache-2.0
+// Blum: footprints of the voxels of a solid, and walls around a point. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -14,28 +14,29 @@
 
 namespace blum::detail {
 
-/// The eight voxels around a corner see not all walls of round things: as many others may turn up.
+/// Greatest number of walls around a point. The eight voxels around a corner may miss walls of round solids, so that as
+/// many others are allowed.
 inline constexpr std::size_t most_walls = 16;
-/// Squared difference of the directions to two footprints from which they count as two walls: 6 degrees.
+/// Squared difference of the unit directions to two footprints from which they count as two walls: 6 degrees.
 inline constexpr double two_walls = 0.01;
 
-/// The walls around a point, and what is closest to it on each.
+/// Walls around a point, and the closest point on each wall.
 class Walls {
  public:
   struct Wall {
     Footprint start;
-    Vec3d outwards;       ///< at the start; zero where it is not known
+    Vec3d outwards;       ///< at the start; zero if unknown
     Footprint foot;       ///< of the point
-    double distance = 0;  ///< from it; negative beyond the wall, as corners next to thin parts are
+    double distance = 0;  ///< of the point; negative beyond the wall, as at corners next to thin parts
   };
 
-  /// @param reach  how far a footprint may move from its start, mesh units.
+  /// @param reach  greatest distance of a footprint from its start, mesh units.
   Walls(const Surface& surface, double reach) : surface_(&surface), reach_(reach) {}
 
   [[nodiscard]] bool is_full() const { return walls_.is_full(); }
   void add(const Footprint& start, const Vec3d& outwards) { walls_.push_back({start, outwards, start, 0}); }
 
-  /// Two walls whose footprints meet are one from then on.
+  /// Moves the footprints to those of x. Two walls whose footprints meet become one.
   void follow_to(const Vec3d& x) {
     std::size_t kept = 0;
     closest_ = 0;
@@ -54,10 +55,10 @@ class Walls {
     walls_.shrink(kept);
   }
 
-  /// What follow_to() found.
+  /// Walls as of the last follow_to().
   [[nodiscard]] std::span<const Wall> all() const { return walls_.span(); }
   [[nodiscard]] const Wall& closest() const { return walls_[closest_]; }
-  /// Whether the point is on one of them.
+  /// Returns true if the point lies on a wall.
   [[nodiscard]] bool touch() const {
     return std::any_of(all().begin(), all().end(), [](const Wall& wall) { return wall.distance == 0; });
   }
@@ -71,7 +72,7 @@ class Walls {
 
 inline constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
-/// What a voxel is closest to.
+/// Centre of a voxel and its footprint.
 struct Governor {
   Vec3d centre;
   Footprint foot;
@@ -79,14 +80,14 @@ struct Governor {
   bool is_inside = false;
 };
 
-/// The angle at x between two points, in degrees.
+/// Returns the angle at x between two points, in degrees.
 inline double angle_at(const Vec3d& x, const Vec3d& p, const Vec3d& q) {
   const Vec3d a = p - x;
   const Vec3d b = q - x;
   return std::atan2(length(cross(a, b)), dot(a, b)) * degrees_per_radian;
 }
 
-/// The voxels around a lattice node: bit 0 of the index tells the side along x, bit 1 along y, bit 2 along z.
+/// Governors of the voxels around a lattice node. Bits 0, 1 and 2 of the index are the sides along x, y and z.
 using GovernorsAround = std::array<Governor, 8>;
 
 class GovernorField {
@@ -114,12 +115,12 @@ class GovernorField {
 
   [[nodiscard]] const VoxelSolid& solid() const { return solid_; }
   [[nodiscard]] const Surface& surface() const { return surface_; }
-  /// The longest side of a voxel, mesh units.
+  /// Longest side of a voxel, mesh units.
   [[nodiscard]] double longest_voxel() const {
     const Vec3d& h = solid_.grid.spacing;
     return std::max({h.x, h.y, h.z});
   }
-  /// The smallest side of a voxel, mesh units.
+  /// Shortest side of a voxel, mesh units.
   [[nodiscard]] double voxel() const {
     const Vec3d& h = solid_.grid.spacing;
     return std::min({h.x, h.y, h.z});

@@ -27,7 +27,7 @@ Vec3d in_plane(Vec3d v, std::size_t axis) {
 
 constexpr int most_steps = 64;
 
-// Not those of the search tree, which are slower and round otherwise: docs/decisions/0008-closest-points.md.
+// The functions of the search tree are slower and round differently: docs/decisions/0008-closest-points.md.
 Footprint closest_on_edge(const Vec3d& query, const Vec3d& a, const Vec3d& b, unsigned bit_a, unsigned bit_b) {
   const Vec3d along = b - a;
   const double squared = squared_length(along);
@@ -51,7 +51,7 @@ Footprint closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b
   return best;
 }
 
-/// The middle of the part of a segment in a box.
+/// Returns the middle of the part of a segment in a box.
 std::optional<Vec3d> middle_within(const Vec3d& a, const Vec3d& b, const Box3& box) {
   const std::optional<SegmentPart> part = part_within(a, b, box);
   if (!part) return std::nullopt;
@@ -163,7 +163,7 @@ Footprint MeshSurface::footprint(SiteId site, const Vec3d& centre, bool /*is_ins
 }
 
 NearestPoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) const {
-  // The point of an element near by bounds the search, with room for rounding.
+  // The closest point of the given element bounds the search, with room for rounding.
   constexpr double room = 1e-6;
   std::optional<NearestSite> found;
   if (near.element < mesh_.triangles.size()) {
@@ -172,7 +172,7 @@ NearestPoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) con
   }
   if (!found) found = bvh_.nearest(query);
   if (found) return {found->point, found->distance, found->site, sites_.triangle(found->site).value};
-  return {near.point, length(query - near.point), site_of(near), near.element};  // a query that is not finite
+  return {near.point, length(query - near.point), site_of(near), near.element};  // for a query that is not finite
 }
 
 std::optional<SurfacePart> MeshSurface::part_in(const Box3& box) const {
@@ -190,7 +190,7 @@ std::optional<double> MeshSurface::first_crossing(const Vec3d& from, const Vec3d
 }
 
 bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfacePart* part) const {
-  constexpr std::array<std::uint32_t, 3> other_corners{~0U, ~0U - 1, ~0U - 2};  // none that the mesh has
+  constexpr std::array<std::uint32_t, 3> other_corners{~0U, ~0U - 1, ~0U - 2};  // not used by the mesh
   const detail::ContactTriangle own{{a, b, c}, other_corners};
   if (detail::has_no_area(own.points)) return false;
   bool is_found = false;
@@ -208,7 +208,8 @@ bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c, const 
   return is_found;
 }
 
-/// Calls visit(triangle) for those that have two vertices, rising. Thousands of triangles may have one of these.
+/// Calls visit(triangle) for the triangles that have two given vertices, ascending. It searches around the vertex with
+/// fewer triangles, because one vertex may have thousands.
 template <class Visit>
 void MeshSurface::for_each_triangle_at(std::uint32_t a, std::uint32_t b, const Visit& visit) const {
   const auto count = [&](std::uint32_t v) { return first_[v + 1] - first_[v]; };
@@ -219,7 +220,7 @@ void MeshSurface::for_each_triangle_at(std::uint32_t a, std::uint32_t b, const V
   }
 }
 
-/// Calls visit(other triangle, its ends) for each side of a triangle that another one shares.
+/// Calls visit(other triangle, ends of the side) for each side of a triangle that another triangle shares.
 template <class Visit>
 void MeshSurface::for_each_neighbour(std::uint32_t triangle, const Visit& visit) const {
   const Triangle& own = mesh_.triangles[triangle];
@@ -286,7 +287,7 @@ std::vector<SurfacePoint> MeshSurface::points_in(const Box3& box) const {
     const Vec3d facing = outwards(near.primitive);
     add_clip_points({mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]}, facing, box, points);
     for_each_neighbour(near.primitive, [&](std::uint32_t other, std::uint32_t a, std::uint32_t b) {
-      if (other < near.primitive) return;  // it has been, or is, asked for the same edge
+      if (other < near.primitive) return;  // the other triangle adds this edge
       add_clip_points({{mesh_.vertices[a], mesh_.vertices[b]}, {facing, outwards(other)}}, box, points);
     });
     return true;
@@ -313,7 +314,8 @@ Footprint MeshSurface::follow(const Footprint& start, const Vec3d& query, double
   for (int step = 0; step < most_steps; ++step) {
     Footprint better = best;
     double better_squared = squared_length(query - best.point) * (1 - 1e-12);
-    // Only triangles that the foot lies on: others at the ends of its edge may be closer, but belong to other walls.
+    // Only triangles that contain the foot are tried. Others at the ends of its edge may be closer, but belong to other
+    // walls.
     const Triangle& own = mesh_.triangles[best.element];
     const auto first = static_cast<std::size_t>(std::countr_zero(best.corners));
     const unsigned others = best.corners & (best.corners - 1);

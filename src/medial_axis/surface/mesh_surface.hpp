@@ -17,7 +17,7 @@
 
 namespace blum::detail {
 
-/// A part of a segment, and the axes of the sides of a box that cut it off; none where an end of the segment is left.
+/// Part of a segment. The axes name the sides of a box that cut it off; an uncut end has no axis.
 struct SegmentPart {
   double low = 0, high = 1;
   std::optional<std::size_t> low_axis, high_axis;
@@ -25,27 +25,28 @@ struct SegmentPart {
   [[nodiscard]] double middle() const { return 0.5 * (low + high); }
 };
 
-/// The part of a segment in a box; nullopt where there is none.
+/// Returns the part of a segment in a box, or nullopt if they do not meet.
 [[nodiscard]] std::optional<SegmentPart> part_within(const Vec3d& a, const Vec3d& b, const Box3& box);
 
-/// An edge between two triangles.
+/// Edge between two triangles.
 struct ClippedEdge {
   std::array<Vec3d, 2> ends;
-  std::array<Vec3d, 2> outwards;  ///< unit normals of the triangles; zero where one has no area
+  std::array<Vec3d, 2> outwards;  ///< unit normals of the triangles; zero if a triangle has no area
 };
 
-/// Adds the middle of the part of an edge in a box, and where it goes through sides of this: there, `inwards` lies in
-/// the side.
+/// Adds the middle of the part of an edge in a box, and the points where the edge crosses sides of the box. At a
+/// crossing, `inwards` lies in the side.
 void add_clip_points(const ClippedEdge& edge, const Box3& box, std::vector<SurfacePoint>& points);
 
-/// Adds where edges of a box go through a triangle: `inwards` is the direction of the edge that leads into the solid.
+/// Adds the points where edges of a box cross a triangle. At each, `inwards` is the direction of the box edge that
+/// leads into the solid.
 void add_clip_points(const std::array<Vec3d, 3>& triangle, const Vec3d& outwards, const Box3& box,
                      std::vector<SurfacePoint>& points);
 
-/// Elements are triangles. The mesh and the table must outlive it.
+/// Triangle mesh as a surface; its elements are the triangles. The mesh and the site table must outlive it.
 class MeshSurface final : public Surface {
  public:
-  /// @param bounds_solid  whether the mesh is a closed surface that faces outwards; else no point is known to be
+  /// @param bounds_solid  true if the mesh is a closed surface that faces outwards. Otherwise no point counts as
   /// inside.
   MeshSurface(const MeshView& mesh, const SiteTable& sites, bool bounds_solid, const Context& context);
 
@@ -79,7 +80,7 @@ class MeshSurface final : public Surface {
   Bvh bvh_;
   double size_ = 0;  ///< diagonal of the bounds
   Pseudonormals normals_;
-  std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_
+  std::vector<std::uint32_t> first_;      ///< per vertex, index into triangles_
   std::vector<std::uint32_t> triangles_;  ///< around each vertex
   std::vector<Vec3d> voids_;
 };

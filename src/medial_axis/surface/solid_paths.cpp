@@ -10,14 +10,15 @@
 namespace blum::detail {
 namespace {
 
-/// How many stops pushing may put between two, and how often parts are halved.
+/// Greatest number of stops that pushing may put between two, and greatest number of halvings.
 constexpr int most_moves = 24;
 constexpr int most_depth = 8;
 constexpr std::size_t most_landmarks = 48;
-/// How many segments are looked at on the way from landmark to landmark.
+/// Greatest number of segments tested on ways over landmarks.
 constexpr int most_looks = 200;
-/// Into how many parts the box around two stops is cut along each axis, one try after the other, to strew points there;
-/// how many of these parts a step may be long; and how many segments are looked at.
+/// Number of parts into which the box around two stops is cut along each axis, to scatter points there. The list gives
+/// the tries in their order. `most_parts` limits a step, in parts. `most_looks_at_strewn` limits the number of segments
+/// tested.
 struct StrewnParts {
   int parts;
   bool has_creases;
@@ -27,16 +28,16 @@ constexpr std::size_t most_strewn = 6000;
 constexpr double most_parts = 2.2;
 constexpr int most_looks_at_strewn = 20000;
 constexpr double any_length = std::numeric_limits<double>::infinity();
-/// A stop is deeper than this part of its largest coordinate: closer to the surface, it may lie on either side.
+/// Least depth of a stop relative to its largest coordinate. Points closer to the surface may lie on either side of it.
 constexpr double least_depth = 1e-12;
-/// Balls around the ends that overlap by this part of the length leave no room for rounding.
+/// Overlap of the balls around the ends, relative to the length, that exceeds rounding errors.
 constexpr double overlap = 1e-9;
 
 Footprint foot_of(const NearestPoint& nearest) {
   return {nearest.point, nearest.element, 7};
 }
 
-/// The direction from the wall next to a stop, of unit length.
+/// Returns the unit direction from the wall next to a stop.
 Vec3d away_from_wall(const Stop& stop) {
   return (stop.at - stop.nearest.point) / stop.nearest.distance;
 }
@@ -66,7 +67,7 @@ const SurfacePart* SolidPaths::part_at(std::initializer_list<const Stop*> stops)
 
 bool SolidPaths::is_straight(const Stop& a, const Stop& b) const {
   const double size = length(b.at - a.at);
-  // A ball as large as a point is deep lies in the solid.
+  // The ball around a point whose radius is the depth of the point lies in the solid.
   if (a.nearest.distance + b.nearest.distance >= size * (1 + overlap)) return true;
   return !surface_.first_crossing(a.at, b.at, part_at({&a, &b}));
 }
@@ -101,7 +102,7 @@ std::vector<Stop> SolidPaths::pulled_over_open(std::vector<Stop> path) const {
   return path;
 }
 
-/// As far inside as a point is outside, or in the middle where the solid is thin.
+/// Returns a stop as deep inside as a point is outside, or less deep if the solid is thin, then moved to the middle.
 std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near) const {
   constexpr int most_tries = 24;
   const NearestPoint foot = surface_.nearest(outside, foot_of(near.nearest));
@@ -112,9 +113,9 @@ std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near
   return std::nullopt;
 }
 
-/// Where the walls next to two points would meet: closest to the middle between these. That is where thin walls turn.
+/// Returns the point closest to the middle of two stops where the walls next to them would meet. Thin walls turn there.
 std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
-  constexpr double least_turn = 1e-3;  // square of the sine
+  constexpr double least_turn = 1e-3;  // squared sine
   if (!(a.nearest.distance > 0 && b.nearest.distance > 0)) return std::nullopt;
   const Vec3d u = (a.nearest.point - a.at) / a.nearest.distance;
   const Vec3d v = (b.nearest.point - b.at) / b.nearest.distance;
@@ -130,14 +131,14 @@ std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
   return stop ? centred(*stop) : pushed_in(x, a);
 }
 
-/// The point beside another one in the middle plane of a thin part: there a line leads into it.
+/// Returns the point beside another one in the middle plane of a thin part. From there a line leads into the part.
 std::optional<Stop> SolidPaths::at_mouth(const Stop& thin, const Stop& other) const {
   if (!(thin.nearest.distance > 0)) return std::nullopt;
   const Vec3d u = (thin.nearest.point - thin.at) / thin.nearest.distance;
   return stop_at(other.at - u * dot(u, other.at - thin.at), foot_of(other.nearest));
 }
 
-/// A point to lead a segment over that leaves the solid.
+/// Returns a point that routes a segment around the place where it leaves the solid.
 std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
   for (const auto& [thin, other] : {std::pair{&b, &a}, std::pair{&a, &b}}) {
     const std::optional<Stop> mouth = at_mouth(*thin, *other);
@@ -151,7 +152,7 @@ std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
   return outermost_pushed_in(a, b);
 }
 
-/// The middle of what is outside of a segment, pushed in.
+/// Pushes the middle of the part of a segment that lies outside into the solid.
 std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b) const {
   const std::optional<double> leaves = surface_.first_crossing(a.at, b.at, nullptr);
   const std::optional<double> returns = surface_.first_crossing(b.at, a.at, nullptr);
@@ -161,7 +162,8 @@ std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b
   return stop ? stop : pushed_in(middle, a);
 }
 
-/// Adds the stops between two. @param moves  how many there may be yet.
+/// Adds the stops between two. Returns false if that fails.
+/// @param moves  number of stops that may still be added.
 bool SolidPaths::push_in(const Stop& a, const Stop& b, int depth, int& moves, std::vector<Stop>& between) const {
   if (is_straight(a, b)) return true;
   if (depth == 0 || moves-- <= 0) return false;
@@ -219,7 +221,7 @@ bool SolidPaths::gives_up() const {
   return true;
 }
 
-/// The wall closest to a stop, and the one on the opposite side of a thin part.
+/// Returns the wall closest to a stop, and the one on the opposite side of a thin part.
 std::vector<SolidPaths::Wall> SolidPaths::walls_of(const Stop& stop) const {
   std::vector<Wall> walls;
   const auto add = [&](const Vec3d& at) {
@@ -235,7 +237,7 @@ std::vector<SolidPaths::Wall> SolidPaths::walls_of(const Stop& stop) const {
   return walls;
 }
 
-/// A path beside a way over the surface.
+/// Returns a path next to a way over the surface.
 std::optional<std::vector<Stop>> SolidPaths::along_walls(const Stop& a, const Stop& b) const {
   Box3 box;
   if (within_) {
@@ -268,8 +270,8 @@ std::optional<std::vector<Stop>> SolidPaths::pushed_or_along_walls(const Stop& a
   return found ? found : along_walls(a, b);
 }
 
-/// The points of a way over the surface, moved a little into the solid, less and less until all segments stay in it;
-/// then into the middle of what is thin there.
+/// Moves the points of a way over the surface a little into the solid, less and less until all segments stay in it.
+/// Then moves them to the middle of thin parts.
 std::optional<std::vector<Stop>> SolidPaths::inside_of(std::span<const SurfacePoint> way, const Stop& a,
                                                        const Stop& b) const {
   const double size = length(b.at - a.at);
@@ -291,7 +293,7 @@ std::optional<std::vector<Stop>> SolidPaths::inside_of(std::span<const SurfacePo
   return std::nullopt;
 }
 
-/// Pushed from one point of a way over the surface to the next, each in the middle of what is behind it.
+/// Pushes from one point of a way over the surface to the next, each in the middle of the part behind it.
 std::optional<std::vector<Stop>> SolidPaths::pushed_beside(std::span<const SurfacePoint> way, const Stop& a,
                                                            const Stop& b) const {
   std::vector<Stop> path{a};
@@ -310,8 +312,8 @@ std::optional<std::vector<Stop>> SolidPaths::pushed_beside(std::span<const Surfa
   return std::vector<Stop>(path.begin() + 1, path.end() - 1);
 }
 
-/// A path over landmarks and points strewn around two stops, finer and finer; at last also over the creases between
-/// these: thin plates that cross are joined there only.
+/// Returns a path over landmarks and points scattered around two stops, finer and finer. The last try adds the creases
+/// between these, because thin plates that cross are joined only there.
 std::optional<std::vector<Stop>> SolidPaths::over_strewn(const Stop& a, const Stop& b,
                                                          std::span<const Stop> landmarks) const {
   for (const auto& [parts, has_creases] : strewn_parts) {
@@ -324,8 +326,8 @@ std::optional<std::vector<Stop>> SolidPaths::over_strewn(const Stop& a, const St
   return std::nullopt;
 }
 
-/// A path along the border of the part of the solid in the box: over elements of the surface and through the sides of
-/// the box, as close to these as it takes. Where this border is connected, there is one.
+/// Returns a path along the border of the part of the solid in the box. It leads over elements of the surface and
+/// through the sides of the box, as close to these as necessary. If this border is connected, such a path exists.
 std::optional<std::vector<Stop>> SolidPaths::over_border(const Stop& a, const Stop& b) const {
   if (!within_) return std::nullopt;
   std::vector<SurfacePoint> points = surface_.points_in(*within_);
@@ -363,7 +365,7 @@ void SolidPaths::add_creases(double longest, std::vector<Stop>& stops) const {
   }
 }
 
-/// Points of a lattice in a cube, each in the part of the solid next to it, in the middle where that is thin.
+/// Returns points of a lattice in a cube, each moved into the solid next to it. In thin parts the middle is added.
 std::vector<Stop> SolidPaths::strewn(const Vec3d& middle, double side, int parts) const {
   const double step = side / parts;
   std::vector<Stop> stops;
@@ -386,7 +388,7 @@ std::vector<Stop> SolidPaths::strewn(const Vec3d& middle, double side, int parts
 
 namespace {
 
-/// Of stops those that are next to different walls, or as far from the same plane by more than an amount.
+/// Removes stops whose wall is parallel to that of an earlier one, if both lie in one plane to within `apart`.
 std::vector<Stop> on_different_planes(std::span<const Stop> stops, double apart) {
   constexpr double parallel = 1e-6;
   std::vector<Stop> found;
@@ -402,11 +404,11 @@ std::vector<Stop> on_different_planes(std::span<const Stop> stops, double apart)
 
 }  // namespace
 
-/// Where the planes through three stops along the walls next to them meet: there thin plates do in whose middle these
-/// are.
+/// Returns the points where three planes meet that lead through stops along the walls next to them. If the stops lie in
+/// the middle of thin plates, these plates meet there.
 std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, const Box3& box) const {
   constexpr std::size_t most_stops = 12;
-  constexpr double least = 1e-3;  // of the volume that three directions span
+  constexpr double least = 1e-3;  // of the volume spanned by three directions
   const std::size_t count = std::min(stops.size(), most_stops);
   const double size = box.diagonal();
   std::vector<Stop> found;
@@ -431,7 +433,7 @@ std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, cons
 
 std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::size_t least_open) const {
   std::optional<Hub> best;
-  // Whether no better one need be looked for.
+  // Returns true if no better point needs to be searched for.
   const auto look_at = [&](std::span<const Stop> stops) {
     for (const Stop& stop : stops) {
       if (!std::all_of(corners.begin(), corners.end(), [&](const Stop& c) { return is_straight(stop, c); })) continue;
@@ -452,7 +454,7 @@ std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::si
   if (gives_up()) return best;
   const std::vector<Stop> around = strewn(box.center(), size, 6);
   if (look_at(around) || look_at(where_walls_meet(on_different_planes(around, 1e-3 * size), box))) return best;
-  // Thin plates turn and meet at creases of the surface: there more of them is seen.
+  // Thin plates turn and meet at creases of the surface, so points there see more corners.
   std::vector<Stop> creases;
   for (const SurfacePoint& point : surface_.points_in({box.lower - reach, box.upper + reach})) {
     for (double depth = 1e-2 * size; depth > 1e-6 * size; depth *= 0.1) {
@@ -467,7 +469,7 @@ std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::si
   return best;
 }
 
-/// The stops of a path but for those that segments from others can pass by.
+/// Removes the stops of a path that longer segments can bypass.
 std::vector<Stop> SolidPaths::pulled_tight(const Stop& a, const Stop& b, const std::vector<Stop>& between) const {
   std::vector<Stop> all{a};
   all.insert(all.end(), between.begin(), between.end());
@@ -482,13 +484,14 @@ std::vector<Stop> SolidPaths::pulled_tight(const Stop& a, const Stop& b, const s
   return kept;
 }
 
-/// The middle between the two walls of a part of a thickness of 65 times the depth of a stop in it, or less.
+/// Moves a stop to the middle between two walls if the part is at most 65 times as thick as the stop is deep.
 Stop SolidPaths::centred(const Stop& stop) const {
   constexpr double thick = 64;
   return centred(stop, thick * length(stop.at - stop.nearest.point));
 }
 
-/// The middle between the wall next to a stop and the one beyond, which is looked for up to a distance from the stop.
+/// Moves a stop to the middle between its closest wall and the opposite one. The latter is searched for up to `reach`
+/// from the stop.
 Stop SolidPaths::centred(const Stop& stop, double reach) const {
   const Vec3d away = stop.at - stop.nearest.point;
   const double depth = length(away);
@@ -500,7 +503,7 @@ Stop SolidPaths::centred(const Stop& stop, double reach) const {
   return middle && middle->nearest.distance > stop.nearest.distance ? *middle : stop;
 }
 
-/// Adds the points of a walk towards another one, along the wall next to each.
+/// Adds the points of a walk towards another stop. Each step leads along the wall next to the current point.
 void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const {
   constexpr int most_steps = 12;
   constexpr double before_wall = 0.9;
@@ -520,7 +523,7 @@ void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& 
   }
 }
 
-/// Dijkstra's search; whether two stops are joined is only asked where it matters.
+/// Dijkstra's search. Tests if two stops are joined only when the result matters.
 std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop& b, std::span<const Stop> landmarks,
                                                       const SearchLimits& limits) const {
   constexpr double far = std::numeric_limits<double>::infinity();

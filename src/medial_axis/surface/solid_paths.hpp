@@ -1,4 +1,4 @@
-// Blum: paths that stay in a solid. SPDX-License-Identifier: Apache-2.0
+// Blum: paths within a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -14,19 +14,19 @@
 
 namespace blum::detail {
 
-/// A point in a solid.
+/// Point in a solid.
 struct Stop {
   Vec3d at;
   NearestPoint nearest;  ///< of the surface
 };
 
-/// A point that sees the corners of a polygon.
+/// Point from which segments to all corners of a polygon stay in the solid.
 struct Hub {
   Stop stop;
-  std::size_t open = 0;  ///< triangles with two corners next to each other that none of the surface comes through
+  std::size_t open = 0;  ///< triangles with two adjacent corners that the surface does not cross
 };
 
-/// Whether a box, its sides included, holds a point.
+/// Returns true if a closed box contains a point.
 [[nodiscard]] inline bool holds(const Box3& box, const Vec3d& at) {
   return max(box.lower, at) == at && min(box.upper, at) == at;
 }
@@ -34,62 +34,67 @@ struct Hub {
 /// Finds chains of segments that do not leave a solid.
 class SolidPaths {
  public:
-  /// @param surface     that bounds the solid. It must stay.
-  /// @param needs_more  null: with full effort. Else with little, that is, without points strewn around, which take
-  ///                    about ten times as long; and it is set where these might have helped.
+  /// @param surface     of the solid. It must outlive this object.
+  /// @param needs_more  null for full effort. Otherwise searches try no scattered points, which take about ten times as
+  /// long, and set the flag if such points might have helped.
   explicit SolidPaths(const Surface& surface, bool* needs_more = nullptr)
       : surface_(surface), needs_more_(needs_more) {}
 
-  /// @param within  where all stops must lie that are found: so do the paths between them.
+  /// @param within  box in which all stops that are found lie, and so the paths between them.
   SolidPaths(const Surface& surface, const Box3& within) : surface_(surface), within_(within) {}
 
-  /// The same, but with such a box.
+  /// Returns a copy that is restricted to a box.
   [[nodiscard]] SolidPaths in(const Box3& box) const {
     SolidPaths other = *this;
     other.within_ = box;
     return other;
   }
-  /// Prepares for many questions about points in a box.
+  /// Prepares for many queries about points in a box.
   void prepare(const Box3& box) {
     auto part = surface_.part_in(box);
     part_ = part ? std::make_shared<const SurfacePart>(std::move(*part)) : nullptr;
   }
 
-  /// A point, if it lies in the solid and not on its surface.
+  /// Returns a stop at a point if the point lies in the solid and not on its surface.
   [[nodiscard]] std::optional<Stop> stop_at(const Vec3d& at, const Footprint& near) const;
 
-  /// A point in the solid, or one near it that is: through the surface next to it, or on this where nothing else helps.
+  /// Returns a stop at a point if the point lies in the solid. Otherwise pushes the point in through the surface next
+  /// to it. If that fails, returns its closest point on the surface.
   [[nodiscard]] Stop inside_near(const Vec3d& at, const Stop& near) const;
 
-  /// Whether a segment stays in the solid, its ends being in it.
+  /// Returns true if a segment between two points of the solid stays in the solid.
   [[nodiscard]] bool is_straight(const Stop& a, const Stop& b) const;
 
-  /// Whether the sides of a triangle can be pulled over it: no part of the surface comes through it.
+  /// Returns true if the surface does not cross a triangle. Its sides can then be pulled over it.
   [[nodiscard]] bool is_open(const Stop& a, const Stop& b, const Stop& c) const;
 
-  /// Whether a segment in the solid can be moved to where another one is without leaving it, ends along straight lines:
-  /// `false` also where that is not easy to see.
+  /// Returns true if a segment can be moved to another one within the solid, its ends along straight lines. `false` may
+  /// also mean that this is hard to decide.
   [[nodiscard]] bool can_sweep(const std::array<Stop, 2>& from, const std::array<Stop, 2>& to) const;
 
-  /// A path without those stops that the segments next to them can be pulled over: ends stay, and what the path runs
-  /// around.
+  /// Removes the stops of a path that the segments next to them can be pulled over. The ends stay, and so do stops
+  /// around obstacles.
   [[nodiscard]] std::vector<Stop> pulled_over_open(std::vector<Stop> path) const;
 
-  /// The stops between two on the way that pushing finds, if it finds any; none where the segment stays in the solid.
+  /// Returns the stops between two that pushing finds; none if the segment stays in the solid. Returns nullopt if
+  /// pushing fails.
   [[nodiscard]] std::optional<std::vector<Stop>> pushed(const Stop& a, const Stop& b) const;
 
-  /// The stops between two such that segments from one to the next stay in the solid; nullopt where none were found.
-  /// Tried in turn: none; those of pushing; some of the landmarks; along the walls next to the two; landmarks and what
-  /// is met when walking along thin parts; with full effort, points strewn around the two, finer and finer, and along
-  /// the border of what the solid has in the box that bounds the search.
+  /// Returns stops between two stops such that segments from one to the next stay in the solid, or nullopt if none are
+  /// found.
+  ///
+  /// First it tries no stops, then pushing, then some of the landmarks, then the walls next to the two stops. Next it
+  /// tries landmarks together with points that it meets when it walks along thin parts. With full effort it then
+  /// scatters points around the two, finer and finer. At last it follows the border of the solid in the box that bounds
+  /// the search.
   /// @param landmarks  points in the same part of the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
                                                       std::span<const Stop> landmarks) const;
 
-  /// A point that segments in the solid join to all of some others, of those found among points strewn around these the
-  /// one with the most triangles from each to the next that none of the surface comes through. With little effort,
-  /// where the walls next to them meet only.
-  /// @param least_open  how many there must be of these triangles.
+  /// Returns a point from which the segments to all given corners stay in the solid. It has the most triangles with two
+  /// adjacent corners that the surface does not cross. Candidates are points scattered around the corners. With little
+  /// effort, only points where the walls next to the corners meet are tried.
+  /// @param least_open  least number of these triangles.
   [[nodiscard]] std::optional<Hub> seeing_all(std::span<const Stop> corners, std::size_t least_open) const;
 
  private:
@@ -107,18 +112,18 @@ class SolidPaths {
                                                            const Stop& b) const;
   [[nodiscard]] std::optional<std::vector<Stop>> pushed_beside(std::span<const SurfacePoint> way, const Stop& a,
                                                                const Stop& b) const;
-  /// A point of the surface that a stop sees.
+  /// Point of the surface that a stop sees.
   struct Wall {
     SurfacePoint point;
     std::uint32_t element;
   };
   [[nodiscard]] std::vector<Wall> walls_of(const Stop& stop) const;
-  /// Whether little effort is to be made; it is told that more might have helped.
+  /// Returns true if little effort is to be made. In this case it also sets the flag that more might have helped.
   [[nodiscard]] bool gives_up() const;
-  /// What was prepared, if all of some stops lie there.
+  /// Returns the prepared part of the surface if all given stops lie in its box, else null.
   [[nodiscard]] const SurfacePart* part_at(std::initializer_list<const Stop*> stops) const;
   void walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const;
-  /// What a search may do: no step is longer than `longest`, and so many segments are looked at.
+  /// Limits of a search: no step is longer than `longest`, and at most `looks` segments are tested.
   struct SearchLimits {
     double longest = 0;
     int looks = 0;

@@ -8,19 +8,20 @@ namespace blum::detail {
 namespace {
 
 constexpr int most_steps = 24;
-/// Degrees: footprints that a small ball sees closer together than this are one.
+/// Degrees: two footprints at a smaller angle, seen from a small ball, count as one.
 constexpr double least_angle = 1;
-/// Depths that are tried behind the surface, each three quarters of the one before: down to 1/2400.
+/// Number of depths that are tried behind the surface. Each is three quarters of the one before: down to 1/2400.
 constexpr int most_depths = 28;
 constexpr int most_climbs = 3;
-/// Of the sum of the directions from both walls, where the walls are not opposite: 150 degrees between them.
+/// Length of the sum of the unit directions from both walls. At less the walls are opposite: more than 150 degrees
+/// between them.
 constexpr double least_slope = 0.5;
 
 Footprint footprint_of(const NearestPoint& at) {
   return {at.point, at.element, 7};
 }
 
-/// The largest ball that touches the surface where the one around a point inside does.
+/// Returns the largest ball that touches the surface where the ball around a point inside does.
 std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint& touched, const Vec3d& inside,
                                       double radius) {
   const Vec3d inwards = (inside - touched.point) / touched.distance;
@@ -48,10 +49,10 @@ std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint
   return std::nullopt;
 }
 
-/// The deepest of some points on a ray into the solid.
+/// Deepest of some points on a ray into the solid.
 struct Deepest {
   Vec3d point;
-  NearestPoint nearest;  ///< at distance 0 where none is inside
+  NearestPoint nearest;  ///< at distance 0 if none is inside
 };
 
 Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& direction, double furthest,
@@ -66,7 +67,7 @@ Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& di
   return best;
 }
 
-/// A larger ball next to one that lies towards a corner of the part: away from both walls.
+/// Returns a larger ball next to one that lies towards a corner of the part, by moving away from both walls.
 std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, double radius) {
   const double own = ball.nearest.distance;
   const Vec3d away = (ball.centre - ball.nearest.point) / own + (ball.centre - ball.other.point) / own;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t most_chords = 32;
 
-/// The triangles of the shells that face inwards, which are the walls of voids; by rising first vertex.
+/// Returns the triangles of each shell that faces inwards, by ascending first vertex. Such shells are the walls of
+/// voids.
 std::vector<std::vector<std::uint32_t>> walls_of_voids(const MeshView& mesh) {
   detail::UnionFind shells(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
@@ -26,7 +27,7 @@ std::vector<std::vector<std::uint32_t>> walls_of_voids(const MeshView& mesh) {
   // A body without voids has one shell.
   if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(), is_of_first)) return {};
   struct Shell {
-    double volume = 0;  // six times
+    double volume = 0;  // six times the volume
     std::vector<std::uint32_t> triangles;
   };
   std::map<std::uint32_t, Shell> found;
@@ -45,7 +46,7 @@ std::vector<std::vector<std::uint32_t>> walls_of_voids(const MeshView& mesh) {
   return walls;
 }
 
-/// Halfway from the centre of a triangle, away from the solid, to what is met first.
+/// Returns the middle of the chord from the centre of a triangle, away from the solid, to the first crossing.
 std::optional<Vec3d> middle_of_chord(const MeshView& mesh, const Surface& surface, std::uint32_t triangle,
                                      double reach) {
   const Triangle& t = mesh.triangles[triangle];

@@ -1,4 +1,4 @@
-// Blum: points in the voids of a solid, which an axis may not be moved over. SPDX-License-Identifier: Apache-2.0
+// Blum: points in the voids of a solid, over which an axis must not be moved. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -10,21 +10,21 @@
 
 namespace blum::detail {
 
-/// A point deep in each void of a body: the deepest of the middles of some chords. The closed surface of an axis around
-/// a void winds around this point. Its triangles may be moved across a corner of the void, as they cut corners anyway,
-/// but not across the point: then the void would not be in it any more.
+/// Returns a point deep in each void of a body: the deepest of the midpoints of some chords. The closed surface of an
+/// axis around a void winds around this point. Its triangles may be moved across a corner of the void, because they cut
+/// corners anyway. If they moved across the point, the surface would not enclose the void any more.
 /// @param mesh     a closed surface that faces away from the body.
-/// @param surface  the same.
-/// @return         by rising x. Cost: linear in the mesh, and up to 32 chords for each void.
+/// @param surface  the same surface.
+/// @return         by ascending x. Cost: linear in the mesh, and up to 32 chords for each void.
 [[nodiscard]] std::vector<Vec3d> points_of_voids(const MeshView& mesh, const Surface& surface);
 
-/// Whether a tetrahedron, its sides included, holds one of some points; false where it is flat. @param points  by
-/// rising x.
+/// Returns true if a closed tetrahedron contains one of some points; false if the tetrahedron is flat.
+/// @param points  by ascending x.
 [[nodiscard]] bool holds_any(std::span<const Vec3d> points, const std::array<Vec3d, 4>& tetrahedron);
 
-/// Whether a triangle moves over one of some points, each corner along a line. Corners must be in the same order for
-/// all triangles, so that those beside one another move over the same points along the edge between them.
-/// @param points  by rising x.
+/// Returns true if a triangle moves over one of some points while each corner moves along a line. Corners must be in
+/// the same order for all triangles. Adjacent triangles then move over the same points along the edge between them.
+/// @param points  by ascending x.
 [[nodiscard]] bool moves_over_any(std::span<const Vec3d> points, const std::array<Vec3d, 3>& from,
                                   const std::array<Vec3d, 3>& to);
 

@@ -9,17 +9,17 @@
 namespace blum::detail {
 namespace {
 
-constexpr std::int64_t branching = 2;  // blocks along each axis of the next larger one
+constexpr std::int64_t branching = 2;  // blocks along each axis of a block of the next level
 constexpr int most_steps = 64;
-/// Squared cosine of the angle between two footprints beyond which the second is another wall, unless the way along the
-/// surface leads there: 45 degrees.
+/// Squared cosine of 45 degrees. A footprint at a larger angle lies on another wall, unless a way along the surface
+/// leads there.
 constexpr double most_turned = 0.5;
 
 std::int64_t blocks(std::int64_t size, std::int64_t side) {
   return (size + side - 1) / side;
 }
 
-/// Adds to a row of blocks which voxels of a row are missing: two to each, from bit `shift` on.
+/// Marks in a row of blocks the missing voxels of a row: two for each block, from bit `shift` on.
 void add_missing(std::span<const std::uint64_t> row, std::int64_t length, unsigned shift, std::uint8_t* blocks) {
   for (std::size_t w = 0; w < row.size(); ++w) {
     const std::int64_t left = length - 64 * static_cast<std::int64_t>(w);
@@ -34,14 +34,14 @@ void add_missing(std::span<const std::uint64_t> row, std::int64_t length, unsign
 
 }  // namespace
 
-/// Along each axis: squared distances of a query from the voxel before one, from that one, and from the one after, and
-/// which of these may be taken, as bits.
+/// Squared distances of a query along each axis from three voxels: the one before, the voxel itself, and the one after.
+/// Bits mark those that may be chosen.
 struct VoxelSurface::Axes {
   std::array<std::array<double, 3>, 3> squared{};
   std::array<unsigned, 3> allowed{};
 };
 
-/// The best voxel so far.
+/// Best voxel so far.
 struct VoxelSurface::Search {
   Vec3d query;  ///< local
   double squared = std::numeric_limits<double>::infinity();
@@ -77,7 +77,7 @@ unsigned VoxelSurface::others_in_row(const VoxelIndex& middle) const {
   const VoxelIndex& size = voxels_.size();
   if (middle[1] < 0 || middle[1] >= size[1] || middle[2] < 0 || middle[2] >= size[2]) return 0;
   const std::span<const std::uint64_t> row = voxels_.row(middle[1], middle[2]);
-  // Rows end in bits of no voxel, so that the word after that of a voxel is there where the next voxel is.
+  // Rows end in unused bits. If the next voxel exists, so does the word that contains it.
   const std::int64_t first = middle[0] - 1;
   const auto word = static_cast<std::size_t>(std::max<std::int64_t>(first, 0) / 64);
   const auto shift = static_cast<unsigned>(std::max<std::int64_t>(first, 0) % 64);
@@ -85,7 +85,7 @@ unsigned VoxelSurface::others_in_row(const VoxelIndex& middle) const {
   if (shift > 61 && word + 1 < row.size()) selected |= row[word + 1] << (64 - shift);
   unsigned others = static_cast<unsigned>(~selected & 7U);
   if (first < 0) others = others << 1U & 7U;
-  const std::int64_t left = size[0] - first;  // voxels of the row from the first one on
+  const std::int64_t left = size[0] - first;  // number of voxels of the row from the first one on
   if (left < 3) others &= (1U << static_cast<unsigned>(left)) - 1;
   return others;
 }
@@ -110,7 +110,7 @@ Vec3d VoxelSurface::closest_in(const VoxelIndex& lower, std::int64_t side, const
 
 Footprint VoxelSurface::footprint(SiteId site, const Vec3d& centre, bool is_inside) const {
   if (is_inside) return {world(closest_in(voxels_.place(site.value), 1, local(centre))), site.value, 7};
-  // A voxel beyond the surface stands for itself, where it faces the solid.
+  // A voxel outside the solid is its own element: the footprint is its point closest to the solid.
   const VoxelIndex& size = voxels_.size();
   const Vec3d at = local(centre);
   VoxelIndex own{};
@@ -168,7 +168,8 @@ int VoxelSurface::closer_neighbour(const VoxelIndex& voxel, const Vec3d& query, 
   const double next_squared = squared_length(from_next);
   const double cosine_scaled = dot(from_foot, from_next);
   if (cosine_scaled > 0 && cosine_scaled * cosine_scaled >= most_turned * squared * next_squared) return best;
-  // Too far around a corner to be the same wall: on to what the footprint lies on, towards the query, or nowhere.
+  // This turns too far around a corner to be the same wall. Only voxels that touch the footprint, towards the query,
+  // are allowed.
   for (std::size_t a = 0; a < 3; ++a) {
     const double low = static_cast<double>(voxel[a]) * grid_.spacing[a];
     axes.allowed[a] = 2U | (query[a] <= low ? 1U : 0U) | (query[a] >= low + grid_.spacing[a] ? 4U : 0U);
@@ -240,7 +241,7 @@ void VoxelSurface::search(Search& best, std::size_t level, const VoxelIndex& blo
 NearestPoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) const {
   Search best;
   best.query = local(query);
-  // Slightly more than what is known is enough to begin with.
+  // The known footprint bounds the search, with room for rounding.
   best.squared = squared_length(query - near.point) * (1 + 1e-9);
   best.voxel = near.element;
   search(best, levels_.size() - 1, {0, 0, 0});

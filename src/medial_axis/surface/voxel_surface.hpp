@@ -11,9 +11,9 @@
 
 namespace blum::detail {
 
-/// The border between the voxels of a set and the others. Elements, and sites, are the others: linear indices of the
-/// set's box, of closed voxels. Everything outside of the box is as if it were far away, so the set should stay off the
-/// box's outermost layer. The set must outlive it.
+/// Border between the voxels of a set and the others. Elements and sites are the other voxels, closed, as linear
+/// indices of the set's box. Everything outside of the box counts as far away. The set should therefore stay off the
+/// outermost layer of the box. The set must outlive this object.
 class VoxelSurface final : public Surface {
  public:
   /// @param grid  of the voxel centres.
@@ -21,7 +21,7 @@ class VoxelSurface final : public Surface {
 
   /// @param site  the closest voxel of the other kind.
   [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
-  /// The middle of the voxel, along the grid's axes.
+  /// Returns the middle of the voxel, along the axes of the grid.
   [[nodiscard]] std::optional<Vec3d> rough_footprint(SiteId site) const override;
   [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
   [[nodiscard]] NearestPoint nearest(const Vec3d& query, const Footprint& near) const override;
@@ -32,8 +32,9 @@ class VoxelSurface final : public Surface {
 
  private:
   using VoxelIndex = std::array<std::int64_t, 3>;
-  /// Blocks of voxels, twice as long on a side as those of the level before: which of the eight blocks (or voxels, at
-  /// the lowest level) in each hold voxels that are not in the set. Bit 0 of a bit's number tells the side along x.
+  /// Blocks of voxels, twice as long on a side as those of the level before. Bits mark the parts of a block that
+  /// contain voxels outside the set. Its eight parts are blocks, or voxels at the lowest level. Bits 0, 1 and 2 of a
+  /// bit's number are the sides along x, y and z.
   struct Level {
     VoxelIndex size{};
     std::vector<std::uint8_t> parts;
@@ -44,14 +45,14 @@ class VoxelSurface final : public Surface {
   struct Axes;
   struct Search;
 
-  /// Bit n is set where voxel n - 1 along x from the middle one lies in the box and beyond the surface.
+  /// Returns bits: bit n is set if voxel n - 1 along x from the middle one lies in the box and outside the set.
   [[nodiscard]] unsigned others_in_row(const VoxelIndex& middle) const;
-  /// Coordinates along the grid's axes, mesh units, from the lower corner of voxel (0, 0, 0).
+  /// Returns coordinates along the grid's axes, mesh units, from the lower corner of voxel (0, 0, 0).
   [[nodiscard]] Vec3d local(const Vec3d& world) const;
   [[nodiscard]] Vec3d world(const Vec3d& local) const;
   [[nodiscard]] Vec3d closest_in(const VoxelIndex& lower, std::int64_t side, const Vec3d& query) const;
-  /// Which of the 27 voxels around one is closest to a local point, if it is closer than a squared distance; else -1.
-  /// Steps are jumped over: that of a stair, but not the corner of a thin part.
+  /// Returns the number of the voxel closest to a local point, of the 27 around one. Returns -1 if none is closer than
+  /// a squared distance. The search crosses steps of stairs, but not corners of thin parts.
   [[nodiscard]] int closer_neighbour(const VoxelIndex& voxel, const Vec3d& query, double squared) const;
   [[nodiscard]] int closest_of(const VoxelIndex& voxel, const Axes& axes, double squared) const;
   void search(Search& best, std::size_t level, const VoxelIndex& block) const;
