@@ -8,7 +8,7 @@
 Rules:
 - Programs return, report, list, contain or compute; they never tell.
 - No sentence starts with "What", "Whether" or "Of", unless it is a question.
-- Not "is no": "is not a", or another verb.
+- Not "is no" (but "there is no"): "is not a", or another verb.
 - A sentence has at most 25 words. Code in backquotes, a link's address, a formula and a number are one word each.
 """
 
@@ -30,7 +30,7 @@ SUFFIXES = {".md", ".hpp", ".cpp", ".cu", ".cuh", ".py", ".ts"}
 
 TELL = re.compile(r"\b(tells?|told|telling|retold)\b", re.IGNORECASE)
 COMPARED = "more|less|larger|smaller|longer|shorter|further|farther|closer|later|wider"
-IS_NO = re.compile(rf"\b(is|are|was|were) no\b(?! ({COMPARED})\b)", re.IGNORECASE)
+IS_NO = re.compile(rf"(?<!there )\b(is|are|was|were) no\b(?! ({COMPARED})\b)", re.IGNORECASE)
 FIRST_WORD = re.compile(r"^(What|Whether|Of)\b")
 SENTENCE_END = re.compile(r"(?<=[.!?])[)\"']*\s+(?=[\"'(*]*[A-Z`\[])|(?<=:)\s*\n\s*\n")
 ABBREVIATION = re.compile(r"\b(e\.g|i\.e|cf|vs|etc|Fig|Sec|Eq|approx|ca|al|no|resp)\.$", re.IGNORECASE)

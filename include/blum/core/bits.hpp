@@ -5,8 +5,8 @@
 
 namespace blum {
 
-/// The number of bits that are set. std::popcount() is a call of a function where the instruction for it is not known
-/// to be there when this is compiled, which counts in loops.
+/// Returns the number of bits that are set. Unless the target is known to have an instruction for it, std::popcount()
+/// is a function call, which matters in loops.
 [[nodiscard]] constexpr std::uint32_t bit_count(std::uint64_t bits) {
   bits -= bits >> 1U & 0x5555555555555555ULL;
   bits = (bits & 0x3333333333333333ULL) + (bits >> 2U & 0x3333333333333333ULL);

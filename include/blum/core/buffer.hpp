@@ -10,16 +10,16 @@
 namespace blum {
 
 namespace detail {
-/// Uninitialised memory aligned to 64 bytes, on huge pages where it is large and the system has them.
+/// Returns uninitialised memory, aligned to 64 bytes. Large blocks use huge pages if the system has them.
 /// @throws OutOfMemory.
 [[nodiscard]] void* allocate_aligned(std::size_t bytes);
 void free_aligned(void* memory, std::size_t bytes) noexcept;
 }  // namespace detail
 
-/// A fixed-size array for grid values: aligned to 64 bytes, not initialised, movable; a copy is asked for by clone().
+/// Array of fixed size for grid values. It is aligned to 64 bytes, not initialised, and movable; clone() copies it.
 ///
-/// It exists because writing a field to fresh 4 KiB pages costs more than computing it: large buffers ask for huge
-/// pages, and nothing is zeroed first.
+/// Writing a field to fresh 4 KiB pages costs more than computing it. So large buffers request huge pages, and nothing
+/// is zeroed first.
 template <class T>
 class Buffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -62,7 +62,7 @@ class Buffer {
   [[nodiscard]] std::span<const T> span() const { return {data_, size_}; }
 
  private:
-  /// A size whose bytes overflow becomes the largest request, which allocate_aligned refuses as OutOfMemory.
+  /// If the number of bytes overflows, returns the largest request. allocate_aligned rejects it as OutOfMemory.
   static std::size_t checked_bytes(std::size_t size) {
     const std::size_t limit = static_cast<std::size_t>(-1);
     return size > limit / sizeof(T) ? limit : size * sizeof(T);

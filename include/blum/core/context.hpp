@@ -9,28 +9,28 @@
 
 namespace blum {
 
-/// How a call runs, as a value that is passed along. The default uses every core, silently.
+/// Settings of how a call runs, passed along as a value. The default uses every core and reports no progress.
 struct Context {
   /// Number of threads; 0 means one per core that this process may use. Results never depend on it.
   int threads = 0;
 
-  /// Called now and then during long work with the finished fraction of the current phase (0 to 1, rising) and the
-  /// phase's name. Calls never overlap, but may come from a worker thread. Must not throw.
+  /// Called now and then during long work, with the finished fraction of the current phase and the phase's name. The
+  /// fraction rises from 0 to 1. Calls never overlap, but may come from a worker thread. It must not throw.
   std::function<void(double fraction, std::string_view phase)> progress = {};
 
-  /// Asks running work to stop; the call then throws Cancelled, within 200 ms.
+  /// Asks running work to stop. The call then throws Cancelled, within 200 ms.
   std::stop_token cancel = {};
 
-  /// Where fields are computed (distance_field, FieldSolver, distance_transform); everything else computes on the CPU
-  /// whatever this says.
+  /// Device that computes fields (distance_field, FieldSolver, distance_transform). All other work runs on the CPU,
+  /// whatever this value is.
   Device device = {};
 };
 
-/// The number of threads that a context stands for: context.threads, or the number of usable cores when that is 0.
-/// @throws InvalidOption when context.threads is negative or above 1024.
+/// Returns the number of threads of a context: context.threads, or the number of usable cores if that is 0.
+/// @throws InvalidOption if context.threads is negative or above 1024.
 [[nodiscard]] int thread_count(const Context& context);
 
-/// @throws Cancelled when the caller has asked to stop.
+/// @throws Cancelled if the caller has asked to stop.
 void throw_if_cancelled(const Context& context);
 
 }  // namespace blum

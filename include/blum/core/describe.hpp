@@ -1,4 +1,4 @@
-// Blum: what structs and enumerations hold, said once for all front ends. SPDX-License-Identifier: Apache-2.0
+// Blum: descriptions of structs and enumerations, shared by all front ends. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,18 +16,20 @@
 
 namespace blum {
 
-/// What a struct or an enumeration holds: specialised beside it. The tool's options, JSON, Python's options and
-/// results, their types and documentation are made from this.
+/// Description of a struct or an enumeration, specialised next to it. The tool's options, JSON, Python's options and
+/// results, their types and their documentation are generated from it.
 ///
-/// Of an enumeration:  static constexpr std::string_view name;
-///                     static constexpr std::array values{NamedValue{value, "name"}, ...};
-/// Of a struct:        static constexpr std::string_view name, doc;  // one sentence, without a full stop
-///                     static constexpr std::tuple members{Member{...}, Fact{...}, ...};
-/// All members of a struct, in their order; that none is missing is checked where they are visited.
+/// An enumeration:  static constexpr std::string_view name;
+///                  static constexpr std::array values{NamedValue{value, "name"}, ...};
+///
+/// A struct:        static constexpr std::string_view name, doc;  // one sentence, without a full stop
+///                  static constexpr std::tuple members{Member{...}, Fact{...}, ...};
+///
+/// A struct must list all members in their order. for_each_member() checks at compile time that none is missing.
 template <class T>
 struct Description;
 
-/// The value of an enumeration, and its name on the command line, in Python and in files.
+/// Value of an enumeration, and its name on the command line, in Python and in files.
 template <class Enum>
 struct NamedValue {
   Enum value;
@@ -36,26 +38,26 @@ struct NamedValue {
 template <class Enum>
 NamedValue(Enum, const char*) -> NamedValue<Enum>;
 
-/// Which numbers a member may hold.
+/// Range of the numbers that a member may hold.
 struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  bool above = false;  ///< whether `least` itself is left out
+  bool above = false;  ///< true if `least` itself is excluded
 
   [[nodiscard]] static constexpr Range positive() { return {0, std::numeric_limits<double>::infinity(), true}; }
   [[nodiscard]] static constexpr Range at_least(double least) { return {least}; }
   [[nodiscard]] static constexpr Range between(double least, double most) { return {least, most}; }
 };
 
-/// A member of a struct.
+/// Member of a struct.
 template <class Struct, class Type>
 struct Member {
   std::string_view name;  ///< in Python, in JSON, and with dashes on the command line
   Type Struct::* pointer;
-  std::string_view unit;               ///< such as "mesh units"; empty where there is none
+  std::string_view unit;               ///< for example "mesh units"; empty if it has none
   std::string_view doc;                ///< one line, without a full stop
-  Range range = {};                    ///< of options that are numbers
-  std::span<const Type> choices = {};  ///< of enumerations: what may be chosen; empty: all of it
+  Range range = {};                    ///< of numeric options
+  std::span<const Type> choices = {};  ///< of enumerations: the allowed values; all of them if empty
 
   using Value = Type;
   static constexpr bool is_stored = true;
@@ -68,7 +70,7 @@ Member(const char*, Type Struct::*, const char*, const char*, Range) -> Member<S
 template <class Struct, class Type, class Choices>
 Member(const char*, Type Struct::*, const char*, const char*, Range, const Choices&) -> Member<Struct, Type>;
 
-/// What a struct tells of its members, shown as if it were one of them.
+/// Value that a member function of a struct computes. It is shown like a member.
 template <class Struct, class Type>
 struct Fact {
   std::string_view name;
@@ -90,7 +92,7 @@ concept DescribedStruct = requires { Description<T>::members; };
 
 namespace detail {
 
-/// A list of types; lists are joined by +, which compilers do much faster than std::tuple_cat().
+/// List of types. Compilers join lists by + much faster than std::tuple_cat() joins tuples.
 template <class... Types>
 struct TypeList {};
 template <class... Left, class... Right>
@@ -101,7 +103,7 @@ consteval TypeList<Left..., Right...> operator+(TypeList<Left...> /*left*/, Type
 template <class Entry>
 using StoredType = std::conditional_t<Entry::is_stored, TypeList<typename Entry::Value>, TypeList<>>;
 
-/// Whether a T can be made of exactly these, and of no more.
+/// Returns true if a T can be made from exactly these types, and from no more.
 template <class T, class... Types>
 consteval bool consists_of(TypeList<Types...> /*types*/) {
   return requires { T{std::declval<Types>()...}; } && !requires { T{std::declval<Types>()..., {}}; };
@@ -128,7 +130,7 @@ constexpr void for_each_member(const Visitor& visit) {
   }(std::make_index_sequence<count>{});
 }
 
-/// The name of a value of an enumeration.
+/// Returns the name of a value of an enumeration; "unknown" if it has none.
 template <DescribedEnum Enum>
 [[nodiscard]] constexpr std::string_view to_string(Enum value) {
   for (const auto& named : Description<Enum>::values) {
@@ -137,7 +139,7 @@ template <DescribedEnum Enum>
   return "unknown";
 }
 
-/// The names of `choices`, or of all values where there are none.
+/// Returns the names of `choices`, or of all values if `choices` is empty.
 template <DescribedEnum Enum>
 [[nodiscard]] std::vector<std::string_view> names_of(std::span<const Enum> choices = {}) {
   std::vector<std::string_view> names;
@@ -149,8 +151,10 @@ template <DescribedEnum Enum>
   return names;
 }
 
-/// The value with a name. @param what  what messages call it.  @param choices  as names_of().
-/// @throws InvalidOption that names what may be chosen.
+/// Returns the value with a name.
+/// @param what     name of the option in messages.
+/// @param choices  as for names_of().
+/// @throws InvalidOption if the name is not allowed. The message lists the allowed names.
 template <DescribedEnum Enum>
 [[nodiscard]] Enum parse_enum(std::string_view what, std::string_view text, std::span<const Enum> choices = {}) {
   const std::vector<std::string_view> names = names_of<Enum>(choices);
@@ -162,11 +166,11 @@ template <DescribedEnum Enum>
   detail::refuse_choice(what, text, names);
 }
 
-/// "a, b and c"; "or" by `last`. @param quote  around each word.
+/// Returns "a, b and c", with `last` in place of "and". @param quote  is put around each word.
 [[nodiscard]] std::string join_words(std::span<const std::string_view> words, std::string_view last = "and",
                                      std::string_view quote = {});
 
-/// @throws InvalidOption where both are given: "`a` and `b` exclude each other: `reason`".
+/// @throws InvalidOption if both are given: "`first` and `second` exclude each other: `reason`".
 void exclude(bool has_first, std::string_view first, bool has_second, std::string_view second, std::string_view reason);
 
 }  // namespace blum

@@ -1,4 +1,4 @@
-// Blum: where a call computes. SPDX-License-Identifier: Apache-2.0
+// Blum: the device on which a call computes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@ namespace blum {
 
 enum class DeviceKind : std::uint8_t {
   cpu,
-  automatic,  ///< the first CUDA device where there is one that works, else the CPU
+  automatic,  ///< the first CUDA device if one works, else the CPU
   cuda
 };
 
-/// Where a call computes, as a value.
+/// Device on which a call computes, as a value.
 struct Device {
   DeviceKind kind = DeviceKind::cpu;
-  int index = 0;  ///< of a CUDA device, as the CUDA runtime counts those that are visible; >= 0
+  int index = 0;  ///< number of a CUDA device among the visible ones, as the CUDA runtime counts; >= 0
 
   [[nodiscard]] static constexpr Device cpu() { return {}; }
   [[nodiscard]] static constexpr Device automatic() { return {DeviceKind::automatic, 0}; }
@@ -26,7 +26,7 @@ struct Device {
 
 /// Reads "cpu", "auto", "cuda" (the first) or "cuda:K". @throws InvalidOption.
 [[nodiscard]] Device parse_device(std::string_view text);
-/// What parse_device() reads.
+/// Returns the text that parse_device() reads as this device.
 [[nodiscard]] std::string to_string(const Device& device);
 
 }  // namespace blum

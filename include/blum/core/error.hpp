@@ -8,7 +8,7 @@
 
 namespace blum {
 
-/// Base of every exception that Blum throws. what() says what was wrong, where, and what to do about it.
+/// Base of every exception that Blum throws. what() states the problem, its place and the remedy.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -38,13 +38,13 @@ class InvalidOption : public Error {
   using Error::Error;
 };
 
-/// The memory that a call needs is not there; the message says how much it asked for.
+/// A call needs more memory than is available. The message gives the size of the request.
 class OutOfMemory : public Error {
  public:
   using Error::Error;
 };
 
-/// A device that was asked for is not there, or failed; the message says which and what to do.
+/// A requested device is not available, or failed. The message names the device and the remedy.
 class DeviceError : public Error {
  public:
   using Error::Error;
@@ -62,16 +62,16 @@ class FileError : public Error {
   using Error::Error;
 };
 
-/// A file whose content is not what its format asks for; the message names the file and, where known, line or byte.
+/// A file whose content does not follow its format. The message names the file and, if known, the line or byte.
 class FormatError : public FileError {
  public:
   using FileError::FileError;
 };
 
-/// An axis that is not certified, where one that is was asked for. what() names all that does not hold.
+/// An axis that is not certified, although a certified one was requested. what() names every check that failed.
 class NotCertified : public Error {
  public:
-  /// @param mismatches  why not, one sentence each.  @param rest  goes on after them.
+  /// @param mismatches  the reasons, one sentence each.  @param rest  is appended to them.
   explicit NotCertified(std::vector<std::string> mismatches, const std::string& rest = "")
       : Error("NOT certified: " + joined(mismatches) + rest), mismatches_(std::move(mismatches)) {}
   [[nodiscard]] const std::vector<std::string>& mismatches() const { return mismatches_; }

@@ -1,4 +1,4 @@
-// Blum: functions that are handed on and called, but not kept. SPDX-License-Identifier: Apache-2.0
+// Blum: references to functions, valid during a call. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@ namespace blum {
 template <class Signature>
 class FunctionRef;
 
-/// Refers to something callable for the time of a call; it never allocates. What it refers to must outlive it.
+/// Reference to a callable object, for the duration of a call. It never allocates. The object must outlive it.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:
-  // The object is not forwarded but referred to, and call_ gives it its own type back. A lambda is passed as it is.
+  // The object is referred to, not forwarded, and call_ restores its type. A lambda converts implicitly.
   // NOLINTBEGIN(google-explicit-constructor,cppcoreguidelines-missing-std-forward,cppcoreguidelines-pro-type-const-cast)
   template <class Callable>
     requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&

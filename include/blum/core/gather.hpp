@@ -9,8 +9,9 @@
 
 namespace blum::detail {
 
-/// What find(k, out) appends to a list for each k below `count`, in the order of k for any number of threads.
-/// @param phase  as parallel_for() takes it.  @throws Cancelled.
+/// Returns the values that find(k, out) appends to a list for each k below `count`. They are in the order of k for any
+/// number of threads.
+/// @param phase  as for parallel_for().  @throws Cancelled.
 template <class T, class Find>
 [[nodiscard]] std::vector<T> gather(const Context& context, std::size_t count, std::size_t grain,
                                     std::string_view phase, const Find& find) {

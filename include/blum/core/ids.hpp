@@ -8,8 +8,8 @@
 
 namespace blum {
 
-/// An index of 32 bits that cannot be mixed up with an index of another kind.
-/// none() marks "no such thing" inside large arrays, where an optional would double the memory; files show it as -1.
+/// Index of 32 bits, as a type of its own for each kind of object.
+/// none() stands for "no object". In large arrays, std::optional would double the memory. Files store none() as -1.
 template <class Tag>
 struct Id {
   std::uint32_t value = std::numeric_limits<std::uint32_t>::max();
@@ -18,7 +18,7 @@ struct Id {
   constexpr explicit Id(std::uint32_t index) : value(index) {}
   [[nodiscard]] static constexpr Id none() { return Id(); }
   [[nodiscard]] constexpr bool has_value() const { return value != std::numeric_limits<std::uint32_t>::max(); }
-  /// The number that files hold: the index, or -1 for none().
+  /// Returns the number that files hold: the index, or -1 for none().
   [[nodiscard]] constexpr std::int32_t to_file() const { return static_cast<std::int32_t>(value); }
   [[nodiscard]] friend constexpr auto operator<=>(const Id&, const Id&) = default;
 };
@@ -26,10 +26,10 @@ struct Id {
 using VertexId = Id<struct VertexTag>;
 using EdgeId = Id<struct EdgeTag>;
 using TriangleId = Id<struct TriangleTag>;
-/// A site of a mesh (see geometry/sites.hpp for the numbering), or the linear index of a voxel of an image.
+/// Site of a mesh (see geometry/sites.hpp for the numbering), or linear index of a voxel of an image.
 using SiteId = Id<struct SiteTag>;
 
-/// The largest number of things of one kind: ids must fit a signed 32-bit integer, as files hold them.
+/// Largest number of objects of one kind. Ids must fit a signed 32-bit integer, because files hold them as such.
 inline constexpr std::size_t max_id_count = 0x7fffffff;
 
 }  // namespace blum

@@ -9,25 +9,27 @@
 
 namespace blum {
 
-/// A half-open range of items, and which of the thread_count() workers runs it (for per-worker scratch space).
+/// Half-open range of items, and the worker that runs it. Workers are numbered below thread_count(), so that each can
+/// have scratch space of its own.
 struct WorkRange {
   std::size_t begin = 0;
   std::size_t end = 0;
   int worker = 0;
 };
 
-/// Runs body over [0, count), cut into consecutive ranges of at most `grain` items that workers take in rising order.
+/// Runs body over [0, count), cut into consecutive ranges of at most `grain` items. Workers take the ranges in rising
+/// order.
 ///
-/// The cut depends on count and grain only, never on the number of threads, so a body that writes only what belongs
-/// to its range gives the same result on any number of threads. A single worker runs on the calling thread.
+/// The cut depends on count and grain only, never on the number of threads. So a body that writes only what belongs to
+/// its range gives the same result for any number of threads. A single worker runs on the calling thread.
 ///
-/// @param phase  name for Context::progress; an empty name reports no progress.
-/// @param body   must not throw, except std::bad_alloc: the first exception is rethrown once all workers have stopped.
-/// @throws Cancelled when the caller asked to stop (looked at before every range).
+/// @param phase  name for Context::progress. An empty name reports no progress.
+/// @param body   must not throw, except std::bad_alloc. The first exception is rethrown once all workers have stopped.
+/// @throws Cancelled if the caller asked to stop. This is checked before every range.
 void parallel_for(const Context& context, std::size_t count, std::size_t grain, std::string_view phase,
                   const std::function<void(const WorkRange&)>& body);
 
-/// The thread back end that was compiled in: "tbb", "std" or "serial".
+/// Returns the thread back end that was compiled in: "tbb", "std" or "serial".
 [[nodiscard]] std::string_view thread_backend();
 
 }  // namespace blum

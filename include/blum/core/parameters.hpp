@@ -11,7 +11,7 @@ namespace blum {
 /// Values of parameters by name.
 using ParameterValues = std::map<std::string, double>;
 
-/// A number that something can be asked for with.
+/// Numeric parameter of a generator.
 struct Parameter {
   std::string name;         ///< as on the command line, without dashes in front
   std::string description;  ///< one line, with the unit
@@ -21,10 +21,10 @@ struct Parameter {
   bool integer = false;
 };
 
-/// The values of all parameters, with defaults for those not given.
-/// @param owner  what takes them, for messages.
-/// @throws InvalidOption naming all parameters and ranges when one is unknown, out of range, or not a whole number
-/// where it must be.
+/// Returns the values of all parameters, with defaults for those not given.
+/// @param owner  name of the generator, for messages.
+/// @throws InvalidOption if a parameter is unknown, out of range, or not a whole number although it must be. The
+/// message lists all parameters and ranges.
 [[nodiscard]] ParameterValues complete_parameters(std::string_view owner, std::span<const Parameter> parameters,
                                                   const ParameterValues& given);
 

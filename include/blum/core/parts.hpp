@@ -1,4 +1,4 @@
-// Blum: parts of a whole, the small ones side by side. SPDX-License-Identifier: Apache-2.0
+// Blum: work on parts of a whole, with small parts in parallel. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,12 @@
 
 namespace blum::detail {
 
-/// Calls run(part, context) once for each part: for one that is more than a thread's share of all with the context
-/// given, for the others side by side, the largest first, each with a context of one thread, that tells no progress.
-/// @param sizes  of the parts: how long each takes, in any unit.
-/// @param phase  as parallel_for() takes it, for the parts that run side by side.
-/// @throws Cancelled, and what run() throws.
+/// Calls run(part, context) once for each part, the largest first. Parts larger than a thread's share of the whole run
+/// one after another, with the given context. The other parts run in parallel, each with a context of one thread that
+/// reports no progress. If only one part is left for that, it runs with the given context, too.
+/// @param sizes  sizes of the parts: the time that each takes, in any unit.
+/// @param phase  as for parallel_for(), for the parts that run in parallel.
+/// @throws Cancelled, and any exception of run().
 template <class Run>
 void for_each_part(const Context& context, std::span<const std::size_t> sizes, std::string_view phase, const Run& run) {
   std::vector<std::size_t> order(sizes.size());

@@ -14,7 +14,7 @@ struct PhaseTime {
   double seconds = 0;
 };
 
-/// Appends the time since its construction, or since the last lap, to a list of phases.
+/// Appends to a list of phases the time since construction, or since the last lap.
 class PhaseTimer {
  public:
   explicit PhaseTimer(std::vector<PhaseTime>& phases) : phases_(phases) {}

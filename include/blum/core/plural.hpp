@@ -9,7 +9,7 @@
 
 namespace blum {
 
-/// "1 edge", "2 edges".
+/// Returns a count with its noun: "1 edge", "2 edges".
 inline std::string plural(std::uint64_t count, std::string_view one, std::string_view many) {
   return count_text(count) + " " + std::string(count == 1 ? one : many);
 }

@@ -14,7 +14,7 @@ struct KeyedIndex {
   std::uint32_t index = 0;
 };
 
-/// Sorts by key with digits of some bits, equal keys in their given order.
+/// Sorts by key, `bits` bits at a time. Equal keys keep their order.
 template <unsigned bits>
 void sort_by_digits(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& scratch) {
   constexpr std::size_t buckets = std::size_t{1} << bits;
@@ -25,7 +25,7 @@ void sort_by_digits(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& scr
   }
   scratch.resize(items.size());
   for (unsigned pass = 0; pass < passes; ++pass) {
-    // All keys agree where one does with all.
+    // If all keys have the same digit, the bucket of the first key's digit counts all of them.
     const std::uint32_t digit = items.empty() ? 0 : (items.front().key >> (pass * bits)) & (buckets - 1);
     if (counts[pass][digit] == items.size()) continue;
     std::uint32_t start = 0;
@@ -35,10 +35,10 @@ void sort_by_digits(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& scr
   }
 }
 
-/// Sorts by key, equal keys in their given order. Cost: at most four passes; those in which all keys agree are skipped.
+/// Sorts by key; equal keys keep their order. Cost: at most four passes. Passes in which all keys agree are skipped.
 /// `scratch` keeps its memory between calls.
 inline void radix_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& scratch) {
-  // Few items are not worth the clearing and summing up of many counts.
+  // Short lists use fewer counts, because clearing and summing many counts would cost more than it saves.
   if (items.size() < 2048) {
     sort_by_digits<8>(items, scratch);
   } else {

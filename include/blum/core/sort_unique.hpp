@@ -6,7 +6,7 @@
 
 namespace blum::detail {
 
-/// Sorts values, and leaves one of each that are equal.
+/// Sorts values and removes duplicates.
 template <class T>
 void sort_unique(std::vector<T>& values) {
   std::sort(values.begin(), values.end());

@@ -1,4 +1,4 @@
-// Blum: sets that grow together. SPDX-License-Identifier: Apache-2.0
+// Blum: disjoint sets. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace blum::detail {
 
-/// Disjoint sets of indices; the smallest index of a set stands for it, so results do not depend on the order of joins.
+/// Disjoint sets of indices. The smallest index of a set represents it, so results do not depend on the order of joins.
 class UnionFind {
  public:
   UnionFind() = default;
   explicit UnionFind(std::size_t count) { reset(count); }
 
-  /// Makes it that many sets of one index each.
+  /// Makes `count` sets of one index each.
   void reset(std::size_t count) {
     parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), 0U);
@@ -24,7 +24,7 @@ class UnionFind {
     while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
     return item;
   }
-  /// Whether they were apart before.
+  /// Joins the sets of two indices. Returns true if they were different sets.
   bool join(std::uint32_t a, std::uint32_t b) {
     a = find(a);
     b = find(b);

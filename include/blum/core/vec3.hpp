@@ -7,7 +7,8 @@
 
 namespace blum {
 
-/// Three components in x, y, z order. An aggregate of exactly three T, so arrays of it can be viewed as T[n][3].
+/// Three components in x, y, z order. It is an aggregate of exactly three T, so an array of it can be viewed as
+/// T[n][3].
 template <class T>
 struct Vec3 {
   T x{}, y{}, z{};
@@ -70,21 +71,21 @@ template <class T>
   return {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, a.z < b.z ? b.z : a.z};
 }
 
-/// A 3 x 3 matrix, stored as its columns: for a grid direction, column a is the unit vector of index axis a.
+/// 3 x 3 matrix, stored as its columns. In a grid direction, column a is the unit vector of index axis a.
 struct Mat3 {
   Vec3d columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
   [[nodiscard]] constexpr Vec3d operator*(const Vec3d& v) const {
     return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z;
   }
-  /// The product of the transposed matrix and v.
+  /// Returns the product of the transposed matrix and v.
   [[nodiscard]] constexpr Vec3d transposed_times(const Vec3d& v) const {
     return {dot(columns[0], v), dot(columns[1], v), dot(columns[2], v)};
   }
   [[nodiscard]] friend constexpr bool operator==(const Mat3&, const Mat3&) = default;
 };
 
-/// An axis-aligned box; empty (lower > upper) when default-constructed.
+/// Axis-aligned box. A default-constructed box is empty (lower > upper).
 struct Box3 {
   Vec3d lower{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3d upper{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -92,12 +93,12 @@ struct Box3 {
   [[nodiscard]] bool is_empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
   [[nodiscard]] Vec3d size() const { return upper - lower; }
   [[nodiscard]] Vec3d center() const { return (lower + upper) * 0.5; }
-  /// Whether a point lies in it, sides included.
+  /// Returns true if a point lies in the box, sides included.
   [[nodiscard]] bool contains(const Vec3d& p) const {
     return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z && p.z <= upper.z;
   }
   [[nodiscard]] double diagonal() const { return is_empty() ? 0.0 : length(size()); }
-  /// The largest magnitude of a coordinate of its sides.
+  /// Returns the largest magnitude of a coordinate of its sides.
   [[nodiscard]] double largest_coordinate() const {
     double largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

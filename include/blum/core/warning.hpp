@@ -1,4 +1,4 @@
-// Blum: what results say of inputs that can be used, but look as if something else were meant.
+// Blum: warnings of results about inputs that can be used, but may not be the ones that were meant.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,25 +12,24 @@
 
 namespace blum {
 
-/// What a warning is about, for programs that act on it: texts may change, codes stay.
+/// Subject of a warning, for programs that act on it. Texts may change; codes stay.
 enum class WarningCode : std::uint8_t {
   form_not_certified,  ///< an axis in a better form was not certified
   not_certified,       ///< a result is not certified
-  grid_moved,          ///< an axis was certified on a grid that was moved by a part of a voxel, not on the first one
+  grid_moved,          ///< an axis was certified on a grid moved by part of a voxel, not on the first grid
   reversed_shells,     ///< shells or triangles faced the wrong way and were reversed
-  solid_of_voxels,     ///< a mesh bounds no polyhedron, so that its solid is known as voxels
-  crossings_removed,   ///< a mesh crosses itself: the result is that of the mesh without the crossings
-  other_solid,         ///< options name another solid than the file of an axis
-  other_vertices,      ///< vertices were merged, or equal ones are apart, so that the mesh may be another one than was
-                       ///< meant
+  solid_of_voxels,     ///< a mesh bounds no polyhedron, so its solid is represented by voxels
+  crossings_removed,   ///< a mesh crosses itself; the result is that of the mesh without the crossings
+  other_solid,         ///< options name another solid than the file of an axis does
+  other_vertices,      ///< vertices were merged, or equal ones are separate: the mesh may not be the intended one
   left_out,            ///< parts of an input or a result were left out
-  open_mesh,           ///< a mesh has a boundary where a closed one is meant
+  open_mesh,           ///< a mesh has a boundary although a closed one is expected
   facing,              ///< triangles face different ways, or into the solid
   nothing_inside,      ///< no node of a field is inside
-  nothing_found,       ///< nothing of what was asked for is there
-  other_topology,      ///< a result has another topology than its solid
-  single_layer,        ///< an image has one layer of voxels, which are a plate
-  rounded,             ///< a file holds rounded numbers, and what was certain of the exact ones need not be of these
+  nothing_found,       ///< nothing that was asked for was found
+  other_topology,      ///< the topology of a result differs from that of its solid
+  single_layer,        ///< an image has one layer of voxels, which form a plate
+  rounded,             ///< a file holds rounded numbers, for which the guarantees of the exact ones may not hold
   not_extended,        ///< rims of an axis were not extended
 };
 
@@ -58,7 +57,7 @@ struct Description<WarningCode> {
   };
 };
 
-/// One thing that a result warns of. Results carry all of them, in the order in which they were found.
+/// Warning of a result. Results list all warnings in the order in which they were found.
 struct Warning {
   WarningCode code = WarningCode::left_out;
   std::string text;  ///< one sentence without a full stop
@@ -68,7 +67,7 @@ struct Warning {
 
 template <>
 struct Description<Warning> {
-  static constexpr std::string_view name = "ResultWarning";  // as Python's own Warning is another thing
+  static constexpr std::string_view name = "ResultWarning";  // because Python has a Warning of its own
   static constexpr std::string_view doc = "One thing that a result warns of";
   static constexpr std::tuple members{
       Member{"code", &Warning::code, "", "what it is about"},

@@ -8,7 +8,7 @@
 
 namespace blum {
 
-/// The point of a closed segment that is closest to a query, but for rounding; segments may be points.
+/// Returns the point of a closed segment that is closest to a query, up to rounding. Segments may be points.
 [[nodiscard]] inline Vec3d closest_point_on_segment(const Vec3d& query, const Vec3d& a, const Vec3d& b) {
   const Vec3d direction = b - a;
   const double squared = squared_length(direction);
@@ -16,8 +16,8 @@ namespace blum {
   return a + direction * std::clamp(dot(query - a, direction) / squared, 0.0, 1.0);
 }
 
-/// The point of a closed triangle that is closest to a query, but for rounding; also of slivers, where it may be
-/// another one, a point of the triangle. Triangles may have lost their area: then it is that of their sides.
+/// Returns the point of a closed triangle that is closest to a query, up to rounding. For a sliver it may be another
+/// point of the triangle. For a triangle without area it is the closest point of its sides.
 [[nodiscard]] inline Vec3d closest_point_on_triangle(const Vec3d& query, const std::array<Vec3d, 3>& corners) {
   const auto& [a, b, c] = corners;
   const Vec3d normal = cross(b - a, c - a);
@@ -33,7 +33,7 @@ namespace blum {
   return best;
 }
 
-/// Points of two closed segments that are closest to each other, but for rounding.
+/// Returns the points of two closed segments that are closest to each other, up to rounding.
 [[nodiscard]] inline std::array<Vec3d, 2> closest_points_of_segments(const std::array<Vec3d, 2>& first,
                                                                      const std::array<Vec3d, 2>& second) {
   const Vec3d u = first[1] - first[0];
@@ -45,7 +45,7 @@ namespace blum {
   const double determinant = uu * vv - uv * uv;
   const double s = determinant > 0 ? std::clamp((uv * dot(v, w) - vv * dot(u, w)) / determinant, 0.0, 1.0) : 0.0;
   const Vec3d on_second = closest_point_on_segment(first[0] + u * s, second[0], second[1]);
-  // The best place on the first segment moves where that on the second one was clamped.
+  // If the point on the second segment was clamped, the best point on the first one moves.
   const Vec3d on_first = closest_point_on_segment(on_second, first[0], first[1]);
   return {on_first, closest_point_on_segment(on_first, second[0], second[1])};
 }

@@ -1,4 +1,4 @@
-// Blum: the words for what keeps a mesh from bounding a solid, and what to do. SPDX-License-Identifier: Apache-2.0
+// Blum: messages about meshes that bound no solid, with remedies. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,20 @@
 
 namespace blum {
 
-/// What keeps a mesh from bounding a solid, with how often and what may help, in one sentence; empty where it is
-/// closed, oriented, manifold and faces outwards. Whether it crosses itself is not told: problem_of_crossings() does.
+/// Returns the reason why a mesh bounds no solid, in one sentence with counts and possible remedies. It is empty if the
+/// mesh is closed, oriented, manifold and faces outwards. It does not check for self-crossings; problem_of_crossings()
+/// does.
 [[nodiscard]] std::string problem_as_solid(const Topology& facts);
 
-/// Whether a mesh meets itself where it should not, in one sentence with two vertices or triangles; empty where it does
-/// not: two vertices of triangles in one place, triangles that cross or touch. @throws Cancelled.
+/// Return a sentence if a mesh meets itself where it should not, naming two vertices or triangles; else an empty one.
+/// The first function looks for two vertices of triangles in one place, the second for triangles that cross or touch.
+/// @throws Cancelled.
 [[nodiscard]] std::string problem_of_places(const MeshView& mesh);
 [[nodiscard]] std::string problem_of_crossings(const MeshView& mesh, const Context& context = {});
-/// The same of what find_self_intersections() found.
+/// Returns the same sentence for a result of find_self_intersections().
 [[nodiscard]] std::string problem_of_crossings(const SelfIntersections& found);
 
-/// Whole sentences, and the ends of some: all that Blum says of meshes that bound no solid stands here and in
+/// Sentences and ends of sentences. All messages of Blum about meshes that bound no solid are here and in
 /// mesh_problems.cpp.
 namespace mesh_problem {
 
@@ -42,28 +44,28 @@ inline constexpr std::string_view more_than_triangles =
 inline constexpr std::string_view touches_when_resolved =
     "the mesh crosses itself, and what it bounds touches itself where the crossings are resolved: move these parts "
     "apart, or into each other";
-/// Of "the mesh bounds no polyhedron: ...".
+/// Ends "the mesh bounds no polyhedron: ...".
 inline constexpr std::string_view shells_cross = "its shells do not lie in each other, they cross or coincide";
 
-/// Why a mesh bounds no polyhedron as far as its edges tell, with all that is in the way: of "the mesh bounds no
-/// polyhedron: ..."; empty where it does.
+/// Returns all reasons found at edges and vertices why a mesh bounds no polyhedron. They end "the mesh bounds no
+/// polyhedron: ...". Empty without such a reason.
 [[nodiscard]] std::string obstacles(const Topology& facts);
-/// The same of pairs of triangles that cross or touch. @param is_complete  whether there are no more of them.
+/// Return such a reason for pairs of triangles that cross or touch. @param is_complete  false if more pairs exist.
 [[nodiscard]] std::string crossing(std::size_t pairs, bool is_complete);
 [[nodiscard]] std::string touching(std::size_t pairs, bool is_complete);
-/// Where the numbers of the mesh's own triangles are wanted. @param how  Solid::reason().
+/// Returns the message of calls that need the numbers of the mesh's own triangles. @param how  Solid::reason().
 [[nodiscard]] std::string crosses_and_is_resolved(const std::string& how);
-/// A triangle that names a vertex twice, and one without area that no flip of an edge takes out.
+/// Return messages for a triangle that names a vertex twice, and for one without area that no edge flip removes.
 [[nodiscard]] std::string doubled_corner(std::size_t triangle);
 [[nodiscard]] std::string without_area(std::size_t triangle);
-/// The edges that keep a mesh from being closed and oriented, with how many of each kind: of "the mesh has ...".
+/// Returns how many edges of each kind keep a mesh from being closed and oriented. It ends "the mesh has ...".
 [[nodiscard]] std::string of_edges(const Orientation& facts);
 
-/// Of one object among several. @param name  such as "object 3".
+/// Return messages about one object among several. @param name  for example "object 3".
 [[nodiscard]] std::string no_triangles_in(const std::string& name);
 [[nodiscard]] std::string faces_inwards(const std::string& name);
-/// @param open  edges that have no two triangles in opposite directions.
-/// @param is_closed_by_welding  whether merging equal vertices leaves none.
+/// @param open                  number of edges that have no two triangles in opposite directions.
+/// @param is_closed_by_welding  true if merging equal vertices leaves no such edge.
 [[nodiscard]] std::string not_closed(const std::string& name, std::size_t open, bool is_closed_by_welding);
 /// @param obstacle  ResolvedMesh::obstacle.
 [[nodiscard]] std::string not_resolved(const std::string& name, const std::string& obstacle);

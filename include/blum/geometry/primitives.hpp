@@ -12,13 +12,13 @@
 
 namespace blum {
 
-/// How many primitives a mesh has: its triangles, then its segments, then its points.
+/// Returns the number of primitives of a mesh: its triangles, then its segments, then its points.
 [[nodiscard]] inline std::size_t primitive_count(const MeshView& mesh) {
   return mesh.triangles.size() + mesh.segments.size() + mesh.points.size();
 }
 
-/// The vertices of a primitive of a mesh, as the corners of a triangle: a, b, b for a segment, three equal ones for a
-/// point. @param primitive  below primitive_count(mesh).
+/// Returns the vertices of a primitive of a mesh as corners of a triangle. A segment gives a, b, b; a point gives three
+/// equal ones. @param primitive  below primitive_count(mesh).
 [[nodiscard]] inline Triangle primitive_vertices(const MeshView& mesh, std::uint32_t primitive) {
   std::size_t k = primitive;
   if (k < mesh.triangles.size()) return mesh.triangles[k];
@@ -28,8 +28,9 @@ namespace blum {
   return {v, v, v};
 }
 
-/// The one, two or three vertices of a feature of a triangle, as files name them: padded with -1, of an edge the
-/// smaller one first, of a face in the order of the triangle. Vertices that the triangle names twice appear once.
+/// Returns the one, two or three vertices of a feature of a triangle, as files name them: padded with -1. An edge names
+/// its smaller vertex first. A face keeps the order of the triangle. Vertices that the triangle names twice appear
+/// once.
 [[nodiscard]] inline std::array<std::int32_t, 3> feature_vertices(const Triangle& triangle,
                                                                   const TriangleFeature& feature) {
   const std::size_t count = feature.kind == SiteKind::vertex ? 1 : feature.kind == SiteKind::edge ? 2 : 3;

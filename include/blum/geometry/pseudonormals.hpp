@@ -12,14 +12,14 @@
 
 namespace blum {
 
-/// A normal for every site of a mesh, such that on a closed, consistently oriented mesh that does not cross itself the
-/// sign of (q - x) . normal is that of the signed distance of q, where x is the point closest to q and the normal is
-/// that of the site that x lies on (Baerentzen and Aanaes, "Signed distance computation using the angle weighted
-/// pseudonormal", 2005).
+/// Normals of the sites of a mesh that give the sign of the distance of a query q. Let x be the point closest to q, and
+/// n the normal of the site that contains x. Then (q - x) . n has the sign of the signed distance of q. The mesh must
+/// be closed and consistently oriented, without self-intersections (Baerentzen and Aanaes, "Signed distance computation
+/// using the angle weighted pseudonormal", 2005).
 ///
 /// Face: its unit normal. Edge: the sum of its faces' unit normals. Vertex: the sum of its faces' unit normals, each
 /// times the face's angle at the vertex. Only directions matter: sums are not normalised. Triangles without area
-/// contribute nothing. Sites of no triangle have a zero normal.
+/// contribute nothing. Sites without a triangle have a zero normal.
 class Pseudonormals {
  public:
   /// @param mesh   must pass validate(mesh).
@@ -30,12 +30,13 @@ class Pseudonormals {
   /// @param site  below sites.size().
   [[nodiscard]] const Vec3d& normal(SiteId site) const { return normals_[site.value]; }
 
-  /// The signed distance's sign: whether a query lies inside, given the closest point and the site that it lies on.
+  /// Returns true if a query lies inside, which is the sign of the signed distance. @param closest  closest point to
+  /// the query.  @param site  the site that contains it.
   [[nodiscard]] bool is_inside(const Vec3d& query, const Vec3d& closest, SiteId site) const {
     return dot(query - closest, normal(site)) < 0;
   }
 
-  /// One normal per site, indexed by SiteId.
+  /// Returns one normal per site, indexed by SiteId.
   [[nodiscard]] const std::vector<Vec3d>& normals() const { return normals_; }
 
  private:

@@ -1,4 +1,4 @@
-// Blum: meshes that cross themselves, without the crossings. SPDX-License-Identifier: Apache-2.0
+// Blum: removal of self-crossings from meshes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -15,26 +15,28 @@
 namespace blum {
 
 struct ResolveOptions {
-  /// More pairs of triangles that cross or touch are not looked at.
+  /// Largest number of pairs of triangles that cross or touch. With more pairs, the mesh is not resolved.
   std::size_t most_pairs = 100000;
-  /// A mesh whose new vertices, rounded, make triangles cross anew is resolved again, this often at most. With 0 the
-  /// result is not checked: its parts and how they meet are exact, but triangles may cross by roundings.
+  /// Largest number of rounds. After each round, new vertices are rounded, which may make triangles cross anew; then
+  /// another round follows. With 0 there is one round, and its result is not checked. Its parts and how they meet are
+  /// exact, but triangles may cross by rounding errors.
   int most_rounds = 6;
-  /// Points are inside where the mesh winds around them this often or more: with 2, what lies in two parts of it.
+  /// Points are inside if the mesh winds around them at least this often. With 2, these are the points that lie in two
+  /// of its parts.
   int least_winding = 1;
 };
 
-/// What stood in the way of a mesh being the boundary of a solid.
+/// Defects that keep a mesh from being the boundary of a solid, and their repair, as counts.
 struct CrossingCounts {
   std::size_t crossing = 0;        ///< pairs of triangles that cross
-  std::size_t touching = 0;        ///< pairs that touch beside what they share, or overlap
+  std::size_t touching = 0;        ///< pairs that overlap, or touch beyond what they share
   std::size_t flat = 0;            ///< triangles without area
   std::size_t crowded_edges = 0;   ///< edges with more than two triangles
-  std::size_t cut = 0;             ///< triangles that were cut, or lost their place
-  std::size_t new_vertices = 0;    ///< of the result, that the input does not have
+  std::size_t cut = 0;             ///< triangles that others cross or touch, or that have a cut edge
+  std::size_t new_vertices = 0;    ///< vertices of the result that the input does not have
   std::size_t touching_edges = 0;  ///< edges along which parts of the result only touch each other
-  std::size_t pinches = 0;         ///< how often a part of the result meets itself in a vertex, and is apart there
-  std::size_t rounds = 0;          ///< how often the mesh was resolved until its rounded vertices were in order
+  std::size_t pinches = 0;         ///< times a body of the result meets itself in a vertex, and is separated there
+  std::size_t rounds = 0;          ///< rounds until the rounded vertices made no new crossings
 };
 
 template <>
@@ -57,37 +59,41 @@ struct Description<CrossingCounts> {
   };
 };
 
-/// A mesh without crossings, or why there is none.
+/// Mesh without crossings, or the reason why it was not found.
 struct ResolvedMesh {
   static constexpr std::uint32_t no_vertex = 0xffffffffU;
 
-  std::string obstacle;  ///< why the crossings are not resolved; empty where they are. The rest is then what was tried
+  std::string obstacle;  ///< reason why crossings are not resolved, else empty; if set, the rest describes the attempt
   CrossingCounts counts;
   TriangleMesh mesh;
-  std::vector<std::uint32_t> vertex_of;    ///< of each vertex, in the input; no_vertex for new ones
-  std::vector<std::uint32_t> triangle_of;  ///< of each triangle, the one of the input that it is a part of
+  std::vector<std::uint32_t> vertex_of;    ///< of each vertex: its number in the input; no_vertex for new ones
+  std::vector<std::uint32_t> triangle_of;  ///< of each triangle: the triangle of the input that it is part of
 
-  /// The body that each triangle bounds, by the number of its outer shell in topology(mesh). Where it is resolved.
+  /// For each triangle, the body that it bounds, by the number of the body's outer shell in topology(mesh). Set if the
+  /// crossings are resolved.
   std::vector<std::uint32_t> body_of;
-  bool has_inside = true;  ///< false where no point is inside: that is an obstacle, too
+  bool has_inside = true;  ///< false if no point is inside, which is an obstacle, too
 
   [[nodiscard]] bool is_resolved() const { return obstacle.empty(); }
 };
 
-/// The boundary of the points around which a closed mesh winds once or more (or as often as asked), where the mesh
-/// crosses, overlaps or touches itself, has edges with more than two triangles or has triangles without area. Vertices
-/// at one place count as one.
+/// Computes the boundary of the points around which a closed mesh winds at least once, or options.least_winding times.
+/// It resolves meshes that cross, overlap or touch themselves, have edges with more than two triangles, or have
+/// triangles without area. Vertices at one place count as one.
 ///
-/// Triangles are cut along what crosses them, and what is not on the boundary goes; triangles that nothing crosses or
-/// touches are kept or go as a whole. Which parts there are, and how they meet, is decided in exact arithmetic; new
-/// vertices are then rounded to doubles. The result is checked, exactly: it is closed and manifold, its shells face
-/// away from the solid, no two triangles of one body cross or touch beside what they share, and its shells have the
-/// genera that they had before rounding. What fails is resolved again, and in the end not resolved. Parts of the solid,
-/// of one body or of two, that meet in a vertex or along an edge alone are apart there: each has vertices of its own.
-/// Otherwise vertices at one place become one.
+/// Triangles are cut along their crossings, and the parts that are not on the boundary are removed. Triangles that
+/// nothing crosses or touches are kept or removed as a whole. Exact arithmetic decides which parts exist and how they
+/// meet. New vertices are then rounded to doubles.
 ///
-/// @throws InvalidMesh unless it passes validate(mesh), and where there are no triangles; Cancelled.
-/// Cost of a round: that of find_self_intersections() twice, topology() and Bvh, and 0.1 ms for a pair, on one core.
+/// The result is checked exactly. It must be closed and manifold, and its shells must face away from the solid. No two
+/// triangles of one body may cross or touch beyond what they share. Its shells must have the genera that they had
+/// before rounding. A result that fails is resolved again. If the last round fails, the obstacle is reported.
+///
+/// Parts of the solid that meet only in a vertex or along an edge are separated there, in one body or in two. Each part
+/// has vertices of its own. All other vertices at one place become one.
+///
+/// @throws InvalidMesh if the mesh fails validate(mesh) or has no triangles; Cancelled.
+/// Cost of a round: find_self_intersections() twice, topology(), Bvh, and 0.1 ms per pair, on one core.
 [[nodiscard]] ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& options = {},
                                              const Context& context = {});
 

@@ -1,4 +1,4 @@
-// Blum: turned and moved places. SPDX-License-Identifier: Apache-2.0
+// Blum: rotations with translations. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,15 @@
 
 namespace blum {
 
-/// Maps a point p to rotation * p + translation.
+/// Map of a point p to rotation * p + translation.
 struct RigidTransform {
   Mat3 rotation;  ///< columns of length 1, at right angles
   Vec3d translation;
 
   [[nodiscard]] constexpr Vec3d operator()(const Vec3d& p) const { return rotation * p + translation; }
 
-  /// How far its rotation is from one that keeps lengths: the largest error of lengths squared and of right angles.
+  /// Returns the deviation of the rotation from an orthonormal matrix. It is the largest error of squared column
+  /// lengths (from 1) and of dot products of columns (from 0).
   [[nodiscard]] double rotation_error() const {
     double error = 0;
     const auto& c = rotation.columns;
@@ -26,7 +27,7 @@ struct RigidTransform {
     return error;
   }
 
-  /// What takes points back.
+  /// Returns the inverse transform.
   [[nodiscard]] constexpr RigidTransform inverse() const {
     RigidTransform out;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -36,7 +37,7 @@ struct RigidTransform {
     return out;
   }
 
-  /// The transform that does `first`, then `then`.
+  /// Returns the transform that applies `first`, then `then`.
   [[nodiscard]] friend constexpr RigidTransform operator*(const RigidTransform& then, const RigidTransform& first) {
     RigidTransform out;
     for (std::size_t k = 0; k < 3; ++k) out.rotation.columns[k] = then.rotation * first.rotation.columns[k];
@@ -47,8 +48,9 @@ struct RigidTransform {
   [[nodiscard]] friend constexpr bool operator==(const RigidTransform&, const RigidTransform&) = default;
 };
 
-/// The rotation that is closest to a matrix that is one but for rounding, as of poses in single precision.
-/// @throws InvalidOption for one whose error (RigidTransform::rotation_error) is above 0.1, or that mirrors.
+/// Returns the rotation closest to a matrix that is a rotation up to rounding, for example of a pose in single
+/// precision.
+/// @throws InvalidOption if the error of the matrix (RigidTransform::rotation_error) is above 0.1, or if it mirrors.
 [[nodiscard]] Mat3 closest_rotation(const Mat3& matrix);
 
 }  // namespace blum

@@ -21,19 +21,22 @@ struct Site {
   [[nodiscard]] friend constexpr bool operator==(const Site&, const Site&) = default;
 };
 
-/// The sites of a mesh and their numbering, a function of the mesh's connectivity alone.
+/// Sites of a mesh and their numbering, which depends on the mesh's connectivity alone.
 ///
-/// With V vertices, E distinct edges and F triangles, site ids are
-///   [0, V)          the vertices, in the mesh's order (also those that nothing names: they are never reported);
-///   [V, V+E)        the distinct edges of all triangles and segments, in rising order of (smaller, larger vertex);
+/// With V vertices, E distinct edges and F triangles, site ids are:
+///
+///   [0, V)          the vertices, in the mesh's order. Those that nothing names are never reported.
+///   [V, V+E)        the distinct edges of triangles and segments, by (smaller, larger vertex) in rising order.
 ///   [V+E, V+E+F)    the triangles, in the mesh's order.
-/// An edge whose two ends are the same vertex is no edge. Edges are told apart by vertex index, not by position: weld
-/// a mesh first if its pieces should share edges.
+///
+/// Edges whose two ends are the same vertex are not counted. Edges are distinguished by vertex index, not by position.
+/// Weld a mesh first if its pieces should share edges.
 class SiteTable {
  public:
   SiteTable() = default;
-  /// Cost: O(V + F) time; 8 bytes per edge and 12 per triangle, and as much again while it is built.
-  /// @throws InvalidMesh when V + E + F exceeds max_id_count. The mesh must pass validate().
+  /// Builds the table. The mesh must pass validate().
+  /// Cost: O(V + F) time; 8 bytes per edge and 12 per triangle, and as much again during construction.
+  /// @throws InvalidMesh if V + E + F exceeds max_id_count.
   explicit SiteTable(const MeshView& mesh, const Context& context = {});
 
   [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
@@ -42,16 +45,17 @@ class SiteTable {
   [[nodiscard]] std::size_t size() const { return vertex_count_ + edges_.size() + triangles_.size(); }
 
   [[nodiscard]] SiteId id(Site site) const;
-  /// The site of an id that is below size().
+  /// Returns the site of an id. @param id  below size().
   [[nodiscard]] Site site(SiteId id) const;
-  /// The one, two or three vertices of a site, padded with -1.
+  /// Returns the one, two or three vertices of a site, padded with -1.
   [[nodiscard]] std::array<std::int32_t, 3> vertices(SiteId id) const;
 
-  /// Vertex pairs of the edges, smaller vertex first, sorted.
+  /// Returns the vertex pairs of the edges, smaller vertex first, sorted.
   [[nodiscard]] std::span<const Segment> edges() const { return edges_; }
-  /// Edge indices of each triangle: entry k is the edge between corners k and (k+1) % 3; none() for a zero-length pair.
+  /// Returns the edge indices of each triangle. Entry k is the edge between corners k and (k+1) % 3; none() if these
+  /// are one vertex.
   [[nodiscard]] std::span<const std::array<EdgeId, 3>> triangle_edges() const { return triangle_edges_; }
-  /// The smallest triangle that a site lies on; none() where it lies on none (free segments and points).
+  /// Returns the smallest triangle that contains a site; none() for free segments and points.
   [[nodiscard]] TriangleId triangle(SiteId id) const;
 
  private:

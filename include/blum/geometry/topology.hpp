@@ -1,4 +1,4 @@
-// Blum: what a mesh is as a surface and as a solid. SPDX-License-Identifier: Apache-2.0
+// Blum: topology of a mesh as a surface and as a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -17,38 +17,38 @@
 
 namespace blum {
 
-/// Whether the triangles of a mesh bound a solid, as far as edges and volumes tell: what a sign rule needs to know.
-/// Triangles that name a vertex twice are left out everywhere here; they bound nothing.
+/// Facts that decide if the triangles of a mesh bound a solid, from edges and volumes alone. Sign rules use them. Here,
+/// triangles that name a vertex twice are left out of all surfaces, because they bound nothing.
 struct Orientation {
-  bool closed = false;    ///< there is a triangle, and every edge of a triangle has exactly two triangles
+  bool closed = false;    ///< a triangle exists, and every edge of a triangle has exactly two triangles
   bool oriented = false;  ///< no edge with two triangles is traversed in the same direction by both
-  /// closed && oriented, and every shell faces away from the solid: shells inside an even number of others have
-  /// positive volume, the rest (voids) negative. A shell of no volume, up to rounding, faces nowhere.
+  /// closed && oriented, and every shell faces away from the solid. Shells inside an even number of others have
+  /// positive volume, the rest (voids) negative. A shell of volume 0 does not face outwards.
   bool outward = false;
   std::size_t boundary_edges = 0;      ///< edges with one triangle
   std::size_t nonmanifold_edges = 0;   ///< edges with more than two triangles
-  std::size_t inconsistent_edges = 0;  ///< edges with two triangles that both traverse it in the same direction
+  std::size_t inconsistent_edges = 0;  ///< edges with two triangles that both traverse them in the same direction
   std::size_t components = 0;          ///< sets of triangles connected through shared edges
   double signed_volume = 0;            ///< of the solid, in cubic mesh units; 0 unless closed && oriented
 };
 
-/// Closedness and orientation alone, without the rest of topology(). Self-intersections are not looked for.
-/// The mesh must pass validate(), and the table must be this mesh's.
-/// Cost: O(triangles); about 1 ms for 70,000. Several shells: as topology().
+/// Returns closedness and orientation alone, without the rest of topology(). It does not look for self-intersections.
+/// The mesh must pass validate(), and the table must belong to this mesh.
+/// Cost: O(triangles); about 1 ms for 70,000. With several shells: as topology().
 [[nodiscard]] Orientation orientation(const MeshView& mesh, const SiteTable& sites);
 
-/// A closed, consistently oriented component of the surface: triangles connected through shared edges, where every
-/// edge has exactly two triangles that traverse it in opposite directions.
+/// Closed, consistently oriented component of the surface. It consists of triangles connected through shared edges.
+/// Every edge has exactly two triangles, which traverse it in opposite directions.
 struct Shell {
   std::size_t triangles = 0;
   Box3 bounds;               ///< mesh units
-  double signed_volume = 0;  ///< cubic mesh units; positive where the shell faces away from what it encloses
+  double signed_volume = 0;  ///< cubic mesh units; positive if the shell faces away from its interior
   double area = 0;           ///< square mesh units
-  /// V - E + F, a vertex counting once for each of its fans: where sheets only touch in a vertex, they are apart.
+  /// V - E + F. A vertex counts once per fan of triangles: sheets that only touch in a vertex are separate.
   std::int64_t euler_characteristic = 0;
   std::int64_t genus = 0;       ///< number of handles, (2 - euler_characteristic) / 2
-  std::uint32_t depth = 0;      ///< number of other shells that this shell lies in
-  std::int64_t parent = -1;     ///< index of the innermost shell that this one lies in; -1 where there is none
+  std::uint32_t depth = 0;      ///< number of other shells that contain this shell
+  std::int64_t parent = -1;     ///< index of the innermost shell that contains this one; -1 if none does
   bool faces_outwards = false;  ///< away from the solid: positive volume at even depth, negative at odd depth
 };
 
@@ -71,8 +71,9 @@ struct Description<Shell> {
   };
 };
 
-/// Counts and facts of a mesh. Vertices are told apart by index, not position: weld a mesh first if its pieces should
-/// be connected. Self-intersections, and shells that cross each other, are not looked for: find_self_intersections().
+/// Counts and facts of a mesh. Vertices are distinguished by index, not by position. Weld a mesh first if its pieces
+/// should be connected. Self-intersections, and shells that cross each other, are not looked for;
+/// find_self_intersections() finds them.
 struct Topology {
   std::size_t vertices = 0;        ///< all vertices of the mesh
   std::size_t named_vertices = 0;  ///< those that a triangle, segment or point names
@@ -86,27 +87,27 @@ struct Topology {
   std::size_t components = 0;            ///< sets of triangles connected through shared edges
   std::size_t closed_components = 0;     ///< those where every edge has exactly two triangles
   std::size_t boundary_edges = 0;        ///< edges with one triangle
-  std::size_t boundary_loops = 0;        ///< chains of boundary edges, followed around each fan of triangles: holes
+  std::size_t boundary_loops = 0;        ///< holes: chains of boundary edges, followed around each fan of triangles
   std::size_t nonmanifold_edges = 0;     ///< edges with more than two triangles
   std::size_t nonmanifold_vertices = 0;  ///< vertices of triangles whose triangles are not a single fan
-  std::size_t inconsistent_edges = 0;    ///< edges with two triangles that both traverse it in the same direction
-  std::size_t degenerate_triangles = 0;  ///< a vertex named twice, or corners exactly on one line
-  std::size_t duplicate_triangles = 0;   ///< triangles with the same three vertices as one before them, in any order
+  std::size_t inconsistent_edges = 0;    ///< edges with two triangles that both traverse them in the same direction
+  std::size_t degenerate_triangles = 0;  ///< triangles that name a vertex twice, or with corners exactly on one line
+  std::size_t duplicate_triangles = 0;   ///< triangles with the same three vertices as an earlier one, in any order
 
-  bool closed = false;          ///< there is a triangle, and every edge of a triangle has exactly two triangles
+  bool closed = false;          ///< a triangle exists, and every edge of a triangle has exactly two triangles
   bool oriented = false;        ///< no edge with two triangles is traversed in the same direction by both
-  bool manifold = false;        ///< no non-manifold edge or vertex
+  bool manifold = false;        ///< no edge or vertex is non-manifold
   bool faces_outwards = false;  ///< closed && oriented, and every shell faces away from the solid
 
   double area = 0;  ///< of all triangles, square mesh units
-  /// Of the shells, in cubic mesh units: the volume of the solid where betti is set.
+  /// Volume of the shells, in cubic mesh units. It is the volume of the solid if betti is set.
   double signed_volume = 0;
   /// V - E + F of the triangles, with their distinct vertices and edges.
   std::int64_t euler_characteristic = 0;
 
-  /// The closed, consistently oriented components, by their smallest triangle.
+  /// Closed, consistently oriented components, by their smallest triangle.
   std::vector<Shell> shells = {};
-  /// Betti numbers of the solid that the shells bound: components, tunnels, voids. Set where the triangles are closed,
+  /// Betti numbers of the solid that the shells bound: components, tunnels, voids. Set if the triangles are closed,
   /// oriented and manifold, and every shell faces outwards.
   std::optional<std::array<std::int64_t, 3>> betti = {};
 };
@@ -154,12 +155,12 @@ struct Description<Topology> {
   };
 };
 
-/// Everything that `blum info` says of a mesh. Which shell lies in which is found by exact ray crossings.
-/// @throws InvalidMesh unless the mesh passes validate(); Cancelled.
-/// Cost: O(n log n) for n triangles, except where many shells lie above each other in each other's boxes; about 0.8 s
-/// and 100 bytes per triangle for 1.6 million triangles.
+/// Returns the facts that `blum info` prints of a mesh. Exact ray crossings decide which shell contains which.
+/// @throws InvalidMesh if the mesh fails validate(); Cancelled.
+/// Cost: O(n log n) for n triangles, unless many shells lie above each other in each other's boxes. About 0.8 s and 100
+/// bytes per triangle for 1.6 million triangles.
 [[nodiscard]] Topology topology(const MeshView& mesh, const Context& context = {});
-/// The same with the mesh's table of sites at hand.
+/// Returns the same, from the mesh's table of sites.
 [[nodiscard]] Topology topology(const MeshView& mesh, const SiteTable& sites, const Context& context = {});
 
 }  // namespace blum

@@ -1,4 +1,4 @@
-// Blum: whether two triangles cross, exactly. SPDX-License-Identifier: Apache-2.0
+// Blum: exact contact of two triangles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -10,22 +10,23 @@ namespace blum::detail {
 
 struct ContactTriangle {
   std::array<Vec3d, 3> points;
-  /// Corners of two triangles are the same corner where these are equal, which must be so where the points are.
+  /// Corners of two triangles are the same corner if these numbers are equal. They must be equal if the points are.
   std::array<std::uint32_t, 3> corners;
 };
 
-/// Whether the corners lie exactly on one line.
+/// Returns true if the corners lie exactly on one line.
 [[nodiscard]] bool has_no_area(const std::array<Vec3d, 3>& points);
 
-/// What two triangles have in common besides a shared corner or a shared edge.
+/// Common points of two triangles besides a shared corner or a shared edge.
 enum class Contact : std::uint8_t {
   none,
-  touching,  ///< points, but none that is inside both, unless they lie in one plane and overlap
-  crossing   ///< in two planes, and points inside both
+  touching,  ///< common points, none of them inside both; or an overlap in one plane
+  crossing   ///< in two planes, with points inside both
 };
 
-/// Exact for coordinates of magnitude 1e-80 to 1e100, or 0. Both triangles must have an area.
-/// Method: signs of determinants only (Guigue, Devillers 2003), with the cases of shared corners told apart first.
+/// Returns the contact of two triangles. Both must have an area. Exact for coordinates that are 0 or of magnitude 1e-80
+/// to 1e100. Method: signs of determinants only (Guigue, Devillers 2003). Shared corners are handled first, as separate
+/// cases.
 [[nodiscard]] Contact contact(const ContactTriangle& a, const ContactTriangle& b);
 
 }  // namespace blum::detail

@@ -11,24 +11,24 @@
 
 namespace blum {
 
-/// Vertex indices of a triangle, counter-clockwise seen from outside where the mesh bounds a solid.
+/// Vertex indices of a triangle, counter-clockwise seen from outside if the mesh bounds a solid.
 using Triangle = std::array<std::uint32_t, 3>;
 /// Vertex indices of a line segment.
 using Segment = std::array<std::uint32_t, 2>;
 
-/// Any set of triangles, segments and points over shared vertices, seen through spans: nothing is copied or owned.
+/// View of any set of triangles, segments and points over shared vertices, through spans. It copies and owns nothing.
 ///
-/// Nothing is assumed of it: triangles may intersect, repeat, degenerate, leave holes. Vertices that no triangle,
-/// segment or point names are not part of the shape and are ignored everywhere.
+/// Nothing is assumed about it: triangles may intersect, repeat, degenerate, or leave holes. Vertices that no triangle,
+/// segment or point names are not part of the shape, and are ignored everywhere.
 struct MeshView {
   std::span<const Vec3d> vertices = {};
   std::span<const Triangle> triangles = {};
   std::span<const Segment> segments = {};
-  /// Vertices that are part of the shape by themselves (all of them, for a point cloud).
+  /// Vertices that are part of the shape by themselves. For a point cloud these are all vertices.
   std::span<const std::uint32_t> points = {};
 };
 
-/// Owns what a MeshView shows.
+/// Mesh that owns its data; see MeshView.
 struct TriangleMesh {
   std::vector<Vec3d> vertices = {};
   std::vector<Triangle> triangles = {};
@@ -39,11 +39,11 @@ struct TriangleMesh {
   operator MeshView() const { return view(); }  // NOLINT(google-explicit-constructor): a mesh is its view
 };
 
-/// A mesh of its own with what a view shows.
+/// Returns a deep copy of a view.
 [[nodiscard]] TriangleMesh copy_of(const MeshView& mesh);
 
-/// Calls visit(vertex) for each corner of each triangle, each end of each segment and each point, in this order: a
-/// vertex as often as it is named.
+/// Calls visit(vertex) for each corner of each triangle, each end of each segment and each point, in this order. A
+/// vertex is visited as often as it is named.
 template <class Visit>
 void for_each_named_vertex(const MeshView& mesh, Visit visit) {
   for (const Triangle& triangle : mesh.triangles) {
@@ -55,20 +55,21 @@ void for_each_named_vertex(const MeshView& mesh, Visit visit) {
   for (const std::uint32_t v : mesh.points) visit(v);
 }
 
-/// Where the corners of a triangle of a mesh are.
+/// Returns the positions of the corners of a triangle of a mesh.
 [[nodiscard]] inline std::array<Vec3d, 3> triangle_corners(const MeshView& mesh, std::size_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
-/// The triangles of a mesh, each turned to face the other way.
+/// Returns the triangles of a mesh, each reversed to face the other way.
 [[nodiscard]] std::vector<Triangle> reversed_triangles(std::span<const Triangle> triangles);
 
-/// The box around all vertices that a triangle, segment or point names; empty where there are none.
+/// Returns the box around all vertices that a triangle, segment or point names. It is empty without such vertices.
 [[nodiscard]] Box3 bounds(const MeshView& mesh);
 
-/// Checks what every algorithm needs: at least one triangle, segment or point; indices in range; counts that fit ids;
-/// finite coordinates (of named vertices), of magnitude at most 1e150 so that squares stay finite.
+/// Checks the conditions that every algorithm needs. At least one triangle, segment or point exists. Indices are in
+/// range, and counts fit ids. Coordinates of named vertices are finite, and of magnitude at most 1e150 so that squares
+/// stay finite.
 /// @throws InvalidMesh naming the first offender.
 void validate(const MeshView& mesh);
 

@@ -10,26 +10,26 @@
 
 namespace blum {
 
-/// Merges vertices: those with equal coordinates (-0.0 equals 0.0), or with tolerance > 0 also all that a chain of
-/// steps no longer than `tolerance` (mesh units) joins, so a whole chain becomes one vertex however long it is.
+/// Merges vertices with equal coordinates (-0.0 equals 0.0). With tolerance > 0, it also merges all vertices joined by
+/// a chain of steps of at most `tolerance` (mesh units). A whole chain becomes one vertex, however long it is.
 ///
 /// - A merged vertex takes the position of its member with the smallest index. The result's vertices come in the order
-///   of these members, so the result depends on the input alone. Vertices that nothing names are merged and kept too.
-/// - Triangles, segments and points keep their order. What welding (or the input) has collapsed is replaced such that
-///   the shape as a set of points stays whole: a triangle with two equal corners (a, a, b) is left out, and becomes the
-///   segment (a, b) at the end of `segments` if no other triangle or segment has that edge; a triangle or segment whose
-///   corners are all one vertex is left out, and becomes an entry of `points` if nothing else names that vertex.
-///   Vertices named more than once in `points` are named once. Repeated triangles are all kept.
+///   of these members, so the result depends on the input alone. Vertices that nothing names are merged and kept, too.
+/// - Triangles, segments and points keep their order. The shape stays whole as a set of points, although some triangles
+///   collapse by welding, or did in the input. A triangle with two equal corners (a, a, b) is removed. The segment (a,
+///   b) is appended to `segments` if no other triangle or segment has that edge. A triangle or segment whose corners
+///   are all one vertex is removed. The vertex is appended to `points` if nothing else names it. Vertices named
+///   repeatedly in `points` are named once. Repeated triangles are all kept.
 /// - Vertices with a coordinate that is not finite are merged only with exactly equal ones.
 ///
-/// Cost: O(V + F) expected time for tolerance 0; O(V log V + F) otherwise, also where many vertices coincide or crowd
-/// together, and for any size of coordinates. A tolerance below 1e-300 counts as 0.
-/// @throws InvalidOption when tolerance is negative or not finite.
-/// @throws InvalidMesh when an index is out of range or there are more than max_id_count vertices.
+/// Cost: O(V + F) expected time for tolerance 0, otherwise O(V log V + F). This holds for coordinates of any size, and
+/// if many vertices coincide or crowd together. A tolerance below 1e-300 counts as 0.
+/// @throws InvalidOption if tolerance is negative or not finite.
+/// @throws InvalidMesh if an index is out of range or there are more than max_id_count vertices.
 [[nodiscard]] TriangleMesh weld(const MeshView& mesh, double tolerance = 0);
 
-/// Which vertex each vertex becomes, under the rules of weld(): entry i is the smallest index of the cluster of vertex
-/// i.
+/// Returns the vertex that each vertex becomes by the rules of weld(): entry i is the smallest index of the cluster of
+/// vertex i.
 /// @throws as weld().
 [[nodiscard]] std::vector<std::uint32_t> weld_clusters(std::span<const Vec3d> vertices, double tolerance = 0);
 

@@ -10,8 +10,8 @@
 
 namespace blum {
 
-/// A vertex, edge, square or cube of the lattice: 8 * node + axes. It spans one step from its node along each axis
-/// whose bit is set in `axes` (x 1, y 2, z 4).
+/// Vertex, edge, square or cube of the lattice: 8 * node + axes. It spans one step from its node along each axis whose
+/// bit is set in `axes` (x 1, y 2, z 4).
 using Cell = std::uint32_t;
 using CellAxes = unsigned;
 
@@ -28,22 +28,22 @@ constexpr int dimension_of(Cell cell) {
   return std::popcount(axes_of(cell));
 }
 
-/// The axis of a bit.
+/// Returns the axis of a bit.
 constexpr std::size_t axis_of(CellAxes bit) {
   return static_cast<std::size_t>(std::countr_zero(bit));
 }
-/// The axis across which a square lies.
+/// Returns the axis at right angles to a square.
 constexpr std::size_t normal_axis(Cell square) {
   return axis_of(7U ^ axes_of(square));
 }
 
-/// The lattice of the cubes of a box: node (i, j, k) is the corner that cube (i, j, k) has in common with
-/// (i - 1, j - 1, k - 1), and cell (node, all axes) is cube (i, j, k). Of an image, its cubes are the voxels.
+/// Lattice of the cubes of a box. Node (i, j, k) is the corner that the cubes (i, j, k) and (i - 1, j - 1, k - 1)
+/// share. Cell (node, all axes) is cube (i, j, k). For an image, the cubes are the voxels.
 class CellLattice {
  public:
   CellLattice() = default;
   /// @param cubes  along x, y, z, each >= 0.
-  /// @throws InvalidGrid for more cells than 32 bits count (boxes above 811^3 cubes).
+  /// @throws InvalidGrid if the cells need more than 32 bits (boxes above 811^3 cubes).
   explicit CellLattice(const std::array<std::int64_t, 3>& cubes);
 
   [[nodiscard]] std::size_t node_count() const { return count_; }
@@ -54,17 +54,17 @@ class CellLattice {
     const auto n = static_cast<std::int64_t>(node);
     return {n % size_[0], n / size_[0] % size_[1], n / (size_[0] * size_[1])};
   }
-  /// From a node to the next along an axis.
+  /// Returns the difference of the indices of neighbouring nodes along an axis.
   [[nodiscard]] std::size_t stride(std::size_t axis) const { return stride_[axis]; }
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
 
-  /// The cubes below and above a square, neither of which may lie beyond the lattice.
+  /// Returns the cubes below and above a square. Neither may lie beyond the lattice.
   [[nodiscard]] std::array<Cell, 2> cubes_beside(Cell square) const {
     const Cell above = square | 7U;
     return {static_cast<Cell>(above - 8 * stride_[normal_axis(square)]), above};
   }
 
-  /// Calls visit(face) for the cells of one dimension less in a cell's border.
+  /// Calls visit(face) for the cells in a cell's border that have one dimension less.
   template <class Visit>
   void for_each_face(Cell cell, const Visit& visit) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -74,7 +74,7 @@ class CellLattice {
       visit(static_cast<Cell>((cell ^ bit) + 8 * stride_[axis]));
     }
   }
-  /// Calls visit(coface) for the cells of one dimension more around a cell; none may lie beyond the lattice.
+  /// Calls visit(coface) for the cells around a cell that have one dimension more. None may lie beyond the lattice.
   template <class Visit>
   void for_each_coface(Cell cell, const Visit& visit) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -84,7 +84,7 @@ class CellLattice {
       visit(static_cast<Cell>((cell | bit) - 8 * stride_[axis]));
     }
   }
-  /// Calls visit(place) for the cubes that have a cell, the cube itself where it is one; also beyond the lattice.
+  /// Calls visit(place) for the cubes that contain a cell, also those beyond the lattice. A cube contains itself.
   template <class Visit>
   void for_each_cube_around(Cell cell, const Visit& visit) const {
     const std::array<std::int64_t, 3> at = place(node_of(cell));
@@ -95,7 +95,7 @@ class CellLattice {
   }
 
  private:
-  std::array<std::int64_t, 3> size_{0, 0, 0};  ///< nodes
+  std::array<std::int64_t, 3> size_{0, 0, 0};  ///< in nodes
   std::array<std::size_t, 3> stride_{0, 0, 0};
   std::size_t count_ = 0;
 };

@@ -1,4 +1,4 @@
-// Blum: where the nodes of a grid lie. SPDX-License-Identifier: Apache-2.0
+// Blum: positions of the nodes of a grid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace blum {
 
-/// A regular grid of nodes. Node (i, j, k) lies at origin + direction * (i * spacing.x, j * spacing.y, k * spacing.z).
-/// Values are stored with i (x) fastest; the same memory is a C-ordered array indexed [z, y, x].
+/// Regular grid of nodes. Node (i, j, k) lies at origin + direction * (i * spacing.x, j * spacing.y, k * spacing.z).
+/// Values are stored with i (x) fastest. The same memory is a C-ordered array indexed [z, y, x].
 /// A grid with one layer along an axis is a 2D field.
 struct GridSpec {
   Vec3d origin{};                             ///< position of node (0, 0, 0), in mesh units
@@ -47,28 +47,31 @@ struct Description<GridSpec> {
   };
 };
 
-/// @throws InvalidGrid unless sizes are >= 1, there are at most 2^40 nodes, spacing is positive and finite, the origin
-/// finite and the direction orthonormal (within 1e-6).
+/// @throws InvalidGrid if a size is below 1, the nodes are more than 2^40, or a spacing is not positive and finite.
+/// Also if the origin is not finite, or the direction is not orthonormal within 1e-6.
 void validate(const GridSpec& grid);
 
-/// The box around the grid's nodes, axis-aligned in world space.
+/// Returns the box around the grid's nodes, axis-aligned in world space.
 [[nodiscard]] Box3 bounds(const GridSpec& grid);
 
-/// The default grid around a shape: each side of its bounds padded by padding * L, L the longest side; `resolution`
-/// nodes along the longest padded side, spacing h = (1 + 2 padding) L / (resolution - 1) on all axes; the other axes
-/// get the smallest number of nodes that covers their padded side, centred.
-/// @param resolution  2 to 65536.   @param padding  >= 0, as a fraction of L.
-/// @throws InvalidGrid when the bounds are empty or a single point; InvalidOption when a parameter is out of range.
+/// Returns the default grid around a shape. Let L be the longest side of the shape's bounds. Each side of the bounds is
+/// padded by padding * L at both ends. The longest padded side gets `resolution` nodes. All axes get the spacing
+/// (1 + 2 padding) L / (resolution - 1). The other axes get the smallest number of nodes that covers their padded side,
+/// centred.
+/// @param resolution  2 to 65536.
+/// @param padding     0 to 1e6, as a fraction of L.
+/// @throws InvalidGrid if the bounds are empty, not finite or a single point, or the grid has over 2^40 nodes.
+/// @throws InvalidOption if a parameter is out of range.
 [[nodiscard]] GridSpec grid_around(const Box3& shape_bounds, int resolution = 256, double padding = 0.1);
 
-/// The same with the spacing (> 0, in mesh units) given instead of the number of nodes.
+/// Returns the same grid for a given spacing instead of a number of nodes. @param spacing  > 0, in mesh units.
 [[nodiscard]] GridSpec grid_around_with_spacing(const Box3& shape_bounds, double spacing, double padding = 0.1);
 
-/// A grid over exactly this box, without padding: `resolution` nodes along its longest side, the others centred as
-/// above. A side of length zero gives one layer. @throws InvalidGrid, InvalidOption.
+/// Returns a grid over exactly this box, without padding. Its longest side has `resolution` nodes; the other sides are
+/// centred as above. A side of length zero gets one layer. @throws InvalidGrid, InvalidOption.
 [[nodiscard]] GridSpec grid_in(const Box3& box, int resolution = 256);
-/// The same with the spacing given. A side that is no whole number of steps grows to the next one, centred: the grid
-/// reaches beyond the box by less than half a step at each end.
+/// Returns the same grid for a given spacing. A side that is not a whole number of steps long grows to the next whole
+/// number, centred. So the grid extends beyond the box by less than half a step at each end.
 [[nodiscard]] GridSpec grid_in_with_spacing(const Box3& box, double spacing);
 
 }  // namespace blum

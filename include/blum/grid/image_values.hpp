@@ -1,4 +1,4 @@
-// Blum: which values an image holds. SPDX-License-Identifier: Apache-2.0
+// Blum: values of an image. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@
 
 namespace blum {
 
-/// The voxels of one value.
+/// Voxels of one value.
 struct LabelFacts {
   std::int64_t label = 0;
   std::uint64_t voxels = 0;
-  double volume = 0;                       ///< of the voxels, in cubic units of the spacing
-  std::optional<BettiNumbers> betti = {};  ///< of the union of the closed voxels; unset for 0, which is background
+  double volume = 0;                       ///< of all of them, in cubic units of the spacing
+  std::optional<BettiNumbers> betti = {};  ///< of the union of the closed voxels; unset for 0, the background
 };
 
 template <>
@@ -39,14 +39,15 @@ struct Description<LabelFacts> {
   };
 };
 
-/// Which values an image holds.
+/// Values of an image.
 struct ImageValues {
-  std::optional<std::array<double, 2>> range = {};  ///< smallest and largest; unset where there are no numbers
-  std::uint64_t nonzero = 0;                        ///< voxels that are not 0, nor NaN
+  std::optional<std::array<double, 2>> range = {};  ///< smallest and largest; unset if all voxels are NaN
+  std::uint64_t nonzero = 0;                        ///< voxels that are neither 0 nor NaN
   std::uint64_t not_numbers = 0;                    ///< voxels that are NaN
-  /// Distinct values; unset where one cannot be a label (it is no whole number), or there are over 100,000.
+  /// Number of distinct values. Unset if there are over 100,000, or if one cannot be a label. Labels are whole numbers
+  /// that fit int64, and at most 2^53 in images of floats.
   std::optional<std::uint64_t> distinct = {};
-  std::vector<LabelFacts> labels = {};  ///< those of most voxels, the most first; none where `distinct` is unset
+  std::vector<LabelFacts> labels = {};  ///< the values of most voxels, the most first; empty if `distinct` is unset
 };
 
 template <>
@@ -62,13 +63,16 @@ struct Description<ImageValues> {
   };
 };
 
-/// @param image  must pass validate(image).  @param most_labels  those beyond are counted only.
-/// @throws Cancelled. Cost: one pass over the values, and for each label what selected_voxels() and betti_numbers()
-/// take; about 10 ms for each of 256^3 voxels.
+/// Returns the values of an image.
+/// @param image        must pass validate(image).
+/// @param most_labels  length of `labels`; further labels are only counted in `distinct`.
+/// @throws Cancelled.
+/// Cost: one pass over the values, and selected_voxels() and betti_numbers() per listed label. That is about 10 ms per
+/// label for 256^3 voxels.
 [[nodiscard]] ImageValues image_values(const VoxelImageView& image, std::size_t most_labels = 20,
                                        const Context& context = {});
 
-/// Says that no voxel is selected, and what there is instead.
+/// Returns a message that no voxel is selected. It names the values that the image has instead.
 [[nodiscard]] std::string nothing_selected_text(const VoxelImageView& image, const LabelSelection& selection);
 
 }  // namespace blum

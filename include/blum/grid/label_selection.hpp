@@ -1,4 +1,4 @@
-// Blum: which voxels of an image are meant. SPDX-License-Identifier: Apache-2.0
+// Blum: selection of voxels of an image. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace blum {
 
-/// Which voxels of an image are selected. Voxels that are not a number never are.
+/// Rule that selects voxels of an image. It never selects voxels that are NaN.
 struct LabelSelection {
   enum class Rule : std::uint8_t {
     nonzero,   ///< value != 0
@@ -22,14 +22,14 @@ struct LabelSelection {
 
   [[nodiscard]] static constexpr LabelSelection of_label(std::int64_t value) { return {Rule::label, value, 0}; }
   [[nodiscard]] static constexpr LabelSelection at_least(double value) { return {Rule::threshold, 0, value}; }
-  /// What options say that may both be missing. @throws InvalidOption where both are given.
+  /// Returns the selection of two options that may both be unset. @throws InvalidOption if both are given.
   [[nodiscard]] static LabelSelection of(const std::optional<std::int64_t>& label,
                                          const std::optional<double>& threshold) {
     exclude_both(label.has_value(), threshold.has_value());
     if (label) return of_label(*label);
     return threshold ? at_least(*threshold) : LabelSelection{};
   }
-  /// @param prefix  of the options' names in messages. @throws InvalidOption where both are given.
+  /// @param prefix  of the options' names in messages. @throws InvalidOption if both are given.
   static void exclude_both(bool has_label, bool has_threshold, const std::string& prefix = {}) {
     exclude(has_label, prefix + "label", has_threshold, prefix + "threshold", "each selects the voxels");
   }

@@ -1,4 +1,4 @@
-// Blum: sets of cells that are numbered. SPDX-License-Identifier: Apache-2.0
+// Blum: numbered sets of cells. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <bit>
@@ -11,14 +11,14 @@
 
 namespace blum {
 
-/// A set of cells of a lattice; its members are numbered by rising cell. Two bytes for each node.
+/// Set of cells of a lattice. Its members are numbered in rising order. Memory: two bytes per node.
 class RankedCells {
  public:
   RankedCells() = default;
   explicit RankedCells(const CellLattice& lattice) : words_(lattice.node_count() / 8 + 1) {}
 
   void insert(Cell cell) { words_[cell >> 6U].bits |= bit(cell); }
-  /// Numbers the cells; nothing may be inserted afterwards.
+  /// Numbers the cells. No cell may be inserted afterwards.
   void finish() {
     std::uint32_t count = 0;
     for (Word& word : words_) {
@@ -30,12 +30,12 @@ class RankedCells {
 
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] bool contains(Cell cell) const { return (words_[cell >> 6U].bits & bit(cell)) != 0; }
-  /// The number of a cell that is in the set.
+  /// Returns the number of a cell, which must be in the set.
   [[nodiscard]] std::uint32_t number(Cell cell) const {
     const Word& word = words_[cell >> 6U];
     return word.before + static_cast<std::uint32_t>(std::popcount(word.bits & (bit(cell) - 1)));
   }
-  /// All cells, rising: their numbers are their places.
+  /// Returns all cells in rising order. A cell's number is its index in this list.
   [[nodiscard]] std::vector<Cell> cells() const {
     std::vector<Cell> out;
     out.reserve(count_);

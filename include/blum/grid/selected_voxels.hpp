@@ -1,4 +1,4 @@
-// Blum: which voxels of an image are selected, as bits. SPDX-License-Identifier: Apache-2.0
+// Blum: selected voxels of an image, as bits. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -13,23 +13,23 @@
 
 namespace blum {
 
-/// The selected voxels of an image, which may be none.
+/// Returns the selected voxels of an image. The set may be empty.
 /// @param image  must pass validate(image).
-/// @throws InvalidImage, InvalidOption, Cancelled. Cost: the speed of memory; 1/8 byte per voxel, twice.
+/// @throws InvalidImage, InvalidOption, Cancelled. Cost: memory bandwidth; 1/8 byte per voxel, twice.
 [[nodiscard]] VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& selection,
                                        const Context& context = {});
 
 namespace detail {
 
-/// Rows of bits: bit x of row r is set when the voxel is selected. A row starts on a new 64-bit word; the bits beyond
-/// its last voxel are clear. A row is also read as little groups of 16 bits, in rising x.
+/// Rows of bits. Bit x of row r is set if the voxel is selected. A row starts on a new 64-bit word, and the bits beyond
+/// its last voxel are clear. A row may also be read as groups of 16 bits, in rising x.
 struct MaskBits {
   std::size_t words_per_row = 0;
   Buffer<std::uint64_t> words;
 };
 
-/// Fills the bits of an image cut into rows of `row_length` voxels, and counts the selected voxels.
-/// The buffer is reused where it has the right size. @throws InvalidOption when the threshold is NaN; Cancelled.
+/// Fills the bits of an image cut into rows of `row_length` voxels. Returns the number of selected voxels. Reuses the
+/// buffer if it has the right size. @throws InvalidOption if the threshold is NaN; Cancelled.
 std::size_t select_voxels(const VoxelImageView& image, const LabelSelection& selection, std::size_t row_length,
                           const Context& context, MaskBits& mask);
 

@@ -11,7 +11,7 @@
 
 namespace blum {
 
-/// A 3D image seen through a span: nothing is copied or owned. See VoxelImage.
+/// View of a 3D image through a span. It copies and owns no values. See VoxelImage.
 struct VoxelImageView {
   /// In the order of VoxelImage::Values.
   using Values =
@@ -24,9 +24,8 @@ struct VoxelImageView {
   std::string space = {};
 };
 
-/// A 3D image: one value per voxel, x fastest, and where its voxel centres lie in the world.
-/// The grid's nodes are the voxel centres. World axes are those of the file that it came from (NRRD and ITK: LPS;
-/// NIfTI: RAS), which is not converted.
+/// 3D image: one value per voxel, x fastest, and the positions of the voxel centres in the world. The grid's nodes are
+/// the voxel centres. World axes are those of the source file (NRRD and ITK: LPS; NIfTI: RAS), and are not converted.
 struct VoxelImage {
   using Values =
       std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
@@ -34,8 +33,8 @@ struct VoxelImage {
                    std::vector<std::uint64_t>, std::vector<std::int64_t>, std::vector<float>, std::vector<double>>;
   GridSpec grid;
   Values values;  ///< grid.node_count() values
-  /// What the world axes are, as NRRD names it ("left-posterior-superior", "right-anterior-superior", "scanner-xyz",
-  /// ...); empty where the file does not say.
+  /// Meaning of the world axes, as NRRD names it ("left-posterior-superior", "right-anterior-superior", "scanner-xyz",
+  /// ...). Empty if the file does not state it.
   std::string space = {};
 
   [[nodiscard]] VoxelImageView view() const {
@@ -44,7 +43,7 @@ struct VoxelImage {
   operator VoxelImageView() const { return view(); }  // NOLINT(google-explicit-constructor): an image is its view
 };
 
-/// @throws InvalidImage unless the grid is valid, holds at most max_id_count voxels and values has one entry per voxel.
+/// @throws InvalidImage unless the grid is valid, has at most max_id_count voxels, and values has one entry per voxel.
 void validate(const VoxelImageView& image);
 
 }  // namespace blum

@@ -1,4 +1,4 @@
-// Blum: which values of an image are selected. SPDX-License-Identifier: Apache-2.0
+// Blum: tests of single values of an image. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,8 @@
 
 namespace blum::detail {
 
-// Tests that are a single comparison, so that they vectorise; kernels of devices call them too, as they are constexpr.
+// Each test is a single comparison, so that loops over it vectorise. They are constexpr, because kernels of devices
+// call them, too.
 struct NoVoxel {
   template <class T>
   constexpr bool operator()(T) const {
@@ -49,11 +50,11 @@ struct AtLeast {
 template <class T>
 using VoxelTest = std::variant<NoVoxel, EveryVoxel, Nonzero<T>, Equal<T>, AtLeast<T>>;
 
-/// A label in the image's own value type.
+/// Returns the test for a label in the image's own value type.
 template <class T>
 VoxelTest<T> label_test(std::int64_t label) {
   if constexpr (std::is_floating_point_v<T>) {
-    // A label that the type cannot hold exactly is equal to none of its values. (2^63 itself is out of int64's range.)
+    // A label that the type cannot hold exactly equals none of its values. (2^63 itself is out of int64's range.)
     const T nearest = static_cast<T>(label);
     if (nearest >= T(9223372036854775808.0) || static_cast<std::int64_t>(nearest) != label) return NoVoxel{};
     return Equal<T>{nearest};
@@ -75,14 +76,14 @@ VoxelTest<T> threshold_test(double threshold) {
     return AtLeast<T>{lowest};
   } else {
     const double lowest = std::ceil(threshold);
-    // As doubles the limits may round up to the next power of two, which no value of the type reaches.
+    // As doubles, the limits may round up to the next power of two, which no value of the type reaches.
     if (lowest <= static_cast<double>(std::numeric_limits<T>::min())) return EveryVoxel{};
     if (lowest >= std::ldexp(1.0, std::numeric_limits<T>::digits)) return NoVoxel{};
     return AtLeast<T>{static_cast<T>(lowest)};
   }
 }
 
-/// A selection in terms of the image's own value type. @throws InvalidOption when the threshold is NaN.
+/// Returns the test for a selection, in the image's own value type. @throws InvalidOption if the threshold is NaN.
 template <class T>
 VoxelTest<T> make_voxel_test(const LabelSelection& selection) {
   switch (selection.rule) {

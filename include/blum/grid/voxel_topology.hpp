@@ -12,20 +12,20 @@
 
 namespace blum {
 
-/// Betti numbers of the union of the closed voxels of a set: components (26-connected), tunnels, and voids (6-connected
-/// components of the rest of space, the outer one left out).
+/// Returns the Betti numbers of the union of the closed voxels of a set: components, tunnels and voids. Components are
+/// 26-connected. Voids are the 6-connected components of the rest of space, without the outer one.
 /// Cost: O(words + runs of voxels along x); about 5 ms for 256^3.
 /// @throws Cancelled.
 [[nodiscard]] std::array<std::int64_t, 3> betti_numbers(const VoxelSet& voxels, const Context& context = {});
 
-/// Adds the voids: the 6-connected components of the rest of space other than the outer one, which holds what lies
-/// beyond the box. @return how many there were. @throws Cancelled.
+/// Adds the voxels of the voids to the set. Voids are the 6-connected components of the rest of space, without the
+/// outer one. The outer one contains all that lies beyond the box. @return  the number of voids. @throws Cancelled.
 std::int64_t fill_voids(VoxelSet& voxels, const Context& context = {});
 
-/// Vertices - edges + squares - cubes of the union of the closed voxels, each cell once.
+/// Returns vertices - edges + squares - cubes of the union of the closed voxels. Each cell counts once.
 [[nodiscard]] std::int64_t euler_characteristic(const VoxelSet& voxels, const Context& context = {});
 
-/// Both.
+/// Betti numbers and Euler characteristic of a set of voxels.
 struct VoxelTopology {
   std::array<std::int64_t, 3> betti{};  ///< components (26-connected), tunnels, voids
   std::int64_t euler_characteristic = 0;
@@ -41,14 +41,14 @@ struct Description<VoxelTopology> {
 };
 [[nodiscard]] VoxelTopology voxel_topology(const VoxelSet& voxels, const Context& context = {});
 
-/// The 27 voxels around one, as bits: voxel (i + x, j + y, k + z) is bit 13 + x + 3 y + 9 z, for x, y, z in -1, 0, 1.
+/// 27 voxels around a voxel, as bits. Voxel (i + x, j + y, k + z) is bit 13 + x + 3 y + 9 z, for x, y, z in -1, 0, 1.
 using Neighbourhood = std::uint32_t;
 
 [[nodiscard]] Neighbourhood neighbourhood(const VoxelSet& voxels, std::int64_t i, std::int64_t j, std::int64_t k);
 
-/// Whether adding or removing the voxel in the middle leaves the topology as it is (Bertrand, Malandain 1994: one
-/// 26-component of other voxels around it, and one 6-component of the voxels that are not, through at most two steps).
-/// The bit of the voxel itself is not looked at.
+/// Returns true if adding or removing the middle voxel preserves the topology (Bertrand, Malandain 1994). That holds if
+/// the other voxels of the set around it form one 26-component. The voxels outside the set must form one 6-component
+/// around it, connected through at most two steps. The bit of the middle voxel is ignored.
 [[nodiscard]] bool is_simple(Neighbourhood around);
 
 }  // namespace blum

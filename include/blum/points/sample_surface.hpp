@@ -1,4 +1,4 @@
-// Blum: random points of surfaces, and near them. SPDX-License-Identifier: Apache-2.0
+// Blum: random points on surfaces and near them. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,10 @@
 namespace blum {
 
 struct SampleOptions {
-  /// Another number gives other points.
+  /// Seed of the random numbers. Different seeds give different points.
   std::uint64_t seed = 0;
-  /// Points keep their distance from each other (blue noise): the most even of five times as many, by sample
-  /// elimination (Yuksel 2015). Takes 3 us for each instead of 0.1.
+  /// Makes points keep their distance from each other (blue noise). It keeps the most evenly spaced of five times as
+  /// many points, by sample elimination (Yuksel 2015). Takes 3 us per point instead of 0.1.
   bool blue_noise = false;
 };
 
@@ -36,31 +36,33 @@ struct Description<SampleOptions> {
   };
 };
 
-/// Points of a surface; entry k of each list belongs to point k.
+/// Points of a surface. Entry k of each list belongs to point k.
 struct SurfaceSamples {
   std::vector<Vec3d> points;          ///< mesh units
-  std::vector<Vec3d> normals;         ///< of length 1: of the triangle, counter-clockwise as its corners are given
-  std::vector<TriangleId> triangles;  ///< that the points lie on
+  std::vector<Vec3d> normals;         ///< unit normal of the triangle, from the order of its corners, counter-clockwise
+  std::vector<TriangleId> triangles;  ///< triangles that contain the points
 };
 
-/// Random points of a surface, uniform by area and independent of each other (unless blue noise is asked for).
+/// Returns random points of a surface, uniform by area. They are independent of each other, unless blue noise is asked
+/// for.
 ///
-/// @param mesh   with a triangle that has an area; segments and points of the mesh are left out.
-/// @param count  of points.
-/// @return       as many, in random order. The same for the same mesh and seed on any number of threads.
-/// @throws InvalidMesh where no triangle has an area, OutOfMemory, Cancelled. Cost: O(triangles + count log triangles).
+/// @param mesh   must have a triangle with an area. Its segments and points are ignored.
+/// @param count  number of points, at most 2^31; with blue noise at most a fifth of that.
+/// @return       `count` points in random order. They are the same for the same mesh and seed, for any number of
+/// threads.
+/// @throws InvalidMesh if no triangle has an area, OutOfMemory, Cancelled. Cost: O(triangles + count log triangles).
 [[nodiscard]] SurfaceSamples sample_surface(const MeshView& mesh, std::size_t count, const SampleOptions& options = {},
                                             const Context& context = {});
 
 struct NearSampleOptions {
   /// Standard deviation of the offset from the surface along each axis, mesh units, > 0. Unset: a hundredth of the
-  /// diagonal of the mesh's box.
+  /// diagonal of the mesh's bounds.
   std::optional<double> sigma = {};
-  /// The part of the points that are not near the surface, but uniform in the mesh's box, which is made a tenth larger:
-  /// 0 to 1.
+  /// Fraction of the points that are uniform in a box instead of near the surface, 0 to 1. The box is the mesh's
+  /// bounds, made a tenth larger.
   double in_box = 0;
   std::uint64_t seed = 0;
-  /// How signs are found, as for closest_points().
+  /// Method that finds the signs, as for closest_points().
   SignMode sign = SignMode::automatic;
 };
 
@@ -80,16 +82,17 @@ struct Description<NearSampleOptions> {
   };
 };
 
-/// Points near a surface, and what is closest to them: what learning signed distances needs.
+/// Points near a surface, and the closest points of the surface to them. This is the input for learning signed
+/// distances.
 struct NearSamples {
   std::vector<Vec3d> points;          ///< mesh units
-  std::vector<ClosestPoint> closest;  ///< of each, with the signed distance
+  std::vector<ClosestPoint> closest;  ///< of each point, with the signed distance
 };
 
-/// Points of a surface, moved by normally distributed offsets, with their exact signed distances.
+/// Returns points of a surface, moved by normally distributed offsets, with their exact signed distances.
 ///
-/// @param count   of points: first those near the surface, then those in the box.
-/// @throws as sample_surface() and closest_points(), InvalidOption. The same on any number of threads.
+/// @param count  number of points. Those near the surface come first, then those in the box.
+/// @throws as sample_surface() and closest_points(); InvalidOption. The result is the same for any number of threads.
 /// Cost: that of both.
 [[nodiscard]] NearSamples sample_near(const MeshView& mesh, std::size_t count, const NearSampleOptions& options = {},
                                       const Context& context = {});
