@@ -1,6 +1,6 @@
 // Blum: the rows of the table of formats, with their readers and writers. SPDX-License-Identifier: Apache-2.0
 //
-// A new format is a file of its own that defines the functions named here, a row, and a test: nothing else names
+// A new format is a file of its own that defines the functions listed here, a row, and a test. No other code names
 // formats.
 #pragma once
 
@@ -43,60 +43,60 @@ namespace blum::formats {
 namespace fs = std::filesystem;
 using volume_io::ByteSource;
 
-/// What every content's code may say of a file's bytes.
+/// Tests that identify the content of a file by its bytes.
 struct Tells {
-  /// Whether the first bytes of a file are those of this format; null where they do not tell.
+  /// Returns true if the first bytes of a file are those of this format; null if they do not identify it.
   bool (*begins)(std::string_view head) = nullptr;
-  /// Whether a file of this format's extension, with these first bytes, holds this content; null: always.
+  /// Returns true if a file with this format's extension and these first bytes holds this content; null: always.
   bool (*holds_this)(std::string_view head, const fs::path& path) = nullptr;
 };
 
 struct MeshCode {
-  /// All indices of the mesh are in range. @throws FormatError. Null: not read.
+  /// Reads a mesh whose indices are all in range. @throws FormatError. Null if the format is not read.
   MeshFile (*read)(std::string_view bytes, std::string_view name);
-  /// Gets valid meshes of finite vertices.
+  /// Writes a valid mesh of finite vertices.
   void (*write)(const fs::path& path, const MeshView& mesh);
   Tells tells = {};
 };
 
 struct ImageCode {
-  /// @param path  where the source came from, empty for memory.
+  /// @param path  path of the source; empty for memory.
   VoxelImage (*read)(const ByteSource& source, const fs::path& path);
-  void (*write)(const fs::path& path, const VoxelImageView& image) = nullptr;  ///< null: not written
+  void (*write)(const fs::path& path, const VoxelImageView& image) = nullptr;  ///< null if not written
   Tells tells = {};
-  /// Reads an image that is spread over several files; nullopt where this path is not of that kind. May be null.
+  /// Reads an image that is spread over several files. Returns nullopt if the path is of another kind. May be null.
   std::optional<VoxelImage> (*read_several)(const fs::path& path) = nullptr;
 };
 
 struct FieldCode {
-  /// @param path  where the source came from, to find the sites; empty: they are not looked for.
+  /// @param path  path of the source, to find the files of the other arrays; if empty, they are not read.
   Field (*read)(const ByteSource& source, const fs::path& path);
   void (*write)(const fs::path& path, const Field& field, const FieldFileInfo& info, const Context& context);
   Tells tells = {};
 };
 
-/// Readers check whatever they need to be safe; problem_of() is asked afterwards. Writers get complexes without
-/// problems, and names and metadata that files can hold; they refuse what they would lose unless the options allow it.
+/// Readers check only what they need to be safe; callers check problem_of() afterwards. Writers need complexes without
+/// problems, and names and metadata that files can hold. They refuse to lose content unless the options allow it.
 struct ComplexCode {
-  /// Reads part by part, from where the parts are; null where read_text reads all. Both null: not read.
+  /// Reads part by part from a source; null if read_text reads everything. Both are null if the format is not read.
   ComplexFile (*read)(const ByteSource& source);
   ComplexFile (*read_text)(std::string_view bytes, std::string_view name);
   void (*write)(const fs::path& path, const Complex& complex, const FileMetadata& metadata,
                 const ComplexWriteOptions& options, const Context& context);
   Tells tells = {};
-  bool holds_further = false;  ///< whether a file holds several complexes
-  bool holds_columns = true;   ///< any of them
-  bool holds_radii = true;     ///< of medial axes
+  bool holds_further = false;  ///< true if a file can hold several complexes
+  bool holds_columns = true;   ///< true if files hold any columns
+  bool holds_radii = true;     ///< true if files hold the radii of medial axes
 };
 
 struct PointCode {
   std::vector<Vec3d> (*read)(const fs::path& path);  ///< numbers need not be finite
-  /// Gets vertices alone, and metadata that tell the content. Null: not written.
+  /// Writes vertices only, and metadata that name the content. Null if the format is not written.
   void (*write)(const fs::path& path, const Complex& points, const FileMetadata& metadata, const Context& context);
-  bool is_cloud = false;  ///< whether its files hold points, and no mesh
+  bool is_cloud = false;  ///< true if files hold points and not a mesh
 };
 
-/// Pairs, collisions: rows of columns.
+/// Rows of columns: pairs and collisions.
 struct RowCode {
   void (*write)(const fs::path& path, const tables::RowFile& file, const Context& context);
 };
@@ -105,7 +105,7 @@ struct SurfaceMapCode {
   void (*write)(const surface_map_files::Request& request);
 };
 
-/// The whole content of files.
+/// Both functions return the whole content of a file.
 struct GraphCode {
   std::string (*text_of_axis)(const AxisGraph& graph, const MedialMetadata& metadata);
   std::string (*text_of_diagram)(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
@@ -131,7 +131,7 @@ extern const GraphCode graph_json, graph_graphml;
 extern const CentrelineCode centreline_json, centreline_csv, centreline_swc, centreline_as_complex;
 extern const ExtendedAxisCode extended_as_complex, extended_stl;
 
-/// The code of a content's formats.
+/// Type of the code of a content's formats.
 template <FileContent content>
 using CodeOf = std::tuple_element_t<static_cast<std::size_t>(content),
                                     std::tuple<MeshCode, ImageCode, FieldCode, ComplexCode, PointCode, RowCode, RowCode,
@@ -139,7 +139,7 @@ using CodeOf = std::tuple_element_t<static_cast<std::size_t>(content),
 
 struct Row {
   FileContent content = FileContent::mesh;
-  std::string_view name;  ///< these as in FileFormat, lists as words between blanks
+  std::string_view name;  ///< these members as in FileFormat, lists as words between blanks
   std::string_view extensions;
   std::string_view written;
   std::string_view holds;
@@ -234,7 +234,7 @@ inline constexpr auto table = [] {
   };
 }();
 
-/// What the bytes of a row's files tell.
+/// Returns the tests of a row. They are null if its code has none.
 [[nodiscard]] inline Tells tells_of(std::size_t row) {
   return std::visit(
       []<class Code>(const Code* code) {
@@ -247,7 +247,7 @@ inline constexpr auto table = [] {
       table[row].code);
 }
 
-/// The functions of a format.
+/// Returns the functions of a format.
 template <FileContent content>
 [[nodiscard]] const auto& code_of(FormatOf<content> format) {
   return *std::get<const CodeOf<content>*>(table[format.row()].code);

@@ -27,7 +27,7 @@ std::vector<std::string> words_of(std::string_view words) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-/// The first row of a content that fits.
+/// Returns the first row of a content that fits.
 template <class Fits>
 std::optional<std::size_t> find(FileContent content, Fits fits) {
   const std::vector<FileFormat>& formats = file_formats();
@@ -70,7 +70,7 @@ std::optional<std::size_t> find_head(FileContent content, std::string_view head)
     const auto begins_as = formats::tells_of(row).begins;
     return begins_as != nullptr && begins_as(head);
   };
-  // PLY and OFF files may have lines that look like those of OBJ.
+  // OBJ comes last, because PLY and OFF files may contain lines that look like OBJ.
   const auto found = find(content, [&](std::size_t row) { return file_formats()[row].name != "OBJ" && fits(row); });
   return found ? found : find(content, fits);
 }
@@ -177,7 +177,7 @@ std::string read_head(const fs::path& path) {
   return head;
 }
 
-/// Whether a NRRD header says that the values are floating-point numbers.
+/// Returns true if a NRRD header declares floating-point values.
 bool holds_floats(std::string_view head) {
   std::istringstream lines{std::string(head.substr(0, head.find("\n\n")))};
   for (std::string line; std::getline(lines, line);) {
@@ -195,7 +195,7 @@ std::optional<ImageFormat> image_format(const fs::path& path, std::string_view h
   return format ? format : ImageFormat::by_head(head);
 }
 
-/// Whether a file of this format, where there is one, holds its content: some formats hold others, too.
+/// Returns true if a format is given and the file holds its content. Some formats hold other contents, too.
 template <class Format>
 bool holds(const std::optional<Format>& format, const fs::path& path, std::string_view head) {
   if (!format) return false;
@@ -237,7 +237,7 @@ bool may_hold_field(const fs::path& path) {
 MeshFile read_mesh_of_any_name(const fs::path& path, const MeshReadOptions& options) {
   if (MeshFormat::by_name(path)) return read_mesh_file(path, options);
   const auto format = MeshFormat::by_head(read_head(path));
-  if (!format) return read_mesh_file(path, options);  // for its message
+  if (!format) return read_mesh_file(path, options);  // for its error message
   return read_mesh_file(read_whole_file(path).span(), *format, options, path.string());
 }
 

@@ -24,9 +24,9 @@
 namespace blum {
 
 struct ClosestPointOptions {
-  /// How the sign is found, by the same rule as for fields. `none` is cheapest.
+  /// Method for the sign, with the same rules as for fields. `none` is the cheapest.
   SignMode sign = SignMode::automatic;
-  /// Nothing further than this is looked for; >= 0, in mesh units. Unset: no limit.
+  /// Largest distance that is searched; >= 0, in mesh units. Unset: no limit.
   std::optional<double> max_distance = {};
 };
 
@@ -42,102 +42,115 @@ struct Description<ClosestPointOptions> {
   };
 };
 
-/// The point of a mesh that is closest to a query.
+/// Point of a mesh that is closest to a query.
 struct ClosestPoint {
-  Vec3d point;          ///< on the mesh; the query itself where nothing lies within max_distance
-  double distance = 0;  ///< mesh units, negative inside when signed; infinite where nothing lies within max_distance
-  SiteId site;          ///< the vertex, open edge or open face that the point lies on, numbered as SiteTable says
-  TriangleId triangle;  ///< the smallest triangle that the site lies on; none() on free segments and points
+  Vec3d point;          ///< on the mesh; the query itself if nothing lies within max_distance
+  double distance = 0;  ///< mesh units, negative inside when signed; infinite if nothing lies within max_distance
+  SiteId site;          ///< vertex, open edge or open face that contains the point, numbered as in SiteTable
+  TriangleId triangle;  ///< smallest triangle that contains the site; none() on free segments and points
 };
 
-/// The unit vector in which the signed distance grows: away from the surface outside, towards it inside. On the medial
-/// axis it is one of several. nullopt on the surface (where rounding would tell), and where nothing was found.
+/// Returns the unit vector in which the signed distance grows: away from the surface outside, towards it inside. On the
+/// medial axis it is one of several such vectors. Returns nullopt on the surface, within rounding, and if nothing was
+/// found.
 [[nodiscard]] std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found);
 
-/// Weights of the corners of `found.triangle`, in their order, of which the closest point is the mean: each >= 0, their
-/// sum 1 but for rounding; 1 at a vertex that the point lies on, 0 at the others.
-/// @param mesh  that was asked. @return  nullopt where the point lies on no triangle.
+/// Returns the weights of the corners of `found.triangle`, in their order. The closest point is the weighted mean of
+/// the corners. Each weight is at least 0, and their sum is 1 within rounding. If the point lies on a vertex, that
+/// weight is 1 and the others are 0.
+/// @param mesh  mesh of the query.
+/// @return      nullopt if the point lies on no triangle.
 [[nodiscard]] std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const ClosestPoint& found);
 
-/// What is closest to one of several queries.
+/// Closest point of one of several queries.
 struct FoundPoint {
-  std::size_t query = 0;  ///< its index
-  Vec3d point;            ///< as in ClosestPoint, like the others
+  std::size_t query = 0;  ///< index of the query
+  Vec3d point;            ///< like the other members: as in ClosestPoint
   double distance = 0;
   SiteId site;
 };
 
-/// What several queries found each: entries first[q] ... first[q + 1] - 1 of query q, by rising distance, then
-/// primitive.
+/// Primitives found by several queries. Those of query q are entries first[q] ... first[q + 1] - 1, by rising distance,
+/// then primitive.
 struct NearPrimitives {
-  std::vector<std::size_t> first{0};  ///< one more than queries
+  std::vector<std::size_t> first{0};  ///< one more entry than queries
   std::vector<NearestPrimitive> found;
 };
 
-/// Answers closest-point queries on one mesh. It copies what it needs; the mesh may go away.
+/// Answers closest-point queries on one mesh. It copies what it needs, so the mesh need not outlive it.
 class ClosestPointQuery {
  public:
   /// @throws InvalidMesh, InvalidOption, Cancelled.
-  /// Cost: O(n log n), about 80 ms for 70,000 triangles on two cores, 30 ms unsigned, and more where winding
-  /// numbers are needed.
+  /// Cost: O(n log n). For 70,000 triangles on two cores about 80 ms, unsigned 30 ms, and more if winding numbers are
+  /// needed.
   explicit ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options = {},
                              const Context& context = {});
   ClosestPointQuery(ClosestPointQuery&&) noexcept;
   ClosestPointQuery& operator=(ClosestPointQuery&&) noexcept;
   ~ClosestPointQuery();
 
-  /// One query. May be called from many threads at once; allocates nothing.
-  /// @param query  finite, within 1e140 times the mesh's longest side, or 1e140 where that is longer than 1 (else the
-  ///               result has no site).
-  /// @return       a distance within about 1e-15 of exact, relative to the extent of mesh and query together. Of
-  ///               several sites at the same computed distance the one with the smallest id. A query on the surface is
-  ///               not inside; of an open mesh, where its computed distance is not 0 but for rounding, it may be.
+  /// Answers one query. It may be called from many threads at once, and allocates nothing.
+  /// @param query  finite. Coordinates must be at most 1e140, and at most 1e140 times the longest side of the mesh's
+  ///               box (unless that is 0). Else the result has no site.
+  /// @return       a distance within about 1e-15 of exact, relative to the extent of mesh and query together. Among
+  ///               sites at the same computed distance, the one with the smallest id is returned. A query on the
+  ///               surface is not inside. With an open mesh it may be, if rounding makes its computed distance differ
+  ///               from 0.
   [[nodiscard]] ClosestPoint nearest(const Vec3d& query) const;
 
-  /// Many queries, threaded. The same results as nearest(), bit for bit, for any number of threads. Where there are as
-  /// many as the mesh has triangles, and 4,096 or more, they are ordered in space and looked at together; the first
-  /// such call builds what that needs, 0.5 us and 450 bytes per triangle.
-  /// @throws InvalidOption naming the first query that is not finite or too far away; Cancelled.
+  /// Answers many queries, threaded. Results are those of nearest(), bit for bit, for any number of threads. Queries
+  /// are ordered in space and answered together if they are at least 4,096 and at least as many as the mesh has
+  /// triangles. The first such call builds a structure for this, which takes 0.5 us and 450 bytes per triangle. Later
+  /// calls use it from 1,024 queries on, if they are at least half as many as the triangles.
+  /// @throws InvalidOption that names the first query that is not finite or too far away.
+  /// @throws Cancelled.
   [[nodiscard]] std::vector<ClosestPoint> nearest(std::span<const Vec3d> queries, const Context& context = {}) const;
 
-  /// The same, told as it is found instead of kept: calls use(found) for groups of queries that lie close together,
-  /// from several threads at once where the context has them. Over all groups each query is told once.
+  /// Answers many queries and reports the results as they are found, instead of keeping them. Calls use(found) for
+  /// groups of queries that lie close together, from several threads at once if the context has them. Each query is in
+  /// exactly one group.
   /// @throws as nearest().
   void for_each_nearest(std::span<const Vec3d> queries, FunctionRef<void(std::span<const FoundPoint>)> use,
                         const Context& context = {}) const;
 
-  /// Tells that many queries will come in batches, each of which lie close together: where there will be as many as the
-  /// mesh has triangles, and 4,096 or more, what they need is built now, and calls of nearest() with 1,024 queries or
-  /// more use it from then on. Answers are the same. Must not run beside queries.
-  /// @param queries  over all batches, about. @throws Cancelled. Cost: 0.5 us per triangle and core.
+  /// Announces that many queries will come in batches, each of queries that lie close together. The structure of
+  /// nearest() is built now if the queries are at least 4,096 and at least as many as the mesh has triangles. From then
+  /// on, calls of nearest() with 1,024 queries or more use it. Answers stay the same. Must not run beside queries.
+  /// @param queries  approximate number of queries over all batches.
+  /// @throws Cancelled.
+  /// Cost: 0.5 us per triangle and core.
   void prepare_for_many(std::size_t queries, const Context& context = {});
 
-  /// The triangles, segments and points of the mesh within a distance of each query, threaded, each with its closest
-  /// point. Distances are without sign.
-  /// @param distance  mesh units, >= 0; infinite for all. max_distance limits it, too.
-  /// @throws InvalidOption, also as nearest(); Cancelled.  Cost: a search for each query, and 50 ns for each entry.
+  /// Finds the triangles, segments and points of the mesh within a distance of each query, threaded, each with its
+  /// closest point. Distances are unsigned.
+  /// @param distance  mesh units, >= 0; infinite: all of them. max_distance limits it, too.
+  /// @throws InvalidOption, also as nearest().
+  /// @throws Cancelled.
+  /// Cost: one search for each query, and 50 ns for each entry.
   [[nodiscard]] NearPrimitives within(std::span<const Vec3d> queries, double distance,
                                       const Context& context = {}) const;
 
-  /// The k closest of them (fewer, where there are fewer, or fewer within max_distance).
-  /// @throws as within(). Cost: as within().
+  /// Finds the k closest primitives of each query. There are fewer if the mesh has fewer within max_distance.
+  /// @throws as within().
+  /// Cost: as within().
   [[nodiscard]] NearPrimitives nearest_primitives(std::span<const Vec3d> queries, std::size_t k,
                                                   const Context& context = {}) const;
 
-  /// The same mesh after its vertices moved. Answers are, bit for bit, those of a new query; they take longer as
-  /// neighbours move apart, then make a new one. Must not run beside queries.
+  /// Moves the vertices of the mesh. Answers are, bit for bit, those of a new query object. They take longer as
+  /// neighbours move apart; make a new object then. Must not run beside queries.
   /// @param vertices  as many as the mesh has.
-  /// @throws InvalidMesh (then nothing has changed); Cancelled, after which only another refit may follow.
+  /// @throws InvalidMesh; nothing has changed then.
+  /// @throws Cancelled; only another refit may follow then.
   /// Cost: O(n), unsigned about 2 ms for 100,000 triangles on two cores. Signs are planned anew, which takes as long as
-  /// in a new query. What many queries at once need is built by the next that do,
-  /// or by prepare_for_many().
+  /// in a new query object. The structure for many queries is discarded. The next call with many queries, or
+  /// prepare_for_many(), builds it again.
   void refit(std::span<const Vec3d> vertices, const Context& context = {});
 
-  /// How signs are found, and why (one sentence).
+  /// Returns the rule that decides signs, and the reason for it (one sentence).
   [[nodiscard]] SignRule sign_rule() const;
   [[nodiscard]] const std::string& sign_reason() const;
-  /// Whether the sign may change off the surface, where the distance is not 0: by winding numbers of meshes with a
-  /// boundary, and by normals of shells that cross each other.
+  /// Returns true if the sign may change off the surface, at distances other than 0. This happens with winding numbers
+  /// of meshes with a boundary, and with normals of shells that cross each other.
   [[nodiscard]] bool sign_may_jump() const;
 
  private:
@@ -145,17 +158,21 @@ class ClosestPointQuery {
   std::unique_ptr<Data> data_;
 };
 
-/// The closest point, its distance, site and triangle for every query; exact, not interpolated from a grid.
+/// Returns the closest point, its distance, site and triangle for every query. Results are exact, not interpolated from
+/// a grid.
 ///
-/// @param mesh     any soup of triangles, segments and points; it must pass validate(mesh).
+/// @param mesh     any soup of triangles, segments and points; must pass validate(mesh).
 /// @param queries  finite.
 /// @return         one entry per query, in their order; see ClosestPointQuery.
-/// @throws InvalidMesh; InvalidOption, also for a query that is not finite (named by its index); Cancelled.
-/// Cost: O(n log n) for n primitives; then per query and core, measured with 70,000 triangles and a million queries,
-/// 0.2 us near the surface and 0.3 us all over the mesh's box. Of fewer queries than triangles, each takes 0.7 us near
-/// the surface where they follow each other along it, 1.4 us near it in any order, 7 us all over the box, and up to 20
-/// us where many sites are nearly equally close. Signs of closed meshes add up to a third, those of open ones
-/// 0.2 to 0.4 us, in soups a winding number each. Method: docs/theory/closest-points.md.
+/// @throws InvalidMesh.
+/// @throws InvalidOption, also for a query that is not finite or too far away; the message names its index.
+/// @throws Cancelled.
+/// Cost: O(n log n) for n primitives, then a search per query. Times per query and core were measured with 70,000
+/// triangles. With a million queries they are 0.2 us near the surface and 0.3 us all over the mesh's box. With fewer
+/// queries than triangles, each takes 0.7 us if they follow each other along the surface. Near the surface in any order
+/// it takes 1.4 us, all over the box 7 us. It takes up to 20 us where many sites are nearly equally close. Signs of
+/// closed meshes add up to a third, signs of open ones 0.2 to 0.4 us. In soups each sign takes a winding number.
+/// Method: docs/theory/closest-points.md.
 [[nodiscard]] std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,
                                                        const ClosestPointOptions& options = {},
                                                        const Context& context = {});

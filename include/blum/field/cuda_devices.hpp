@@ -1,4 +1,4 @@
-// Blum: which CUDA devices there are. SPDX-License-Identifier: Apache-2.0
+// Blum: available CUDA devices. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace blum {
 
-/// A CUDA device that can be asked for.
+/// Available CUDA device.
 struct DeviceInfo {
-  std::string device;        ///< what parse_device() reads: "cuda:0"
-  std::string name;          ///< as its maker calls it
+  std::string device;        ///< name that parse_device() reads: "cuda:0"
+  std::string name;          ///< name given by its maker
   std::uint64_t memory = 0;  ///< bytes
 };
 
@@ -27,10 +27,10 @@ struct Description<DeviceInfo> {
                                       Member{"memory", &DeviceInfo::memory, "bytes", "what it holds"}};
 };
 
-/// The CUDA devices that there are.
+/// Available CUDA devices.
 struct CudaDevices {
   std::vector<DeviceInfo> devices;
-  std::string reason;  ///< why there are none, in one sentence; empty where there are some
+  std::string reason;  ///< if there are none: why, in one sentence; else empty
 };
 
 template <>
@@ -42,7 +42,7 @@ struct Description<CudaDevices> {
       Member{"reason", &CudaDevices::reason, "", "why there are none, in one sentence; empty where there are some"}};
 };
 
-/// Looks for the CUDA module, and asks it for devices. Cost: starting CUDA, once; up to a second.
+/// Loads the CUDA module and returns the devices that it finds. Cost: starting CUDA, once; up to a second.
 [[nodiscard]] CudaDevices cuda_devices();
 
 }  // namespace blum

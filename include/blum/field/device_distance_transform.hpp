@@ -12,14 +12,15 @@
 
 namespace blum {
 
-/// Transforms images that live in a CUDA device's memory, and leaves the results there; keeps its working memory, 1/8
-/// byte per voxel and a little more, from one to the next. Streams and lifetimes are as DeviceFieldSolver has them.
+/// Transforms images in a CUDA device's memory, and leaves the results there. Its working memory takes 1/8 byte per
+/// voxel and a little more, and is kept between calls. Streams and lifetimes are those of DeviceFieldSolver.
 class DeviceDistanceTransform {
  public:
-  /// @param grid     of the images.
-  /// @param context  its device: a CUDA device, or `automatic` for the first one.
-  /// @throws InvalidGrid, InvalidImage (more voxels than ids; extents that 32-bit distances do not hold),
-  ///         InvalidOption, OutOfMemory, DeviceError.
+  /// @param grid     grid of the images.
+  /// @param context  names a CUDA device; `automatic` is the first one.
+  /// @throws InvalidGrid.
+  /// @throws InvalidImage if the image has more voxels than ids, or an extent that 32-bit distances do not hold.
+  /// @throws InvalidOption, OutOfMemory, DeviceError.
   explicit DeviceDistanceTransform(const GridSpec& grid, const DistanceTransformOptions& options = {},
                                    const Context& context = {.device = Device::cuda()});
   DeviceDistanceTransform(DeviceDistanceTransform&&) noexcept;
@@ -30,21 +31,25 @@ class DeviceDistanceTransform {
   [[nodiscard]] const GridSpec& grid() const;
   [[nodiscard]] const DistanceTransformOptions& options() const;
 
-  /// Queues what distance_transform() computes, byte for byte; does not wait, but with 64 calls in flight for the
-  /// oldest.
+  /// Queues the work of distance_transform(), with the same bytes as the result. It does not wait, except for the
+  /// oldest call when 64 calls are in flight.
   ///
-  /// Which voxels are selected shows only on the device: where no voxel is, or, signed, every one, distances are
-  /// infinite (or the band's) and there are no sites.
+  /// The selected voxels are known only on the device. If no voxel is selected, or in a signed transform every voxel,
+  /// distances are infinite (or the band's), without sites.
   /// @param values  one per voxel, x fastest.
-  /// @throws InvalidImage (another number of values), InvalidOption (no memory named), OutOfMemory, DeviceError.
+  /// @param field   memory for distances and sites.
+  /// @throws InvalidImage for another number of values.
+  /// @throws InvalidOption if memory is missing.
+  /// @throws OutOfMemory, DeviceError.
   void compute(const DeviceArrayView& values, const DeviceFieldView& field, void* stream = nullptr);
 
   [[nodiscard]] DeviceProgress progress() const;
-  /// Makes what is queued on a stream from now on wait for the first `pieces` of the work that progress() counts.
+  /// Makes work that is queued on a stream from now on wait for the first `pieces` pieces of work that progress()
+  /// counts.
   void follow(std::uint64_t pieces, void* stream);
-  /// The device that memory belongs to; none for the host's.
+  /// Returns the device that owns memory; nullopt for memory of the host.
   [[nodiscard]] std::optional<Device> device_of(const void* memory) const;
-  /// Makes what is queued on one stream from now on wait for what is queued on another one now.
+  /// Makes work that is queued on stream `after` from now on wait for the work queued on `before` so far.
   void order(void* before, void* after);
 
  private:

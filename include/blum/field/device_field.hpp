@@ -1,4 +1,4 @@
-// Blum: fields from and to the memory of a device. SPDX-License-Identifier: Apache-2.0
+// Blum: fields of meshes in the memory of a device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@
 
 namespace blum {
 
-/// Computes fields of deforming meshes that live in a CUDA device's memory, and leaves them there: no copy, and from
-/// frame to frame no wait for the device.
+/// Computes fields of deforming meshes in a CUDA device's memory, and leaves them there, without copies. Between frames
+/// it does not wait for the device.
 ///
-/// What FieldSolver promises, holds. Streams are cudaStream_t; nullptr is the legacy default stream. Whatever is read
-/// must have been queued on the stream before the call; the field is complete for what is queued on it afterwards.
-/// Arrays must stay until the device has passed there. Calls may change streams. One call at a time.
+/// The guarantees of FieldSolver hold. Streams are cudaStream_t; nullptr is the legacy default stream. All inputs must
+/// have been queued on the stream before the call. The field is complete for work that is queued on the stream after
+/// the call. Arrays must stay alive until the device has finished that call. Calls may use different streams. Only one
+/// call may run at a time.
 class DeviceFieldSolver {
  public:
-  /// @param options  sign: `automatic` and `winding` are both the winding number, which tells the sides of closed
-  /// meshes
-  ///                 that face outwards as `normals` does; `normals` itself needs a mesh in the host's memory.
-  /// @param context  its device: a CUDA device, or `automatic` for the first one. Fields cannot be cancelled.
+  /// @param options  `sign`: both `automatic` and `winding` use the winding number. For closed meshes that face
+  ///                 outwards, it gives the same sides as `normals`. `normals` itself needs a mesh in the host's
+  ///                 memory. `order` must be 1.
+  /// @param context  names a CUDA device; `automatic` is the first one. Fields cannot be cancelled.
   /// @throws InvalidGrid, InvalidOption, OutOfMemory, DeviceError.
   explicit DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options = {},
                              const Context& context = {.device = Device::cuda()});
@@ -35,32 +36,35 @@ class DeviceFieldSolver {
   [[nodiscard]] const GridSpec& grid() const;
   [[nodiscard]] const FieldOptions& options() const;
 
-  /// Takes the triangles, segments and points of a mesh, which are copied, and finds its edges; of the vertices only
-  /// the number counts. To be called again when the connectivity changes. Waits for the device.
-  /// @throws InvalidMesh (no sites, too many, an index out of range), InvalidOption (element types, or triangle ids of
-  /// a
-  ///         mesh that has segments or points), OutOfMemory, DeviceError.
+  /// Copies the triangles, segments and points of a mesh and finds its edges. Only the number of its vertices is used.
+  /// Call it again when the connectivity changes. It waits for the device.
+  /// @throws InvalidMesh if the mesh has no sites or too many, or an index is out of range.
+  /// @throws InvalidOption for other element types, missing memory, or triangle ids of a mesh that has segments or
+  /// points.
+  /// @throws OutOfMemory, DeviceError.
   void set_connectivity(const DeviceMeshView& mesh, void* stream = nullptr);
-  /// How the signs of fields are found with the current connectivity.
+  /// Returns the rule for the signs of fields with the current connectivity.
   [[nodiscard]] SignRule sign_rule() const;
 
-  /// Queues the field of the current connectivity with these vertices; does not wait, but with 64 calls in flight for
-  /// the oldest.
+  /// Queues the field of the current connectivity with these vertices. It does not wait, except for the oldest call
+  /// when 64 calls are in flight.
   ///
-  /// Vertices that are not finite, and extents that 32-bit distances do not hold, show only on the device: then every
-  /// node gets NaN and no site.
-  /// @throws InvalidOption (no connectivity yet, element type, no memory named), InvalidMesh (another number of
-  /// vertices),
-  ///         InvalidGrid, OutOfMemory, DeviceError.
-  /// Cost: as distance_field's; where the mesh has a boundary, also tiles of 8^3 nodes times its edges.
+  /// Two errors are known only on the device: vertices that are not finite, and extents that 32-bit distances do not
+  /// hold. In these cases every node gets NaN and no site.
+  /// @throws InvalidOption if set_connectivity() has not been called, memory is missing, or the element type is another
+  /// one.
+  /// @throws InvalidMesh for another number of vertices.
+  /// @throws InvalidGrid, OutOfMemory, DeviceError.
+  /// Cost: as distance_field(). If the mesh has a boundary, add its edges times the tiles of 8^3 nodes.
   void compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream = nullptr);
 
   [[nodiscard]] DeviceProgress progress() const;
-  /// Makes what is queued on a stream from now on wait for the first `pieces` of the work that progress() counts.
+  /// Makes work that is queued on a stream from now on wait for the first `pieces` pieces of work that progress()
+  /// counts.
   void follow(std::uint64_t pieces, void* stream);
-  /// The device that memory belongs to; none for the host's.
+  /// Returns the device that owns memory; nullopt for memory of the host.
   [[nodiscard]] std::optional<Device> device_of(const void* memory) const;
-  /// Makes what is queued on one stream from now on wait for what is queued on another one now.
+  /// Makes work that is queued on stream `after` from now on wait for the work queued on `before` so far.
   void order(void* before, void* after);
 
  private:

@@ -9,42 +9,43 @@
 
 namespace blum {
 
-/// In the order of VoxelImageView::Values.
+/// Types of numbers, in the order of VoxelImageView::Values.
 enum class ElementType : std::uint8_t { uint8, int8, uint16, int16, uint32, int32, uint64, int64, float32, float64 };
 
-/// Rows of an array in a CUDA device's memory, one after the other without gaps.
+/// View of an array in a CUDA device's memory: rows one after the other, without gaps.
 struct DeviceArrayView {
   const void* data = nullptr;
   ElementType type = ElementType::float64;
   std::size_t rows = 0;
 };
 
-/// A mesh in a CUDA device's memory. See MeshView.
+/// View of a mesh in a CUDA device's memory. See MeshView.
 struct DeviceMeshView {
   DeviceArrayView vertices;   ///< n x 3, float32 or float64, mesh units
-  DeviceArrayView triangles;  ///< n x 3, int32, uint32 or int64; without rows the type does not matter
-  DeviceArrayView segments;   ///< n x 2, likewise
-  DeviceArrayView points;     ///< n, likewise
+  DeviceArrayView triangles;  ///< n x 3, int32, uint32 or int64; without rows the type is ignored
+  DeviceArrayView segments;   ///< n x 2, the same types
+  DeviceArrayView points;     ///< n, the same types
 };
 
-/// Where a field goes, in a CUDA device's memory: one value per node of the grid each, x fastest.
+/// Memory for a field on a CUDA device: arrays of one value per node of the grid, x fastest.
 struct DeviceFieldView {
   float* distance = nullptr;
-  std::uint32_t* site = nullptr;  ///< 0xffffffff where there is none; not looked at where no sites are asked for
+  std::uint32_t* site = nullptr;  ///< 0xffffffff if none; ignored if the options exclude sites
 };
 
-/// How many calls have queued work so far, and how many of those, from the first on, the device has completed: what
-/// they read and wrote is free again.
+/// Number of calls that have queued work so far, and of those, from the first on, that the device has completed. Memory
+/// that completed calls read or wrote is free again.
 struct DeviceProgress {
   std::uint64_t queued = 0;
   std::uint64_t finished = 0;
 };
 
-/// Memory of a CUDA device that ends with its owner.
+/// Memory of a CUDA device, freed with its last owner. Copies share it.
 class DeviceMemory {
  public:
   DeviceMemory() = default;
-  /// @throws DeviceError, OutOfMemory, InvalidOption for the CPU.
+  /// @throws DeviceError, OutOfMemory.
+  /// @throws InvalidOption for the CPU.
   DeviceMemory(const Device& device, std::size_t bytes);
 
   [[nodiscard]] void* data() const { return data_.get(); }

@@ -19,10 +19,10 @@ namespace blum {
 
 struct DistanceTransformOptions {
   LabelSelection selection = {};
-  /// Signed: to the nearest voxel of the other kind, negative at selected voxels.
-  /// Unsigned: to the nearest selected voxel, 0 at selected voxels.
+  /// True: distance to the nearest voxel of the other kind, negative at selected voxels. False: distance to the nearest
+  /// selected voxel, 0 at selected voxels.
   bool is_signed = true;
-  /// Half-width of a narrow band, > 0, in the units of the image's spacing. Voxels whose distance is larger get +-band
+  /// Half-width of a narrow band, > 0, in the units of the image's spacing. Voxels with a larger distance get +-band
   /// and no site. Unset: the full grid.
   std::optional<double> band = {};
 };
@@ -41,30 +41,30 @@ struct Description<DistanceTransformOptions> {
   };
 };
 
-/// Exact Euclidean distance and closest voxel at every voxel of an image, from voxel centre to voxel centre, as
-/// scipy.ndimage.distance_transform_edt(mask, sampling=spacing, return_indices=True) defines them.
+/// Computes the exact Euclidean distance and closest voxel at every voxel of an image, between voxel centres. The
+/// definition is that of scipy.ndimage.distance_transform_edt(mask, sampling=spacing, return_indices=True).
 ///
 /// @param image  must pass validate(image).
-/// @return       a field on image.grid; site ids are linear indices of voxels (SiteIds::voxels); the sign rule is
-///               `label`, or `none` when unsigned. Distances have the units of the spacing. Where the squared spacings
-///               are small multiples of a common unit (all equal, say, or whole numbers), squared distances are exact
-///               integers, and distances are their correctly rounded roots times that unit; else they are computed in
-///               double. Among voxels at the same computed distance the smallest linear index wins. The same bytes for
-///               any number of threads.
-/// @throws InvalidImage (also when no voxel is selected, or, signed, when every voxel is; and when the image spans less
-/// than 1e-36 or more than 1e37, which 32-bit distances do not hold), InvalidOption, OutOfMemory,
-/// Cancelled.
-/// Cost: about O(voxels log(side)), at worst another factor of two; 8 bytes per voxel for the result and 1/8 byte, plus
-/// a few MiB per thread, beside it.
-/// Method: one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012); instead of lower envelopes the passes
-/// along y and z use that the closest row moves monotonically along a column (Aggarwal 1987), many columns at a time.
+/// @return       a field on image.grid. Site ids are linear indices of voxels (SiteIds::voxels). The sign rule is
+///               `label`, or `none` when unsigned. Distances have the units of the spacing. If the squared spacings are
+///               small multiples of a common unit (for example all equal, or whole numbers), squared distances are
+///               exact integers. Distances are then their correctly rounded roots times that unit. Else distances are
+///               computed in double. Among voxels at the same computed distance, the smallest linear index is reported.
+///               The bytes are the same for any number of threads.
+/// @throws InvalidImage, also if no voxel is selected, or every voxel in a signed transform.
+/// @throws InvalidImage if the image spans less than 1e-36 or more than 1e37, which 32-bit distances do not hold.
+/// @throws InvalidOption, OutOfMemory, DeviceError, Cancelled.
+/// Cost: about O(voxels log(side)), at worst twice that. The result takes 8 bytes per voxel, working memory 1/8 byte
+/// per voxel and a few MiB per thread.
+/// Method: one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use no lower
+/// envelopes: along a column, the closest row moves monotonically (Aggarwal 1987). They treat many columns at a time.
 [[nodiscard]] Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
                                        const Context& context = {});
 
-/// The transforms of several selections (labels, thresholds) of one image, in their order; each equals, byte for byte,
-/// distance_transform with that selection. options.selection is ignored. The image is checked once and working memory
-/// is shared; the results take 8 bytes per voxel and selection.
-/// @throws as distance_transform.
+/// Computes the transforms of several selections (labels, thresholds) of one image, in their order. Each equals
+/// distance_transform() with that selection, byte for byte. options.selection is ignored. The image is checked once,
+/// and working memory is shared. The results take 8 bytes per voxel and selection.
+/// @throws as distance_transform().
 [[nodiscard]] std::vector<Field> distance_transforms(const VoxelImageView& image,
                                                      std::span<const LabelSelection> selections,
                                                      const DistanceTransformOptions& options = {},

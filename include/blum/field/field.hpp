@@ -23,39 +23,40 @@
 
 namespace blum {
 
-/// How the sign of a field is asked for.
+/// Requested rule for the sign of a field.
 enum class SignMode : std::uint8_t {
-  automatic,  ///< `normals` where the mesh is closed, consistently oriented, faces outwards, and no two of its
-              ///< triangles touch or cross but neighbours; else `winding`. A function of the mesh alone, whatever the
-              ///< grid
-  normals,    ///< the side that the orientation of a closed, consistently oriented mesh tells. Exact: crossings are
-            ///< counted along the grid's rows. Angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide only where
-            ///< shells cross or face different ways
-  winding,  ///< generalized winding number (Jacobson 2013) above 1/2 is inside; any soup
-  none      ///< unsigned
+  automatic,  ///< Unsigned if the mesh has no triangles. `normals` if it is closed, consistently oriented and faces
+              ///< outwards, and no triangles but neighbours touch or cross. For `normals` it must also have no free
+              ///< segments or points, and no triangle too flat for a normal. Else `winding`. This depends on the mesh
+              ///< alone, not on the grid.
+  normals,    ///< Side given by the orientation of a closed, consistently oriented mesh. Exact: crossings are counted
+              ///< along the grid's rows. Angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide only if shells
+              ///< cross or face different ways.
+  winding,  ///< Generalized winding number (Jacobson 2013): above 1/2 is inside. For any soup.
+  none      ///< Unsigned.
 };
 
-/// How the sign of a field was found.
+/// Rule that decided the signs of a field.
 enum class SignRule : std::uint8_t {
   none,
   normals,
   winding,
   label,
-  balls  ///< inside where a ball is (ball_union_field)
+  balls  ///< inside if a ball contains the node (ball_union_field)
 };
 
-/// What the site values of a field count.
+/// Numbering of the site values of a field.
 enum class SiteIds : std::uint8_t {
-  features,   ///< vertices, edges, faces, numbered as SiteTable says
-  triangles,  ///< the smallest triangle that the closest site lies on
+  features,   ///< vertices, edges, faces, numbered as in SiteTable
+  triangles,  ///< smallest triangle that contains the closest site
   voxels      ///< linear indices of voxels (fields of images)
 };
 
-/// Which sites may be second at a node, given its closest one.
+/// Sites that may be second at a node, given its closest one.
 enum class SecondRule : std::uint8_t {
-  no_common_vertex,  ///< those that share no vertex (by index) with the closest site, each with its border: a face with
-                     ///< its edges and corners, an edge with its ends
-  other_object       ///< those that belong to no object that the closest site belongs to
+  no_common_vertex,  ///< Sites that share no vertex (by index) with the closest site. Both count with their border: a
+                     ///< face with its edges and corners, an edge with its ends.
+  other_object       ///< Sites of no object that the closest site belongs to.
 };
 
 template <>
@@ -86,17 +87,18 @@ struct Description<SiteIds> {
 };
 
 struct FieldOptions {
-  /// How the sign is found; the distance is negative inside.
+  /// Rule for the sign; the distance is negative inside.
   SignMode sign = SignMode::automatic;
-  /// Half-width of a narrow band, > 0, in mesh units. Beyond it nodes get +-band and no site. Unset: the full grid.
+  /// Half-width of a narrow band, > 0 and finite, in mesh units. Beyond it nodes get +-band and no site. Unset: the
+  /// full grid.
   std::optional<double> band = {};
-  /// What the site values count: features or triangles.
+  /// Numbering of the site values: features or triangles.
   SiteIds site_ids = SiteIds::features;
-  /// Whether the field gets its closest sites. Without them it takes half the memory; distances are the same bytes.
+  /// True: the field gets its closest sites. False: it takes half the memory, and distances are the same bytes.
   bool sites = true;
-  /// 1: the closest site of every node. 2: the second as well, which `second` chooses. On the CPU only.
+  /// 1: the closest site of every node. 2: also the second site, selected by `second`. On the CPU only.
   int order = 1;
-  /// Which sites may be second; looked at where `order` is 2.
+  /// Sites that may be second; used if `order` is 2.
   SecondRule second = SecondRule::no_common_vertex;
 };
 
@@ -122,63 +124,63 @@ struct Description<FieldOptions> {
   };
 };
 
-/// Distance and closest site at every node of a grid; of order 2 also the second site.
+/// Distance and closest site at every node of a grid; for order 2 also the second site.
 struct Field {
   GridSpec grid;
   /// Distance in mesh units, negative inside when signed; +-band beyond the band. One per node, x fastest.
   Buffer<float> distance;
-  /// Closest site; none() beyond the band. One per node, x fastest; empty where no sites were asked for.
+  /// Closest site; none() beyond the band. One per node, x fastest; empty if no sites were requested.
   Buffer<SiteId> site;
-  /// Distance to the second site, mesh units, >= 0 inside and outside. Where no site may be second: +infinity. With a
-  /// band: the band's half-width where no site within the band may be second. One per node; empty for fields of order
-  /// 1.
+  /// Distance to the second site, mesh units, >= 0 inside and outside. If no site may be second, it is +infinity. With
+  /// a band it is the half-width if no site within the band may be second. One per node; empty for fields of order 1.
   Buffer<float> distance2;
-  /// The second site; none() where there is none, or it is beyond the band. One per node; empty for fields of order 1,
-  /// and where no sites were asked for.
+  /// Second site; none() if none exists, or it lies beyond the band. One per node. Empty for fields of order 1, and if
+  /// no sites were requested.
   Buffer<SiteId> site2;
-  std::optional<SecondRule> second = {};  ///< which sites may be second; none of order 1
+  std::optional<SecondRule> second = {};  ///< sites that may be second; unset for order 1
   SiteIds site_ids = SiteIds::features;
   std::optional<double> band = {};  ///< half-width, mesh units
   SignRule sign_rule = SignRule::none;
-  std::string sign_reason;         ///< one sentence: why this rule
-  Device device;                   ///< where it was computed: never `automatic`
-  std::string device_reason = {};  ///< one sentence: why on the CPU, where `automatic` was asked for; else empty
+  std::string sign_reason;         ///< reason for this rule, one sentence
+  Device device;                   ///< device that computed it; never `automatic`
+  std::string device_reason = {};  ///< if `automatic` was requested: reason for the CPU, one sentence; else empty
   std::vector<PhaseTime> phases;
 
   [[nodiscard]] int order() const { return distance2.empty() ? 1 : 2; }
 };
 
-/// Exact distance and closest site at every node of a grid; of order 2 also the second site.
+/// Computes the exact distance and closest site at every node of a grid; for order 2 also the second site.
 ///
-/// @param mesh  any soup of triangles, segments and points (see MeshView); it must pass validate(mesh).
+/// @param mesh  any soup of triangles, segments and points (see MeshView); must pass validate(mesh).
 /// @param grid  at most 2^40 nodes; must pass validate(grid).
-/// @return      with D the diagonal of the box around mesh and grid: distances within 1e-6 D of exact; sites whose own
-///              exact distance is within 1e-6 D of the smallest; at nodes further than 1e-6 D from the surface, signs
-///              those of the winding number (of `normals`, those of the orientation: inverted for meshes that are
-///              inside out, and not defined where closed shells neither all face the solid nor all face away from it,
-///              or cross). The same bytes for any number of threads.
-///              Devices agree within these bounds. Of order 2: `distance` and `site` are those of order 1, byte for
-///              byte; with the sites that may be second beside the reported `site`, `distance2` and `site2` keep the
-///              promises of `distance` and `site`. Of sites at the same computed distance the one with the smallest id
-///              is taken. Objects are the connected parts of the mesh: vertices that triangles or segments join.
+/// @return      the field. Let D be the diagonal of the box around mesh and grid. Distances are within 1e-6 D of exact.
+///              The exact distance of each reported site is within 1e-6 D of the smallest one. At nodes further than
+///              1e-6 D from the surface, signs are those of the winding number. The signs of `normals` are those of the
+///              orientation instead. They are inverted for meshes that are inside out. They are undefined if closed
+///              shells cross, or neither all face the solid nor all face away from it. The bytes are the same for any
+///              number of threads. Devices agree within these bounds. For order 2, `distance` and `site` are those of
+///              order 1, byte for byte. `distance2` and `site2` have the same guarantees, among the sites that may be
+///              second beside the reported `site`. Among sites at the same computed distance, the one with the smallest
+///              id is reported. Objects are the connected parts of the mesh: vertices joined by triangles or segments.
 /// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, DeviceError, Cancelled.
-/// Cost: about O(nodes + sites log sites); 8 bytes per node, without sites 4. (A CUDA device takes 8 on the way where
-/// signs are found by sites: `normals` of shells that cross or face different ways.) Order 2 takes twice that memory
+/// Cost: about O(nodes + sites log sites); 8 bytes per node, without sites 4. A CUDA device temporarily takes 8 if
+/// signs are found by sites (`normals` of shells that cross or face different ways). Order 2 takes twice that memory
 /// and, without signs, three to four times the time.
 /// Method: docs/theory/fields.md (Sud 2006, ch. 2 and 4).
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
                                    const Context& context = {});
-/// The same with objects of the caller's, for SecondRule::other_object.
+/// Computes the same field with objects of the caller, for SecondRule::other_object.
 ///
-/// @param objects  one number per vertex of the mesh: which object it belongs to. An edge or face belongs to the
-///                 objects of all of its vertices. Empty: the connected parts of the mesh.
-/// @throws InvalidOption also where there is not one number per vertex, or the options ask for nothing of objects.
+/// @param objects  one number per vertex of the mesh: the object of the vertex. An edge or face belongs to the objects
+///                 of all of its vertices. Empty: the connected parts of the mesh.
+/// @throws InvalidOption, also for another count of numbers, or if the options do not use objects.
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, std::span<const std::uint32_t> objects,
                                    const FieldOptions& options, const Context& context = {});
 
-/// Computes fields of a deforming mesh on one grid, frame after frame, and keeps its buffers between frames.
-/// Vertices may move and the topology may change at every frame; nothing is precomputed that outlives a frame except
-/// the edge list, which is reused while the connectivity stays the same.
+/// Computes fields of a deforming mesh on one grid, frame after frame, and keeps its buffers between frames. Vertices
+/// may move and the topology may change at every frame. The edge list is reused while the connectivity stays the same.
+/// The plan of signs keeps hints that speed up the next frame. Nothing else outlives a frame, and results do not depend
+/// on it.
 class FieldSolver {
  public:
   /// @throws InvalidGrid, InvalidOption, OutOfMemory, DeviceError.
@@ -187,17 +189,19 @@ class FieldSolver {
   FieldSolver& operator=(FieldSolver&&) noexcept;
   ~FieldSolver();
 
-  /// The field of this frame's mesh; valid until the next call. Equal, byte for byte, to distance_field's.
+  /// Computes the field of this frame's mesh; valid until the next call. It equals that of distance_field(), byte for
+  /// byte.
   /// @throws as distance_field; the solver stays usable.
   const Field& compute(const MeshView& mesh);
-  /// The same with a context for this frame alone, which it can be cancelled by. Its device is not looked at.
+  /// Computes the field with a context for this frame alone, which can cancel it. The context's device is ignored.
   const Field& compute(const MeshView& mesh, const Context& context);
 
-  /// Which object each vertex of the following frames belongs to, instead of the connected parts of their meshes; an
-  /// empty list goes back to these. Copied. @throws InvalidOption where the options ask for nothing of objects.
+  /// Sets the object of each vertex of the following frames, instead of the connected parts of their meshes. An empty
+  /// list restores these. The list is copied.
+  /// @throws InvalidOption if the options do not use objects.
   void set_objects(std::span<const std::uint32_t> objects);
 
-  /// Moves the last computed field out of the solver; the next frame gets new buffers.
+  /// Moves the last computed field out of the solver. The next frame gets new buffers.
   [[nodiscard]] Field take();
 
  private:

@@ -11,29 +11,31 @@
 
 namespace blum {
 
-/// The distance at any points, trilinear between the eight nodes around each. Not exact: off by up to about half the
-/// diagonal of a cell next to edges and bisectors of the shape, and by O(spacing^2) where the distance is smooth.
-/// closest_points() is exact.
+/// Returns the distance at any points, trilinear between the eight nodes around each. It is not exact. Next to edges
+/// and bisectors of the shape it is off by up to about half the diagonal of a cell. Where the distance is smooth, it is
+/// off by O(spacing^2). closest_points() is exact.
 ///
 /// @param field   field.grid must be valid. Beyond a band, +-band counts as the distance.
 /// @param points  finite, mesh units.
-/// @return        mesh units, one per point, in their order; not a number at points outside of the grid. Along an axis
-///                with a single layer, points within half a spacing of it lie in the grid, and take its value.
-/// @throws InvalidGrid (also where there are not as many distances as nodes), InvalidOption naming the first point that
-/// is not finite, Cancelled. Cost: O(points).
+/// @return        mesh units, one per point, in their order; NaN for points outside of the grid. Along an axis with a
+///                single layer, points within half a spacing of it lie in the grid and take its value.
+/// @throws InvalidGrid, also if the counts of distances and nodes differ.
+/// @throws InvalidOption that names the first point that is not finite.
+/// @throws Cancelled.
+/// Cost: O(points).
 [[nodiscard]] std::vector<double> interpolate(const Field& field, std::span<const Vec3d> points,
                                               const Context& context = {});
 
-/// Values of the interpolant, and its gradients.
+/// Values of the interpolant and its gradients.
 struct InterpolatedGradients {
-  std::vector<double> value;    ///< as interpolate() gives them, bit for bit
+  std::vector<double> value;    ///< those of interpolate(), bit for bit
   std::vector<Vec3d> gradient;  ///< without unit (distance over length), in the mesh's axes
 };
 
-/// The same with the gradient of what is trilinear between the nodes: about 1 long where the distance is smooth,
-/// shorter next to edges and bisectors. It jumps at the borders of cells: there it is that of the cell with the higher
-/// nodes, in the last layer of the one before. 0 along an axis with a single layer. Not a number outside of the grid,
-/// and where a node of the cell is infinitely far.
+/// Returns the values and the gradient of the trilinear interpolant. The gradient has a length of about 1 where the
+/// distance is smooth, and less next to edges and bisectors. It jumps at the borders of cells. There it is that of the
+/// cell with the higher nodes; in the last layer, that of the cell before. Along an axis with a single layer it is 0.
+/// It is NaN outside of the grid, and if a node of the cell is infinitely far.
 [[nodiscard]] InterpolatedGradients interpolate_with_gradient(const Field& field, std::span<const Vec3d> points,
                                                               const Context& context = {});
 

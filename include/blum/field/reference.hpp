@@ -1,4 +1,4 @@
-// Blum: brute-force fields in double precision, for tests and for trust. SPDX-License-Identifier: Apache-2.0
+// Blum: brute-force fields in double precision, for tests and comparison. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -12,33 +12,35 @@
 
 namespace blum::reference {
 
-/// Distance from a point to the closed triangle abc, which may be degenerate to a segment or a point.
+/// Returns the distance from a point to the closed triangle abc, which may be degenerate to a segment or a point.
 [[nodiscard]] double triangle_distance(const Vec3d& query, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-/// Distance from a point to the closed segment ab, which may be degenerate to a point.
+/// Returns the distance from a point to the closed segment ab, which may be degenerate to a point.
 [[nodiscard]] double segment_distance(const Vec3d& query, const Vec3d& a, const Vec3d& b);
 
 struct Nearest {
   double distance = 0;
-  SiteId site;  ///< the smallest id among the sites whose distance equals the minimum
+  SiteId site;  ///< smallest id among the sites at the smallest distance
 };
 
-/// Looks at every site for every query: slow, obvious, in double. The mesh must outlive it.
+/// Searches every site for every query, in double: slow and simple. The mesh must outlive it.
 class BruteForce {
  public:
   explicit BruteForce(const MeshView& mesh);
 
   [[nodiscard]] const SiteTable& sites() const { return sites_; }
-  /// Distance from a point to one site (its closure).
+  /// Returns the distance from a point to one site (its closure).
   [[nodiscard]] double site_distance(SiteId id, const Vec3d& query) const;
-  /// Closest site among all that a triangle, segment or point names. Cost: O(sites).
+  /// Returns the closest site among all that a triangle, segment or point names. Cost: O(sites).
   [[nodiscard]] Nearest nearest(const Vec3d& query) const;
-  /// Closest site among those that have no vertex of one site's labels, which is how fields of order 2 choose.
-  /// @param first   the other site.
-  /// @param labels  one per vertex of the mesh; empty: each vertex is its own. Cost: O(sites).
+  /// Returns the closest site among those whose vertices have no label of the first site. Fields of order 2 use this
+  /// rule.
+  /// @param first   the first site.
+  /// @param labels  one per vertex of the mesh; empty: each vertex has its own label.
+  /// Cost: O(sites).
   [[nodiscard]] std::optional<Nearest> second(const Vec3d& query, SiteId first,
                                               std::span<const std::uint32_t> labels = {}) const;
-  /// Whether two sites have a vertex each with the same label.
+  /// Returns true if a vertex of one site and a vertex of the other have the same label.
   [[nodiscard]] bool share_label(SiteId a, SiteId b, std::span<const std::uint32_t> labels = {}) const;
 
  private:
@@ -47,8 +49,8 @@ class BruteForce {
   std::vector<bool> named_;
 };
 
-/// Generalized winding number of the triangles around a point: the sum of all signed solid angles over 4 pi
-/// (van Oosterom, Strackee 1983). 1 inside a closed, outward-oriented surface; 0 outside. Cost: O(triangles).
+/// Returns the generalized winding number of the triangles around a point: the sum of all signed solid angles over 4 pi
+/// (van Oosterom, Strackee 1983). It is 1 inside a closed, outward-oriented surface and 0 outside. Cost: O(triangles).
 [[nodiscard]] double winding_number(const MeshView& mesh, const Vec3d& query);
 
 }  // namespace blum::reference

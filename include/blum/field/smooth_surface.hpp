@@ -1,4 +1,4 @@
-// Blum: the smooth surface that the voxels of an image sample. SPDX-License-Identifier: Apache-2.0
+// Blum: the smooth surface sampled by the voxels of an image. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -32,27 +32,36 @@ struct Description<SmoothSurfaceOptions> {
 
 struct SmoothSurface {
   TriangleMesh mesh;
-  /// How far a vertex is at most from the surface of the voxels' boxes where it began, in voxels: the largest of the
-  /// three axes' numbers. Below 1/2.
+  /// Largest move of a vertex from its start along any axis, in voxels of that axis: at most 0.59. Starts lie on the
+  /// surface of the boxes, except where boxes touch only in an edge or a corner. There they are already 0.1 or 0.2 away
+  /// from it, so the move can exceed 1/2. Each final vertex is within 0.49 of its place on the surface of the boxes,
+  /// along each axis.
   double largest_move = 0;
-  std::size_t held_vertices = 0;  ///< that were put back, whole or half way, as the surface would have crossed itself
+  std::size_t held_vertices = 0;  ///< vertices moved back by quarters of their way, because the surface would have
+                                  ///< crossed itself
 };
 
-/// A smooth, closed surface between the voxels of an image that are selected and those that are not.
+/// Computes a smooth, closed surface between the selected voxels of an image and the others.
 ///
-/// - The centre of each selected voxel is inside, and that of each other one is outside, as is all beyond the image.
-/// - What it bounds has the homotopy type of the union of the selected, closed voxels (betti_numbers(VoxelSet)): voxels
-///   that touch in an edge or a corner are joined.
-/// - It is an oriented manifold that does not cross or touch itself, also where the grid's direction mirrors.
+/// - The centre of each selected voxel is inside. Every other centre is outside, and so is all space beyond the image.
+///
+/// - The solid has the homotopy type of the union of the selected, closed voxels (betti_numbers(VoxelSet)). Voxels that
+///   touch in an edge or a corner are joined.
+///
+/// - The surface is an oriented manifold that does not cross or touch itself, also if the grid's direction mirrors.
+///
 /// - Each vertex stays within half a voxel of its place on the surface of the boxes, along each axis.
-/// - Smoothing is by Taubin's filter (1995), which hardly shrinks: waves of the surface that are shorter than some 5
-///   voxels go, long ones stay. Of round tubes of radius 1.5 voxels and more, and balls of 2 and more, the mean radius
-///   is right within 0.1 voxels.
 ///
-/// @return      vertices in world coordinates. The same bytes for any number of threads.
-/// @throws InvalidImage (also when no voxel is selected), InvalidOption (also for more than max_id_count vertices or
-/// triangles), InvalidGrid where the spacing is too small beside the origin for coordinates to tell voxels apart;
-/// OutOfMemory, Cancelled.
+/// - Taubin's filter (1995) smooths the surface and hardly shrinks it. Waves shorter than about 5 voxels vanish, long
+///   ones stay. The mean radius is right within 0.1 voxels for round tubes of radius 1.5 voxels or more, and balls of 2
+///   or more.
+///
+/// @return      vertices in world coordinates. The bytes are the same for any number of threads.
+/// @throws InvalidImage, also if no voxel is selected.
+/// @throws InvalidOption, also for more than max_id_count vertices or triangles.
+/// @throws InvalidGrid if the spacing is too small beside the origin: rounded coordinates then make the surface cross
+/// itself.
+/// @throws OutOfMemory, Cancelled.
 /// Cost: O(voxels / 64) and, for each of the surface's faces, about 5 microseconds of a core and 300 bytes.
 /// Method: docs/theory/smooth-surfaces.md.
 [[nodiscard]] SmoothSurface smooth_surface(const VoxelImageView& image, const LabelSelection& selection = {},

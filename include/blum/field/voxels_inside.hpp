@@ -9,10 +9,11 @@
 
 namespace blum {
 
-/// The voxels whose centre has a winding number above 1/2, by the field's own signs: as voxels, the solid of a mesh
-/// that bounds no polyhedron (SolidRule::winding).
-/// @param grid  of the voxels' centres: for a medial axis its own, MedialAxisReport::grid.
-/// @throws as distance_field(). Cost: that of a field with SignMode::winding; 16 bytes per voxel.
+/// Returns the voxels whose centre has a winding number above 1/2, with the signs of fields. These voxels represent the
+/// solid of a mesh that bounds no polyhedron (SolidRule::winding).
+/// @param grid  grid of the voxel centres; for a medial axis MedialAxisReport::grid.
+/// @throws as distance_field().
+/// Cost: that of a field with SignMode::winding; 16 bytes per voxel.
 [[nodiscard]] VoxelSet voxels_inside(const MeshView& mesh, const GridSpec& grid, const Context& context = {});
 
 }  // namespace blum

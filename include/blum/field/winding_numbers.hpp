@@ -11,17 +11,20 @@
 
 namespace blum {
 
-/// The generalized winding number (see WindingNumber) of a mesh's triangles at any points, threaded.
+/// Returns the generalized winding number (see WindingNumber) of a mesh's triangles at any points, threaded.
 ///
-/// @param mesh       must pass validate(mesh). Segments and points have no winding number and are left out.
+/// @param mesh       must pass validate(mesh). Segments and points have no winding number and are ignored.
 /// @param points     finite.
-/// @param max_error  > 0; values are off by no more, or than 2e-11 where it is less. Off the surface of a closed mesh
-///                   they are whole numbers, exactly. At points of the surface itself any value of the jump may come.
+/// @param max_error  > 0. Values are off by at most max_error or 2e-11, whichever is larger. Off the surface of a
+///                   closed mesh they are exact whole numbers. At points of the surface itself, any value of the jump
+///                   may be returned.
 /// @return           one per point, in their order; the same for any number of threads.
-/// @throws InvalidMesh; InvalidOption, also for a point that is not finite (named by its index); Cancelled.
-/// Cost: O(n log n) for n triangles; then, of a closed mesh or one with no more than 2,048 edges on its boundary, some
-/// 0.2 to 1 us per point and core and 3 ns for each of these edges; of soups as WindingNumber::estimate() or, where
-/// that is less, 3 ns per triangle.
+/// @throws InvalidMesh.
+/// @throws InvalidOption, also for a point that is not finite; the message names its index.
+/// @throws Cancelled.
+/// Cost: O(n log n) for n triangles, then a time per point and core. If the mesh is closed or has at most 2,048
+/// boundary edges, this is 0.2 to 1 us. Each of these edges adds 3 ns. For soups it is that of
+/// WindingNumber::estimate() or 3 ns per triangle, whichever is less.
 [[nodiscard]] std::vector<double> winding_numbers(const MeshView& mesh, std::span<const Vec3d> points,
                                                   double max_error = 1e-6, const Context& context = {});
 

@@ -1,4 +1,4 @@
-// Blum: output files that are complete or not there at all. SPDX-License-Identifier: Apache-2.0
+// Blum: output files that appear complete or not at all. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@ namespace blum {
 
 /// Writes a file such that its name only ever shows the complete content.
 ///
-/// The bytes go to a temporary file in the same directory, which commit() flushes to the disk and renames over the
-/// target; without commit() the temporary is removed and an existing target stays as it was. A replaced file keeps its
-/// permissions (and owner and group where the system allows it). A symbolic link stays a link: the file that it points
-/// to is replaced or made. A target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written directly;
-/// nothing can be taken back there. A target that is a directory, or that may not be written, is refused at once.
+/// The bytes go to a temporary file in the same directory. commit() flushes it to the disk and renames it over the
+/// target. Without commit(), the temporary file is removed and an existing target stays unchanged. A replaced file
+/// keeps its permissions, and its owner and group if the system allows it. A symbolic link stays a link: the file that
+/// it points to is replaced or made. A target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written
+/// directly, and cannot be restored. A target that is a directory, or that may not be written, is rejected at once.
 ///
 /// Small writes are gathered in a buffer of 256 KiB. Not for use by several threads at once.
 class AtomicFile {
  public:
-  /// @throws FileError when the file cannot be made there; the message holds the path and the system's reason.
+  /// @throws FileError if the file cannot be made there; the message holds the path and the system's reason.
   explicit AtomicFile(std::filesystem::path path);
-  /// Removes the temporary file unless commit() succeeded; never throws.
+  /// Removes the temporary file unless commit() succeeded. Never throws.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -29,22 +29,23 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
 
   /// Appends `size` bytes.
-  /// @throws FileError when the system refuses (disk full, for example), or when called after commit().
+  /// @throws FileError if the system refuses (disk full, for example), or after finish() or commit().
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Brings everything that was written to the disk and closes it, so that commit() has no more to do than to rename:
-  /// for files that should appear together. May be called once, before commit(), which else does it.
+  /// Flushes everything written to the disk and closes the file, so that commit() only has to rename it. Use it for
+  /// files that should appear together. May be called once, before commit(), which otherwise does this work.
   /// @throws FileError as commit().
   void finish();
 
   /// Makes the file appear under its name, with everything that was written. May be called once.
-  /// @throws FileError when anything could not be written, now or before; the target is then as it was.
+  /// @throws FileError if anything could not be written, now or before. The target is then unchanged, unless it is
+  /// written directly.
   void commit();
 
-  /// The name that was asked for.
+  /// Returns the requested name.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Bytes written so far, buffered ones included.
+  /// Returns the bytes written so far, including buffered ones.
   [[nodiscard]] std::size_t size() const { return size_; }
 
  private:
@@ -57,7 +58,7 @@ class AtomicFile {
 
   std::filesystem::path path_;
   std::filesystem::path target_;     ///< path_ with links followed
-  std::filesystem::path temporary_;  ///< empty where the target is written directly
+  std::filesystem::path temporary_;  ///< empty if the target is written directly
   std::vector<char> buffer_;
   std::size_t size_ = 0;
   int descriptor_ = -1;

@@ -10,23 +10,26 @@
 
 namespace blum {
 
-/// What a file of centrelines says besides.
+/// Further content of a file of centrelines.
 struct CentrelineFileInfo {
-  std::string version = {};  ///< of Blum, which .swc files name; may be empty
-  std::string head = {};     ///< a JSON object whose members come first in .json; empty: none
+  std::string version = {};  ///< version of Blum, named by .swc files; may be empty
+  std::string head = {};     ///< JSON object whose members come first in .json; empty: none
 };
 
-/// Writes centrelines; the format goes by the extension.
+/// Writes centrelines. The extension selects the format.
 ///
-///   .json  all of it: the members of `info.head`, and `labels`, the members of Centreline and what they consist of,
-///          by their names.
-///   .csv   a row for each branch: label, branch, first_node, last_node, first_kind, last_kind, length, mean_radius,
-///          min_radius, points (how many there are). Closed curves have no nodes, and the kind `closed`.
-///   .swc   a tree of points for each component, where loops are cut: number, type 0, x, y, z, radius, parent.
-///   .vtp, .ply, .npz  polylines with radii: complex_of(), see write_complex().
+///   `.json`  Everything: the members of `info.head`, then `labels`. That list holds the members of each Centreline and
+///            their members, by their names.
+///   `.csv`   A row for each branch. Columns: `label, branch, first_node, last_node, first_kind, last_kind, length,
+///            mean_radius, min_radius, points`. The last one counts the points. Closed curves have no nodes, and the
+///            kind `closed`.
+///   `.swc`   A tree of points for each component, with loops cut. Columns: `number type x y z radius parent`, with
+///            type 0.
+///   `.vtp`, `.ply`, `.npz`  Polylines with radii: complex_of(), see write_complex().
 ///
 /// A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension; FileError; Cancelled.
+/// @throws InvalidOption for another extension.
+/// @throws FileError, Cancelled.
 void write_centrelines(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& info = {},
                        const Context& context = {});
 

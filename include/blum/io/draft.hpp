@@ -1,4 +1,4 @@
-// Blum: files that are looked at before they get their names. SPDX-License-Identifier: Apache-2.0
+// Blum: files that are checked before they get their names. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,13 @@
 
 namespace blum {
 
-/// A file that is written, and perhaps read again, before it takes the place of another: hidden, beside it, with the
-/// same extension, under a name that no file had. A link is followed, so that the draft can take the place of what it
-/// points to. Gone with the object, unless it was kept.
+/// File that is written, and perhaps read again, before it replaces another one. It is hidden, lies beside the other
+/// file, and has the same extension and a new name. A link is followed, so that the draft can replace the file that it
+/// points to. The file is deleted with the object, unless it was kept.
 class Draft {
  public:
-  /// Makes an empty file. @throws FileError where none can be made beside `name`.
+  /// Makes an empty file.
+  /// @throws FileError if none can be made beside `name`.
   explicit Draft(std::filesystem::path name);
   ~Draft();
   Draft(Draft&& other) noexcept;
@@ -20,12 +21,12 @@ class Draft {
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
-  /// Of the draft.
+  /// Returns the path of the draft.
   [[nodiscard]] const std::filesystem::path& path() const { return draft_; }
-  /// Whose place it is to take.
+  /// Returns the name of the file to be replaced.
   [[nodiscard]] const std::filesystem::path& name() const { return name_; }
-  /// Lets the draft take the place of the file, whose permissions it gets where there is one. To be called once.
-  /// @throws FileError
+  /// Moves the draft to the name of the file, and gives it the permissions of an existing file. May be called once.
+  /// @throws FileError.
   void keep();
 
  private:

@@ -10,13 +10,15 @@
 
 namespace blum {
 
-/// Writes an extended axis; the format goes by the extension. .vtp, .ply and .npz hold all of it with its columns and
-/// what the metadata tell of the axis, besides `content` ("extended medial axis"), as write_complex() says, which
-/// read_complex() reads; .obj the triangles and curves; .stl the triangles, in single precision. Columns that a format
-/// cannot hold are left out.
+/// Writes an extended axis. The extension selects the format. Files of .vtp, .ply and .npz hold all of it with its
+/// columns (see write_complex()), and read_complex() reads them. Their metadata are `content` ("extended medial axis")
+/// and, if known, `blum_version`, `source`, `theta`, `lambda`, `spacing`, `deviation`, `smooth`. Files of .obj hold the
+/// triangles and curves. Files of .stl hold the triangles, in single precision. Columns that a format cannot hold are
+/// left out.
 ///
 /// A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension, and for .stl where there are no triangles; FileError; Cancelled.
+/// @throws InvalidOption for another extension, and for .stl without triangles.
+/// @throws FileError, Cancelled.
 void write_extended(const std::filesystem::path& path, const Complex& surface, const MedialMetadata& metadata = {},
                     const Context& context = {});
 

@@ -1,4 +1,4 @@
-// Blum: what files hold, by their names and first bytes. SPDX-License-Identifier: Apache-2.0
+// Blum: the content of files, by their names and first bytes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -13,38 +13,42 @@
 
 namespace blum {
 
-/// What a file holds: by its extension, or by its first bytes where the extension is not known. An .nrrd file is a
-/// field when it says that it is one of Blum's, an .npz file unless it is a complex (see holds_complex), a .ply and an
-/// .obj file a mesh.
-/// @throws FileError when the file cannot be opened, is a directory or is of no known kind.
+/// Returns the content of a file: by its extension or, if that is not known, by its first bytes. An .nrrd file is a
+/// field if it states that Blum wrote it as one, else an image. An .npz file is a field unless it is a complex (see
+/// holds_complex). .ply and .obj files are meshes.
+/// @throws FileError if the file cannot be opened, is a directory or has no known content.
 [[nodiscard]] FileContent content_of(const std::filesystem::path& path);
 
-/// Whether a file holds a medial axis or another complex rather than a field, a mesh or anything else: every .vtp and
-/// .ma, an .npz with vertices and no distances, a .ply that says that it is a medial axis. An .obj does not tell.
-/// @throws FileError when the file cannot be opened or is a directory.
+/// Returns true if a file holds a medial axis or another complex. It does so for every .vtp and .ma file, and for an
+/// .npz file with vertices and no distances. A .ply file must state that it is a medial axis. For .obj files it returns
+/// false, because they do not state it.
+/// @throws FileError if the file cannot be opened or is a directory.
 [[nodiscard]] bool holds_complex(const std::filesystem::path& path);
 
-/// Whether a file may be a field: one of Blum's, or an .nrrd file of floating-point numbers, which may be distances
-/// that another program wrote. @throws FileError, as content_of.
+/// Returns true if a file may be a field: one of Blum's, or an .nrrd file of floating-point numbers. These may be
+/// distances that another program wrote.
+/// @throws FileError as content_of().
 [[nodiscard]] bool may_hold_field(const std::filesystem::path& path);
 
-/// Reads a mesh or an image, also one whose extension does not tell its format. @throws as read_mesh, read_image.
+/// Reads a mesh or an image, also from a file whose extension does not show its format.
+/// @throws as read_mesh(), read_image().
 [[nodiscard]] MeshFile read_mesh_of_any_name(const std::filesystem::path& path, const MeshReadOptions& options = {});
 [[nodiscard]] VoxelImage read_image_of_any_name(const std::filesystem::path& path);
 
-/// "NRRD", "NIfTI", "NPY", "Vol", or "unknown".
+/// Returns "NRRD", "NIfTI", "NPY", "Vol", or "unknown".
 [[nodiscard]] std::string_view image_format_name(const std::filesystem::path& path);
 
-/// Every file that stands for a field of this name: for .nrrd, its sites are in a second one, NAME.site.nrrd, and of
-/// order 2 the second distances and sites in NAME.distance2.nrrd and NAME.site2.nrrd.
-/// @param with_sites  whether the field has any.
+/// Returns every file of a field of this name. Beside NAME.nrrd, the sites are in NAME.site.nrrd. For order 2, the
+/// second distances and sites are in NAME.distance2.nrrd and NAME.site2.nrrd.
+/// @param with_sites  true if the field has sites.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_field(const std::filesystem::path& path,
                                                                 bool with_sites = true, int order = 1);
 
-/// The file that write_field() removes when it writes a field without sites under this name: the sites of the field
-/// that it replaces, where they are in a file of their own.
+/// Returns the file that write_field() removes when it writes a field without sites under this name. It is the separate
+/// file with the sites of the replaced field, if one exists.
 [[nodiscard]] std::optional<std::filesystem::path> sites_of_replaced_field(const std::filesystem::path& path);
-/// The same for a field of order 1: the files of the second distances and sites of the field that it replaces.
+/// Returns the files that it removes for a field of order 1: those of the second distances and sites of the replaced
+/// field.
 [[nodiscard]] std::vector<std::filesystem::path> second_of_replaced_field(const std::filesystem::path& path);
 
 }  // namespace blum

@@ -1,4 +1,4 @@
-// Blum: what files say in words. SPDX-License-Identifier: Apache-2.0
+// Blum: metadata of files, as texts. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace blum {
 
-/// What a file says besides its numbers: keys, each with a text, in their order. Texts are UTF-8.
+/// Texts that a file holds besides its numbers: pairs of key and text, in their order. Texts are UTF-8.
 using FileMetadata = std::vector<std::pair<std::string, std::string>>;
 
-/// The text of a key; empty where there is none.
+/// Returns the text of a key; empty if the key is missing.
 [[nodiscard]] std::string_view find_value(const FileMetadata& metadata, std::string_view key);
 
 }  // namespace blum

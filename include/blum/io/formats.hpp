@@ -15,19 +15,19 @@
 
 namespace blum {
 
-/// What a file holds. Medial axes are complexes.
+/// Content of a file. Medial axes are complexes.
 enum class FileContent : std::uint8_t {
   mesh,
   image,
   field,
   complex,
   points,         ///< with attributes
-  pairs,          ///< of primitives that are close
-  collisions,     ///< of features that move
+  pairs,          ///< primitives that are close
+  collisions,     ///< collisions of moving features
   surface_map,    ///< distances as a texture
-  graph,          ///< of a medial axis or a Voronoi diagram
+  graph,          ///< graph of a medial axis or a Voronoi diagram
   centreline,     ///< graphs of curves with radii
-  extended_axis,  ///< a medial axis that was continued to the surface
+  extended_axis,  ///< medial axis continued to the surface
 };
 
 template <>
@@ -52,13 +52,13 @@ enum class FileAccess : std::uint8_t {
   both  ///< written files can be read again
 };
 
-/// A format of files of one content. A name that stands for several contents (PLY) has a row for each.
+/// Format of files of one content. A name that several contents use (PLY) has a row for each.
 struct FileFormat {
   FileContent content = FileContent::mesh;
-  std::string name;                     ///< "PLY"
-  std::vector<std::string> extensions;  ///< that are read: lower case, with their dots; the usual one first
-  std::vector<std::string> written;     ///< that are written: some of those, or of a format that is not read its own
-  std::string holds;                    ///< what a file can hold, for people
+  std::string name;                     ///< for example "PLY"
+  std::vector<std::string> extensions;  ///< read: lower case, with their dots; the usual one first
+  std::vector<std::string> written;     ///< written: some of those that are read, or others if the format is not read
+  std::string holds;                    ///< possible content, for people
   std::string opens_in;                 ///< other programs, for people
 };
 
@@ -78,30 +78,31 @@ struct Description<FileFormat> {
   };
 };
 
-/// All formats, content by content.
+/// Returns all formats, content by content.
 [[nodiscard]] const std::vector<FileFormat>& file_formats();
 
-/// One of the formats that files of a content have.
+/// A format of files of one content.
 template <FileContent content>
 class FormatOf {
  public:
-  /// By its name in file_formats() or one of its extensions, in any case, with or without the dot: MeshFormat("stl").
-  /// @throws InvalidOption naming those that there are.
+  /// Finds a format by its name in file_formats() or one of its extensions, in any case, with or without the dot:
+  /// MeshFormat("stl").
+  /// @throws InvalidOption that lists the known formats.
   explicit FormatOf(std::string_view name);
 
-  /// As in file_formats(): "STL".
+  /// Returns the name in file_formats(), for example "STL".
   [[nodiscard]] const std::string& name() const { return file_formats()[row_].name; }
-  /// The place in file_formats().
+  /// Returns the index in file_formats().
   [[nodiscard]] std::size_t row() const { return row_; }
   friend bool operator==(FormatOf, FormatOf) = default;
 
-  /// The one that is read from files of the extension of a path; nullopt for none.
+  /// Returns the format that is read from files with the extension of a path; nullopt if none is.
   [[nodiscard]] static std::optional<FormatOf> by_name(const std::filesystem::path& path);
-  /// The one that the first bytes of a file (8 KiB, or all) are those of; nullopt where they do not tell.
+  /// Returns the format of a file by its first bytes (8 KiB, or all); nullopt if they do not show one.
   [[nodiscard]] static std::optional<FormatOf> by_head(std::string_view head);
-  /// The one that files of the extension of a path are read or written in.
-  /// @param what  what messages call the files' content, in the plural; empty: by its own name.
-  /// @throws InvalidOption naming the path and the extensions that can be read or written.
+  /// Returns the format that files with the extension of a path are read or written in.
+  /// @param what  name of the files' content in messages, in the plural; empty: its own name.
+  /// @throws InvalidOption that names the path and the extensions that can be read or written.
   [[nodiscard]] static FormatOf of(const std::filesystem::path& path, FileAccess access = FileAccess::read,
                                    std::string_view what = {});
 
@@ -134,12 +135,12 @@ extern template class FormatOf<FileContent::graph>;
 extern template class FormatOf<FileContent::centreline>;
 extern template class FormatOf<FileContent::extended_axis>;
 
-/// The last extension of a name in lower case, with its dot; ".nii.gz", ".hdr.gz" and ".img.gz" count as one.
+/// Returns the last extension of a name in lower case, with its dot. ".nii.gz", ".hdr.gz" and ".img.gz" count as one.
 [[nodiscard]] std::string file_extension(const std::filesystem::path& path);
 
-/// The extensions of a content's formats, as they come in the table.
+/// Returns the extensions of a content's formats, in the order of the table.
 [[nodiscard]] std::vector<std::string> file_extensions(FileContent content, FileAccess access);
-/// The same as a text, for example ".obj .off .stl .ply".
+/// Returns the same extensions as a text, for example ".obj .off .stl .ply".
 [[nodiscard]] std::string extension_list(FileContent content, FileAccess access, std::string_view between = " ");
 
 }  // namespace blum

@@ -18,48 +18,50 @@
 
 namespace blum {
 
-/// Numbers of vertices, which programs find as `_NAME`.
+/// Numbers of vertices. Programs find them as `_NAME`.
 struct GltfAttribute {
-  std::string name;            ///< letters, digits, `_`, `-` and `.`; without the `_` that files put before it
-  std::size_t components = 1;  ///< numbers for each vertex, 1 to 4
-  /// Vertex after vertex. glTF has finite numbers only: files hold the largest float, 3.4028235e38, with its sign, for
-  /// infinite ones, and 3.4028235e38 for what is not a number.
+  std::string name;            ///< Letters, digits, `_`, `-` and `.`; without the `_` that files put before it.
+  std::size_t components = 1;  ///< Numbers for each vertex, 1 to 4.
+  /// Numbers, vertex after vertex. glTF has finite numbers only. Infinite numbers become the largest float,
+  /// 3.4028235e38, with their sign, and NaN becomes 3.4028235e38.
   std::span<const float> values;
 };
 
-/// What files say besides, as `extras` of the mesh: texts, which are UTF-8, and finite numbers.
+/// Texts (UTF-8) and finite numbers that a file holds as `extras` of the mesh.
 using GltfExtras = std::vector<std::pair<std::string, std::variant<std::string, double, std::vector<double>>>>;
 
-/// What a file shows: a mesh, with its texture. Nothing is copied or owned.
+/// Content of a file: a mesh, with its texture. Nothing is copied or owned.
 struct GltfMesh {
   std::string name = {};  ///< UTF-8; may be empty
   std::span<const Vec3d> vertices = {};
   std::span<const Triangle> triangles = {};
-  std::span<const std::array<std::uint32_t, 2>> segments = {};  ///< drawn as lines
-  std::span<const std::uint32_t> points = {};                   ///< vertices that are drawn as points
-  std::span<const Vec3f> normals = {};                          ///< of vertices, of any length but zero; or none
-  std::vector<GltfAttribute> attributes = {};                   ///< of vertices; their names differ
-  /// Of the corners of each triangle, or none: u to the right and v down, 0 to 1 within the texture. Vertices are
-  /// written once for each place that their corners have, without those of no triangle; there are no segments and
-  /// points then.
+  std::span<const std::array<std::uint32_t, 2>> segments = {};  ///< Drawn as lines.
+  std::span<const std::uint32_t> points = {};                   ///< Vertices that are drawn as points.
+  std::span<const Vec3f> normals = {};                          ///< For vertices, of any length but zero; may be empty.
+  std::vector<GltfAttribute> attributes = {};                   ///< For vertices; their names differ.
+  /// Texture coordinates of the corners of each triangle, or none: u to the right and v down, 0 to 1 within the
+  /// texture. A vertex is written once for each of its texture coordinates; vertices of no triangle are left out.
+  /// Segments and points must then be empty.
   std::span<const std::array<std::array<float, 2>, 3>> texture_coordinates = {};
-  /// The bytes of a PNG file, or none. Needs texture coordinates. Its colours are drawn as they are, without light
-  /// (KHR_materials_unlit), read bilinearly, without mipmaps, clamped at the borders.
+  /// Bytes of a PNG file, or none. A texture needs texture coordinates. Its colours are drawn as they are, without
+  /// light (KHR_materials_unlit). They are read bilinearly, without mipmaps, clamped at the borders.
   std::span<const std::byte> texture = {};
   GltfExtras extras = {};
 };
 
 /// Writes a binary glTF 2.0 file, which appears complete or not at all. The same input gives the same bytes.
 ///
-/// Positions are in single precision. Where the mesh is further from the origin than it is large, they count from the
-/// middle of its box, which the node's translation holds in double precision. Axes and units stay as they are (glTF's
-/// own are metres, with y up). Triangles are seen from both sides.
-/// @throws InvalidMesh for corners that are no vertices, and positions to be written that are not finite or beyond
-///         single precision; InvalidOption for the rest that is not as described above; FileError where the file would
-///         have more than 2^32 - 1 bytes, which no such file can, or the system refuses; OutOfMemory, Cancelled.
-///         Cost: linear; three times the file's size of memory.
+/// Positions are in single precision. If the mesh is further from the origin than it is large, they are relative to the
+/// middle of its box. The node's translation holds that middle in double precision. Axes and units stay as they are
+/// (glTF's own are metres, with y up). Triangles are visible from both sides.
+/// @throws InvalidMesh if a corner names a missing vertex, or a written position is not finite or beyond single
+/// precision. Also for more than 2^31 - 1 vertices.
+/// @throws InvalidOption for other input that is not as described above.
+/// @throws FileError if the file would have more than 2^32 - 1 bytes, the limit of the format, or the system refuses.
+/// @throws OutOfMemory, Cancelled.
+/// Cost: linear; three times the file's size of memory.
 void write_gltf(const std::filesystem::path& path, const GltfMesh& mesh, const Context& context = {});
-/// The bytes of such a file.
+/// Returns the bytes of such a file.
 [[nodiscard]] std::vector<std::byte> encode_gltf(const GltfMesh& mesh, const Context& context = {});
 
 }  // namespace blum

@@ -18,12 +18,12 @@
 
 namespace blum {
 
-/// A medial axis as a file holds it.
+/// Medial axis in a file.
 struct MedialFile {
-  Complex complex;  ///< with those columns of MedialView that the file holds; CompleteAxis has all
+  Complex complex;  ///< with the columns of MedialView that the file holds; CompleteAxis has all
   MedialMetadata metadata;
-  std::optional<Complex> nested = {};  ///< the axes of all angles, where the file holds them (.npz)
-  double least_theta = 0;              ///< of these, degrees
+  std::optional<Complex> nested = {};  ///< Axes of all angles, if the file holds them (.npz).
+  double least_theta = 0;              ///< Least theta of these axes, degrees.
   bool has_radii = false;
   bool has_footprints = false;
   bool has_sites = false;
@@ -31,49 +31,53 @@ struct MedialFile {
   bool has_labels = false;  ///< sheets and roles
 };
 
-/// What a file says of its axis.
+/// Returns the claims of a file about its axis.
 [[nodiscard]] MedialClaims claims_of(const MedialFile& file);
 
-/// Writes a medial axis as a complex (see write_complex), or as .ma; the format goes by the extension. Columns of
-/// MedialView that it lacks are not written.
+/// Writes a medial axis as a complex (see write_complex), or as .ma. The extension selects the format. Columns of
+/// MedialView that the complex lacks are not written; such a file does not name Blum's version.
 ///
-/// The columns are, of vertices: `radius`, `footprint_0`, `footprint_1` (3 components), `separation_angle` (float64),
-/// `site_0`, `site_1` and `role` (int32); of edges: `separation_angle` (float32) and `role` (int32); of triangles:
-/// `separation_angle` (float32) and `sheet` (int32). Roles are the numbers of MedialRole; sites are -1 where there is
-/// none.
+/// Columns of vertices are `radius`, `footprint_0`, `footprint_1` (3 components) and `separation_angle` (float64),
+/// `site_0`, `site_1` and `role` (int32). Columns of edges are `separation_angle` (float32) and `role` (int32). Columns
+/// of triangles are `separation_angle` (float32) and `sheet` (int32). Roles are the numbers of MedialRole. Sites are -1
+/// if none.
 ///
-///   .vtp, .ply, .npz  hold all of it, and the metadata.
-///   .obj  holds positions, triangles, and edges of no triangle.
-///   .ma   text: counts; v x y z radius; e for all edges, also those of triangles, each once; f. As medial meshes are
-///         exchanged (Q-MAT); such files have no metadata.
+///   `.vtp`, `.ply`, `.npz`  Everything, with the metadata.
+///   `.obj`                  Positions, triangles, and edges of no triangle.
+///   `.ma`                   Text: counts; v x y z radius; e for all edges, also those of triangles, each once; f.
+///                           Medial meshes are exchanged in this form (Q-MAT). Such files have no metadata.
 ///
 /// Coordinates keep double precision. A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension, a column of MedialView that is of another type, radii that are missing
-/// where .ma files need them, or metadata that are not finite or not as said above; InvalidGrid; InvalidMesh when the
-/// complex names vertices that it does not have, or one twice in an edge or triangle, or holds numbers that are not
-/// finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
+/// @throws InvalidOption for another extension, a column of MedialView of another type, or missing radii in .ma.
+/// @throws InvalidOption for metadata that are not finite or out of range.
+/// @throws InvalidGrid for the grid of the metadata.
+/// @throws InvalidMesh if the complex names missing vertices, or one twice in an edge or triangle. Also if it holds
+/// numbers that are not finite, a negative radius, or a sheet beyond its count.
+/// @throws FileError, Cancelled.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const MedialMetadata& metadata = {},
                   const Context& context = {});
 
-/// The same with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files hold them, as the further
-/// complex `nested`, which has more columns (float32): of vertices and triangles `until`, the theta at which they are
-/// gone (inf: none); of edges `from` and `until`, between which an edge has its role. The least angle is in the
-/// metadata, as `nested_theta`.
+/// Writes a medial axis with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files hold them, as
+/// the further complex `nested` with more columns (float32). For vertices and triangles, `until` is the theta at which
+/// they vanish (inf: never). For edges, `from` and `until` are the limits between which an edge has its role. The
+/// metadata hold the least angle as `nested_theta`.
 /// @throws InvalidOption for other formats.
 /// @param least_theta  MedialAxis::least_theta(), degrees.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,
                   const MedialMetadata& metadata = {}, const Context& context = {});
 
-/// Those of the extensions which read_medial() reads whose files hold radii.
+/// Returns the extensions that read_medial() reads and whose files hold radii.
 [[nodiscard]] std::vector<std::string> extensions_with_radii();
 
-/// Reads a file that write_medial wrote, or one of the same form by another program (see read_complex), with any of the
-/// columns; further ones follow them. .vtp, .ply and .npz give back exactly what was written. Where a file does not say
-/// what its edges are, those that are sides of triangles are left out, as the triangles imply them, and the others are
-/// curves.
-/// @throws FileError; FormatError naming the file and the reason; InvalidOption for another extension.
+/// Reads a file written by write_medial(), or one of the same form by another program (see read_complex), with any of
+/// the columns. Further columns follow them. Files of .vtp, .ply and .npz give back exactly what was written. If a file
+/// does not state roles of edges, the sides of triangles are left out, because triangles imply them. All other edges
+/// are curves.
+/// @throws FileError.
+/// @throws FormatError that names the file and the reason.
+/// @throws InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
-/// The same from memory; `name` stands for the file in messages.
+/// Reads a medial axis from memory. In messages, `name` stands for the file.
 [[nodiscard]] MedialFile read_medial(std::span<const std::byte> bytes, ComplexFormat format,
                                      const std::string& name = "medial axis");
 

@@ -7,7 +7,7 @@
 
 namespace blum {
 
-/// A colour in sRGB, each component in [0, 1].
+/// Colour in sRGB, each component in [0, 1].
 struct Color {
   float r = 0, g = 0, b = 0;
   [[nodiscard]] friend Color mix(const Color& a, const Color& b, float t) {
@@ -15,10 +15,10 @@ struct Color {
   }
 };
 
-/// A component as pictures hold it; those beyond [0, 1] are cut off.
+/// Returns a component as files hold it. Values beyond [0, 1] are clamped.
 [[nodiscard]] std::uint8_t byte_of(float component);
 
-/// Rows from the top, pixels from the left.
+/// Picture: rows from the top, pixels from the left.
 class Picture {
  public:
   /// @param width, height  pixels, at least 1.

@@ -12,13 +12,13 @@
 
 namespace blum {
 
-/// What a pixel of a PNG file holds, in bytes.
+/// Content of a pixel of a PNG file; values are its bytes.
 enum class PngChannels : std::uint8_t {
   rgb = 3,
   rgba = 4  ///< the last is opacity: 255 is opaque
 };
 
-/// Pixels somewhere in memory, in sRGB: rows from the top, pixels from the left, a byte for each channel.
+/// View of pixels in memory, in sRGB: rows from the top, pixels from the left, a byte for each channel.
 struct PixelView {
   std::span<const std::uint8_t> bytes;
   std::uint32_t width = 0;   ///< pixels, 1 to 1,000,000
@@ -26,13 +26,16 @@ struct PixelView {
   PngChannels channels = PngChannels::rgb;
 };
 
-/// The bytes of a PNG file of 8 bits a channel. The same pixels give the same bytes.
-/// @throws InvalidOption for a size beyond the limits, or another count of bytes; FileError where libpng refuses;
-///         OutOfMemory. Cost: about 80 ns per pixel; the memory of an uncompressed copy.
+/// Returns the bytes of a PNG file with 8 bits per channel. The same pixels give the same bytes.
+/// @throws InvalidOption for a size beyond the limits, or another count of bytes.
+/// @throws FileError if libpng refuses.
+/// @throws OutOfMemory.
+/// Cost: about 80 ns per pixel; the memory of an uncompressed copy.
 [[nodiscard]] std::vector<std::byte> encode_png(const PixelView& pixels);
 [[nodiscard]] std::vector<std::byte> encode_png(const Picture& picture);
 
-/// Writes them to a file, which appears complete or not at all. @throws as encode_png(), FileError.
+/// Writes pixels to a file, which appears complete or not at all.
+/// @throws as encode_png(), FileError.
 void write_png(const std::filesystem::path& path, const PixelView& pixels);
 void write_png(const std::filesystem::path& path, const Picture& picture);
 

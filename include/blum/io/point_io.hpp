@@ -15,33 +15,41 @@
 
 namespace blum {
 
-/// Those of the extensions which read_points() reads whose files hold points, and no mesh.
+/// Returns the extensions that read_points() reads and whose files hold points, not meshes.
 [[nodiscard]] std::vector<std::string> cloud_extensions();
 
-/// Reads points, by the extension:
+/// Reads points. The extension selects the format.
 ///
-///   .npy        an array [n, 3] of numbers
-///   .npz        the array `points`, else `vertices`, [n, 3]
-///   .csv .xyz .txt   a row for each point, whose first three numbers, parted by commas, semicolons or blanks, are its
-///               coordinates; what follows is passed over, so are empty rows, those that begin with `#`, and a first
-///               row of names
-///   .ply .vtp .obj .off .stl   the vertices, in their order
+///   `.npy`  An array [n, 3] of numbers.
+///   `.npz`  The array `points`, or else `vertices`, [n, 3].
+///   `.csv`, `.xyz`, `.txt`  A row for each point. Its first three numbers are the coordinates, separated by commas,
+///                           semicolons or blanks; the rest is ignored. Empty rows, rows that begin with `#`, and a
+///                           first row of names are ignored, too.
+///   `.ply`, `.vtp`, `.obj`, `.off`, `.stl`  The vertices, in their order.
 ///
-/// @throws FileError; FormatError naming the file, the line and the reason, also for what is not finite; InvalidOption
-/// for another extension; OutOfMemory.
+/// @throws FileError.
+/// @throws FormatError that names the file, the line and the reason, also for numbers that are not finite.
+/// @throws InvalidOption for another extension.
+/// @throws OutOfMemory.
 [[nodiscard]] std::vector<Vec3d> read_points(const std::filesystem::path& path);
 
-/// The rows of a .csv, .xyz or .txt file from memory. @param name  what stands for the file in messages.
+/// Reads the rows of a .csv, .xyz or .txt file from memory.
+/// @param name  stands for the file in messages.
 [[nodiscard]] std::vector<Vec3d> read_point_rows(std::span<const std::byte> text, const std::string& name = "points");
 
-/// Writes points with their columns: .ply, .vtp as write_complex() does; .npz as an array `points` [n, 3], one for each
-/// column under its name, and `metadata`, a JSON object; .csv with a first row of names: x, y, z, then the columns;
-/// those of three numbers are NAME_x, NAME_y, NAME_z, others of several NAME_0, NAME_1, ... CSV files have no metadata.
+/// Writes points with their columns. The extension selects the format.
+///
+///   `.ply`, `.vtp`  As write_complex() does.
+///   `.npz`          An array `points` [n, 3], one array for each column under its name, and `metadata`, a JSON object.
+///   `.csv`          A first row of names: x, y, z, then the columns. Columns of three numbers are NAME_x, NAME_y,
+///                   NAME_z, others of several NAME_0, NAME_1, ... CSV files have no metadata.
+///
 /// Numbers of text are exact.
-/// @param metadata  `content` is "points" where it does not say otherwise: readers of axes and fields refuse such
-/// files.
-/// @param points  a complex of vertices alone; validate(points) must pass.
-/// @throws InvalidMesh, InvalidOption for another extension, FileError, Cancelled.
+/// @param metadata  unless they contain `content`, it is set to "points". Readers of axes and fields reject such files.
+/// @param points    a complex of vertices alone; validate(points) must pass.
+/// @throws InvalidMesh, also for edges or triangles.
+/// @throws InvalidOption for another extension, and in .npz for a column `points` or `metadata`.
+/// @throws FileError, Cancelled.
 void write_points(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata = {},
                   const Context& context = {});
 

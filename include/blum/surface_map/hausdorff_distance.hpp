@@ -1,4 +1,4 @@
-// Blum: certain bounds on the Hausdorff distance of meshes. SPDX-License-Identifier: Apache-2.0
+// Blum: certified bounds on the Hausdorff distance of meshes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -17,10 +17,11 @@
 namespace blum {
 
 struct HausdorffOptions {
-  /// How wide the interval may be, > 0, mesh units. Unset: a ten-thousandth of the diagonal of the box around both.
+  /// Largest width of the interval, > 0, mesh units. Unset: a ten-thousandth of the diagonal of the box around both
+  /// meshes.
   std::optional<double> tolerance = {};
-  /// The search stops, with a wider interval, once the distance has been computed at this many points of a mesh, which
-  /// take up to 150 bytes each.
+  /// The search stops, with a wider interval, when it holds this many points of a mesh: its vertices, and points added
+  /// between them. Each takes up to 150 bytes. At most max_id_count points are used.
   std::size_t max_points = 20'000'000;
 };
 
@@ -37,16 +38,16 @@ struct Description<HausdorffOptions> {
   };
 };
 
-/// How far a mesh is, at most, from another one: the largest distance of any of its points to the closest point of the
-/// other. An interval that holds it.
+/// Interval that contains the largest distance of any point of a mesh to the closest point of another mesh.
 struct DirectedHausdorff {
   double lower = 0;  ///< mesh units
   double upper = 0;
   /// A point of the mesh whose distance is at least `lower`, and the point of the other mesh that is closest to it.
   std::array<Vec3d, 2> points;
-  std::size_t primitive = 0;    ///< of the mesh, that the first point lies on: triangles, then segments, then points
-  SiteId site;                  ///< of the other mesh, that the second point lies on
-  std::size_t evaluations = 0;  ///< points of the mesh at which the distance was computed
+  std::size_t primitive = 0;    ///< primitive of the mesh that contains the first point: triangles, then segments, then
+                                ///< points
+  SiteId site;                  ///< site of the other mesh that contains the second point
+  std::size_t evaluations = 0;  ///< number of points at which the distance was computed
 };
 
 template <>
@@ -65,11 +66,12 @@ struct Description<DirectedHausdorff> {
   };
 };
 
-/// The Hausdorff distance of two meshes: the larger one of both directions.
+/// Hausdorff distance of two meshes: the larger one of both directions.
 struct HausdorffDistance {
-  double lower = 0;  ///< mesh units
+  double lower = 0;  ///< Mesh units.
   double upper = 0;
-  std::array<Vec3d, 2> points;  ///< of the first mesh and of the second, at least `lower` apart; witnesses of it
+  std::array<Vec3d, 2> points;  ///< A point of the first mesh, then one of the second. One is at least `lower` from the
+                                ///< other mesh; the other one is its closest point there.
   DirectedHausdorff forward;    ///< of the first mesh from the second
   DirectedHausdorff backward;   ///< of the second mesh from the first
 };
@@ -90,20 +92,22 @@ struct Description<HausdorffDistance> {
   };
 };
 
-/// The one-sided Hausdorff distance, from `mesh` to `other`.
+/// Computes the one-sided Hausdorff distance, from `mesh` to `other`.
 ///
 /// @param mesh, other  any soups of triangles, segments and points.
-/// @return             an interval that holds the distance, rounding included, no wider than the tolerance (which is
-///                     taken to be at least 1e-13 of the largest coordinate) unless max_points has ended the search.
-///                     The same for any number of threads.
-/// @throws InvalidMesh, InvalidOption, Cancelled. Cost: two hierarchies and one search per vertex, then as many
-/// searches as the tolerance asks for near the furthest places. Where many triangles coincide without sharing vertices,
-/// the square of their number. Method: docs/theory/surface-maps.md.
+/// @return             an interval that contains the distance, rounding included. It is no wider than the tolerance,
+///                     unless max_points has ended the search. The tolerance is at least 1e-13 of the largest
+///                     coordinate. The result is the same for any number of threads.
+/// @throws InvalidMesh, also if one mesh is more than 1e140 times as large as the other, or as far from it.
+/// @throws InvalidOption, Cancelled.
+/// Cost: two hierarchies and one search per vertex, then as many searches as the tolerance needs near the furthest
+/// places. Where many triangles coincide without sharing vertices, it is the square of their number. Method:
+/// docs/theory/surface-maps.md.
 [[nodiscard]] DirectedHausdorff directed_hausdorff_distance(const MeshView& mesh, const MeshView& other,
                                                             const HausdorffOptions& options = {},
                                                             const Context& context = {});
 
-/// The Hausdorff distance of two meshes as sets of points: both directions.
+/// Computes the Hausdorff distance of two meshes as sets of points, from both directions.
 [[nodiscard]] HausdorffDistance hausdorff_distance(const MeshView& a, const MeshView& b,
                                                    const HausdorffOptions& options = {}, const Context& context = {});
 

@@ -1,4 +1,4 @@
-// Blum: how a surface deviates from another one, over all of its area. SPDX-License-Identifier: Apache-2.0
+// Blum: deviation of a surface from another one, over all of its area. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@
 namespace blum {
 
 struct DeviationOptions {
-  /// The surface is cut into about so many pieces, and more where triangles are long; 1 to 10^9.
+  /// The surface is cut into about this many pieces, and more if triangles are long; 1 to 10^9.
   std::size_t pieces = 1'000'000;
-  /// How signs are found, as for closest_points(); deviations are then negative where the surface is inside of the
-  /// other mesh.
+  /// Rule for signs, as for closest_points(). Signed deviations are negative where the surface is inside of the other
+  /// mesh.
   SignMode sign = SignMode::none;
 };
 
@@ -34,21 +34,21 @@ struct Description<DeviationOptions> {
   };
 };
 
-/// The distances of all points of a surface from another mesh, by area: each of many small pieces stands with the exact
-/// distance at its centroid. Errors are certain, not estimates, and far above what is likely: distances change by no
-/// more than one moves, so those of a piece are known to within its size.
+/// Distances of all points of a surface from another mesh, by area. The surface is cut into small pieces; the exact
+/// distance at its centroid stands for each. Errors are guaranteed bounds, not estimates, and far above likely errors.
+/// A distance changes by at most the distance moved, so distances on a piece are known to within its size.
 struct SurfaceDeviation {
   static constexpr std::array<double, 7> percents{1, 5, 25, 50, 75, 95, 99};
 
-  double mean = 0;        ///< mesh units; signed where signs are asked for
-  double mean_error = 0;  ///< the true mean is no further from it
-  double rms = 0;         ///< root of the mean square
+  double mean = 0;        ///< Mesh units; signed if signs are requested.
+  double mean_error = 0;  ///< The true mean is at most this far from `mean`.
+  double rms = 0;         ///< Root of the mean square.
   double rms_error = 0;
-  double smallest = 0;  ///< of the centroids
+  double smallest = 0;  ///< At the centroids.
   double largest = 0;
-  std::array<double, 7> percentiles{};  ///< so many percent of the area are below: see `percents`
-  double percentile_error = 0;          ///< of each of them, and of smallest and largest
-  double area = 0;                      ///< of the surface, square mesh units
+  std::array<double, 7> percentiles{};  ///< This many percent of the area are below: see `percents`.
+  double percentile_error = 0;          ///< Bound for each of them, and for smallest and largest.
+  double area = 0;                      ///< Area of the surface, square mesh units.
   std::size_t pieces = 0;
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;
@@ -78,12 +78,13 @@ struct Description<SurfaceDeviation> {
   };
 };
 
-/// Mean, root mean square and percentiles of the distance of a surface from another mesh.
+/// Computes the mean, root mean square and percentiles of the distance of a surface from another mesh.
 ///
-/// @param mesh   with a triangle that has an area; its segments and points do not count.
+/// @param mesh   must have a triangle with an area; its segments and points are ignored.
 /// @param other  any soup of triangles, segments and points.
 /// @return       the same for any number of threads.
-/// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled. Cost: one closest point for each piece.
+/// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled.
+/// Cost: one closest point for each piece.
 [[nodiscard]] SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other,
                                                  const DeviationOptions& options = {}, const Context& context = {});
 

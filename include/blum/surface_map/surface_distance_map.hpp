@@ -25,12 +25,13 @@
 
 namespace blum {
 
-/// What the values of a surface map are.
+/// Meaning of the values of a surface map.
 enum class SurfaceQuantity : std::uint8_t {
-  distance,       ///< to the closest point of another mesh
-  self_distance,  ///< to the closest point of the mesh's own triangles that share no vertex with the texel's triangle
-  ray_thickness,  ///< from the surface, straight inwards, to where the solid ends
-  ball_thickness  ///< diameter of the largest ball inside of the solid that touches the surface there
+  distance,       ///< Distance to the closest point of another mesh.
+  self_distance,  ///< Distance to the closest point of the mesh itself. Parts that share a vertex with the texel's
+                  ///< triangle are ignored.
+  ray_thickness,  ///< Distance from the surface, straight inwards, to the far side of the solid.
+  ball_thickness  ///< Diameter of the largest ball inside of the solid that touches the surface there.
 };
 
 template <>
@@ -45,9 +46,9 @@ struct Description<SurfaceQuantity> {
 struct SurfaceMapOptions {
   /// Side of a texel on the surface, > 0, mesh units. Unset: about a million texels.
   std::optional<double> texel = {};
-  /// How the sign of distances to another mesh is found: negative where the surface is inside of it.
+  /// Rule for the sign of distances to another mesh: negative where the surface is inside of it.
   SignMode sign = SignMode::none;
-  /// Nothing further than this is looked for; >= 0, mesh units. Unset: no limit.
+  /// Largest distance that is searched; >= 0, mesh units. Unset: no limit.
   std::optional<double> max_distance = {};
 };
 
@@ -65,87 +66,87 @@ struct Description<SurfaceMapOptions> {
   };
 };
 
-/// A distance vector field over the surface of a mesh, as a texture: for each texel what is closest to its point of the
-/// surface. Lists of texels have rows from the top, x fastest, and atlas->size() entries.
+/// Distance vector field over the surface of a mesh, as a texture. Each texel holds the closest point for its point of
+/// the surface. Lists of texels have rows from the top, x fastest, and atlas->size() entries.
 struct SurfaceMap {
   std::shared_ptr<const SurfaceAtlas> atlas;  ///< shared by the maps of a SurfaceMapper; never null
   SurfaceQuantity quantity = SurfaceQuantity::distance;
-  /// Mesh units, up to 3e38 as all that is float here. Infinite where there is nothing (within max_distance); not a
-  /// number of texels of no triangle.
+  /// Distance of each texel, mesh units, at most 3e38, as for all float members. Infinite if nothing lies within
+  /// max_distance; NaN for texels of no triangle.
   Buffer<float> distance;
-  /// From the point of the surface to the closest point, mesh units (of ray_thickness to the far side, of
-  /// ball_thickness to where the ball touches again); zeros where there is none.
+  /// Vector from the point of the surface to the closest point, mesh units. For ray_thickness it ends at the far side,
+  /// for ball_thickness where the ball touches again. Zero if there is none.
   Buffer<Vec3f> vector;
-  /// What the closest point lies on, numbered as the SiteTable of the other mesh says, or of the mesh itself; none()
-  /// where there is none.
+  /// Site that contains the closest point, numbered as in the SiteTable of the other mesh, or of the mesh itself;
+  /// none() if there is none.
   Buffer<SiteId> site;
-  /// For each triangle of the mesh: how much the distance at any of its points may differ from the value that is read
-  /// there from the texture, by the nearest texel or bilinearly: distances do not change by more than one moves. Mesh
-  /// units. Of distances and self-distances; empty of thickness, which may jump. Where signs may jump (see
-  /// ClosestPointQuery::sign_may_jump()), it holds that, too, and is large. Where nothing lies within max_distance of
-  /// some texels, it counts for places that do not look at these.
+  /// Error bound for each triangle of the mesh, in mesh units. At any point of the triangle, the distance differs from
+  /// the texture's value by at most this. It holds for lookups by the nearest texel and bilinearly, because a distance
+  /// changes by at most the distance moved. It exists for distances and self-distances; it is empty for thickness,
+  /// which may jump. If signs may jump (see ClosestPointQuery::sign_may_jump()), the bound includes that and is large.
+  /// If nothing lies within max_distance of some texels, it holds for lookups that do not read these.
   std::vector<float> error;
 
-  /// Exact, at each vertex of the mesh; not a number at those of no triangle. Of all quantities but `distance`, as for
-  /// a point of the smallest triangle at the vertex.
+  /// Exact distance at each vertex of the mesh; NaN for vertices of no triangle. For all quantities but `distance`, it
+  /// is that of a point of the smallest triangle at the vertex.
   std::vector<double> vertex_distance;
   struct FaceSummary {
-    float smallest = 0;  ///< of the texels of the triangle; mesh units, as `distance`
+    float smallest = 0;  ///< smallest value of the triangle's texels, mesh units as `distance`; NaN without texels
     float largest = 0;
-    float mean = 0;  ///< of those that are finite
+    float mean = 0;  ///< mean of the finite values; NaN without any
   };
   std::vector<FaceSummary> faces;  ///< for each triangle of the mesh
 
   SignRule sign_rule = SignRule::none;
-  std::string sign_reason;        ///< one sentence: why this rule
-  std::vector<PhaseTime> phases;  ///< where time went
-  /// That no texel has a value (WarningCode::nothing_found); of thickness, thickness_warnings() before it. None of maps
-  /// from files.
+  std::string sign_reason;        ///< Reason for this rule, one sentence.
+  std::vector<PhaseTime> phases;  ///< Time of each phase.
+  /// A warning that no texel has a value (WarningCode::nothing_found). For thickness, thickness_warnings() come before
+  /// it. Empty for maps from files.
   std::vector<Warning> warnings;
 
-  /// A texel with the smallest distance; nullopt where no texel has one.
+  /// Returns a texel with the smallest distance; nullopt if no texel has one.
   [[nodiscard]] std::optional<std::size_t> closest_texel() const;
-  /// All texels whose distance is at most this, in rising order.
+  /// Returns all texels whose distance is at most this, in rising order.
   [[nodiscard]] std::vector<std::uint32_t> texels_within(double limit) const;
 };
 
-/// The distance from every point of a surface to another mesh, as a texture (Sud 2006, chapter 3).
+/// Computes the distance from every point of a surface to another mesh, as a texture (Sud 2006, chapter 3).
 ///
 /// @param target  a mesh with triangles; its segments and points get no texels.
-/// @param other   any soup of triangles, segments and points. Several objects go in as one mesh.
-/// @return        exact at the point of each texel, rounded to float32; in between within `error`. The same for any
+/// @param other   any soup of triangles, segments and points. Pass several objects as one mesh.
+/// @return        exact at the point of each texel, rounded to float32; between them within `error`. The same for any
 ///                number of threads.
-/// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled. Cost: about 0.1 to 0.2 us per texel on two cores; 28
-/// bytes per texel. Method: docs/theory/surface-maps.md.
+/// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled.
+/// Cost: about 0.1 to 0.2 us per texel on two cores; 28 bytes per texel. Method: docs/theory/surface-maps.md.
 [[nodiscard]] SurfaceMap surface_distance_map(const MeshView& target, const MeshView& other,
                                               const SurfaceMapOptions& options = {}, const Context& context = {});
 
-/// The distance from every point of a surface to the triangles, segments and points of the same mesh that share no
-/// vertex with the triangle that the point lies on. `sign` is not looked at.
+/// Computes the distance from every point of a surface to the same mesh. For each point, the triangles, segments and
+/// points that share a vertex with its triangle are ignored. `sign` is ignored.
 [[nodiscard]] SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& options = {},
                                            const Context& context = {});
 
-/// Maps of surfaces that move: the atlas stays, and so does what is known of how the meshes are connected.
+/// Computes maps of surfaces that move. It keeps the atlas, and what depends only on the connectivity of the meshes.
 class SurfaceMapper {
  public:
   /// @throws as surface_distance_map().
   SurfaceMapper(const MeshView& target, const MeshView& other, const SurfaceMapOptions& options = {},
                 const Context& context = {});
-  /// The same on an atlas that is there, such as one of given texture coordinates. `texel` is not looked at.
+  /// Makes a mapper with an existing atlas, for example one of given texture coordinates. `texel` is ignored.
   SurfaceMapper(const MeshView& target, SurfaceAtlas atlas, const MeshView& other,
                 const SurfaceMapOptions& options = {}, const Context& context = {});
   SurfaceMapper(SurfaceMapper&&) noexcept;
   SurfaceMapper& operator=(SurfaceMapper&&) noexcept;
   ~SurfaceMapper();
 
-  /// New places of the vertices of the target, or of the other mesh. @throws InvalidMesh for another count, or one that
-  /// is not finite.
+  /// Sets new positions of the vertices of the target, or of the other mesh.
+  /// @throws InvalidMesh for another count, or a position that is not finite.
   void move_target(std::span<const Vec3d> vertices);
   void move_other(std::span<const Vec3d> vertices, const Context& context = {});
-  /// Another mesh instead of the other one.
+  /// Replaces the other mesh.
   void replace_other(const MeshView& other, const Context& context = {});
 
-  /// The map of the meshes as they are now.
+  /// Returns the map of the meshes as they are now.
   [[nodiscard]] SurfaceMap map(const Context& context = {}) const;
 
  private:

@@ -1,4 +1,4 @@
-// Blum: what the values of a surface map are over its area. SPDX-License-Identifier: Apache-2.0
+// Blum: statistics of the values of a surface map over its area. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@
 
 namespace blum {
 
-/// The values of a surface map by area: each texel stands for the part of its triangle that lies in it. Texels without
-/// a value (infinite) count for `area` alone. These are estimates; for distances to another mesh surface_deviation()
-/// has errors that are certain.
+/// Values of a surface map by area: each texel stands for the part of its triangle that lies in it. Texels without a
+/// value (infinite) count for `area` alone. These are estimates. For distances to another mesh, surface_deviation()
+/// gives guaranteed errors.
 struct SurfaceMapStatistics {
   static constexpr std::array<double, 7> percents = SurfaceDeviation::percents;
 
-  double mean = 0;  ///< mesh units; signed where the map is
+  double mean = 0;  ///< mesh units; signed if the map is
   double rms = 0;   ///< root of the mean square
   double smallest = 0;
   double largest = 0;
-  std::array<double, 7> percentiles{};  ///< so many percent of the measured area are below: see `percents`
-  double area = 0;                      ///< of the triangles that have texels, square mesh units
-  double measured_area = 0;             ///< the part of it whose texels have a value
+  std::array<double, 7> percentiles{};  ///< This many percent of the measured area are below: see `percents`.
+  double area = 0;                      ///< Area of triangles with texels, square mesh units.
+  double measured_area = 0;             ///< Part of `area` whose texels have a value.
 };
 
 template <>
@@ -45,11 +45,14 @@ struct Description<SurfaceMapStatistics> {
   };
 };
 
-/// Mean, root mean square and percentiles of a map, such as which part of a surface is thinner than a limit.
+/// Computes the mean, root mean square and percentiles of a map, for example to find the share of a surface below a
+/// thickness.
 ///
-/// @param mesh  that the map is of.
-/// @return      zeros where no texel with a value is of a triangle with an area.
-/// @throws InvalidMesh where mesh and map do not fit, OutOfMemory. Cost: about 0.3 us for each texel.
+/// @param mesh  mesh of the map.
+/// @return      zeros if no texel with a value belongs to a triangle with an area.
+/// @throws InvalidMesh if mesh and map do not fit.
+/// @throws OutOfMemory.
+/// Cost: about 0.3 us for each texel.
 [[nodiscard]] SurfaceMapStatistics surface_map_statistics(const MeshView& mesh, const SurfaceMap& map);
 
 }  // namespace blum

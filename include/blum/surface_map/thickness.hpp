@@ -1,4 +1,4 @@
-// Blum: how thick solids are. SPDX-License-Identifier: Apache-2.0
+// Blum: thickness of solids. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -19,15 +19,15 @@
 
 namespace blum {
 
-/// What thickness means at a point of a triangle, whose normal points out of the solid.
+/// Definition of thickness at a point of a triangle, whose normal points out of the solid.
 enum class ThicknessKind : std::uint8_t {
-  ray,  ///< from the point against the normal: how far it is to the first other triangle through which one leaves the
-        ///< solid. Infinite where there is none: the mesh is open, or faces inwards
-  ball  ///< diameter of the largest ball that touches the surface at the point, from inside, and holds no point of a
-        ///< triangle whose normal is turned by `separation` or more from the surface's there. That normal is of the
-        ///< smooth surface that the mesh approximates: between those of the triangle's corners, each the mean of the
-        ///< normals there that are turned by less than `separation` from the triangle's, by angle. Infinite where there
-        ///< is none
+  ray,  ///< Distance from the point against the normal to the first other triangle through which the ray leaves the
+        ///< solid. Infinite if there is none: the mesh is open, or faces inwards.
+  ball  ///< Diameter of the largest ball that touches the surface at the point, from inside. It contains no point of a
+        ///< triangle whose normal differs from the surface's there by `separation` or more. That normal is the one of
+        ///< the smooth surface that the mesh approximates. It lies between those of the triangle's corners. A corner's
+        ///< normal is the mean, by angle, of the normals there that differ from the triangle's by less than
+        ///< `separation`. Infinite if there is no such ball.
 };
 
 template <>
@@ -38,9 +38,9 @@ struct Description<ThicknessKind> {
 
 struct ThicknessOptions {
   ThicknessKind kind = ThicknessKind::ray;
-  /// Of balls, degrees, 0 to 180: triangles that are turned by less do not end them, and count as parts of the same
-  /// smooth surface. With 0 the ball touches the triangle itself, lies inside of the polyhedron, and shrinks to nothing
-  /// at each convex edge, also those that only approximate a smooth surface.
+  /// For balls, degrees, 0 to 180. Triangles whose normals differ by less do not limit a ball, and count as parts of
+  /// the same smooth surface. With 0 the ball touches the triangle itself and lies inside of the polyhedron. It shrinks
+  /// to nothing at each convex edge, also those that only approximate a smooth surface.
   double separation = 30;
 };
 
@@ -56,40 +56,42 @@ struct Description<ThicknessOptions> {
   };
 };
 
-/// How thick a solid is at a point of its surface.
+/// Thickness of a solid at a point of its surface.
 struct Thickness {
-  double thickness = 0;  ///< mesh units; infinite where there is nothing on the far side
-  Vec3d opposite;        ///< where the ray leaves, or the ball touches; the point itself where there is nothing
-  TriangleId triangle;   ///< that `opposite` lies on; none() where there is nothing
+  double thickness = 0;  ///< mesh units; infinite if nothing lies on the far side
+  Vec3d opposite;        ///< where the ray leaves, or the ball touches; the point itself if nothing was found
+  TriangleId triangle;   ///< triangle that contains `opposite`; none() if nothing was found
 };
 
-/// How thick a solid is at points of its surface.
+/// Computes the thickness of a solid at points of its surface.
 ///
-/// @param solid   a mesh whose triangles face outwards; closed, where all of it is to have a thickness. Triangles
-///                without area have none (infinite), and end no ball.
-/// @param points  finite; each stands for the point of the surface that is closest to it and, on edges and at vertices,
-///                for the smallest triangle there. Where a point lies on the border of its triangle, a place next to it
-///                inside is taken, a ten-millionth of the triangle's size away.
-/// @return        one entry per point; exact but for rounding. Of balls infinite beyond eight diagonals of the solid.
-/// The same for any number of threads.
-/// @throws InvalidMesh, InvalidOption, Cancelled. Cost: about 1 us (ray) and 5 to 30 us (ball) per point and core;
-/// balls that touch much of the surface at once, as of spheres, take far more.
-/// Method: docs/theory/surface-maps.md; balls shrink as in Ma, Bae, Choi, "3D medial axis point approximation using
+/// @param solid   a mesh whose triangles face outwards. It must be closed for all of it to have a thickness. Triangles
+///                without area have none (infinite), and limit no ball.
+/// @param points  finite. Each stands for the point of the surface that is closest to it and, on edges and at vertices,
+///                for the smallest triangle there. A point on the border of its triangle is moved inside, by a
+///                ten-millionth of the way to the triangle's centroid.
+/// @return        one entry per point; exact within rounding. For balls, infinite beyond eight diagonals of the solid.
+///                The same for any number of threads.
+/// @throws InvalidMesh, InvalidOption, Cancelled.
+/// Cost: about 1 us (ray) and 5 to 30 us (ball) per point and core. Balls that touch much of the surface at once, as in
+/// spheres, take far more.
+/// Method: docs/theory/surface-maps.md. Balls shrink as in Ma, Bae, Choi, "3D medial axis point approximation using
 /// nearest neighbors and the normal field" (2012).
 [[nodiscard]] std::vector<Thickness> thickness(const MeshView& solid, std::span<const Vec3d> points,
                                                const ThicknessOptions& options = {}, const Context& context = {});
 
-/// The same at the centroid of each triangle of the solid.
+/// Computes the thickness at the centroid of each triangle of the solid.
 [[nodiscard]] std::vector<Thickness> thickness(const MeshView& solid, const ThicknessOptions& options = {},
                                                const Context& context = {});
 
-/// The same as a texture over the surface. Of the map's options, `sign` is not looked at.
+/// Computes the thickness as a texture over the surface. The map's option `sign` is ignored.
 [[nodiscard]] SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map = {},
                                        const ThicknessOptions& options = {}, const Context& context = {});
 
-/// What keeps all of a mesh from having a thickness, or a meaningful one: that it is open (WarningCode::open_mesh), or
-/// does not face outwards everywhere (WarningCode::facing). At most one.
-/// @param solid  must pass validate(solid). Cost: that of orientation() and a table of sites.
+/// Returns a warning if not all of a mesh has a meaningful thickness. Either it is open (WarningCode::open_mesh), or it
+/// does not face outwards everywhere (WarningCode::facing). Returns at most one warning.
+/// @param solid  must pass validate(solid).
+/// Cost: that of orientation() and a table of sites.
 [[nodiscard]] std::vector<Warning> thickness_warnings(const MeshView& solid, const Context& context = {});
 
 }  // namespace blum

@@ -13,11 +13,12 @@ namespace blum::volume_io {
 namespace {
 
 constexpr std::string_view magic = "\x93NUMPY";
-/// A header longer than this is that of a structured type, which no image is.
+/// Longest header accepted. Only structured types have longer ones, and images do not use these.
 constexpr std::uint64_t largest_header = 65536;
 constexpr std::array<std::string_view, 10> dtypes{"u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"};
 
-/// Reads the Python dictionary of a header: strings, True and False, and a tuple of numbers.
+/// Parser of the Python dictionary of a header. The dictionary contains strings, True and False, and a tuple of
+/// numbers.
 class HeaderReader {
  public:
   HeaderReader(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -135,10 +136,10 @@ class HeaderReader {
   std::size_t at_ = 0;
 };
 
-/// Turns an array whose first axis is the fastest into C order; `shape` has at most three axes.
+/// Converts an array whose first axis is the fastest to C order. `shape` has at most three axes.
 template <class T>
 std::vector<T> transposed(const std::vector<T>& values, const std::vector<std::uint64_t>& shape) {
-  std::array<std::size_t, 3> n{1, 1, 1};  // trailing axes of the shape, so that axis 2 is x
+  std::array<std::size_t, 3> n{1, 1, 1};  // the shape, aligned to the end so that axis 2 is x
   for (std::size_t i = 0; i < shape.size(); ++i) n[3 - shape.size() + i] = static_cast<std::size_t>(shape[i]);
   std::vector<T> out(values.size());
   std::size_t at = 0;

@@ -1,4 +1,4 @@
-// Blum: NumPy arrays (.npy), and files of several (.npz). SPDX-License-Identifier: Apache-2.0
+// Blum: NumPy arrays (.npy) and archives of them (.npz). SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -20,39 +20,42 @@
 
 namespace blum::volume_io {
 
-/// What the header of a .npy file says.
+/// Header of a .npy file.
 struct NpyHeader {
   enum class Kind : std::uint8_t { scalar, text };
   Kind kind = Kind::scalar;
   ScalarType type = ScalarType::u8;
-  std::size_t text_length = 0;  ///< characters (32 bits each) of one entry, for text
+  std::size_t text_length = 0;  ///< characters of one text entry, 32 bits each
   std::endian order = std::endian::native;
   bool fortran = false;
   std::vector<std::uint64_t> shape;
 
-  /// @throws FormatError with `name` when the product does not fit 2^40.
+  /// Returns the number of values, which is the product of the shape.
+  /// @throws FormatError with `name` if it exceeds 2^40.
   [[nodiscard]] std::uint64_t count(const std::string& name) const;
 };
 
-/// The header (format version 1.0, padded to 64 bytes) of an array in C order and the machine's byte order.
-/// @param dtype  the type without byte order, for example "f4".
+/// Returns the header of an array in C order and in the machine's byte order. It has format version 1.0 and is padded
+/// to a multiple of 64 bytes.
+/// @param dtype  type without byte order, for example "f4".
 [[nodiscard]] std::string npy_header(std::string_view dtype, const std::vector<std::uint64_t>& shape);
-/// The type of a scalar without byte order, for example "f4".
+/// Returns the type of a scalar without byte order, for example "f4".
 [[nodiscard]] std::string_view npy_dtype(ScalarType type);
 
 /// Reads the header and leaves the stream at the first value. @throws FormatError.
 [[nodiscard]] NpyHeader read_npy_header(ByteStream& stream);
-/// The number of values of a scalar array. @throws FormatError for text, or when the stream cannot hold that many.
+/// Returns the number of values of a scalar array.
+/// @throws FormatError for text, or if the stream cannot hold that many values.
 [[nodiscard]] std::uint64_t check_npy_values(const ByteStream& stream, const NpyHeader& header);
-/// Reads values as they come, in the machine's byte order. @throws FormatError.
+/// Reads values in the order of the file and converts them to the machine's byte order. @throws FormatError.
 void read_npy_raw(ByteStream& stream, const NpyHeader& header, std::span<std::byte> out);
 /// Reads the values of a scalar array, in C order of its shape. @throws FormatError, OutOfMemory.
 [[nodiscard]] VoxelImage::Values read_npy_values(ByteStream& stream, const NpyHeader& header);
-/// Sizes of an image whose array is indexed [z, y, x], in x, y, z order. @throws FormatError for other than 1 to 3
-/// axes.
+/// Returns the image size in x, y, z order of an array indexed [z, y, x].
+/// @throws FormatError unless the array has 1 to 3 axes and 1 to 2^40 values.
 [[nodiscard]] std::array<std::int64_t, 3> npy_image_size(const NpyHeader& header, const std::string& name);
 
-/// Writes arrays one after the other.
+/// Writer of the arrays of a .npz archive, one after the other.
 class NpzWriter {
  public:
   NpzWriter(AtomicFile& file, FieldSink& sink, const Context& context) : zip_(file, sink, context) {}
@@ -67,7 +70,7 @@ class NpzWriter {
     const std::array<double, 3> values{v.x, v.y, v.z};
     add(name, "f8", {3}, std::span<const double>(values));
   }
-  /// A NumPy string of one entry: four bytes for each (ASCII) character.
+  /// Adds a NumPy string of one entry. Each ASCII character takes four bytes.
   void add_text(const std::string& name, const std::string& text);
   void finish() { zip_.finish(); }
 
@@ -75,18 +78,18 @@ class NpzWriter {
   ZipWriter zip_;
 };
 
-/// The arrays of a file, by their names.
+/// Reader of the arrays of a .npz archive, by their names.
 class NpzReader {
  public:
   explicit NpzReader(const ByteSource& source) : source_(source), zip_(source) {}
 
-  /// The names of the arrays, in the order of the archive's directory.
+  /// Returns the names of the arrays in the order of the archive's directory.
   [[nodiscard]] std::vector<std::string> arrays() const;
-  /// Bytes of all entries, as they are packed.
+  /// Returns the packed size of all entries in bytes.
   [[nodiscard]] std::uint64_t packed_size() const;
   [[nodiscard]] bool has(const std::string& array) const { return zip_.find(array + ".npy") != nullptr; }
 
-  /// Reads one array; `use` gets the stream and the header.
+  /// Reads one array and returns the result of use(stream, header).
   template <class Use>
   auto read(const std::string& array, Use use) {
     const ZipEntry* entry = zip_.find(array + ".npy");
@@ -114,7 +117,7 @@ class NpzReader {
     });
   }
 
-  /// An array of one ASCII string.
+  /// Reads an array of one ASCII string.
   std::string text(const std::string& array);
 
  private:

@@ -16,10 +16,10 @@ constexpr std::size_t end_size = 22;
 constexpr std::size_t locator_size = 20;
 constexpr std::size_t central_size = 46;
 constexpr std::size_t local_size = 30;
-/// A directory longer than this is no .npz file's.
+/// Longest directory accepted. No .npz file has a longer one.
 constexpr std::uint64_t largest_directory = std::uint64_t{16} << 20U;
 
-/// Little-endian numbers of a record; asking beyond its end is an error in the file.
+/// Little-endian numbers of a record. Reading beyond its end throws FormatError.
 class Record {
  public:
   Record(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
@@ -63,7 +63,7 @@ struct Directory {
   std::uint64_t entries = 0;
 };
 
-/// The zip64 record whose locator lies right before the end record, if there is one.
+/// Returns the zip64 record whose locator lies right before the end record, if it exists.
 std::optional<Directory> find_directory64(const ByteSource& source, std::uint64_t end_offset) {
   if (end_offset < locator_size) return std::nullopt;
   const auto bytes = read_bytes(source, end_offset - locator_size, locator_size);
@@ -87,7 +87,7 @@ Directory find_directory(const ByteSource& source) {
   throw FormatError(source.name() + ": it is not a zip archive, which .npz files are, or it is cut short");
 }
 
-/// Takes the 64-bit values for those fields of a central header that hold their largest value.
+/// Replaces those fields of a central header that have their largest value by their 64-bit values.
 void apply_zip64(const Record& extra, ZipEntry& entry) {
   std::size_t at = 0;
   while (at + 4 <= extra.size()) {
@@ -166,7 +166,7 @@ std::unique_ptr<ZipEntryStream> ZipReader::open(const ZipEntry& entry) const {
 std::size_t ZipEntryStream::read_some(std::span<std::byte> out) {
   std::size_t done = 0;
   const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(out.size(), left_));
-  // In pieces that stay in the cache until the checksum has seen them.
+  // Small pieces stay in the cache until the checksum is computed.
   constexpr std::size_t piece = std::size_t{1} << 20U;
   while (done < wanted) {
     const auto part = out.subspan(done, std::min(piece, wanted - done));
@@ -195,7 +195,7 @@ namespace {
 constexpr std::size_t crc_piece = std::size_t{4} << 20;
 constexpr std::uint16_t version_plain = 20;
 constexpr std::uint16_t version_zip64 = 45;
-constexpr std::uint16_t date_1980 = 0x21;  ///< the first of January 1980: equal input gives equal bytes
+constexpr std::uint16_t date_1980 = 0x21;  ///< 1 January 1980, so that equal input gives equal bytes
 
 std::uint32_t crc_of(std::uint32_t start, std::span<const std::byte> bytes) {
   return static_cast<std::uint32_t>(crc32_z(start, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -220,7 +220,8 @@ std::uint32_t clamp32(std::uint64_t value) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, limit32));
 }
 
-/// The fields that local and central headers share, from the version needed to the lengths of name and extra.
+/// Appends the fields that local and central headers share: from the version needed to the lengths of name and extra
+/// field.
 void put_common(std::string& out, bool zip64, std::uint32_t crc, std::uint32_t size, std::size_t name_length,
                 std::size_t extra_length) {
   put16(out, zip64 ? version_zip64 : version_plain);
@@ -302,7 +303,7 @@ void ZipWriter::finish() {
     put16(header, 0);               // comment
     put16(header, 0);               // disk
     put16(header, 0);               // internal attributes
-    put32(header, 0100644U << 16);  // a regular file that everyone may read
+    put32(header, 0100644U << 16);  // regular file, readable by everyone
     put32(header, clamp32(entry.offset));
     write(header + entry.name + extra);
   }

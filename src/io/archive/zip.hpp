@@ -25,7 +25,7 @@ struct ZipEntry {
   std::uint64_t header_offset = 0;
 };
 
-/// The content of one entry; its checksum is looked at by check_finished().
+/// Stream of the content of one entry. check_finished() verifies the checksum.
 class ZipEntryStream final : public ByteStream {
  public:
   ZipEntryStream(std::unique_ptr<ByteStream> inner, const ZipEntry& entry, std::string name)
@@ -44,16 +44,17 @@ class ZipEntryStream final : public ByteStream {
   std::string name_;
 };
 
-/// Reads the directory of an archive (zip64 as well); entries are stored or deflated, not encrypted, in one file.
+/// Reader of the directory of an archive, also zip64. Entries must be stored or deflated, not encrypted, and in one
+/// file.
 class ZipReader {
  public:
-  /// @throws FormatError. The source must outlive the reader and its streams.
+  /// Reads the directory. The source must outlive the reader and its streams. @throws FormatError.
   explicit ZipReader(const ByteSource& source);
-  /// In the order of the directory.
+  /// Returns the entries in the order of the directory.
   [[nodiscard]] const std::vector<ZipEntry>& entries() const { return entries_; }
-  /// The entry of this name, or null.
+  /// Returns the entry of this name, or null.
   [[nodiscard]] const ZipEntry* find(std::string_view name) const;
-  /// @throws FormatError.
+  /// Opens the content of an entry. @throws FormatError.
   [[nodiscard]] std::unique_ptr<ZipEntryStream> open(const ZipEntry& entry) const;
 
  private:
@@ -61,16 +62,16 @@ class ZipReader {
   std::vector<ZipEntry> entries_;
 };
 
-/// Writes stored entries in one pass; sizes beyond 4 GB use the zip64 records (APPNOTE 4.3, 4.5.3).
-/// The checksum of an entry is found before its bytes are written, by all threads: the header of a stored entry must
-/// name it, and readers that stream cannot use one that comes after the data.
+/// Writer of stored entries in one pass. Sizes beyond 4 GB use the zip64 records (APPNOTE 4.3, 4.5.3).
+/// All threads compute the checksum of an entry before its bytes are written. The header of a stored entry must contain
+/// the checksum, because streaming readers cannot use one that follows the data.
 class ZipWriter {
  public:
   ZipWriter(AtomicFile& file, FieldSink& sink, const Context& context) : file_(file), sink_(sink), context_(context) {}
 
   /// Adds an entry whose content is `head` followed by `body`. The name must be ASCII.
   void add(const std::string& name, std::span<const std::byte> head, std::span<const std::byte> body);
-  /// Writes the directory; to be called once, after the last entry.
+  /// Writes the directory. Call it once, after the last entry.
   void finish();
 
  private:
@@ -89,7 +90,7 @@ class ZipWriter {
   std::vector<Entry> entries_;
 };
 
-/// CRC-32 of a long run of bytes, by all threads of the context.
+/// Returns the CRC-32 of a long run of bytes, computed by all threads of the context.
 [[nodiscard]] std::uint32_t parallel_crc32(std::span<const std::byte> bytes, const Context& context);
 
 }  // namespace blum::volume_io

@@ -23,20 +23,20 @@
 namespace blum::medial_files {
 namespace {
 
-/// A double too large for a float becomes an infinity, which whoever needs finite numbers finds.
+/// Converts to float. Values beyond its range become infinite, which checks for finite numbers reject.
 float to_float(double value) {
   constexpr double most = std::numeric_limits<float>::max();
   if (value > most) return std::numeric_limits<float>::infinity();
   return value < -most ? -std::numeric_limits<float>::infinity() : static_cast<float>(value);
 }
 
-/// The columns of one kind of cell: those of an axis in the types that it needs, then the others.
+/// Columns of one kind of cell. The columns of an axis come first, in the types that an axis needs.
 class Typed {
  public:
   Typed(Columns& columns, std::string kind, const std::string& name)
       : columns_(columns), kind_(std::move(kind)), name_(name), known_(columns.rows()) {}
 
-  /// Takes a column of numbers as doubles or floats; false when it is not there.
+  /// Takes a numeric column as doubles or floats. Returns false if it does not exist.
   template <class T>
   bool numbers(std::string_view column, std::size_t components = 1) {
     const Column* const found = find(column, components);
@@ -58,7 +58,7 @@ class Typed {
     return true;
   }
 
-  /// The same of whole numbers from `least` to `most`, as int32.
+  /// Takes a column of whole numbers from `least` to `most` as int32. Returns false if it does not exist.
   bool integers(std::string_view column, std::int64_t least, std::int64_t most) {
     const Column* const found = find(column, 1);
     if (found == nullptr) return false;
@@ -82,7 +82,7 @@ class Typed {
     return true;
   }
 
-  /// Puts the columns in their new types and order in the place of those of the complex.
+  /// Replaces the columns of the complex by those of new type and order.
   void finish() {
     for (const Column& column : columns_) {
       if (known_.find(column.name) == nullptr) known_.add(column);
@@ -111,7 +111,7 @@ class Typed {
 
 constexpr auto last_role = static_cast<std::int64_t>(MedialRole::junction);
 
-/// @param has_levels  where not null: levels are taken, too, and this tells whether all of them are there.
+/// @param has_levels  if not null, levels are taken as well, and it is set to true if all of them exist.
 MedialColumns take_columns(Complex& complex, const std::string& name, bool* has_levels) {
   namespace names = medial_columns;
   if (complex.vertex_columns.empty()) complex.vertex_columns.resize(complex.positions.size());
@@ -165,7 +165,7 @@ Complex to_nested(const Complex& complex, const std::string& name) {
   if (!has_levels || !has.radii || !has.footprints || !has.sites || !has.angles || !has.labels) {
     throw FormatError(name + ": columns of the axes of all angles are missing");
   }
-  add_missing_medial_columns(nested);  // of edges and triangles where there are none
+  add_missing_medial_columns(nested);  // for edges and triangles, if the complex has none
   return nested;
 }
 
@@ -188,7 +188,7 @@ using Metadata = FileMetadata;
 
 constexpr const char* axis_content = "medial axis";
 
-/// Footprints lie on the border of the solid, so that voxels that are not selected name them.
+/// Footprints lie on the border of the solid, so their ids name voxels that are not selected.
 std::string site_sentence(SiteIds ids) {
   if (ids != SiteIds::voxels) return volume_io::site_sentence(ids);
   return "site ids: the linear index x + nx * (y + ny * z) of the voxel beside the solid whose face the footprint lies "
@@ -212,7 +212,7 @@ void add_grid(Metadata& pairs, const GridSpec& grid) {
   pairs.emplace_back("grid_direction", rows);
 }
 
-/// Looks up the values of known keys and makes numbers of them.
+/// Reader of the values of known keys, which it converts to numbers.
 class PairReader {
  public:
   PairReader(const Metadata& pairs, const std::string& name) : pairs_(pairs), name_(name) {}

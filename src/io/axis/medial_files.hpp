@@ -1,4 +1,4 @@
-// Blum: medial axes as the complexes, columns and metadata of files. SPDX-License-Identifier: Apache-2.0
+// Blum: conversion of medial axes to complexes, columns and metadata of files. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -12,31 +12,32 @@
 
 namespace blum::medial_files {
 
-/// Of MedialMetadata::smooth.
+/// Largest value of MedialMetadata::smooth.
 constexpr int most_smoothing = 1000;
 
 [[nodiscard]] FileMetadata to_pairs(const MedialMetadata& metadata);
-/// @throws FormatError with `name` when a known key has a value that it cannot have.
+/// Returns the metadata in pairs of keys and values.
+/// @throws FormatError with `name` if a known key has an invalid value.
 [[nodiscard]] MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name);
 
-/// Which columns of a medial axis a complex had.
+/// Flags of the medial axis columns that a complex contained.
 struct MedialColumns {
   bool radii = false, footprints = false, sites = false;
   bool angles = false;  ///< of vertices, edges and triangles
   bool labels = false;  ///< sheets and roles
 };
 
-// Both give those columns of MedialView (MedialLevels) that the complex of a file has their order and types, from any
-// numeric type that may hold them; other columns follow. Both throw FormatError with `name` for a column that cannot be
-// that of an axis.
+// Both functions give the columns of MedialView (MedialLevels) in the complex of a file their order and types. They
+// convert any numeric type that can hold the values; other columns follow. Both throw FormatError with `name` for a
+// column that cannot belong to an axis.
 
-/// Columns of vertices, edges or triangles that are missing stay so, but where there are none of these. Edges without
-/// roles that are sides of triangles are left out.
+/// Returns the complex of an axis. Missing columns of vertices, edges or triangles stay missing, unless the complex has
+/// no elements of that kind. If edges have no roles, those that are sides of triangles are removed.
 [[nodiscard]] Complex to_axis(Complex complex, const std::string& name, MedialColumns& found);
-/// All columns must be there.
+/// Returns the complex of nested axes. All columns must exist.
 [[nodiscard]] Complex to_nested(const Complex& complex, const std::string& name);
 
-/// Edges that are sides of triangles go, as the triangles imply them.
+/// Removes edges that are sides of triangles, because the triangles imply them.
 [[nodiscard]] Complex without_sides(Complex complex);
 
 }  // namespace blum::medial_files

@@ -46,7 +46,7 @@ void check_metadata(const MedialMetadata& metadata) {
 constexpr const char* nested_name = "nested";
 constexpr const char* nested_theta = "nested_theta";
 
-/// What a file of a complex says of a medial axis.
+/// Returns the medial axis in the file of a complex.
 MedialFile as_axis(const ComplexFile& file, const std::string& name) {
   MedialFile out;
   out.metadata = medial_files::from_pairs(file.metadata, name);
@@ -75,7 +75,7 @@ std::string problem_of_axes(const Complex& axis, const Complex* nested, double l
   return problem_of_nested(*nested);
 }
 
-/// Reads, and looks at the result as a whole.
+/// Reads, then validates the result as a whole.
 template <class Read>
 MedialFile checked(const std::string& name, Read read) {
   try {
@@ -101,16 +101,16 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
     throw InvalidOption("'" + path.string() + "': axes of all angles are kept in .npz files only");
   }
   const CompleteAxis all(axis);
-  static_cast<void>(MedialView(all.get()));  // throws where a column is of another type
+  static_cast<void>(MedialView(all.get()));  // throws if a column has another type
   if (nested != nullptr) static_cast<void>(MedialLevels(*nested));
   const std::string problem = problem_of_axes(axis, nested, least_theta);
   if (!problem.empty()) throw InvalidMesh("a medial axis that cannot be written: " + problem);
   throw_if_cancelled(context);
   MedialMetadata told = metadata;
-  if (all.is_copy()) told.version.clear();  // files of Blum have all columns, and verify() wants them
+  if (all.is_copy()) told.version.clear();  // only files with all columns name a version; verify() needs them
   FileMetadata pairs = medial_files::to_pairs(told);
   ComplexWriteOptions options;
-  options.allow_loss = true;  // as the table of formats says
+  options.allow_loss = true;  // the table of formats says what is lost
   if (nested != nullptr) {
     options.further.push_back({nested_name, nested});
     pairs.emplace_back(nested_theta, exact_text(least_theta));

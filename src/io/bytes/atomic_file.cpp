@@ -23,15 +23,15 @@ namespace blum {
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{256} << 10;
-/// The largest piece for one write(2): Linux moves at most 2 GiB at once, and macOS refuses more.
+/// Largest piece for one write(2). Linux moves at most 2 GiB at once, and macOS refuses more.
 constexpr std::size_t largest_write = std::size_t{1} << 30;
 
 std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-/// The number of an open descriptor that the path names: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N.
-/// Opening these names anew would start at the beginning of a redirected file, and fails for sockets.
+/// Returns the number of an open descriptor that the path names: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N.
+/// Opening these names anew would start at the beginning of a redirected file, and it fails for sockets.
 std::optional<int> descriptor_of(const std::string& path) {
   if (path == "/dev/stdout") return STDOUT_FILENO;
   if (path == "/dev/stderr") return STDERR_FILENO;
@@ -45,8 +45,8 @@ std::optional<int> descriptor_of(const std::string& path) {
   return std::nullopt;
 }
 
-/// Follows symbolic links, also one whose target does not exist yet.
-/// @returns nullopt when the links go in a circle or cannot be read; errno says which.
+/// Follows symbolic links, also to a target that does not exist yet.
+/// @returns nullopt if the links form a circle or cannot be read; errno contains the reason.
 std::optional<std::filesystem::path> follow_links(std::filesystem::path path) {
   for (int depth = 0; depth < 40; ++depth) {
     struct stat info{};
@@ -63,7 +63,7 @@ std::optional<std::filesystem::path> follow_links(std::filesystem::path path) {
   return std::nullopt;
 }
 
-/// A name beside the target that nothing else is likely to use; hidden, and short enough for every file system.
+/// Returns a random hidden name beside the target, short enough for every file system.
 std::filesystem::path temporary_name(const std::filesystem::path& target, std::random_device& random) {
   char suffix[32];
   std::snprintf(suffix, sizeof(suffix), ".%08x%08x.tmp", random(), random());
@@ -93,7 +93,7 @@ void AtomicFile::open_target() {
   struct stat info{};
   if (::stat(path_.c_str(), &info) != 0) {
     if (errno != ENOENT) fail("open", errno);
-    if (path_.filename().empty()) fail("open", EISDIR);  // "new/": a directory is meant, and is not there
+    if (path_.filename().empty()) fail("open", EISDIR);  // "new/" names a directory, which does not exist
     const auto target = follow_links(path_);
     if (!target) fail("open", errno);
     target_ = *target;
@@ -105,7 +105,7 @@ void AtomicFile::open_target() {
     if (descriptor_ < 0) fail("open", errno);
     return;
   }
-  // A rename needs no right to write the old file, but whoever protected it does not expect it to be replaced.
+  // A rename needs no permission to write the old file, but a write-protected file must not be replaced.
   if (::access(path_.c_str(), W_OK) != 0) fail("open", errno);
   const auto target = follow_links(path_);
   if (!target) fail("open", errno);
@@ -126,7 +126,7 @@ void AtomicFile::open_temporary(bool replaces, unsigned mode, unsigned owner, un
     fail("open", error);
   }
   if (!replaces) return;
-  // Only root may give a file away, and some file systems know no owners: then the file is the caller's.
+  // Only root may change the owner, and some file systems have no owners. The file then belongs to the caller.
   [[maybe_unused]] const int owned = ::fchown(descriptor_, owner, group);
   if (::fchmod(descriptor_, static_cast<mode_t>(mode)) != 0) fail("set the permissions of", errno);
 }
@@ -179,8 +179,8 @@ void AtomicFile::commit() {
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
   temporary_.clear();
-  // The file is there for every program from now on; that it also survives a power cut needs the directory on disk,
-  // which not every file system can do.
+  // Every program sees the file from now on. It survives a power cut only if the directory is on disk, too, which not
+  // every file system supports.
   const std::filesystem::path directory = target_.has_parent_path() ? target_.parent_path() : ".";
   const int handle = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (handle >= 0) {
@@ -212,7 +212,7 @@ fs::path resolved(const fs::path& path) {
   return error ? fs::absolute(path, error).lexically_normal() : whole;
 }
 
-/// A new empty file beside `path`.
+/// Creates a new empty file beside the target of `path`.
 fs::path make_draft(const fs::path& path) {
   constexpr int most_attempts = 100;
   constexpr std::size_t most_of_name = 100;
@@ -221,7 +221,7 @@ fs::path make_draft(const fs::path& path) {
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     std::ostringstream name;
     name << "." << target.stem().string().substr(0, most_of_name) << "." << std::hex << random() << random() << ".draft"
-         << path.extension().string();  // what was asked for, which a link may lead away from
+         << path.extension().string();  // extension of the requested name; that of a link's target may differ
     fs::path draft = target.parent_path() / name.str();
     const int file = open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file >= 0) {

@@ -94,7 +94,7 @@ std::size_t PlainStream::read_some(std::span<std::byte> out) {
 namespace blum {
 namespace {
 
-/// Closes the descriptor that it holds.
+/// Owner of a descriptor, which it closes.
 struct Descriptor {
   int number;
   ~Descriptor() {
@@ -106,7 +106,7 @@ struct Descriptor {
   throw FileError("cannot read '" + path.string() + "': " + std::generic_category().message(error));
 }
 
-/// Reads up to `size` bytes; fewer only where the file ends.
+/// Reads up to `size` bytes. It reads fewer only at the end of the file.
 std::size_t read_up_to(int descriptor, std::byte* data, std::size_t size, const std::filesystem::path& path) {
   std::size_t filled = 0;
   while (filled < size) {
@@ -133,12 +133,12 @@ FileBytes read_whole_file(const std::filesystem::path& path) {
   struct stat info{};
   if (::fstat(file.number, &info) != 0) fail(path, errno);
   if (S_ISDIR(info.st_mode)) fail(path, EISDIR);
-  if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) {  // may never end
+  if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) {  // reading may never end
     throw FileError("cannot read '" + path.string() + "': it is a device, not a file");
   }
 
-  // One byte more than the file should have shows in the first read whether it has ended; a pipe, or a file that grows
-  // meanwhile, goes on into a buffer of twice the size.
+  // The first read requests one byte more than the file size, which shows if the file has ended. A pipe, or a file that
+  // grows meanwhile, continues in a buffer of twice the size.
   Buffer<std::byte> bytes(std::max<std::size_t>(static_cast<std::size_t>(info.st_size) + 1, 4096));
   std::size_t size = read_up_to(file.number, bytes.data(), bytes.size(), path);
   while (size == bytes.size()) {
@@ -190,7 +190,7 @@ InflateStream::~InflateStream() {
 
 std::uint64_t InflateStream::most_left() const {
   if (state_->finished) return 0;
-  // One byte more than what is left may still be held in bits that are decoded already, and a match half copied.
+  // Decoded bits may still hold one byte of input, and a match may be half copied. The 8 bytes cover both.
   const std::uint64_t input = end_ - at_ + state_->z.avail_in + 8;
   return input > std::numeric_limits<std::uint64_t>::max() / largest_ratio ? std::numeric_limits<std::uint64_t>::max()
                                                                            : input * largest_ratio;
@@ -204,7 +204,7 @@ void InflateStream::refill() {
   state_->z.avail_in = static_cast<uInt>(count);
 }
 
-/// Gzip files may be several one after the other, with zeros behind; anything else behind them is not looked at.
+/// Gzip files may have several members. Zeros or other bytes after the last member are ignored.
 void InflateStream::end_of_member() {
   z_stream& z = state_->z;
   if (z.avail_in == 0 && at_ < end_) refill();

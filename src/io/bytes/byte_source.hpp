@@ -1,4 +1,4 @@
-// Blum: where the bytes of files come from. SPDX-License-Identifier: Apache-2.0
+// Blum: sources and streams of the bytes of files. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace blum::volume_io {
 
-/// Bytes that can be read at any place. Not for use by several threads at once.
+/// Bytes with random access. Only one thread may use a source at a time.
 class ByteSource {
  public:
   explicit ByteSource(std::string name) : name_(std::move(name)) {}
@@ -22,9 +22,9 @@ class ByteSource {
   virtual ~ByteSource() = default;
 
   [[nodiscard]] virtual std::uint64_t size() const = 0;
-  /// Reads out.size() bytes. @throws FormatError when they end before, FileError when the system fails.
+  /// Reads out.size() bytes. @throws FormatError if the source ends before, FileError if the system fails.
   virtual void read(std::uint64_t offset, std::span<std::byte> out) const = 0;
-  /// What messages call it: the file's name.
+  /// Returns the name used in messages, which is that of the file.
   [[nodiscard]] const std::string& name() const { return name_; }
 
  protected:
@@ -36,7 +36,7 @@ class ByteSource {
 
 class FileSource final : public ByteSource {
  public:
-  /// @throws FileError unless it is a regular file that can be read.
+  /// Opens a file. @throws FileError unless it is a regular file that can be read.
   explicit FileSource(const std::filesystem::path& path);
   [[nodiscard]] std::uint64_t size() const override { return size_; }
   void read(std::uint64_t offset, std::span<std::byte> out) const override;
@@ -56,7 +56,7 @@ class MemorySource final : public ByteSource {
   std::span<const std::byte> bytes_;
 };
 
-/// Bytes read one after the other.
+/// Bytes that are read in order.
 class ByteStream {
  public:
   ByteStream() = default;
@@ -66,22 +66,22 @@ class ByteStream {
 
   /// Reads up to out.size() bytes; fewer only at the end. @throws FormatError for damaged data.
   [[nodiscard]] virtual std::size_t read_some(std::span<std::byte> out) = 0;
-  /// No more bytes than this can follow: what a header promises is refused, before memory is taken for it, when it
-  /// is more.
+  /// Returns an upper bound of the bytes that follow. Readers reject a header that promises more before they allocate
+  /// memory.
   [[nodiscard]] virtual std::uint64_t most_left() const = 0;
   [[nodiscard]] virtual const std::string& name() const = 0;
 
-  /// Reads exactly out.size() bytes; `what` names them in messages. @throws FormatError when there are fewer.
+  /// Reads exactly out.size() bytes; `what` names them in messages. @throws FormatError if there are fewer.
   void read(std::span<std::byte> out, const char* what);
   void skip(std::uint64_t count, const char* what);
-  /// Looks past the last byte that is wanted, so that the checksum of compressed data is compared. More data than
-  /// wanted are no error: some writers pad. @throws FormatError when the data are damaged.
+  /// Reads beyond the last wanted byte, so that the checksum of compressed data is compared. Additional data are not an
+  /// error, because some writers pad. @throws FormatError if the data are damaged.
   void check_end();
   /// @throws FormatError unless `count` bytes may follow.
   void check_left(std::uint64_t count, const char* what) const;
 };
 
-/// A run of plain bytes of a source, which must outlive it.
+/// Stream of a run of plain bytes of a source. The source must outlive it.
 class PlainStream final : public ByteStream {
  public:
   explicit PlainStream(const ByteSource& source) : PlainStream(source, 0, source.size()) {}
@@ -99,7 +99,8 @@ class PlainStream final : public ByteStream {
 
 enum class Compression : std::uint8_t { gzip, zlib, deflate };
 
-/// What a compressed run of bytes of a source, which must outlive it, expands to. Gzip may have several members.
+/// Stream of the decompressed content of a run of bytes of a source. The source must outlive it. Gzip may have several
+/// members.
 class InflateStream final : public ByteStream {
  public:
   InflateStream(const ByteSource& source, std::uint64_t begin, std::uint64_t end, Compression compression);
@@ -124,15 +125,15 @@ class InflateStream final : public ByteStream {
 
 namespace blum {
 
-/// The content of a file.
+/// Content of a file.
 struct FileBytes {
   Buffer<std::byte> storage = {};
   std::size_t size = 0;  ///< the storage may be larger
   [[nodiscard]] std::span<const std::byte> span() const { return storage.span().first(size); }
 };
 
-/// The bytes of a file, or of a pipe until it ends.
-/// @throws FileError when it cannot be read or is a directory; OutOfMemory.
+/// Returns the bytes of a file, or of a pipe until it ends.
+/// @throws FileError if it cannot be read, or is a directory or a device; OutOfMemory.
 [[nodiscard]] FileBytes read_whole_file(const std::filesystem::path& path);
 
 }  // namespace blum

@@ -50,10 +50,10 @@ Column::Values widened(VoxelImage::Values values, const std::string& where) {
 
 namespace {
 
-/// Whether a name can be shown everywhere: UTF-8, without bytes of 0.
+/// Returns true if a name can be shown everywhere: UTF-8 without bytes of 0.
 bool is_text(std::string_view text) {
   std::uint32_t code = 0;
-  std::uint32_t least = 0;  // of a sequence as long as this one
+  std::uint32_t least = 0;  // smallest code of a sequence of this length
   int left = 0;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -78,7 +78,7 @@ bool is_text(std::string_view text) {
 void check_name(std::string_view name, const char* what, const std::string& where) {
   if (is_text(name)) return;
   std::string place = where;
-  std::replace(place.begin(), place.end(), '\0', '?');  // which would end the message
+  std::replace(place.begin(), place.end(), '\0', '?');  // it would end the message
   throw FormatError(place + ": the name of the " + what + " " + in_quotes(name) +
                     " is not UTF-8 text, or has a byte of 0; rename it in the program that wrote the file");
 }
@@ -99,7 +99,7 @@ Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, 
                  const std::string& where) {
   std::uint64_t rows = 0;
   for (const std::uint32_t count : counts) rows += count;
-  // Every count is at most the file's size, so the sum cannot overflow, but copies of wide rows could fill any memory.
+  // Every count is at most the file's size, so the sum cannot overflow. Copies of wide rows could still exhaust memory.
   std::uint64_t width = 0;
   for (const Column& column : columns) width += column.components;
   constexpr std::uint64_t most_times = 8;
@@ -179,7 +179,7 @@ std::vector<std::uint32_t> isolated_vertices(const ComplexView& complex) {
 
 namespace {
 
-/// The names of columns but one, for messages.
+/// Returns the names of all columns except `kept`, for messages.
 std::string names_of(const Columns& columns, std::string_view kept) {
   std::string names;
   for (const Column& column : columns) {

@@ -1,4 +1,4 @@
-// Blum: what readers and writers of complexes share. SPDX-License-Identifier: Apache-2.0
+// Blum: shared functions of readers and writers of complexes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -28,13 +28,13 @@ class NpzWriter;
 
 namespace blum::complex_files {
 
-/// Refuses to write what a format cannot hold, unless the options allow the loss.
-/// @param format  its name.  @param kept  the only column that it holds, of vertices; may be empty.
-/// @throws InvalidOption naming what would be lost.
+/// Refuses to write content that a format cannot hold, unless the options allow the loss.
+/// @param format  name of the format.  @param kept  the only vertex column that the format holds; may be empty.
+/// @throws InvalidOption naming the content that would be lost.
 void refuse_loss(const std::filesystem::path& path, std::string_view format, const Complex& complex,
                  const FileMetadata& metadata, const ComplexWriteOptions& options, std::string_view kept = {});
 
-// The writers get complexes without problems (problem_of), and names and metadata that files can hold.
+// The writers need complexes without problems (problem_of), and names and metadata that files can hold.
 void write_vtp(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                const ComplexWriteOptions& options, const Context& context);
 void write_ply(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
@@ -46,19 +46,20 @@ void write_npz(const std::filesystem::path& path, const Complex& complex, const 
 void write_glb(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                const ComplexWriteOptions& options, const Context& context);
 
-// The readers check whatever they need to be safe; problem_of is asked afterwards. All throw FormatError.
+// The readers check only what they need to be safe. Callers check problem_of afterwards. All throw FormatError.
 [[nodiscard]] ComplexFile read_vtp(const volume_io::ByteSource& source);
 [[nodiscard]] ComplexFile read_npz(const volume_io::ByteSource& source);
 [[nodiscard]] ComplexFile read_ply(std::string_view bytes, std::string_view name);
 [[nodiscard]] ComplexFile read_obj(std::string_view text, std::string_view name);
 
-/// Distinct edges without direction. Costs time and memory in proportion to the complex. Incidence tells the same and
-/// what touches what, which no file asks for: of a million triangles it takes 0.11 s and 60 MB, this 0.02 s and 16 MB.
+/// Set of distinct undirected edges. Its cost in time and memory is proportional to the complex. Incidence contains the
+/// same edges, and adjacencies that no file needs. For a million triangles Incidence takes 0.11 s and 60 MB, this class
+/// 0.02 s and 16 MB.
 class EdgeSet {
  public:
   enum class Of : std::uint8_t { triangles, edges_and_triangles };
 
-  /// Indices must be in range.
+  /// Builds the set. Indices must be in range.
   EdgeSet(const ComplexView& complex, Of which, const Context& context = {});
   [[nodiscard]] bool contains(const std::array<std::uint32_t, 2>& edge) const;
   [[nodiscard]] std::size_t size() const { return others_.size(); }
@@ -74,33 +75,36 @@ class EdgeSet {
  private:
   void sort_and_merge();
 
-  std::vector<std::size_t> begin_;     ///< of each vertex's edges in others_, and the end
-  std::vector<std::uint32_t> others_;  ///< the larger ends of the edges, by the smaller end
+  std::vector<std::size_t> begin_;     ///< start of each vertex's edges in others_, and the end
+  std::vector<std::uint32_t> others_;  ///< larger ends of the edges, grouped by the smaller end
 };
 
-/// The vertices of no edge and no triangle, in rising order.
+/// Returns the vertices of no edge and no triangle, in rising order.
 [[nodiscard]] std::vector<std::uint32_t> isolated_vertices(const ComplexView& complex);
 
-/// The type that files hold a column's numbers in.
+/// Returns the type in which files hold a column's numbers.
 [[nodiscard]] volume_io::ScalarType scalar_type(const Column& column);
 
-/// Adds an array of a column: one number for each row, or as many as it has components.
+/// Adds the array of a column. A row has one number, or as many as the column has components.
 void write_column(volume_io::NpzWriter& npz, const std::string& array, const Column& column);
 
-/// The numbers of a file in the smallest type that a column may have and that holds all of theirs.
+/// Converts the numbers of a file to the smallest column type that holds all values of their type.
 /// @throws FormatError with `where` for a uint64 beyond int64.
 [[nodiscard]] Column::Values widened(VoxelImage::Values values, const std::string& where);
 
-/// A name in a file as it can be shown everywhere. @throws FormatError with `where` for one that is not UTF-8 or has a
-/// byte of 0, saying that it is that of `what`.
+/// Checks that a name in a file can be shown everywhere.
+/// @throws FormatError with `where` for a name that is not UTF-8 or has a byte of 0. The message calls it the name of
+/// `what`.
 void check_name(std::string_view name, const char* what, const std::string& where);
 
-/// Adds a column that a file has. @throws FormatError with `where` for a name that is there twice or is no text, more
-/// than max_file_columns of them, components beyond it or none, or another count of rows.
+/// Adds a column of a file.
+/// @throws FormatError with `where` if its name exists already or is not text, or if its count of rows differs. The
+/// same holds beyond max_file_columns columns, and unless it has 1 to max_file_columns components.
 void add_column(Columns& columns, Column column, const std::string& where);
 
-/// The columns with row i as often as counts[i] says, for cells of files that become several.
-/// @param file_size  of the file: the copies may not be many times as large. @throws FormatError with `where` if so.
+/// Returns the columns with row i repeated counts[i] times, for cells of files that become several cells.
+/// @param file_size  size of the file. The copies may not be many times as large.
+/// @throws FormatError with `where` if they are.
 [[nodiscard]] Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, std::uint64_t file_size,
                                const std::string& where);
 
@@ -114,7 +118,8 @@ void for_each_number(const VoxelImage::Values& values, Set set) {
       values);
 }
 
-/// Calls set(index, value) with each value as an int64. @throws FormatError with `where` when there are other values.
+/// Calls set(index, value) with each value as an int64.
+/// @throws FormatError with `where` if a value is not a whole number or is beyond int64.
 template <class Set>
 void for_each_integer(const VoxelImage::Values& values, const std::string& where, Set set) {
   std::visit(

@@ -1,5 +1,6 @@
-// The text of Q-MAT (Li et al. 2015) and of the Blender add-on for medial meshes. The add-on counts every line after
-// the first as a vertex, edge or triangle, also a comment: so none is written, and the file has no metadata.
+// Text format of Q-MAT (Li et al. 2015) and of the Blender add-on for medial meshes. The add-on counts every line after
+// the first as a vertex, edge or triangle, also a comment. The writer therefore writes no comments, and the file has no
+// metadata.
 #include <algorithm>
 #include <array>
 #include <span>
@@ -18,8 +19,8 @@ namespace {
 
 constexpr std::string_view radius_column = "radius";
 
-/// Reads vertices, edges and triangles in any order, as other programs may have them; whatever follows on their lines
-/// is left alone.
+/// Reader of vertices, edges and triangles in any order, because other programs may mix them. Additional text on their
+/// lines is ignored.
 class MaReader {
  public:
   MaReader(std::string_view text, std::string_view name) : cursor_(text, name, '#') {}
@@ -41,7 +42,8 @@ class MaReader {
  private:
   void read_counts() {
     if (!cursor_.skip_space()) cursor_.fail("the file must begin with the numbers of vertices, edges and triangles");
-    // With the end of its line "v 0 0 0 1" takes 10 bytes, "e 0 1" 6 and "f 0 1 2" 8; the last line may lack its end.
+    // Shortest lines with their line ends: "v 0 0 0 1" takes 10 bytes, "e 0 1" 6 and "f 0 1 2" 8. The last line may
+    // lack its end.
     constexpr std::array<std::uint64_t, 3> least{10, 6, 8};
     constexpr std::array<const char*, 3> what{"number of vertices", "number of edges", "number of triangles"};
     std::uint64_t needed = 0;
@@ -115,7 +117,7 @@ class MaReader {
   std::array<std::uint64_t, 3> counts_{};  ///< of vertices, edges and triangles
 };
 
-/// Positions, the column `radius` of the vertices, edges, also those that are sides of triangles, and triangles.
+/// Writes positions, the vertex column `radius`, edges and triangles. The edges include the sides of triangles.
 void write_ma(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
               const ComplexWriteOptions& options, const Context& context) {
   const Column* const radius = complex.vertex_columns.find(radius_column);

@@ -1,5 +1,5 @@
-// Indices are int32: Blum's ids fit it, NumPy indexes with any integer type, and unlike unsigned ones differences of
-// them are what they should be.
+// Indices are int32. Blum's ids fit, and NumPy indexes with any integer type. Differences of int32 indices are correct,
+// unlike those of unsigned ones.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 3> kinds{"vertex_", "edge_", "triangle_"}
 constexpr std::array<std::string_view, 5> own_arrays{"vertices", "edges", "triangles", "metadata", "distance"};
 constexpr std::string_view further_mark = "_vertices";
 
-/// Whether an array of a column of vertices may be called by the name alone.
+/// Returns true if the name of a vertex column can name its array without a prefix.
 bool is_plain(std::string_view name, const std::vector<NamedComplexRef>& further) {
   const auto begins = [&](std::string_view start) { return name.starts_with(start); };
   return std::none_of(kinds.begin(), kinds.end(), begins) &&
@@ -36,7 +36,7 @@ bool is_plain(std::string_view name, const std::vector<NamedComplexRef>& further
          std::none_of(further.begin(), further.end(), [&](const NamedComplexRef& f) { return begins(f.name + "_"); });
 }
 
-/// Puts the arrays of a complex into a file, its name before theirs.
+/// Writer of the arrays of a complex, with the complex's name as prefix.
 class ComplexNpzWriter {
  public:
   ComplexNpzWriter(NpzWriter& npz, const std::vector<NamedComplexRef>& further) : npz_(npz), further_(further) {}
@@ -104,7 +104,7 @@ class ComplexNpzReader {
     check_sizes(arrays.size());
     ComplexFile file;
     for (const std::string& name : further_names(arrays)) {
-      std::vector<std::string> own;  // of this complex, without its name
+      std::vector<std::string> own;  // arrays of this complex, without its name
       std::erase_if(arrays, [&](const std::string& array) {
         if (!array.starts_with(name + "_")) return false;
         own.push_back(array.substr(name.size() + 1));
@@ -123,7 +123,7 @@ class ComplexNpzReader {
     throw FormatError(where(array) + ": " + reason);
   }
 
-  /// Entries that lie upon each other could fill any memory.
+  /// Rejects overlapping entries, because they could exhaust memory.
   void check_sizes(std::size_t arrays) const {
     constexpr std::size_t most = 8 * max_file_columns;
     if (arrays > most) throw FormatError(source_.name() + ": it has too many arrays");
@@ -177,7 +177,7 @@ class ComplexNpzReader {
     return complex;
   }
 
-  /// An array of items of so many numbers each, as many items as it has.
+  /// Reads an array of n items with the given number of components, for any n.
   VoxelImage::Values items(const std::string& array, std::uint64_t components) {
     return npz_.read(array, [&](ByteStream& stream, const NpyHeader& header) {
       if (header.shape.size() != 2 || header.shape[1] != components) {
@@ -188,7 +188,7 @@ class ComplexNpzReader {
     });
   }
 
-  /// The corners of cells among so many vertices, of which an array may hold none.
+  /// Reads the corners of cells, which are less than `count`. A missing array means that no cells exist.
   template <std::size_t n>
   void read_cells(const std::string& array, std::vector<std::array<std::uint32_t, n>>& cells, std::size_t count) {
     if (!npz_.has(array)) return;
@@ -202,7 +202,7 @@ class ComplexNpzReader {
     });
   }
 
-  /// @param mark  characters before the column's name.
+  /// @param mark  number of characters before the column's name.
   void read_column(Columns& columns, const std::string& prefix, const std::string& array, std::size_t mark) {
     std::uint64_t components = 1;
     VoxelImage::Values values = npz_.read(prefix + array, [&](ByteStream& stream, const NpyHeader& header) {
@@ -231,7 +231,7 @@ class ComplexNpzReader {
   NpzReader npz_;
 };
 
-/// A damaged archive holds nothing that can be told: its reader says what is wrong.
+/// Returns false for a damaged archive, because its reader reports the damage.
 bool holds_complex(std::string_view, const std::filesystem::path& path) {
   try {
     const volume_io::FileSource source(path);

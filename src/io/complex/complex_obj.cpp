@@ -12,12 +12,12 @@
 namespace blum::complex_files {
 namespace {
 
-/// A file of vertices, edges and triangles may as well be a mesh.
+/// Returns false, because a file of vertices, edges and triangles may also be a mesh.
 bool never_tells(std::string_view, const std::filesystem::path&) {
   return false;
 }
 
-/// Stands in for the vertices of an empty complex: a file of no bytes might as well be one that was never written.
+/// Replaces the vertices of an empty complex, because a file without bytes may be one that was never written.
 constexpr std::string_view empty_file = "# a complex without vertices\n";
 
 template <std::size_t n>

@@ -19,7 +19,7 @@ std::string component_name(const Column& column, std::size_t i) {
   return column.name + "_" + (column.components == 3 ? std::string(1, axes[i]) : std::to_string(i));
 }
 
-/// The name of a vector, of which this is the first of three properties; else empty.
+/// Returns the name of a vector if this is the first of its three properties, else an empty text.
 std::string_view vector_name(const std::vector<PlyProperty>& properties, std::size_t first) {
   if (first + 3 > properties.size()) return {};
   const std::string_view x = properties[first].name;
@@ -37,7 +37,7 @@ struct Told {
   std::string_view name;
 };
 
-/// What comments say of the columns of an element, by their first property.
+/// Returns the columns of an element that comments declare, by their first property.
 std::map<std::string_view, Told> told_columns(std::string_view element, const std::vector<std::string>& comments) {
   std::map<std::string_view, Told> told;
   for (const std::string& comment : comments) {
@@ -49,7 +49,7 @@ std::map<std::string_view, Told> told_columns(std::string_view element, const st
   return told;
 }
 
-/// Whether so many properties begin there, all of one type.
+/// Returns true if `count` properties of one type begin at `first`.
 bool has_run(const std::vector<PlyProperty>& properties, std::size_t first, std::size_t count) {
   if (count > properties.size() - first) return false;
   const auto begin = properties.begin() + static_cast<std::ptrdiff_t>(first);
@@ -74,13 +74,13 @@ PlyNames property_names(const Columns& columns, std::string_view element, const 
     for (std::size_t i = 0; i < column.components; ++i) {
       std::string name = component_name(column, i);
       while (!used.insert(name).second) name += "_";
-      // For the rule of reading it matters only whether types are equal.
+      // The reading rule only checks whether types are equal, so any distinct values suffice.
       properties.push_back({name, false, PlyType::uint8, static_cast<PlyType>(column.values.index())});
       names.properties.push_back(std::move(name));
     }
   }
-  // What the rule of reading makes of the properties, so that comments are needed only where it is wrong. A comment can
-  // only come before what the rule takes for a vector, hence one for each column of which any is wrong.
+  // A column needs a comment only if the reading rule finds another one in its place. A comment takes effect at the
+  // first property of a column, so every column that differs gets one.
   const std::vector<PlyColumn> read = find_columns(properties, element, {});
   std::size_t c = 0;
   for (const Column& column : columns) {

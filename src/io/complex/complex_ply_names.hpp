@@ -1,4 +1,4 @@
-// Blum: columns and the properties that they are in PLY files. SPDX-License-Identifier: Apache-2.0
+// Blum: names of columns as properties of PLY files. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -11,40 +11,42 @@
 
 namespace blum::complex_files {
 
-/// Vertices have the numbers of the column `radius` again in this property, by which MeshLab colours, unless they have
-/// a column of that name, which a comment then tells of.
+/// Vertices repeat the numbers of the column `radius` in this property, by which MeshLab colours. If they have a column
+/// of that name, there is no copy, and a comment declares the column.
 inline constexpr std::string_view derived_property = "quality";
 inline constexpr std::string_view derived_from = "radius";
 
-/// The most properties of an element, and those of them at most that are no columns.
+/// Largest number of properties of an element, and largest number of those that are not columns.
 inline constexpr std::size_t max_ply_properties = 100'000;
 inline constexpr std::size_t max_known_properties = 4;
 
-/// Consecutive properties of an element that are one column.
+/// Consecutive properties of an element that form one column.
 struct PlyColumn {
   std::string name;
-  std::size_t first = 0;       ///< property
-  std::size_t components = 1;  ///< properties
+  std::size_t first = 0;       ///< index of the first property
+  std::size_t components = 1;  ///< number of properties
 };
 
-/// The properties of columns, for writing.
+/// Properties of columns, for writing.
 struct PlyNames {
   std::vector<std::string> properties;  ///< of all columns, one after the other
-  std::string comments;                 ///< lines without which readers would see other columns
+  std::string comments;                 ///< lines without which readers would find other columns
 };
 
+/// Returns the properties of columns.
 /// @param element   as in the comments: "vertex", "face" or "edge".
-/// @param reserved  properties that the element has besides.
+/// @param reserved  other properties of the element.
 [[nodiscard]] PlyNames property_names(const Columns& columns, std::string_view element,
                                       const std::vector<std::string>& reserved);
 
-/// The columns that properties are, for reading: what comments say; else NAME_x, NAME_y, NAME_z of one type are one
-/// column, and others one each. Comments that do not fit the properties are passed over.
+/// Returns the columns that properties form, for reading. Comments declare columns. Without them NAME_x, NAME_y, NAME_z
+/// of one type form one column, and every other property is its own column. Comments that do not fit the properties are
+/// ignored.
 /// @param properties  must not be lists.
 [[nodiscard]] std::vector<PlyColumn> find_columns(const std::vector<PlyProperty>& properties, std::string_view element,
                                                   const std::vector<std::string>& comments);
 
-/// Whether a comment tells of this property.
+/// Returns true if a comment declares this property.
 [[nodiscard]] bool is_told_of(std::string_view property, std::string_view element,
                               const std::vector<std::string>& comments);
 

@@ -30,12 +30,12 @@ using volume_io::ScalarType;
 
 using Put = std::function<void(std::span<const std::byte>)>;
 
-/// An array of a file, whose bytes are made only while they are written.
+/// Array of a file. Its bytes are computed only while they are written.
 struct OutArray {
   std::string name;
   ScalarType type = ScalarType::f64;
   std::size_t components = 1;
-  std::uint64_t numbers = 0;  ///< in all
+  std::uint64_t numbers = 0;  ///< total of all rows
   std::function<void(const Put&)> write;
 
   [[nodiscard]] std::uint64_t size() const { return numbers * volume_io::scalar_size(type); }
@@ -53,7 +53,7 @@ void put_numbers(const Put& put, std::span<const T> numbers) {
 
 constexpr std::size_t piece_size = 65536;
 
-/// The same number again and again.
+/// Writes the same number `count` times.
 template <class T>
 void put_fill(const Put& put, T value, std::uint64_t count) {
   const std::vector<T> piece(static_cast<std::size_t>(std::min<std::uint64_t>(count, piece_size)), value);
@@ -84,7 +84,7 @@ OutArray whole_column(const Column& column) {
 template <class T>
 constexpr T fill_value = std::is_floating_point_v<T> ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(-1);
 
-/// A column of cells: of edges, triangles, or both.
+/// Column of cells: of edges, triangles, or both.
 struct CellColumn {
   std::string name;  ///< of the array
   const Column* edges = nullptr;
@@ -96,10 +96,10 @@ bool is_alike(const Column& a, const Column& b) {
   return a.components == b.components && a.values.index() == b.values.index();
 }
 
-/// The arrays of a complex's cells, and which column each is.
+/// Arrays of a complex's cells, and the columns that they hold.
 struct CellColumns {
   std::vector<CellColumn> arrays;
-  FileMetadata edge_names, triangle_names;  ///< columns and their arrays
+  FileMetadata edge_names, triangle_names;  ///< pairs of column and array
 
   explicit CellColumns(const Complex& complex) {
     for (const Column& column : complex.edge_columns) {
@@ -120,7 +120,7 @@ struct CellColumns {
   }
 
  private:
-  /// The column's own name, unless another column of the complex's cells has it.
+  /// Returns the column's own name, unless another column of the complex's cells has it.
   [[nodiscard]] std::string unused_name(const Complex& complex, const Column& column) const {
     if (complex.edge_columns.find(column.name) == nullptr && !has(column.name)) return column.name;
     std::string name = "triangle_" + column.name;
@@ -134,7 +134,8 @@ struct CellColumns {
   }
 };
 
-/// The numbers of single vertices in the type of a column of the same name, where that may hold them.
+/// Returns the numbers of single vertices from the column of the same name, converted to T. They are the fill value if
+/// T may not hold them.
 template <class T>
 std::vector<T> numbers_of_verts(const Columns& columns, const std::string& name, std::size_t components,
                                 std::span<const std::uint32_t> verts) {
@@ -189,7 +190,7 @@ Section cells(const std::string& tag, std::uint64_t corners, std::uint64_t count
   return section;
 }
 
-/// VTK shows the first array of one component.
+/// Returns a tag that makes VTK show the first array of one component.
 std::string point_data_tag(const Columns& columns) {
   for (const Column& column : columns) {
     if (column.components == 1) return "PointData Scalars=\"" + column.name + "\"";
@@ -197,7 +198,7 @@ std::string point_data_tag(const Columns& columns) {
   return "PointData";
 }
 
-/// All refer to the complex and the other arguments.
+/// The sections refer to the arguments, which must outlive them.
 std::vector<Section> sections_of(const Complex& complex, const std::vector<CellColumn>& columns,
                                  std::span<const std::uint32_t> verts) {
   std::vector<Section> out{{point_data_tag(complex.vertex_columns), {}}, {"CellData", {}}, {"Points", {}}};
@@ -282,9 +283,9 @@ struct NamedArray {
 struct VtpHeader {
   VtkAppended appended;
   std::uint64_t points = 0, verts = 0, lines = 0, polys = 0;
-  std::vector<NamedArray> arrays;  ///< of numbers, in the order of the file
+  std::vector<NamedArray> arrays;  ///< arrays of numbers, in file order
   FileMetadata metadata;
-  std::optional<FileMetadata> edge_columns, triangle_columns;  ///< columns and their arrays, where the file says
+  std::optional<FileMetadata> edge_columns, triangle_columns;  ///< pairs of column and array, if the file lists them
 
   [[nodiscard]] const VtkArray* find(std::string_view key) const {
     const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.key == key; });
@@ -350,11 +351,11 @@ class VtpParser {
     const bool is_data = section_ == "PointData" || section_ == "CellData";
     if (is_data && (name.empty() || type == "String" || type == "Bit")) return;
     if (!is_data && section_ != "Points" && name != "connectivity" && name != "offsets") return;
-    // Whatever they call it, the one array of the points is their places.
+    // The one array of the points contains their positions, whatever its name is.
     const std::string shown(section_ == "Points" ? "Points" : name);
     const std::string key = std::string(section_) + "/" + shown;
     if (header_.find(key) != nullptr) fail("the array '" + key + "' is there twice");
-    constexpr std::size_t others = 10;  // places, corners and ends of cells
+    constexpr std::size_t others = 10;  // positions, corners and ends of cells
     if (header_.arrays.size() > 3 * max_file_columns + others) fail("it has too many arrays");
     header_.arrays.push_back({key, shown, volume_io::vtk_array(tag, name_)});
   }
@@ -379,7 +380,7 @@ class VtpParser {
 /// Corners of cells, one cell after the other.
 struct Cells {
   std::vector<std::uint32_t> corners;
-  std::vector<std::uint64_t> ends;  ///< of each cell, in corners
+  std::vector<std::uint64_t> ends;  ///< of each cell, as indices of corners
 };
 
 class VtpReader {
@@ -391,7 +392,7 @@ class VtpReader {
     read_points();
     read_lines();
     read_polys();
-    (void)read_cells("Verts", header_.verts);  // say nothing that the points do not, but may be damaged
+    (void)read_cells("Verts", header_.verts);  // adds nothing to the points, but may be damaged
     file_.metadata = std::move(header_.metadata);
     return std::move(file_);
   }
@@ -404,7 +405,7 @@ class VtpReader {
 
   [[nodiscard]] std::uint64_t cell_count() const { return header_.verts + header_.lines + header_.polys; }
 
-  /// Arrays that lie upon each other could fill any memory.
+  /// Rejects overlapping arrays, because they could exhaust memory.
   void check_sizes() const {
     std::uint64_t room = source_.size();
     for (const auto& [key, name, array] : header_.arrays) {
@@ -424,7 +425,7 @@ class VtpReader {
     }
   }
 
-  /// The values of an array for `count` points or cells.
+  /// Returns the values of an array for `count` points or cells.
   VoxelImage::Values values(const VtkArray& array, std::uint64_t count, const char* needed_by) const {
     const std::uint64_t numbers = count * array.components;
     auto stream = volume_io::open_vtk_array(source_, header_.appended, array, numbers, needed_by);
@@ -434,7 +435,7 @@ class VtpReader {
     return out;
   }
 
-  /// An array that must be there, with so many components.
+  /// Returns the values of a required array with the given number of components.
   VoxelImage::Values needed_values(const std::string& key, std::uint64_t count, std::uint64_t components,
                                    const char* needed_by) const {
     const VtkArray* array = header_.find(key);
@@ -449,7 +450,7 @@ class VtpReader {
     Complex& complex = file_.complex;
     if (header_.points > 0) {
       const VoxelImage::Values places = needed_values("Points/Points", header_.points, 3, "the number of points");
-      complex.positions.resize(header_.points);  // the array that was just read is as long
+      complex.positions.resize(header_.points);  // as long as the array that was just read
       for_each_number(places, [&](std::size_t i, double value) { complex.positions[i / 3][i % 3] = value; });
     }
     complex.vertex_columns = Columns(header_.points);
@@ -485,8 +486,8 @@ class VtpReader {
     return cells;
   }
 
-  /// The columns of the cells from `first` on, `count` of them.
-  /// @param names  columns and their arrays; unset: all arrays are columns.
+  /// Returns the columns of `count` cells, starting with `first`.
+  /// @param names  pairs of column and array; if unset, all arrays are columns.
   Columns cell_columns(const std::optional<FileMetadata>& names, std::uint64_t first, std::uint64_t count) const {
     Columns columns(count);
     if (names) {
@@ -519,7 +520,7 @@ class VtpReader {
     add_column(columns, std::move(column), where(key));
   }
 
-  /// A line through several points becomes as many edges as it has steps.
+  /// Reads lines. A line through several points becomes one edge for each of its steps.
   void read_lines() {
     const Cells cells = read_cells("Lines", header_.lines);
     Complex& complex = file_.complex;

@@ -1,4 +1,4 @@
-// Blum: what readers and writers of fields share. SPDX-License-Identifier: Apache-2.0
+// Blum: shared functions of readers and writers of fields. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@
 
 namespace blum::volume_io {
 
-/// The arrays of a field that have a NRRD file of their own beside the distances, in the order of array_path().
+/// Arrays of a field that have a NRRD file of their own beside the distances, in the order of beside_arrays.
 enum class BesideArray : std::uint8_t { site, distance2, site2 };
 inline constexpr std::array beside_arrays{BesideArray::site, BesideArray::distance2, BesideArray::site2};
-/// "site", "distance2" or "site2".
+/// Returns "site", "distance2" or "site2".
 [[nodiscard]] std::string_view name_of(BesideArray array);
-/// The file of an array that goes with OUT.nrrd: OUT.site.nrrd and so on.
+/// Returns the path of an array's file beside OUT.nrrd: OUT.site.nrrd and so on.
 [[nodiscard]] std::filesystem::path beside_path(const std::filesystem::path& path, BesideArray array);
-/// Whether that file is there and says that it holds an array of OUT.nrrd.
+/// Returns true if that file exists and names OUT.nrrd as the file of its distances.
 [[nodiscard]] bool has_own_beside(const std::filesystem::path& path, BesideArray array);
 
 void write_field_nrrd(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
@@ -37,12 +37,12 @@ void write_field_npz(const std::filesystem::path& path, const Field& field, cons
 void write_field_vti(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
                      const Context& context);
 
-/// @param path  where the source came from, to find the sites; empty: they are not looked for.
+/// @param path  path of the source, to find the files of the other arrays; if empty, they are not read.
 [[nodiscard]] Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& path);
 [[nodiscard]] Field read_field_npz(const ByteSource& source, const std::filesystem::path& path);
 [[nodiscard]] Field read_field_vti(const ByteSource& source, const std::filesystem::path& path);
 
-/// The bytes of a field's arrays, in the machine's order.
+/// Returns the bytes of one of a field's arrays, in the machine's order.
 [[nodiscard]] inline std::span<const std::byte> distance_bytes(const Field& field) {
   return std::as_bytes(field.distance.span());
 }
@@ -55,33 +55,33 @@ void write_field_vti(const std::filesystem::path& path, const Field& field, cons
 [[nodiscard]] inline std::span<const std::byte> site2_bytes(const Field& field) {
   return std::as_bytes(field.site2.span());
 }
-/// How many bytes all of them are.
+/// Returns the number of bytes of all arrays together.
 [[nodiscard]] inline std::uint64_t array_size(const Field& field) {
   return distance_bytes(field).size() + site_bytes(field).size() + distance2_bytes(field).size() +
          site2_bytes(field).size();
 }
 
-/// Copies `bytes.size()` bytes of values, in the machine's byte order, out of a file.
+/// Copies `bytes.size()` bytes of values from a file, in the machine's byte order.
 using ReadValues = std::function<void(std::span<std::byte> bytes)>;
 
 /// Reads distances of any scalar type; float32 without a copy. The count must have been checked against the file.
 [[nodiscard]] Buffer<float> read_distances(ScalarType type, std::uint64_t count, const ReadValues& read);
 /// Reads site ids of any integer type; int32 without a copy. The count must have been checked against the file.
-/// @throws FormatError with `name` when a value is neither an index nor -1.
+/// @throws FormatError with `name` if a value is neither an index nor -1.
 [[nodiscard]] Buffer<SiteId> read_sites(ScalarType type, std::uint64_t count, const ReadValues& read,
                                         const std::string& name);
 [[nodiscard]] Buffer<SiteId> to_sites(const VoxelImage::Values& values, const std::string& name);
 
-/// Numbers are in their shortest exact form.
+/// Metadata of a field. Numbers have their shortest exact form.
 using Metadata = FileMetadata;
 
-/// What site ids number, for people who read the file.
+/// Returns a sentence that explains site ids to people who read the file.
 [[nodiscard]] std::string site_sentence(SiteIds ids);
 
 [[nodiscard]] Metadata field_metadata(const Field& field, const FieldFileInfo& info);
 
-/// Sets the band, sign rule and kind of site values of a field as its metadata say; unknown keys are left alone.
-/// @throws FormatError with `name` when a known key has a value that it cannot have.
+/// Sets the band, sign rule and kind of site ids of a field from its metadata. Unknown keys are ignored.
+/// @throws FormatError with `name` if a known key has an invalid value.
 void apply_metadata(const Metadata& metadata, const std::string& name, Field& field);
 
 }  // namespace blum::volume_io

@@ -17,7 +17,7 @@ namespace {
 
 using SiteVertices = std::vector<std::array<std::int32_t, 3>>;
 
-/// The vertices of every site, in the order of the field's site values.
+/// Returns the vertices of every site, in the order of the field's site ids.
 SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
   SiteVertices out;
   if (field.site_ids == SiteIds::triangles) {
@@ -35,7 +35,7 @@ SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
   return out;
 }
 
-/// Whether the mesh can be the one whose sites the field names.
+/// @throws InvalidMesh if the field names a site that the mesh does not have.
 void check_sites(const Buffer<SiteId>& sites, std::size_t site_count) {
   for (const SiteId site : sites) {
     if (!site.has_value() || site.value < site_count) continue;

@@ -15,16 +15,17 @@
 namespace blum::volume_io {
 namespace {
 
-/// The key that says that a second file holds an array: one left over from another run is not taken for it.
+/// Returns the key that names the file of an array. Readers ignore a file left over from another run, because no key
+/// names it.
 std::string key_of(BesideArray array) {
   return std::string(name_of(array)) + "_file";
 }
-/// The key that marks the file of another array, and names that of the distances.
+/// Key that marks the file of another array and names the file of the distances.
 constexpr const char* distances_key = "distance_file";
-/// The key that says which array that is; without it, the sites.
+/// Key that names the array of such a file. Without it, the file holds the sites.
 constexpr const char* array_key = "array";
 
-/// @throws FormatError for a file of another array of a field, which looks like one of distances.
+/// @throws FormatError for a file of another array of a field, because it looks like a file of distances.
 void check_holds_distances(const NrrdHeader& header, const std::string& name) {
   const std::string_view distances = find_value(header.key_values, distances_key);
   if (distances.empty()) return;
@@ -40,7 +41,7 @@ Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
                         [&](std::span<std::byte> out) { read_nrrd_data(data, header, out); });
 }
 
-/// Reads an array that has a file of its own.
+/// Reads an array from its own file.
 void read_beside(const std::filesystem::path& path, BesideArray array, Field& field) {
   const FileSource source(path);
   const NrrdHeader header = read_nrrd_header(source);
@@ -77,7 +78,7 @@ bool has_own_beside(const std::filesystem::path& path, BesideArray array) {
     const NrrdHeader header = read_nrrd_header(FileSource(beside_path(path, array)));
     return find_value(header.key_values, distances_key) == path.filename().string();
   } catch (const Error&) {
-    return false;  // there is none, or it is none of Blum's
+    return false;  // no such file exists, or Blum did not write it
   }
 }
 
@@ -118,7 +119,7 @@ void write_field_nrrd(const std::filesystem::path& path, const Field& field, con
     if (other) other->commit();
   }
   distances.commit();
-  // Those of the field that was there; should they stay, the new file does not name them.
+  // Removes the files of an earlier field. If the removal fails, the new file does not name them.
   std::error_code ignored;
   for (const BesideArray array : beside_arrays) {
     const bool is_written = others[static_cast<std::size_t>(array)].has_value();
@@ -149,7 +150,7 @@ Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& pat
 
 namespace {
 
-/// A NRRD file whose header says that it is one of Blum's fields.
+/// Returns true for a NRRD file whose header marks it as a field of Blum.
 bool holds_field(std::string_view head, const std::filesystem::path&) {
   return head.substr(0, head.find("\n\n")).find("sign_rule:=") != std::string_view::npos;
 }

@@ -1,3 +1,3 @@
-// The code of tinygltf, which is all in its header.
+// Implementation of tinygltf, which is header-only.
 #define TINYGLTF_IMPLEMENTATION
 #include "io/gltf/gltf_library.hpp"

@@ -1,7 +1,7 @@
 // Blum: tinygltf, as Blum uses it. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// It becomes a part of Blum's library, under a name of its own: programs that use Blum may have another one beside it.
+// Blum's library contains tinygltf under another name, because programs that use Blum may contain another copy.
 #define tinygltf blum_tinygltf
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE

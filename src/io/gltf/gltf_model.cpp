@@ -99,7 +99,7 @@ void check_mesh(const GltfMesh& mesh) {
   }
 }
 
-/// What all parts have in a file that holds so many vertices.
+/// Returns the number of bytes of all parts in a file with `vertices` vertices.
 std::uint64_t data_size(const GltfMesh& mesh, std::uint64_t vertices) {
   std::uint64_t of_vertex = 12 + (mesh.normals.empty() ? 0 : 12) + (mesh.texture_coordinates.empty() ? 0 : 8);
   for (const GltfAttribute& attribute : mesh.attributes) of_vertex += 4 * attribute.components;
@@ -108,13 +108,13 @@ std::uint64_t data_size(const GltfMesh& mesh, std::uint64_t vertices) {
 }
 
 void check_size(std::uint64_t bytes) {
-  constexpr std::uint64_t room = std::uint64_t{1} << 20;  // for the description, and texts in it
+  constexpr std::uint64_t room = std::uint64_t{1} << 20;  // for the description and its texts
   if (bytes <= most_bytes - room) return;
   throw FileError("a mesh with texture and attributes of " + count_text(bytes) +
                   " bytes does not fit into a binary glTF file, which has at most 2^32 - 1");
 }
 
-/// Where a mesh is put, so that single precision keeps its shape.
+/// Returns the position of a mesh. Relative to it, single precision keeps the mesh's shape.
 Vec3d origin_of(const Box3& box) {
   if (box.is_empty()) return {};
   const Vec3d center = box.lower * 0.5 + box.upper * 0.5;
@@ -148,7 +148,7 @@ gltf_library::Value extras_value(const GltfExtras& extras) {
   return gltf_library::Value(object);
 }
 
-/// Puts arrays one after the other into the buffer of a model.
+/// Appends arrays to the buffer of a model.
 class ModelBuilder {
  public:
   ModelBuilder(const GltfMesh& mesh, const Context& context) : mesh_(mesh), context_(context) {
@@ -175,7 +175,7 @@ class ModelBuilder {
   [[nodiscard]] std::size_t source_of(std::size_t vertex) const { return is_split() ? split_.source[vertex] : vertex; }
   [[nodiscard]] std::vector<unsigned char>& data() { return model_.buffers.front().data; }
 
-  /// @param target  what the bytes are for; 0 for pictures.
+  /// @param target  use of the bytes, as in glTF; 0 for pictures.
   int add_view(std::span<const std::byte> bytes, int target) {
     throw_if_cancelled(context_);
     data().resize((data().size() + 3) / 4 * 4);
@@ -204,7 +204,7 @@ class ModelBuilder {
   }
   [[nodiscard]] int last_accessor() const { return static_cast<int>(model_.accessors.size()) - 1; }
 
-  /// Numbers of vertices, as many for each as `components`, under a name.
+  /// Adds numbers of vertices under a name, `components` for each vertex.
   gltf_library::Accessor& add_floats(const std::string& name, std::span<const float> numbers, int components) {
     constexpr std::array types{0, TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
     const int view = add_view(std::as_bytes(numbers), TINYGLTF_TARGET_ARRAY_BUFFER);
@@ -284,7 +284,8 @@ class ModelBuilder {
     add_floats("_" + attribute.name, numbers, static_cast<int>(attribute.components));
   }
 
-  /// A part of the mesh, by the vertices that its pieces name. @param mode  of glTF: what a piece is.
+  /// Adds a part of the mesh, given by the vertices of its pieces.
+  /// @param mode  kind of the pieces, as in glTF.
   gltf_library::Primitive* add_part(std::span<const std::byte> indices, int mode) {
     if (indices.empty()) return nullptr;
     const int view = add_view(indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
@@ -336,7 +337,7 @@ class ModelBuilder {
   void add_scene() {
     gltf_library::Node node;
     gltf_library::Scene scene;
-    node.name = "empty";  // tinygltf writes null for a node of nothing
+    node.name = "empty";  // tinygltf writes null for an empty node
     if (!shown_.primitives.empty()) {
       shown_.name = volume_io::valid_utf8(mesh_.name);
       if (!mesh_.extras.empty()) shown_.extras = extras_value(mesh_.extras);
@@ -392,7 +393,7 @@ struct KeyHash {
 };
 
 std::uint32_t bits_of(float coordinate) {
-  return std::bit_cast<std::uint32_t>(coordinate == 0 ? 0.0F : coordinate);  // zeros are equal
+  return std::bit_cast<std::uint32_t>(coordinate == 0 ? 0.0F : coordinate);  // +0 and -0 are equal
 }
 
 }  // namespace

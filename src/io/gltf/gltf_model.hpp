@@ -13,22 +13,23 @@
 
 namespace blum::gltf_files {
 
-/// The most bytes of a .glb file, whose length is a number of 32 bits.
+/// Largest size of a .glb file in bytes. Its length is a number of 32 bits.
 inline constexpr std::uint64_t most_bytes = 0xffffffff;
 
-/// @throws InvalidMesh, InvalidOption, FileError as write_gltf() says.
+/// Returns the model of a mesh.
+/// @throws InvalidMesh, InvalidOption, FileError as write_gltf() does.
 [[nodiscard]] gltf_library::Model model_of(const GltfMesh& mesh, const Context& context);
 
 using TextureCorners = std::array<std::array<float, 2>, 3>;
 
-/// The vertices of triangles, once for each place in the texture that their corners have.
+/// Vertices of triangles, one copy for each texture position of their corners.
 struct SplitVertices {
-  std::vector<std::uint32_t> source;              ///< which vertex each was
-  std::vector<std::array<float, 2>> coordinates;  ///< where it is in the texture
-  std::vector<Triangle> triangles;                ///< their corners among these
+  std::vector<std::uint32_t> source;              ///< vertex of which each is a copy
+  std::vector<std::array<float, 2>> coordinates;  ///< position of each in the texture
+  std::vector<Triangle> triangles;                ///< corners, as indices of the copies
 };
 
-/// In the order in which the triangles name them. Cost: linear.
+/// Returns the vertices in the order in which the triangles name them. Cost: linear.
 [[nodiscard]] SplitVertices split_vertices(std::span<const Triangle> triangles,
                                            std::span<const TextureCorners> coordinates);
 

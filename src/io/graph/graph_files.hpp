@@ -1,4 +1,4 @@
-// Blum: the texts of files of graphs (JSON, GraphML). SPDX-License-Identifier: Apache-2.0
+// Blum: content of graph files (JSON, GraphML). SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct ListOf<std::vector<T>> : std::true_type {};
 template <class T, std::size_t count>
 struct ListOf<std::array<T, count>> : std::true_type {};
 
-/// Described structs by the names of their members, and what these consist of.
+/// Converts a value to JSON. Described structs become objects with the names of their members.
 template <class T>
 Json json_of(const T& value) {
   if constexpr (DescribedStruct<T>) {
@@ -55,14 +55,15 @@ Json json_of(const T& value) {
   }
 }
 
-/// The whole content of a file, with numbers and lists of them in one line.
+/// Returns the whole content of a file. Numbers and lists of numbers take one line.
 [[nodiscard]] std::string text_of(const Json& json);
 
-/// A named value of a graph, a node or an edge.
+/// Named value of a graph, a node or an edge.
 using Attribute = std::pair<std::string, std::variant<std::int64_t, double, bool, std::string>>;
 using Attributes = std::vector<Attribute>;
 
-/// The members of a struct that are numbers, words or truths, as attributes; of those within others with both names.
+/// Adds the members of a struct that are numbers, words or truth values as attributes. Members of nested structs get
+/// both names, joined by '_'.
 template <DescribedStruct T>
 void add_members(const T& whole, Attributes& out, const std::string& prefix = {}) {
   for_each_member<T>([&](const auto& member) {
@@ -83,7 +84,7 @@ void add_members(const T& whole, Attributes& out, const std::string& prefix = {}
   });
 }
 
-/// Undirected; nodes are named by their element and a number.
+/// Undirected graph. Nodes are named by their element and a number.
 struct FlatGraph {
   struct Node {
     std::string name;
@@ -99,7 +100,7 @@ struct FlatGraph {
 
   static std::string numbered(const char* element, std::size_t number) { return element + std::to_string(number); }
 
-  /// A node with the members of what it stands for.
+  /// Adds a node with the members of `part`.
   template <class T>
   void add_node(const char* element, std::size_t number, const T& part) {
     Attributes attributes{{"element", std::string(element)}};
@@ -115,13 +116,14 @@ struct FlatGraph {
   }
 };
 
-/// The whole content of a file. @param whole  the attributes of the graph.
+/// Returns the whole content of a file.
+/// @param whole  attributes of the graph.
 [[nodiscard]] std::string graphml_text(const char* id, const Attributes& whole, const FlatGraph& graph);
 
-/// What graphs tell of the axis that they are of; what is not known is left out.
+/// Returns the metadata of the axis of a graph as attributes. Unknown values are omitted.
 [[nodiscard]] Attributes told(const MedialMetadata& metadata);
 
-/// Each the whole content of a file.
+/// Each function returns the whole content of a file.
 [[nodiscard]] std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata);
 [[nodiscard]] std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata);
 [[nodiscard]] std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,

@@ -51,7 +51,8 @@ constinit const GraphCode graph_graphml{graph_files::graphml_text, graph_files::
 namespace blum::graph_files {
 namespace {
 
-/// Whether a value takes one line: numbers, lists of them and of such lists, objects of numbers and lists of these.
+/// Returns true if a value takes one line. Numbers do, also in lists and in lists of lists. Objects of numbers and
+/// lists of numbers do, too.
 bool is_flat(const Json& json, int depth = 0) {
   if (json.is_primitive()) return true;
   if (depth > (json.is_object() ? 0 : 1)) return false;
@@ -59,11 +60,11 @@ bool is_flat(const Json& json, int depth = 0) {
 }
 
 std::string flat_text(const Json& json) {
-  // Names of files need not be valid UTF-8.
+  // File names may be invalid UTF-8.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Polylines have thousands of numbers, which should not take a line each.
+/// Appends a value with each flat part on one line, because polylines have thousands of numbers.
 void append(const Json& json, std::string& text, std::size_t indent) {
   if (json.empty() || is_flat(json)) {
     text += flat_text(json);

@@ -13,9 +13,9 @@
 namespace blum::graph_files {
 namespace {
 
-/// What XML can hold of a text, with entities for its own characters.
+/// Returns a text as XML, with entities for its special characters.
 std::string escaped(const std::string& text) {
-  // Names of files need not be valid UTF-8; dump() puts U+FFFD for what is not.
+  // File names may be invalid UTF-8; dump() replaces invalid bytes by U+FFFD.
   using nlohmann::json;
   const auto valid = json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
   std::string out;
@@ -60,12 +60,13 @@ std::string text_of(const Attribute& attribute) {
       attribute.second);
 }
 
-/// The attributes of graph, nodes or edges, each declared where it first occurs.
+/// Attributes of the graph, of nodes or of edges. Each is declared at its first occurrence.
 class Keys {
  public:
   explicit Keys(std::string_view of) : of_(of) {}
 
-  /// The values, as lines. @param indent  of each.
+  /// Returns the values, one per line.
+  /// @param indent  indentation of each line.
   std::string data(const Attributes& attributes, std::string_view indent) {
     std::string out;
     for (const Attribute& attribute : attributes) {
@@ -116,7 +117,7 @@ std::string graphml_text(const char* id, const Attributes& whole, const FlatGrap
 
 namespace {
 
-/// The graph of an axis as nodes and edges.
+/// Graph of an axis as nodes and edges.
 class FlatAxis : public FlatGraph {
  public:
   explicit FlatAxis(const AxisGraph& graph) {

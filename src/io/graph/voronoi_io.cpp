@@ -30,7 +30,7 @@ using graph_files::FlatGraph;
 
 constexpr const char* content = "graph of a Voronoi diagram";
 
-/// Of what files of the complex say all but what that is.
+/// Adds all metadata of the complex except `content`, because the graph has its own.
 template <class Add>
 void add_told(const FileMetadata& metadata, const Add& add) {
   for (const auto& [key, value] : metadata) {
@@ -38,7 +38,7 @@ void add_told(const FileMetadata& metadata, const Add& add) {
   }
 }
 
-/// A node for each site, which is that of its region, and for each wall, seam and junction.
+/// Returns a graph with a node for each site (which stands for its region), wall, seam and junction.
 FlatGraph flattened(const VoronoiGraph& graph, std::span<const VoronoiSite> sites) {
   const auto region = [](std::int32_t site) { return FlatGraph::numbered("region", static_cast<std::size_t>(site)); };
   FlatGraph out;

@@ -67,7 +67,7 @@ double largest_component(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Length without overflow or underflow.
+/// Returns the length without overflow or underflow.
 double safe_length(const Vec3d& v) {
   const double scale = largest_component(v);
   return scale > 0 ? scale * length(v / scale) : 0;
@@ -78,8 +78,8 @@ Vec3d unit(const Vec3d& v) {
   return scaled / length(scaled);
 }
 
-/// A unit vector perpendicular to all given unit vectors (at most two, perpendicular themselves). Prefers the axis of
-/// the world with the same number, so that a lone x axis is completed by y and z.
+/// Returns a unit vector perpendicular to all given unit vectors, which are at most two and perpendicular themselves.
+/// Prefers the world axis with the same number, so that y and z complete a lone x axis.
 Vec3d perpendicular(const std::array<std::optional<Vec3d>, 3>& known, std::size_t axis) {
   Vec3d best{};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
-// Written by hand, since the reader must take bytes from memory, bound its memory by the length of the file and survive
-// any input; the header is one fixed record of 348 or 540 bytes.
+// Own parser, because the reader must accept bytes from memory, bound its memory by the file's length and survive any
+// input. The header is one fixed record of 348 or 540 bytes.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t size_1 = 348;
 constexpr std::size_t size_2 = 540;
 
-/// What both versions of the header say.
+/// Content common to both versions of the header.
 struct NiftiHeader {
   std::endian order = std::endian::native;
   std::size_t size = 0;  ///< of the header
@@ -67,7 +67,7 @@ class Record {
   std::endian order_;
 };
 
-/// Offsets of the fields, which with their types are all that tells the versions apart (nifti1.h, nifti2.h).
+/// Offsets of the fields. The versions differ only in these and in the types of the fields (nifti1.h, nifti2.h).
 struct Layout {
   std::size_t dim, datatype, pixdim, data_offset, slope, intercept, qform, sform, quaternion, qoffset, srow;
 };
@@ -168,7 +168,7 @@ std::array<std::int64_t, 3> image_size(const NiftiHeader& header, const std::str
   return size;
 }
 
-/// The columns of the rotation of a unit quaternion (a, b, c, d) with a >= 0 (nifti1.h, method 2).
+/// Returns the columns of the rotation of a unit quaternion (a, b, c, d) with a >= 0 (nifti1.h, method 2).
 std::array<Vec3d, 3> rotation(const Vec3d& q, const std::string& name) {
   double b = q.x;
   double c = q.y;
@@ -186,7 +186,7 @@ std::array<Vec3d, 3> rotation(const Vec3d& q, const std::string& name) {
           Vec3d{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b}};
 }
 
-/// Steps along the axes as the spacings say; an axis of one layer may have none.
+/// Returns the steps along the axes from the spacings. An axis of one layer may lack a spacing.
 Vec3d spacings(const NiftiHeader& header, const GridSpec& grid) {
   Vec3d out{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -218,7 +218,7 @@ void read_frame(const NiftiHeader& header, GridSpec& grid, const std::string& na
     try {
       set_sform(header, grid, name);
     } catch (const FormatError&) {
-      // A registration may have put shear into the sform; the qform then still has the scanner's grid.
+      // Registration may put shear into the sform. The qform then still has the scanner's grid.
       if (header.qform_code <= 0) throw;
       set_qform(header, grid, name);
     }
@@ -241,9 +241,9 @@ VoxelImage::Values scaled(const VoxelImage::Values& values, double slope, double
       values);
 }
 
-/// Bytes between the start of the data's file and the data, or between the end of the header and the data.
+/// Returns the bytes to skip before the data: from the start of the data's own file, or from the end of the header.
 std::uint64_t gap(const NiftiHeader& header, const std::string& name) {
-  // Some writers leave the offset at 0 where the data follow the header and its four bytes of extension flags.
+  // Some writers leave the offset at 0 if the data follow the header and its four bytes of extension flags.
   const bool unset = !header.detached && header.data_offset == 0;
   const double least = header.detached ? 0.0 : static_cast<double>(header.size + 4);
   const double offset = unset ? least : header.data_offset;
@@ -305,7 +305,7 @@ bool is_there(const std::filesystem::path& path) {
   return std::filesystem::exists(path, error);
 }
 
-/// One half of a pair, compressed or not.
+/// Returns the path of one half of a pair, compressed or not.
 std::filesystem::path half_of_pair(const std::filesystem::path& stem, const char* extension) {
   std::filesystem::path plain = stem;
   plain += extension;
@@ -314,7 +314,7 @@ std::filesystem::path half_of_pair(const std::filesystem::path& stem, const char
   return !is_there(plain) && is_there(packed) ? packed : plain;
 }
 
-/// An image whose header and data are two files, of which the path names either.
+/// Reads an image whose header and data are two files. The path names either of them.
 std::optional<VoxelImage> read_pair(const std::filesystem::path& path) {
   std::filesystem::path stem = path;
   if (lower_case(stem.extension().string()) == ".gz") stem.replace_extension();

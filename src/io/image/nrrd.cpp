@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint64_t largest_header = std::uint64_t{4} << 20U;
 constexpr std::uint64_t most_axes = 16;  ///< as in Teem
 
-/// The names that NRRD has for each scalar type, the one that is written first.
+/// NRRD names of each scalar type; the first one is written.
 struct TypeNames {
   ScalarType type;
   std::vector<std::string_view> names;
@@ -42,7 +42,7 @@ const std::vector<TypeNames>& type_names() {
   return all;
 }
 
-/// Spaces of three dimensions: the full name and the abbreviation, which may be missing.
+/// Spaces of three dimensions: full name and abbreviation. The abbreviation may be missing.
 constexpr std::array<std::array<std::string_view, 2>, 6> spaces{{{"right-anterior-superior", "ras"},
                                                                  {"left-anterior-superior", "las"},
                                                                  {"left-posterior-superior", "lps"},
@@ -70,7 +70,7 @@ std::string unescaped(std::string_view text) {
   return out;
 }
 
-/// The text of the header without its final empty line, and where the data begin.
+/// Text of the header without its final empty line, and the start of the data.
 struct HeaderText {
   std::string text;
   std::uint64_t end = 0;
@@ -93,7 +93,7 @@ HeaderText read_header_text(const ByteSource& source) {
       }
       line = next + 1;
     }
-    if (!header.text.starts_with("NRRD")) return header;  // for the caller to refuse
+    if (!header.text.starts_with("NRRD")) return header;  // the caller refuses it
     if (have == source.size()) break;                     // a detached header may end with the file
     if (have == largest_header) throw FormatError(source.name() + ": its header does not end");
   }
@@ -166,7 +166,7 @@ class HeaderParser {
     }
   }
 
-  /// The value of a field, its name in lower case without spaces.
+  /// Returns the value of a field, or null. The name is in lower case without spaces.
   const std::string* find(const std::string& field) const {
     const auto found = fields_.find(field);
     return found == fields_.end() ? nullptr : &found->second;
@@ -218,7 +218,7 @@ class HeaderParser {
     if (sizes_.size() != axis_count_) fail("sizes must hold one number for each of the axes that dimension says");
   }
 
-  /// The numbers of a field with one per axis; empty where the field is missing.
+  /// Returns the numbers of a field that has one per axis. They are empty if the field is missing.
   std::vector<double> numbers(const std::string& field) const {
     std::vector<double> out;
     const std::string* value = find(field);
@@ -232,7 +232,7 @@ class HeaderParser {
     return out;
   }
 
-  /// Vectors as in "(1,0,0) none (0,1,0)".
+  /// Parses vectors as in "(1,0,0) none (0,1,0)".
   Vectors vectors(const std::string& field, std::string_view text) const {
     Vectors out;
     for (text = trim(text); !text.empty(); text = trim(text)) {
@@ -263,7 +263,7 @@ class HeaderParser {
     return {v[0], v.size() > 1 ? v[1] : 0.0, v.size() > 2 ? v[2] : 0.0};
   }
 
-  /// True for an axis whose kind says that it counts components and not places.
+  /// Returns true for an axis that counts components instead of positions, according to its kind.
   static bool counts_components(std::string_view kind) {
     constexpr std::array<std::string_view, 3> ends{"vector", "color", "matrix"};
     constexpr std::array<std::string_view, 6> names{"complex", "quaternion", "point", "gradient", "normal", "2-vector"};
@@ -294,7 +294,7 @@ class HeaderParser {
     check_count(header_.grid.size, max_field_nodes, name_);
   }
 
-  /// Of more than three axes, those of one entry are left out, the last first.
+  /// Removes axes of one entry, the last first, until at most three axes are left.
   void drop_single_layers() {
     for (std::size_t i = axes_.size(); i-- > 0 && axes_.size() > 3;) {
       if (sizes_[axes_[i]] == 1) axes_.erase(axes_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -317,7 +317,7 @@ class HeaderParser {
       const Vectors origin = vectors("space origin", *text);
       if (origin.size() != 1) fail("'space origin' must be one vector");
       if (origin[0]) header_.grid.origin = to_vec3(*origin[0]);
-      // A vector of NaN means that the origin is not known.
+      // A vector of NaN means that the origin is unknown.
       const Vec3d& o = header_.grid.origin;
       if (origin[0] && std::all_of(origin[0]->begin(), origin[0]->end(), [](double v) { return std::isnan(v); })) {
         header_.grid.origin = {};
@@ -327,7 +327,7 @@ class HeaderParser {
     }
   }
 
-  /// Axes without directions: x, y, z of the world, in their order. NaN means that a spacing is not known.
+  /// Reads axes without directions: x, y, z of the world, in their order. NaN means that a spacing is unknown.
   void read_spacings() {
     const std::vector<double> spacings = numbers("spacings");
     const std::vector<double> mins = numbers("axismins");
@@ -380,7 +380,7 @@ class HeaderParser {
   std::size_t axis_count_ = 0;
   std::vector<std::int64_t> sizes_;
   Vectors directions_;
-  std::vector<std::size_t> axes_;  ///< the axes of the file that are x, y and z
+  std::vector<std::size_t> axes_;  ///< file axes that become x, y and z
 };
 
 std::uint64_t skip_lines(const ByteSource& source, std::uint64_t at, std::uint64_t lines) {
@@ -396,7 +396,7 @@ std::uint64_t skip_lines(const ByteSource& source, std::uint64_t at, std::uint64
   return at;
 }
 
-/// The data of a header, from their first byte on.
+/// Returns the data of a header, from their first byte on.
 std::unique_ptr<ByteStream> open_data(const ByteSource& source, const NrrdHeader& header, std::uint64_t bytes) {
   const std::uint64_t start = header.data_file.empty() ? header.data_start : 0;
   const std::uint64_t begin = skip_lines(source, start, header.line_skip);
@@ -481,7 +481,7 @@ NrrdHeader read_nrrd_header(const ByteSource& source) {
 void check_nrrd_data_size(const ByteSource& source, const NrrdHeader& header) {
   const std::uint64_t count = header.grid.node_count();
   if (header.encoding == NrrdEncoding::text) {
-    // Each value but the last takes a digit and a separator.
+    // Each value takes at least a digit and a separator, the last one only a digit.
     open_data(source, header, 0)->check_left(2 * count - 1, "the data as text");
   } else {
     const std::uint64_t bytes = count * scalar_size(header.type);

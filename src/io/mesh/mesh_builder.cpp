@@ -13,17 +13,18 @@
 namespace blum {
 namespace {
 
-/// A corner of a polygon, seen along a coordinate axis.
+/// Corner of a polygon, projected along a coordinate axis.
 using Point = std::array<double, 2>;
 
-/// The corners, seen along the axis nearest to the polygon's mean normal (Newell's) such that it turns left, times a
-/// power of two. This is exact, so that corners on edges stay there, and an affine map of the polygon's plane.
-/// @returns empty when the polygon has no area to speak of.
+/// Projects the corners along the coordinate axis nearest to the polygon's mean normal (Newell's). The result turns
+/// left and is scaled by a power of two. Both steps are exact, so corners on edges stay there. Together they are an
+/// affine map of the polygon's plane.
+/// @returns empty if the area of the polygon is negligible.
 std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners) {
   Box3 box;
   for (const std::uint32_t corner : corners) box.extend(vertices[corner]);
   const Vec3d origin = box.lower;
-  const Vec3d size = box.upper * 0.5 - box.lower * 0.5;  // halves: the difference itself might overflow
+  const Vec3d size = box.upper * 0.5 - box.lower * 0.5;  // halves, because the difference itself might overflow
   const double largest = std::max({size.x, size.y, size.z});
   if (!(largest > 0)) return {};
   const auto scaled = [&](std::uint32_t corner) {
@@ -41,7 +42,7 @@ std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const st
   const std::size_t axis = magnitude.z >= magnitude.x && magnitude.z >= magnitude.y ? 2
                            : magnitude.y >= magnitude.x                             ? 1
                                                                                     : 0;
-  constexpr double rounding = 1e-15;  // each of the terms above is below 1, and exact to about 1e-16
+  constexpr double rounding = 1e-15;  // each term above is below 1 and exact to about 1e-16
   if (!(magnitude[axis] > rounding * static_cast<double>(corners.size()))) return {};
   std::vector<Point> points;
   points.reserve(corners.size());
@@ -57,7 +58,7 @@ std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const st
   return points;
 }
 
-/// Whether every corner turns left, and the outline goes around once.
+/// Returns true if every corner turns left and the outline goes around once.
 bool is_strictly_convex(const std::vector<Point>& points) {
   const std::size_t n = points.size();
   std::size_t upward_starts = 0;

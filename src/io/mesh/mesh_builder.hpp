@@ -1,4 +1,4 @@
-// Blum: what readers and writers of meshes share. SPDX-License-Identifier: Apache-2.0
+// Blum: shared functions of readers and writers of meshes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -15,23 +15,23 @@
 
 namespace blum {
 
-/// Gathers a mesh while a file is read. Vertices may come after the faces that name them, so indices are looked at, and
-/// polygons cut, only by finish().
+/// Builder of a mesh while a file is read. Vertices may follow the faces that name them. Indices are therefore checked
+/// by bad_index(), and polygons cut by finish(), after the last element.
 class MeshBuilder {
  public:
-  /// A vertex index that is too large, and where the file names it.
+  /// Vertex index that is too large, and its place in the file.
   struct BadIndex {
     std::uint32_t index;
     std::size_t where;
   };
 
-  /// @param where  any number by which the reader finds the place again, for messages.
+  /// @param where  any number from which the reader finds the place in the file again, for messages.
   void add_vertex(const Vec3d& vertex) { mesh_.vertices.push_back(vertex); }
   void add_triangle(const Triangle& corners, std::size_t where) {
     for (const std::uint32_t index : corners) note(index, where);
     mesh_.triangles.push_back(corners);
   }
-  /// At least three corners.
+  /// Adds a face of at least three corners.
   void add_face(std::span<const std::uint32_t> corners, std::size_t where);
   void add_segment(std::uint32_t a, std::uint32_t b, std::size_t where) {
     note(a, where);
@@ -48,7 +48,7 @@ class MeshBuilder {
   [[nodiscard]] std::size_t vertex_count() const { return mesh_.vertices.size(); }
   [[nodiscard]] std::size_t face_count() const { return mesh_.triangles.size() - extra_triangles_; }
 
-  /// The largest index, when it is out of range. To be asked before finish().
+  /// Returns the largest index if it is out of range. Call it before finish().
   [[nodiscard]] std::optional<BadIndex> bad_index() const;
   /// Cuts the polygons and applies the rule for point clouds. All indices must be in range.
   [[nodiscard]] MeshFile finish(bool binary);
@@ -75,24 +75,24 @@ class MeshBuilder {
   std::size_t index_where_ = 0;
 };
 
-/// Cuts a polygon of at least 4 corners into corners - 2 triangles with the same orientation; see read_mesh for the
+/// Cuts a polygon of at least 4 corners into corners - 2 triangles with the same orientation. read_mesh documents the
 /// rule.
 /// @param corners    vertex indices, in range.
-/// @param triangles  receives them: corners.size() - 2 entries.
-/// @param work_left  steps that may be taken beyond polygon_work_per_corner for each corner; becomes what is left.
-/// @returns false when the triangles are a fan because no proper cut was found.
+/// @param triangles  receives the triangles: corners.size() - 2 entries.
+/// @param work_left  steps allowed beyond polygon_work_per_corner for each corner; receives the number left.
+/// @returns false if the triangles are a fan because no proper cut was found.
 bool cut_polygon(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners, std::span<Triangle> triangles,
                  std::int64_t& work_left);
 
-/// The steps (looks at a corner or a group of corners) that cutting may take: for each corner, and beyond that for a
-/// file, which takes about a second. Usual polygons need a few dozen a corner, whatever their size.
+/// Largest number of steps of cutting: for each corner, and beyond that for a file. The latter takes about a second. A
+/// step looks at a corner or a group of corners. Usual polygons need a few dozen steps a corner, whatever their size.
 inline constexpr std::int64_t polygon_work_per_corner = 500;
 inline constexpr std::int64_t polygon_work = 200'000'000;
 
-/// @throws FileError saying that files of this format hold no such thing.
+/// @throws FileError saying that files of this format hold no `what`.
 [[noreturn]] void cannot_hold(const std::filesystem::path& path, std::string_view format, std::string_view what);
 
-/// Refuses points, unless the mesh is a cloud of all its vertices, which a file without faces stands for.
+/// Refuses points, unless the mesh is a cloud of all its vertices. A file without faces represents such a cloud.
 void refuse_points(const std::filesystem::path& path, std::string_view format, const MeshView& mesh);
 
 }  // namespace blum

@@ -18,7 +18,7 @@
 namespace blum {
 namespace {
 
-/// @throws FileError for another extension.
+/// Returns the format of an extension. @throws FileError for an unknown one.
 MeshFormat format_named(const std::filesystem::path& path, FileAccess access) {
   const std::vector<std::string> known = file_extensions(FileContent::mesh, access);
   if (std::find(known.begin(), known.end(), file_extension(path)) != known.end()) return MeshFormat::of(path, access);

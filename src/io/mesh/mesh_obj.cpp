@@ -28,7 +28,7 @@ class ObjReader {
   }
 
  private:
-  /// One line: those that Blum knows have a keyword of one letter.
+  /// Reads one line. All keywords that Blum knows have one letter.
   void read_statement() {
     const std::string_view keyword = cursor_.peek_token();
     if (keyword.size() != 1) return;
@@ -84,7 +84,7 @@ class ObjReader {
     while (!cursor_.at_line_end()) indices_.push_back(read_index());
   }
 
-  /// i, i/t, i//n or i/t/n: only the vertex matters, but what follows must look like it should.
+  /// Reads i, i/t, i//n or i/t/n. Only the vertex is used, but the rest must have the right form.
   std::uint32_t read_index() {
     const char* const start = cursor_.position();
     const std::int64_t number = cursor_.take_integer_prefix("vertex index");

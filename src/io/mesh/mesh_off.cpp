@@ -18,9 +18,10 @@ class OffReader {
     read_header();
     const std::size_t vertices = read_count("number of vertices");
     const std::size_t faces = read_count("number of faces");
-    cursor_.skip_line();  // the number of edges, which nobody needs
+    cursor_.skip_line();  // number of edges, which is not needed
     if (vertices == 0) cursor_.fail("the mesh has no vertices");
-    // Every vertex takes 6 bytes and every face 8, so a header that promises too much is found before memory is taken.
+    // Every vertex takes 6 bytes and every face 8, the last one 7. Headers that promise too much are thus rejected
+    // before memory is allocated.
     if (vertices > max_id_count || vertices > cursor_.remaining() / 6 + 1) too_many("vertices", vertices);
     builder_.reserve_vertices(vertices);
     for (std::size_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
@@ -35,7 +36,7 @@ class OffReader {
   }
 
  private:
-  /// The keyword [ST][C][N][4][n]OFF, which the format allows to be left out.
+  /// Reads the keyword [ST][C][N][4][n]OFF, which is optional. Points of more than 3 dimensions are rejected.
   void read_header() {
     if (!cursor_.skip_space()) cursor_.fail("the file is empty");
     const char* const start = cursor_.position();
@@ -105,7 +106,7 @@ class OffReader {
   }
 
   std::uint32_t read_index() {
-    cursor_.skip_space();  // a long face may go over several lines
+    cursor_.skip_space();  // a long face may span several lines
     const char* const start = cursor_.position();
     const std::int64_t vertex = cursor_.take_integer("vertex index");
     if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= builder_.vertex_count()) {

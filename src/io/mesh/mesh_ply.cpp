@@ -11,10 +11,10 @@
 namespace blum {
 namespace {
 
-/// What a property of an element means for the mesh.
+/// Meaning of a property of an element for the mesh.
 enum class Role { ignored, x, y, z, corners, first, second };
 
-/// Reads the elements of a PLY file. Source is PlyText or PlyBinary.
+/// Reader of the elements of a PLY file. `Source` is PlyText or PlyBinary.
 template <class Source>
 class PlyReader {
  public:
@@ -33,7 +33,7 @@ class PlyReader {
 
  private:
   void read_element(const PlyElement& element) {
-    if (element.properties.empty()) return;  // takes no bytes, however many there are said to be
+    if (element.properties.empty()) return;  // takes no bytes, whatever its count
     const std::size_t least = std::max<std::size_t>(source_.least_size(element), 1);
     if (element.count > (source_.remaining() + 1) / least) {
       source_.fail("the header promises " + std::to_string(element.count) + " of element " + in_quotes(element.name) +
@@ -100,8 +100,8 @@ class PlyReader {
     builder_.add_face(corners_, where);
   }
 
-  /// Strips of triangles, each one sharing an edge with the last and turned the other way in the file; -1 between
-  /// strips.
+  /// Reads strips of triangles, separated by -1. Each triangle shares an edge with the last, and is oriented the other
+  /// way in the file.
   void read_strip(const PlyProperty& property, std::size_t where) {
     const std::size_t count = source_.list_count(property);
     std::size_t length = 0;
@@ -149,8 +149,8 @@ class PlyReader {
     Role role;
   };
 
-  /// The role of each property of an element.
-  /// @throws FormatError when one of the roles is there twice or not at all, or is of the wrong kind.
+  /// Returns the role of each property of an element.
+  /// @throws FormatError if one of the roles occurs twice or not at all, or is of the wrong kind.
   std::vector<Role> roles_of(const PlyElement& element, const std::vector<NamedRole>& known, bool list) const {
     std::vector<Role> roles;
     for (const PlyProperty& property : element.properties) {

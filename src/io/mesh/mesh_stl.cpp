@@ -9,8 +9,8 @@
 namespace blum {
 namespace {
 
-constexpr std::size_t header_size = 84;    // 80 bytes of anything, and the number of triangles
-constexpr std::size_t triangle_size = 50;  // normal and corners as 12 floats, and 2 bytes of anything
+constexpr std::size_t header_size = 84;    // 80 arbitrary bytes, and the number of triangles
+constexpr std::size_t triangle_size = 50;  // normal and corners as 12 floats, and 2 arbitrary bytes
 
 std::uint32_t little_endian_word(const char* bytes) {
   std::uint32_t value = 0;
@@ -102,7 +102,7 @@ class TextStlReader {
 
   void read_facet() {
     expect("normal");
-    for (int i = 0; i < 3; ++i) next_word("a normal");  // often wrong, or not a number: the corners tell the normal
+    for (int i = 0; i < 3; ++i) next_word("a normal");  // ignored: often wrong or not a number; the corners define it
     expect("outer");
     expect("loop");
     if (builder_.vertex_count() + 3 > max_id_count) cursor_.fail("too many triangles");
@@ -141,14 +141,14 @@ class TextStlReader {
   MeshBuilder builder_;
 };
 
-/// Whether the text begins with the word "solid".
+/// Returns true if the text begins with the word "solid".
 bool begins_with_solid(std::string_view bytes) {
   TextCursor cursor(bytes.substr(0, 4096), "", 0);
   return cursor.skip_space() && same_word(cursor.take_token(), "solid");
 }
 
-/// Binary files may begin with "solid" too. One is known by its size, which its header foretells; a file of any other
-/// size is text when it begins with "solid" and has no byte that text never has near its start.
+/// Returns true for a binary file, which may begin with "solid", too. A file of the size that its header implies is
+/// binary. Any other file is text if it begins with "solid" and has no zero byte near its start.
 bool is_binary(std::string_view bytes) {
   if (bytes.size() >= header_size) {
     const std::size_t count = little_endian_word(bytes.data() + 80);
@@ -168,7 +168,7 @@ MeshFile read_stl(std::string_view bytes, std::string_view name) {
   return BinaryStlReader(bytes, name).read();
 }
 
-/// The unit normal of a triangle; zero when it has none.
+/// Returns the unit normal of a triangle, or zero if it has none.
 Vec3d normal_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d u = b - a;
   const Vec3d v = c - a;

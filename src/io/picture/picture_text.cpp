@@ -14,9 +14,9 @@ struct Point {
 };
 using Stroke = std::vector<Point>;
 
-/// Strokes of a glyph, separated by blanks. The first character says how its points are joined: '-' by straight lines,
-/// '~' by a smooth curve from the first to the last, '@' by a smooth closed curve. A point is two digits: x, and y with
-/// the baseline at 2, the height of small letters at 6 and that of digits at 8.
+/// Strokes of a glyph, separated by blanks. The first character defines the joining of the points. '-' means straight
+/// lines, '~' a smooth curve from the first to the last, '@' a smooth closed curve. A point is two digits, x and y. The
+/// baseline is at y = 2, the height of small letters at 6 and that of digits at 8.
 struct Glyph {
   char character;
   const char* strokes;
@@ -75,7 +75,7 @@ constexpr double digit_units = 6;  // from baseline to the top of digits
 constexpr double gap_units = 1.9;
 constexpr double space_units = 2.2;
 
-/// Corner cutting (Chaikin): the ends of an open curve stay.
+/// Smooths by corner cutting (Chaikin). The ends of an open curve stay in place.
 Stroke smooth(Stroke points, bool closed) {
   for (int round = 0; round < 3; ++round) {
     Stroke finer;
@@ -139,7 +139,7 @@ double distance_to_strokes(const Point& q, const std::vector<Stroke>& strokes) {
   return nearest;
 }
 
-/// `left` and `baseline` in pixels; `unit` pixels to a unit of the font.
+/// `left` and `baseline` are in pixels; `unit` is the number of pixels per unit of the font.
 void draw_glyph(Picture& picture, const std::vector<Stroke>& strokes, double left, double baseline, double unit,
                 const Color& color) {
   const double half_width = std::max(0.55, 0.42 * unit);  // pixels

@@ -1,4 +1,4 @@
-// Blum: the formats of surface maps, one by one. SPDX-License-Identifier: Apache-2.0
+// Blum: writers of surface maps, one for each format. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -8,23 +8,23 @@
 
 namespace blum::surface_map_files {
 
-/// What a file gets. All fits together: check() was called.
+/// Content of a file. Its parts fit together, because check() was called.
 struct Request {
   const std::filesystem::path& path;
   const MeshView& mesh;
   const SurfaceMap& map;
-  const FileMetadata& metadata;  ///< all of them
+  const FileMetadata& metadata;  ///< given metadata and those of the map
   const SurfaceMapWriteOptions& options;
   const Context& context;
 };
 
-/// The key of SurfaceAtlas::is_separate in metadata.
+/// Key of SurfaceAtlas::is_separate in metadata.
 inline constexpr std::string_view separate_key = "separate_charts";
 
-/// @throws InvalidMesh where a map lacks parts.
+/// @throws InvalidMesh if a map lacks parts.
 void check(const SurfaceMap& map);
 
-/// "distance (mm)".
+/// Returns a title, for example "distance (mm)".
 [[nodiscard]] std::string title_of(const SurfaceMap& map, const std::string& units);
 
 void write_npz(const Request& request);

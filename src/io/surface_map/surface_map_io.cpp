@@ -40,7 +40,7 @@ void check_metadata(const FileMetadata& metadata) {
   }
 }
 
-/// The metadata that are given, and what the map says.
+/// Returns the given metadata, and those of the map that are missing.
 FileMetadata all_metadata(const SurfaceMap& map, const FileMetadata& given, const SurfaceMapWriteOptions& options) {
   FileMetadata out = given;
   const auto add = [&](const char* key, const std::string& text) {
@@ -57,7 +57,7 @@ FileMetadata all_metadata(const SurfaceMap& map, const FileMetadata& given, cons
   return out;
 }
 
-/// A column of triangles, taken from their summaries.
+/// Adds a column of triangles, taken from their summaries.
 void add_summary(Columns& columns, const char* name, const SurfaceMap& map, float SurfaceMap::FaceSummary::* part) {
   const std::span<float> column = columns.add<float>(name);
   for (std::size_t t = 0; t < map.faces.size(); ++t) column[t] = map.faces[t].*part;

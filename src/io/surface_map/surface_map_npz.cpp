@@ -58,7 +58,7 @@ void add_summaries(NpzWriter& npz, const SurfaceMap& map) {
   add("mean", &SurfaceMap::FaceSummary::mean);
 }
 
-/// What is read back from metadata must be what the map says.
+/// Returns the metadata of the file. Values that readers use must agree with the map.
 FileMetadata own_metadata(const Request& request) {
   FileMetadata out = request.metadata;
   const auto keep = [&](std::string_view key, std::string_view text) {
@@ -103,11 +103,11 @@ using volume_io::ScalarType;
 
 using Shape = std::vector<std::uint64_t>;
 
-/// As write_surface_map() has them.
+/// Largest side of a texture, as in write_surface_map().
 constexpr std::uint64_t most_a_side = 16384;
-/// What the writer makes, and as many that somebody added.
+/// Largest number of arrays: those of the writer, and as many that somebody added.
 constexpr std::size_t most_arrays = 64;
-/// Reading looks at texels whose middles are so far beside a chart, along x and along y; and rounding.
+/// Reading uses texels whose centres are up to this far beside a chart, along x and along y. It includes rounding.
 constexpr double reading_reach = 1 + 1e-6;
 
 std::string shape_text(const Shape& shape) {
@@ -146,13 +146,13 @@ class Reader {
       throw FormatError(source_.name() + ": it holds no surface map: that has arrays 'distance' and 'vertex_distance'");
     }
     if (npz_.arrays().size() > most_arrays) throw FormatError(source_.name() + ": it has too many arrays");
-    // Entries that lie upon each other could fill any memory.
+    // Overlapping entries could exhaust memory.
     if (npz_.packed_size() > source_.size()) {
       throw FormatError(source_.name() + ": its entries have more bytes than the file; it is damaged");
     }
   }
 
-  /// @param shape  0: any length, which is set.
+  /// @param shape  0 stands for any length, and receives it.
   template <class Items>
   Items array(const std::string& name, ScalarType type, Shape& shape) {
     return npz_.read(name, [&](ByteStream& stream, const NpyHeader& header) {
@@ -286,7 +286,7 @@ class Reader {
     const auto& [a, b, c] = atlas_->corners[triangle];
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y) != 0;
   }
-  /// Whether the texel is about where the triangle's chart is.
+  /// Returns true if the texel is near the triangle's chart.
   [[nodiscard]] bool may_read(std::uint32_t triangle, std::size_t texel) const {
     const auto& [a, b, c] = atlas_->corners[triangle];
     const double x = static_cast<double>(texel % atlas_->width) + 0.5;

@@ -20,7 +20,7 @@
 namespace blum {
 namespace {
 
-/// A branch of the centreline of a label.
+/// Branch of the centreline of a label.
 struct BranchRow {
   const Centreline* line = nullptr;
   std::size_t branch = 0;
@@ -74,7 +74,7 @@ void write_csv(const std::filesystem::path& path, const Centrelines& lines, cons
   tables::write_csv(path, table, context);
 }
 
-/// A JSON object without its end, so that a member can follow.
+/// Returns a JSON object without its end, so that a member can follow.
 std::string opened(std::string_view object) {
   if (object.empty()) return "{";
   object = object.substr(0, object.rfind('}'));
@@ -84,7 +84,7 @@ std::string opened(std::string_view object) {
 
 void write_json(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& info,
                 const Context& /*context*/) {
-  // Label by label, so that the text of one is in memory, and not of all.
+  // Writes label by label, so that the text of only one is in memory.
   AtomicFile file(path);
   file.write(opened(info.head) + "\n \"labels\": [");
   for (std::size_t l = 0; l < lines.labels.size(); ++l) {
@@ -94,7 +94,7 @@ void write_json(const std::filesystem::path& path, const Centrelines& lines, con
   file.commit();
 }
 
-/// Writes the points of a centreline from its nodes outwards, each with the line of the point before it.
+/// Writer of the points of a centreline from its nodes outwards. Each point has the line number of the point before it.
 class SwcWriter {
  public:
   explicit SwcWriter(AtomicFile& file) : file_(file) {}
@@ -134,8 +134,9 @@ class SwcWriter {
     }
   }
 
-  /// Writes a branch from a node on. @return the node at its other end; none where it was there before: the branch
-  /// closes a loop, which is cut.
+  /// Writes a branch, starting at a node.
+  /// @return the node at its other end; none if that node was written before. The branch then closes a loop, which is
+  /// cut.
   std::optional<std::size_t> follow(const CentrelineBranch& branch, std::size_t from) {
     const bool is_forward = branch.nodes[0] == static_cast<std::int32_t>(from);
     const auto to = static_cast<std::size_t>(branch.nodes[is_forward ? 1 : 0]);
@@ -151,7 +152,7 @@ class SwcWriter {
     return to;
   }
 
-  /// @return the number of the line.
+  /// Writes a line. @return the number of the line.
   std::int64_t add(const Vec3d& point, double radius, std::int64_t parent) {
     ++lines_;
     file_.write(std::to_string(lines_) + " 0 " + exact_text(point.x) + ' ' + exact_text(point.y) + ' ' +
@@ -160,7 +161,7 @@ class SwcWriter {
   }
 
   AtomicFile& file_;
-  std::vector<std::int64_t> node_line_;  ///< of each node; 0: not written yet
+  std::vector<std::int64_t> node_line_;  ///< line of each node; 0 if not written yet
   std::int64_t lines_ = 0;
 };
 

@@ -31,17 +31,17 @@ struct Kind {
   std::string name;
   std::vector<Four> vertices = {};
   std::vector<double> times = {};
-  std::vector<Two> objects = {};  ///< of a scene alone: those of the two features
+  std::vector<Two> objects = {};  ///< objects of the two features, for scenes only
 };
 
-/// What a file holds.
+/// Content of a file.
 struct Contents {
   bool is_scene = false;
   Kind vertex_face{"vertex_face"};
   Kind edge_edge{"edge_edge"};
   std::vector<std::uint32_t> faces = {};  ///< of vertex_face
 
-  /// @param mesh  of the face.
+  /// @param mesh  mesh of the face.
   void add(const VertexFaceCollision& one, const MeshView& mesh) {
     const auto& [a, b, c] = mesh.triangles[one.face.value];
     vertex_face.vertices.push_back({one.vertex, a, b, c});
@@ -56,7 +56,7 @@ struct Contents {
   [[nodiscard]] std::array<const Kind*, 2> kinds() const { return {&vertex_face, &edge_edge}; }
 };
 
-/// @param object  whose mesh it is, of a scene. @throws InvalidOption where the mesh has no such face.
+/// @param object  object that has the mesh, for scenes. @throws InvalidOption if the mesh has no such face.
 void check_face(const MeshView& mesh, TriangleId face, std::optional<ObjectId> object = {}) {
   if (face.value < mesh.triangles.size()) return;
   throw InvalidOption("a collision is of face " + std::to_string(face.value) +
@@ -74,7 +74,7 @@ Contents contents_of(const ContinuousCollisions& collisions, const MeshView& mes
   return out;
 }
 
-/// The objects of a scene, asked strictly.
+/// Objects of a scene, with checked indices.
 class Objects {
  public:
   explicit Objects(std::span<const MeshMotion> meshes) : meshes_(meshes) {}
@@ -114,7 +114,7 @@ Contents contents_of(const SceneCollisions& collisions, std::span<const MeshMoti
   return out;
 }
 
-/// Metadata that are numbers, true or false in .json.
+/// Keys of metadata that are numbers, true or false in .json.
 constexpr std::array<std::string_view, 3> typed_keys{"self", "tolerance", "min_separation"};
 
 using tables::column_of;
@@ -132,10 +132,10 @@ TableColumn time_column(const Kind& kind) {
   return column_of(kind.name + "_time", {}, std::span<const double>(kind.times));
 }
 
-/// What comes first behind the vertices of a kind.
+/// First column after the vertices of a kind.
 enum class Order : std::uint8_t { times_first, objects_first };
 
-/// A table for each kind, and one of the numbers of faces.
+/// Returns a table for each kind, and one of the face numbers.
 std::vector<Table> lists_of(const Contents& contents, Order order) {
   std::vector<Table> out;
   for (const Kind* one : contents.kinds()) {
@@ -155,7 +155,7 @@ std::size_t rows_of(const Contents& contents) {
   return contents.vertex_face.times.size() + contents.edge_edge.times.size();
 }
 
-/// A row for each collision: those of vertices with faces, then those of edges.
+/// Returns a row for each collision: first those of vertices with faces, then those of edges.
 Table rows_of_text(const Contents& contents) {
   using Indices = std::span<std::uint32_t>;
   const std::size_t faces = contents.faces.size();
@@ -188,7 +188,7 @@ Table rows_of_text(const Contents& contents) {
   return table;
 }
 
-/// Where a vertex is at a time from 0 to 1.
+/// Returns the position of a vertex at a time from 0 to 1.
 Vec3d position_at(const MeshMotion& mesh, std::uint32_t vertex, double time) {
   const std::span<const Vec3d> start = mesh.start.vertices;
   if (vertex >= start.size()) {
@@ -203,7 +203,7 @@ Vec3d position_at(const MeshMotion& mesh, std::uint32_t vertex, double time) {
   return start[vertex] * (1 - time) + mesh.end[vertex] * time;
 }
 
-/// The features of pairs where they meet, as vertices, lines and triangles.
+/// Features of pairs at the time of their contact, as vertices, lines and triangles.
 class Features {
  public:
   Features(const Contents& contents, std::span<const MeshMotion> objects)
@@ -221,7 +221,7 @@ class Features {
     face_ = complex_.triangle_columns.add<std::int32_t>("face");
   }
 
-  /// @throws InvalidOption for vertices that are not there; Cancelled.
+  /// Returns the features. @throws InvalidOption for vertices that do not exist; Cancelled.
   Complex found(const Context& context) && {
     for (const Kind* kind : contents_.kinds()) {
       for (std::size_t n = 0; n < kind->times.size(); ++n) {
@@ -238,7 +238,7 @@ class Features {
   }
 
  private:
-  /// What each row tells of its pair.
+  /// Columns of the pair and time of each row.
   struct OfPair {
     std::span<std::int32_t> pair;
     std::span<double> time;
@@ -358,7 +358,7 @@ class QueryReader {
     throw FormatError(name_ + ", line " + std::to_string(line_) + ": " + what);
   }
 
-  /// Goes to the next line that holds something.
+  /// Moves to the next line that is not empty. Returns false at the end of the text.
   bool next_line() {
     while (!text_.empty()) {
       const std::size_t end = text_.find('\n');
@@ -405,7 +405,7 @@ class QueryReader {
     return value;
   }
 
-  /// A whole number that is exactly a double.
+  /// Returns a whole number that a double represents exactly.
   [[nodiscard]] double integer(std::string_view text) const {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

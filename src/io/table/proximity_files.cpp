@@ -24,8 +24,8 @@ using Two = std::array<T, 2>;
 /// Pairs, column by column.
 class PairColumns {
  public:
-  /// All are kept by reference. @throws InvalidOption where a pair is not of the objects, or `more` not of the pairs;
-  /// Cancelled.
+  /// Keeps all arguments by reference.
+  /// @throws InvalidOption if a pair does not belong to the objects, or `more` not to the pairs; Cancelled.
   PairColumns(std::span<const PrimitivePair> pairs, std::span<const MeshView> objects, const Columns& more,
               const Context& context)
       : pairs_(pairs), objects_(objects), more_(more), context_(context) {
@@ -53,7 +53,7 @@ class PairColumns {
             feature_vertices(corners(pair.second_object, pair.second), pair.between.second_feature)};
   }
 
-  /// What is told beside that.
+  /// Returns the additional columns.
   [[nodiscard]] const Columns& more() const { return more_; }
 
   /// Calls visit(n) for each pair. @throws Cancelled.
@@ -101,18 +101,18 @@ class PairColumns {
   const Context& context_;
 };
 
-/// Metadata that are numbers, true or false in .json.
+/// Keys of metadata that are numbers, true or false in .json.
 constexpr std::array<std::string_view, 2> typed_keys{"max_distance", "self"};
 
 using tables::made_column;
 using tables::TableColumn;
 
-/// The numbers of x, y and z, and those of the vertices of a feature, in .csv.
+/// Names in .csv of the coordinates of points, and of the vertices of features.
 const std::vector<std::string> point_names{"first_x", "first_y", "first_z", "second_x", "second_y", "second_z"};
 const std::vector<std::string> feature_names{"first_feature_0",  "first_feature_1",  "first_feature_2",
                                              "second_feature_0", "second_feature_1", "second_feature_2"};
 
-/// What each pair is between, an array for each fact.
+/// Returns the objects and primitives of each pair, in one array each.
 std::vector<TableColumn> id_columns(const PairColumns& pairs) {
   const auto object = [&](std::size_t n, std::span<std::int32_t> out) {
     std::ranges::copy(pairs.object(n), out.begin());
@@ -123,7 +123,7 @@ std::vector<TableColumn> id_columns(const PairColumns& pairs) {
   return {made_column<std::int32_t>("object", {2}, object), made_column<std::int32_t>("primitive", {2}, primitive)};
 }
 
-/// The same in one, side by side.
+/// Returns both in one column, side by side.
 TableColumn ids_by_side(const PairColumns& pairs) {
   const auto make = [&](std::size_t n, std::span<std::int32_t> out) {
     for (std::size_t side = 0; side < 2; ++side) {
@@ -135,7 +135,7 @@ TableColumn ids_by_side(const PairColumns& pairs) {
                                    {"first_object", "first_primitive", "second_object", "second_primitive"});
 }
 
-/// Where each pair is closest, and what is told beside that.
+/// Adds the distance, closest points and features of each pair, and the additional columns.
 void add_places(const PairColumns& pairs, std::vector<TableColumn>& columns) {
   const auto distance = [&](std::size_t n, std::span<double> out) { out[0] = pairs.distance(n); };
   const auto point = [&](std::size_t n, std::span<double> out) {
@@ -151,21 +151,21 @@ void add_places(const PairColumns& pairs, std::vector<TableColumn>& columns) {
   for (const Column& column : pairs.more()) columns.push_back(tables::column_of(column));
 }
 
-/// A column for each fact.
+/// Returns a column for each fact.
 tables::Table facts(const PairColumns& pairs) {
   tables::Table table{pairs.size(), id_columns(pairs)};
   add_places(pairs, table.columns);
   return table;
 }
 
-/// Columns as rows of text have them: first what is of one side, then of the other.
+/// Returns the columns of rows of text. Ids of the first side come before those of the second.
 tables::Table rows_of_text(const PairColumns& pairs) {
   tables::Table table{pairs.size(), {ids_by_side(pairs)}};
   add_places(pairs, table.columns);
   return table;
 }
 
-/// A line for each pair.
+/// Returns a line for each pair.
 Complex lines_of(const PairColumns& pairs) {
   Complex lines;
   lines.positions.reserve(2 * pairs.size());

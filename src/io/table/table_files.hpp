@@ -19,35 +19,35 @@
 
 namespace blum::tables {
 
-/// The values of a column: all of them, row after row, or a function that makes those of one row.
+/// Values of a column: all of them, row after row, or a function that computes those of one row.
 template <class T>
 struct Cells {
   std::span<const T> all = {};
-  std::function<void(std::size_t row, std::span<T> values)> make = {};  ///< where it is set, `all` is not looked at
+  std::function<void(std::size_t row, std::span<T> values)> make = {};  ///< if set, `all` is ignored
 };
 
-/// A column: the same count of values, of one type, in each row.
+/// Column with the same number of values, of one type, in each row.
 struct TableColumn {
   std::string name;                  ///< of the array in .npz, of the list in .json
-  std::vector<std::uint64_t> shape;  ///< of a row: {} one value, {3} a vector, {2, 3} two of them
-  /// Indices (uint32) are int32 in .npz files, which hold no texts.
+  std::vector<std::uint64_t> shape;  ///< of a row: {} one value, {3} a vector, {2, 3} two vectors
+  /// Indices (uint32) become int32 in .npz files, which cannot hold texts.
   std::variant<Cells<double>, Cells<float>, Cells<std::int64_t>, Cells<std::int32_t>, Cells<std::uint32_t>,
                Cells<std::string>>
       cells;
-  /// Of the values of a row in .csv. None: the column's name, of several values NAME_0, NAME_1, ...
+  /// Names of the values of a row in .csv. If empty: the column's name, or NAME_0, NAME_1, ... for several values.
   std::vector<std::string> names = {};
 
-  /// Values in a row.
+  /// Returns the number of values in a row.
   [[nodiscard]] std::size_t width() const;
 };
 
-/// What is kept by reference must outlive the table.
+/// Table of columns. Values kept by reference must outlive it.
 struct Table {
   std::size_t rows = 0;
   std::vector<TableColumn> columns;
 };
 
-/// A column whose values are there, row after row. They are kept by reference.
+/// Returns a column of existing values, row after row. They are kept by reference.
 template <class T>
 [[nodiscard]] TableColumn column_of(std::string name, std::vector<std::uint64_t> shape, std::span<const T> values,
                                     std::vector<std::string> names = {}) {
@@ -57,41 +57,41 @@ template <class T>
                                     std::vector<std::string> names = {});
 [[nodiscard]] TableColumn column_of(const Column& column, std::vector<std::string> names = {});
 
-/// A column of T that make(row, values) fills row by row. Columns of files are made one after the other, so that one
-/// at a time is in memory.
+/// Returns a column of T that make(row, values) fills row by row. Writers make one column after the other, so that only
+/// one is in memory.
 template <class T, class Make>
 [[nodiscard]] TableColumn made_column(std::string name, std::vector<std::uint64_t> shape, Make make,
                                       std::vector<std::string> names = {}) {
   return {std::move(name), std::move(shape), Cells<T>{{}, std::move(make)}, std::move(names)};
 }
 
-/// What files of rows are written from. Each is asked for by the formats that need it.
+/// Sources of files of rows. Formats call only those that they need.
 struct RowFile {
   std::function<std::vector<Table>()> arrays;  ///< a column for each fact
   std::function<std::vector<Table>()> lists;   ///< the same, in the order of .json
-  std::function<Table()> rows;                 ///< of text
-  std::function<Complex()> shapes;             ///< what can be drawn of the rows, with columns
+  std::function<Table()> rows;                 ///< rows of text
+  std::function<Complex()> shapes;             ///< shapes that represent the rows, with columns
   const FileMetadata& metadata;
-  std::span<const std::string_view> typed_keys = {};  ///< of metadata that are numbers, true or false in .json
+  std::span<const std::string_view> typed_keys = {};  ///< keys of metadata that are numbers, true or false in .json
   bool has_dense_lists = false;                       ///< as JsonStyle::is_dense
 };
 
-/// How lists of .json files look.
+/// Style of lists in .json files.
 struct JsonStyle {
   std::span<const std::string_view> typed = {};  ///< keys of metadata that are numbers, true or false
-  bool is_dense = false;                         ///< columns of one value a row take one line, not one for each row
+  bool is_dense = false;                         ///< columns of one value a row take one line, not one per row
 };
 
-/// The writers. A file appears under its name when it is complete; files of several tables hold the columns of one
-/// after those of the other. Numbers of text are the shortest that read back as the same, in .json `null` where they
-/// are not finite. @throws FileError, Cancelled.
+/// The writers. A file appears under its name when it is complete. In files of several tables, the columns of one
+/// follow those of the other. Numbers in text are the shortest that read back as the same; in .json, numbers that are
+/// not finite are `null`. @throws FileError, Cancelled.
 ///
-/// An array for each column, and `metadata`, a JSON object, unless there are none.
+/// Writes an array for each column, and `metadata`, a JSON object, unless there are none.
 void write_npz(const std::filesystem::path& path, std::span<const Table> tables, const FileMetadata& metadata,
                const Context& context);
-/// A row of names, then the rows. Metadata have no place there.
+/// Writes a row of names, then the rows. Metadata are not written.
 void write_csv(const std::filesystem::path& path, const Table& table, const Context& context);
-/// An object: `metadata`, then a list for each column, of values or of lists of them.
+/// Writes an object: `metadata`, then a list for each column, of values or of lists of them.
 void write_json(const std::filesystem::path& path, std::span<const Table> tables, const FileMetadata& metadata,
                 const JsonStyle& style, const Context& context);
 

@@ -24,12 +24,12 @@ std::string json_string(const std::string& text) {
   return json(text).dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// Takes one flat object of strings, in its order; anything else ends the parsing where it begins, so that no depth of
-/// nesting costs anything.
+/// Reader of one flat object of strings, in its order. Anything else ends the parsing at once, so that deep nesting
+/// costs nothing.
 class FlatObject final : public nlohmann::json_sax<json> {
  public:
   FileMetadata pairs;
-  std::size_t position = 0;  ///< of what the parser refused
+  std::size_t position = 0;  ///< of the text that the parser refused
 
   bool start_object(std::size_t /*size*/) override { return !std::exchange(is_open_, true); }
   bool end_object() override { return true; }

@@ -61,8 +61,8 @@ class HeaderReader {
   }
 
  private:
-  /// Behind the end of this line. The first line tells how lines end: in a binary file whose lines end in CR, the data
-  /// might begin with the code of LF.
+  /// Moves behind the end of this line. The first line defines how lines end. In a binary file whose lines end in CR,
+  /// the data might begin with the code of LF.
   std::string_view take_line_end() {
     cursor_.skip_blanks();
     const char* const start = cursor_.position();
@@ -77,7 +77,7 @@ class HeaderReader {
     return rest.substr(0, size);
   }
 
-  /// Without blanks at its ends; the cursor stays.
+  /// Returns the rest of the line, without blanks at its ends. The cursor stays.
   [[nodiscard]] std::string_view rest_of_line() const {
     TextCursor end = cursor_;
     end.skip_line();
@@ -115,7 +115,7 @@ class HeaderReader {
     for (const PlyElement& other : header_.elements) {
       if (other.name == element.name) cursor_.fail("element " + in_quotes(element.name) + " is there twice");
     }
-    constexpr std::size_t most = 1000;  // looked up one by one above, and nobody has so many
+    constexpr std::size_t most = 1000;  // the search above is linear, and real files have far fewer
     if (header_.elements.size() == most) cursor_.fail("the header has more than 1000 elements");
     header_.elements.push_back(std::move(element));
   }

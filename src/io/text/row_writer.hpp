@@ -19,23 +19,23 @@
 
 namespace blum {
 
-/// Puts numbers into a file, as text or as little-endian bytes. The file appears with finish().
+/// Writer of numbers to a file, as text or as little-endian bytes. The file appears with finish().
 class RowWriter {
  public:
-  /// @param rows  how often end_row() will be called, for the progress.
+  /// @param rows  number of calls of end_row(), for the progress.
   RowWriter(const std::filesystem::path& path, std::size_t rows, Context context)
       : file_(path), context_(std::move(context)), rows_(rows) {
     buffer_.reserve(piece_size + 4096);
   }
 
-  /// Without progress.
+  /// Writes without reporting progress.
   explicit RowWriter(const std::filesystem::path& path) : RowWriter(path, 0, {}) {}
 
   void text(std::string_view text) {
     buffer_ += text;
     if (buffer_.size() >= piece_size) flush();
   }
-  /// A blank and the shortest text that reads back to the same number.
+  /// Writes a blank and the shortest text that reads back to the same number.
   template <class T>
   void number(T value) {
     std::array<char, 40> digits{};
@@ -53,14 +53,14 @@ class RowWriter {
     text({raw.data(), raw.size()});
   }
   void end_row() { ++done_; }
-  /// @throws FileError, Cancelled.
+  /// Completes the file. @throws FileError, Cancelled.
   void finish() {
     flush();
     file_.commit();
   }
 
  private:
-  /// Small enough that a call which is cancelled ends soon.
+  /// Small enough that a cancelled call ends soon.
   static constexpr std::size_t piece_size = std::size_t{1} << 20;
 
   void flush() {
@@ -83,10 +83,10 @@ class RowWriter {
 
 namespace blum::volume_io {
 
-/// Passes bytes on to files in pieces, so that a caller can follow the writing and stop it in time.
+/// Sink that passes bytes on to files in pieces, so that a caller can follow the writing and cancel it in time.
 class FieldSink {
  public:
-  /// @param total  bytes that will be written in all, for the progress.
+  /// @param total  number of all bytes that will be written, for the progress.
   FieldSink(std::uint64_t total, const Context& context) : context_(context), total_(total) {}
 
   void write(AtomicFile& file, std::span<const std::byte> bytes) {
@@ -106,7 +106,7 @@ class FieldSink {
   void write(AtomicFile& file, std::string_view text) { write(file, std::as_bytes(std::span(text))); }
 
  private:
-  /// Small enough that even a slow disk takes one within the time that a cancelled call may run on.
+  /// Small enough that even a slow disk takes one within the time that a cancelled call may still run.
   static constexpr std::size_t piece_size = std::size_t{8} << 20;
 
   const Context& context_;

@@ -16,7 +16,7 @@
 
 namespace blum {
 
-/// A short printable form of text from a file, for messages.
+/// Returns a short printable form of text from a file, for messages.
 inline std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "'";
@@ -24,15 +24,15 @@ inline std::string in_quotes(std::string_view text) {
   return result + (text.size() > longest ? "...'" : "'");
 }
 
-/// A place in a text, with the steps that readers are made of. Lines may end in LF, CR LF or CR.
+/// Position in a text, with the steps from which readers are built. Lines may end in LF, CR LF or CR.
 ///
-/// "Blanks" separate tokens within a line; "space" is blanks, line ends, and (where the format has them) comments from
-/// `comment` to the end of the line. Lines are counted only when something is wrong.
+/// "Blanks" separate tokens within a line. "Space" is blanks, line ends and, if the format has them, comments from
+/// `comment` to the end of the line. Lines are counted only for error messages.
 class TextCursor {
  public:
-  /// @param name     stands for the file in messages; must outlive the cursor, like text.
+  /// @param name     name of the file in messages; must outlive the cursor, like text.
   /// @param comment  character that starts a comment between tokens; 0 for none.
-  /// @param continuation  character that joins a line with the next when it ends a line; 0 for none.
+  /// @param continuation  character that, at the end of a line, joins it with the next; 0 for none.
   TextCursor(std::string_view text, std::string_view name, char comment, char continuation = 0)
       : begin_(text.data()),
         position_(begin_),
@@ -61,13 +61,13 @@ class TextCursor {
     }
   }
 
-  /// Skips blanks and a comment; true when nothing is left on this line.
+  /// Skips blanks. Returns true if nothing but a comment is left on this line.
   bool at_line_end() {
     skip_blanks();
     return at_end() || is_line_end(*position_) || (comment_ != 0 && *position_ == comment_);
   }
 
-  /// Goes behind the end of this line. A continued line is one line.
+  /// Moves behind the end of this line. A continued line is one line.
   void skip_line() {
     for (; position_ < end_; ++position_) {
       if (is_line_end(*position_)) {
@@ -78,7 +78,7 @@ class TextCursor {
     }
   }
 
-  /// Goes to the next token, on this line or a later one; false when there is none.
+  /// Moves to the next token, on this line or a later one. Returns false if none is left.
   bool skip_space() {
     while (at_line_end()) {
       if (at_end()) return false;
@@ -87,21 +87,21 @@ class TextCursor {
     return true;
   }
 
-  /// The token here, up to a blank or line end; the cursor stays. Empty at a line end.
+  /// Returns the token here, up to a blank or line end; it is empty at a line end. The cursor stays.
   [[nodiscard]] std::string_view peek_token() const {
     const char* last = position_;
     while (last < end_ && !is_blank(*last) && !is_line_end(*last)) ++last;
     return {position_, static_cast<std::size_t>(last - position_)};
   }
 
-  /// The token here; the cursor goes behind it.
+  /// Returns the token here and moves behind it.
   std::string_view take_token() {
     const std::string_view token = peek_token();
     position_ += token.size();
     return token;
   }
 
-  /// A finite number on this line. `what` names it in messages.
+  /// Reads a finite number on this line. `what` names it in messages.
   double take_number(std::string_view what) {
     skip_blanks();
     const char* const start = position_;
@@ -110,13 +110,13 @@ class TextCursor {
     return value;
   }
 
-  /// The same, or an infinity or NaN.
+  /// Reads a number on this line, also an infinity or NaN.
   double take_any_number(std::string_view what) {
     skip_blanks();
     return take_number_here(what);
   }
 
-  /// A whole number on this line; must be followed by a blank or line end.
+  /// Reads a whole number on this line. A blank or line end must follow it.
   std::int64_t take_integer(std::string_view what) {
     skip_blanks();
     const char* const start = position_;
@@ -125,7 +125,7 @@ class TextCursor {
     return value;
   }
 
-  /// A whole number here, whatever follows it.
+  /// Reads a whole number here, whatever follows it.
   std::int64_t take_integer_prefix(std::string_view what) {
     const char* const start = position_;
     std::int64_t value = 0;
@@ -156,7 +156,7 @@ class TextCursor {
     return c + 1 < end_ && *c == '+' && c[1] != '-' ? c + 1 : c;
   }
 
-  /// Behind a continuation character and its line end; false (and no step) when no line end follows.
+  /// Moves behind a continuation character and its line end. If no line end follows, returns false and does not move.
   bool skip_continuation() {
     const char* next = position_ + 1;
     if (next < end_ && *next == '\r') ++next;
@@ -183,12 +183,12 @@ class TextCursor {
     return value;
   }
 
-  /// from_chars refuses numbers too small for a double as it does those that are too large; the former are zero.
+  /// Returns zero for numbers too small for a double, and fails for numbers too large. from_chars refuses both alike.
   double tiny_or_fail(const char* start, const char* last, std::string_view what) const {
     std::string_view digits(start, static_cast<std::size_t>(last - start));
     const std::size_t mark = std::min(digits.find_first_of("eE"), digits.size());
     const bool small_exponent = mark + 1 < digits.size() && digits[mark + 1] == '-';
-    // 0.000...1 without an exponent is small as well; a long run of digits before the point is not.
+    // 0.000...1 without an exponent is small as well. A long run of digits before the point is not.
     const std::size_t first = digits.find_first_of("123456789");
     const std::size_t point = std::min(digits.find('.'), mark);
     if (mark == digits.size() ? first > point : small_exponent) return digits.front() == '-' ? -0.0 : 0.0;
@@ -245,7 +245,7 @@ inline constexpr std::string_view white_space = " \t\r\n\v\f";
   return out;
 }
 
-/// The number that makes up the whole text, which may begin with a plus sign.
+/// Returns the number that makes up the whole text, which may begin with a plus sign.
 template <class T>
 [[nodiscard]] std::optional<T> parse_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);

@@ -1,4 +1,4 @@
-// Blum: the XML files of VTK, with raw appended data. SPDX-License-Identifier: Apache-2.0
+// Blum: XML files of VTK with raw appended data. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@
 
 namespace blum::volume_io {
 
-/// An opening tag of XML and the text behind it, up to the next tag.
+/// Opening tag of XML, and the text behind it up to the next tag.
 struct XmlTag {
   std::string_view name;
   std::vector<std::pair<std::string_view, std::string_view>> attributes;
   std::string_view text;
-  std::size_t end = 0;  ///< behind the tag's '>'
+  std::size_t end = 0;  ///< position behind the tag's '>'
 
   [[nodiscard]] std::optional<std::string_view> find(std::string_view key) const {
     for (const auto& [attribute, value] : attributes) {
@@ -31,14 +31,14 @@ struct XmlTag {
   }
 };
 
-/// The value of an attribute with its entities (&amp; and so on) as the characters that they stand for.
+/// Returns the value of an attribute, with its entities (&amp; and so on) replaced by their characters.
 [[nodiscard]] std::string without_entities(std::string_view value);
 
-/// The opening tags of a text, one after the other, with their entities.
+/// Reader of the opening tags of a text, one after the other. Entities are not replaced.
 class XmlTags {
  public:
   XmlTags(std::string_view text, const std::string& name) : text_(text), name_(name) {}
-  /// @throws FormatError when the XML is damaged.
+  /// Returns the next tag, or nullopt after the last one. @throws FormatError if the XML is damaged.
   std::optional<XmlTag> next();
 
  private:
@@ -52,42 +52,43 @@ class XmlTags {
   std::size_t at_ = 0;
 };
 
-/// How a file holds its appended arrays.
+/// Format of the appended arrays of a file.
 struct VtkAppended {
   std::endian order = std::endian::little;
-  std::size_t length_size = 4;   ///< bytes of the number before each array
-  std::uint64_t data_start = 0;  ///< behind the '_'
+  std::size_t length_size = 4;   ///< bytes of the length before each array
+  std::uint64_t data_start = 0;  ///< position behind the '_'
 };
 
-/// One appended array.
+/// Properties of one appended array.
 struct VtkArray {
   ScalarType type = ScalarType::f32;
   std::uint64_t components = 1;
   std::uint64_t offset = 0;
 };
 
-// Reading. All throw FormatError with `name`, which stands for the file.
+// Reading. All functions throw FormatError with `name`, the name of the file.
 
-/// The file up to and with the start of the appended data; all of it, where there are none.
+/// Returns the file up to the start of the appended data, inclusive, or all of it if it has none.
 [[nodiscard]] std::string read_vtk_header(const ByteSource& source);
-/// Byte order and size of lengths, from the tag VTKFile, which must be of the type `type`.
+/// Returns the byte order and the size of lengths from the tag VTKFile. The tag must have the type `type`.
 [[nodiscard]] VtkAppended vtk_layout(const XmlTag& tag, std::string_view type, const std::string& name);
-/// Where the data begin, from the tag AppendedData of the text.
+/// Returns the start of the data, from the tag AppendedData of the text.
 [[nodiscard]] std::uint64_t vtk_data_start(const XmlTag& tag, std::string_view text, const std::string& name);
 [[nodiscard]] VtkArray vtk_array(const XmlTag& tag, const std::string& name);
-/// The text of an array of one string: the numbers of its bytes, with a zero at the end.
+/// Returns the text of an array of one string. It consists of the numbers of its bytes, with a zero at the end.
 [[nodiscard]] std::string vtk_string(std::string_view text, const std::string& name);
-/// The values of one array, past its length, which must be that of `count` values; all of them are there.
-/// @param needed_by  what asks for so many values, for the message.
+/// Returns the values of one array, behind its length. The length must be that of `count` values, and the file must
+/// hold all of them.
+/// @param needed_by  part of the file that needs so many values, for the message.
 [[nodiscard]] PlainStream open_vtk_array(const ByteSource& source, const VtkAppended& appended, const VtkArray& array,
                                          std::uint64_t count, const char* needed_by);
 
 // Writing.
 
 [[nodiscard]] std::string_view vtk_type(ScalarType type);
-/// The opening of a file, up to the tag of its data set.
+/// Returns the opening of a file, up to the tag of its data set.
 [[nodiscard]] std::string vtk_opening(std::string_view type);
-/// An array of one string. VTK writes strings as the numbers of their bytes, with a zero at the end.
+/// Returns an array of one string. VTK writes strings as the numbers of their bytes, with a zero at the end.
 [[nodiscard]] std::string vtk_string_array(const std::string& name, const std::string& text);
 [[nodiscard]] std::string vtk_appended_array(ScalarType type, std::string_view name, std::uint64_t components,
                                              std::uint64_t offset);
