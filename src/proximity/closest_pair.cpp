@@ -9,24 +9,25 @@
 namespace blum::detail {
 namespace {
 
-/// How many times the closest boxes are followed down to primitives before threads share the rest.
+/// Number of descents from the closest boxes to primitives before threads share the rest.
 constexpr std::size_t dives = 64;
 constexpr std::size_t parts_of_two = 64;
 constexpr std::size_t blocks_per_part = 16;
 constexpr std::size_t parts_of_first_round = 4;
 
-/// Looks for a pair that is closer than the best one so far.
+/// Searches for a pair that is closer than the best one so far.
 class PartSearch {
  public:
   PartSearch(const ObjectPair& objects, CandidateLimit& candidates, const Closest& start)
       : objects_(&objects), candidates_(&candidates), best_(start) {}
 
-  /// How close primitives must be to be of interest now, as the hierarchies see them.
+  /// Returns the distance within which primitives still matter, as the hierarchies see it.
   [[nodiscard]] double limit() const { return best_.limit + objects_->slack(); }
   [[nodiscard]] const Closest& best() const { return best_; }
   [[nodiscard]] const ProximityReport& report() const { return report_; }
 
-  /// @return  the limit from now on; negative where the search is to stop.
+  /// Compares two primitives.
+  /// @return  the limit from now on; negative if the search must stop.
   double look_at(std::uint32_t i, std::uint32_t j) {
     if (candidates_->stops(++report_.candidates)) return -1;
     if (objects_->is_self() && objects_->are_neighbours(i, j)) return limit();
@@ -100,9 +101,9 @@ class ClosestPairSearch {
     });
   }
 
-  /// Each round has twice as many parts as the one before. Within a round all start from what earlier rounds have
-  /// found, so that not even counts of candidates depend on threads.
-  /// @param search_part  callable: index of a part, where to look from.
+  /// Searches in rounds, each with twice as many parts as the one before. All parts of a round start from the results
+  /// of earlier rounds, so that not even counts of candidates depend on threads.
+  /// @param search_part  callable: index of a part, search to use for it.
   template <class SearchPart>
   void search_in_rounds(std::size_t parts, const SearchPart& search_part) {
     std::size_t size = parts_of_first_round;

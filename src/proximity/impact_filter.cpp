@@ -11,20 +11,20 @@
 namespace blum::detail {
 namespace {
 
-/// A point of either feature. What they are rounded by is small beside the features, but they need not be the closest
-/// where these are thin.
+/// A point of each feature. Their rounding is small compared to the features. But they need not be the closest points
+/// if the features are thin.
 struct ClosestPair {
   Vec3d first;
   Vec3d second;
 };
 
-/// The point of a segment from the origin that is closest to another point.
+/// Returns the point of a segment from the origin that is closest to another point.
 Vec3d on_segment(const Vec3d& end, const Vec3d& to) {
   const double square = squared_length(end);
   return square > 0 ? end * std::clamp(dot(end, to) / square, 0.0, 1.0) : Vec3d{};
 }
 
-/// Of a point and a triangle with a corner in the origin.
+/// Returns the closest points of a point and a triangle with a corner in the origin.
 ClosestPair closest_of_point_and_triangle(const Vec3d& point, const Vec3d& b, const Vec3d& c) {
   const Vec3d normal = cross(b, c);
   const double square = squared_length(normal);
@@ -40,7 +40,7 @@ ClosestPair closest_of_point_and_triangle(const Vec3d& point, const Vec3d& b, co
   return best;
 }
 
-/// Of a segment that begins in the origin, and another one.
+/// Returns the closest points of a segment that begins in the origin, and another one.
 ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, const Vec3d& other_along) {
   const double a = squared_length(end);
   const double b = dot(end, other_along);
@@ -53,7 +53,7 @@ ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, cons
     const double r = (b * d - a * e) / determinant;
     if (s >= 0 && s <= 1 && r >= 0 && r <= 1) return {end * s, other_start + other_along * r};
   }
-  // Else an end of one is closest.
+  // Otherwise an end of one is closest.
   const Vec3d other_end = other_start + other_along;
   ClosestPair best{on_segment(end, other_start), other_start};
   for (const ClosestPair& pair : {ClosestPair{on_segment(end, other_end), other_end},
@@ -66,11 +66,12 @@ ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, cons
 
 constexpr double unit_roundoff = 0x1p-53;
 
-/// A polynomial by its Bernstein coefficients over [0, 1]: it is between their least and largest there.
+/// A polynomial by its Bernstein coefficients over [0, 1]. Its values there lie between the least and the largest of
+/// them.
 template <std::size_t size>
 using Bernstein = std::array<double, size>;
 
-/// The coefficients over a part of [0, 1].
+/// Returns the coefficients over a part of [0, 1].
 Bernstein<3> part(const Bernstein<3>& c, double low, double high) {
   const auto mix = [](double a, double b, double t) { return (1 - t) * a + t * b; };
   const double low0 = mix(c[0], c[1], low);
@@ -121,7 +122,7 @@ MovingVector between(const FourMovingPoints& points, std::size_t from, std::size
   return {points.start[to] - points.start[from], points.end[to] - points.end[from]};
 }
 
-/// The Bernstein coefficients of a vector in time.
+/// Bernstein coefficients of a vector that is quadratic in time.
 using QuadraticVector = std::array<Vec3d, 3>;
 
 QuadraticVector product(const MovingVector& a, const MovingVector& b) {
@@ -132,8 +133,8 @@ Bernstein<3> along(const QuadraticVector& v, std::size_t axis) {
   return {v[0][axis], v[1][axis], v[2][axis]};
 }
 
-/// Two features by vectors between their points: a + s * u = b + r * v, where they meet. With w = b - a and n = u x v,
-/// that is s * n = w x v, and r * n is w x u or, for a face, u x w.
+/// Two features as vectors between their points. They meet if a + s * u = b + r * v. With w = b - a and n = u x v, then
+/// s * n is w x v. Also r * n is w x u or, for a face, u x w.
 class Filter {
  public:
   Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance)
@@ -163,7 +164,7 @@ class Filter {
     return first_by(most_looks_for_meeting, [&](const Interval& interval) { return look_at(interval); });
   }
 
-  /// When they come as close as a distance, which is positive.
+  /// Returns when they come as close as a distance, which must be positive.
   [[nodiscard]] FilteredImpact approach(double distance) {
     const auto is_small = [](double magnitude) { return magnitude < 1e90; };
     if (!is_small(u_most_) || !is_small(v_most_) || !is_small(w_most_) || !is_in_range(distance)) return {};
@@ -181,7 +182,7 @@ class Filter {
     double high;
   };
 
-  /// What an answer for intervals makes of all times.
+  /// Combines answers for intervals into one for all times.
   template <class LookAt>
   [[nodiscard]] FilteredImpact first_by(int most_looks, const LookAt& look_at) {
     left_.push_back({0, 1});
@@ -199,16 +200,16 @@ class Filter {
     return {FilteredImpact::Answer::never, 0};
   }
 
-  // Bounds on rounding, proven in docs/theory/proximity.md, with room.
+  // Bounds on rounding, with room; proven in docs/theory/proximity.md.
   static constexpr double volume_rounding = 256 * unit_roundoff;
   static constexpr double area_rounding = 64 * unit_roundoff;
   static constexpr double height_rounding = 64 * unit_roundoff;
-  // Looks at intervals, before integers take about as long.
+  // Limits of the number of intervals examined. Beyond these, integers take about as long.
   static constexpr int most_looks_for_meeting = 96;
   static constexpr int most_looks_for_approach = 10000;
   static constexpr double least_width = 0x1p-44;
 
-  /// Whether products of three neither overflow nor lose more to underflow than to rounding.
+  /// Returns true if products of three numbers neither overflow nor lose more to underflow than to rounding.
   static bool is_in_range(double magnitude) { return magnitude > 1e-80 && magnitude < 1e90; }
 
   template <std::size_t size>
@@ -216,7 +217,8 @@ class Filter {
     return least(c) <= error && most(c) >= -error;
   }
 
-  /// Whether the features meet for certain at a time in an interval no longer than the tolerance, or never do in it.
+  /// Answers `meets` if the features certainly meet in an interval no longer than the tolerance. Answers `never` if
+  /// they certainly do not meet in it.
   [[nodiscard]] FilteredImpact::Answer look_at(const Interval& interval) const {
     using Answer = FilteredImpact::Answer;
     const Bernstein<4> volume = part(volume_, interval.low, interval.high);
@@ -241,15 +243,15 @@ class Filter {
       }
       if (is_inside && crosses && interval.high - interval.low <= tolerance_) return Answer::meets;
     }
-    // What is not told by signs may be seen along the direction in which the two are closest.
+    // If signs do not decide, a gap may show along the direction in which the two are closest.
     constexpr double narrow = 0.25;
-    constexpr double too_narrow = 0.03;  // what was not seen before, is too close
+    constexpr double too_narrow = 0.03;  // a gap that did not show before is too small
     const double width = interval.high - interval.low;
     return width <= narrow && width >= too_narrow && are_apart_in(interval, 0) ? Answer::never : Answer::unknown;
   }
 
-  /// Whether all through an interval the features are further apart than a distance, for certain, along the direction
-  /// in which they are closest in its middle. Heights along it are linear in time.
+  /// Returns true if the features are certainly further apart than a distance throughout an interval. Tests the
+  /// direction in which they are closest in its middle. Heights along it are linear in time.
   [[nodiscard]] bool are_apart_in(const Interval& interval, double distance) const {
     const double middle = 0.5 * (interval.low + interval.high);
     const ClosestPair closest = closest_at(middle);
@@ -269,7 +271,7 @@ class Filter {
     return true;
   }
 
-  /// Whether they are no further apart than a distance at a time, for certain.
+  /// Returns true if they are certainly no further apart than a distance at a given time.
   [[nodiscard]] bool is_within(double distance, double t) const {
     const ClosestPair closest = closest_at(t);
     const double rounding = height_rounding * (u_most_ + v_most_ + w_most_);

@@ -1,4 +1,4 @@
-// Blum: when moving features meet, by doubles with proven bounds. SPDX-License-Identifier: Apache-2.0
+// Blum: times at which moving features meet, by doubles with proven bounds. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@ namespace blum::detail {
 
 enum class FeatureKinds : std::uint8_t { vertex_face, edge_edge };
 
-/// What doubles tell of two features.
+/// The answer of doubles for two features.
 struct FilteredImpact {
   enum class Answer : std::uint8_t { never, meets, unknown };
   Answer answer = Answer::unknown;
-  double time = 0;  ///< where they meet: as impacts tell it
+  double time = 0;  ///< if they meet: as vertex_face_impact() returns it
 };
 
-/// Whether and when two moving features meet, exactly: by doubles where these decide it, else by integers.
+/// Returns the time at which two moving features meet, if they do. Exact: uses doubles if these decide, else integers.
 [[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds,
                                            const ImpactOptions& options);
 
-/// Whether and when two moving features meet, where doubles decide it: never a wrong answer.
+/// Returns the time at which two moving features meet, if doubles decide it. Never returns a wrong answer.
 [[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds,
                                              const ImpactOptions& options);
 

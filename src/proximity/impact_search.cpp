@@ -35,11 +35,11 @@ void check(const MeshView& mesh, std::span<const Vec3d> end) {
   }
 }
 
-/// For each vertex that the mesh names the smallest one of these that is in the same place at both ends; empty where
-/// all are by themselves.
+/// Returns for each named vertex the smallest named one that is in the same place at both ends. Empty if all are by
+/// themselves.
 std::vector<std::uint32_t> places(const MeshView& mesh, std::span<const Vec3d> end) {
   const std::vector<std::uint32_t> first = weld_clusters(mesh.vertices);
-  std::vector<bool> is_shared(first.size(), false);  // of the first vertex in a place at the start
+  std::vector<bool> is_shared(first.size(), false);  // set for the first vertex in a place at the start
   for (std::uint32_t v = 0; v < first.size(); ++v) {
     if (first[v] != v) is_shared[first[v]] = true;
   }
@@ -87,7 +87,7 @@ namespace {
 
 constexpr std::size_t direction_count = 10;
 
-/// How far a point is along each direction: six diagonals of faces of a cube, then its four own.
+/// Heights of a point along each direction: six diagonals of faces of a cube, then the cube's four own.
 using Heights = std::array<double, direction_count>;
 
 Heights heights_of(const Vec3d& p) {
@@ -95,14 +95,14 @@ Heights heights_of(const Vec3d& p) {
           p.y - p.z, p.x + p.y + p.z, p.x + p.y - p.z, p.x - p.y + p.z, p.x - p.y - p.z};
 }
 
-/// More than what the difference of two heights is rounded by: each is a sum of at most three numbers.
+/// Returns a bound on the rounding of the difference of two heights. Each height is a sum of at most three numbers.
 double rounding_of(const std::array<Vec3d, 4>& points) {
   double most = 0;
   for (const Vec3d& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   return 0x1p-48 * most;
 }
 
-/// Along each direction, how far the first points are above the rest, and below; negative where they are not.
+/// Along each direction, how far the first points are above the rest, and below them; negative if they are not.
 struct Gaps {
   Heights above;
   Heights below;
@@ -130,10 +130,11 @@ Gaps gaps_of(const std::array<Vec3d, 4>& points, std::size_t first_count) {
   return gaps;
 }
 
-/// Whether for certain some of ten directions tells the first points from the rest: along it, the first are on one side
-/// of the rest, by more than a distance, at both ends of the motion, and so all the time. The three axes are not among
-/// the directions: boxes have looked along them.
-/// @param first_count  1 for a vertex and a face, 2 for two edges.  @param distance  mesh units, >= 0.
+/// Returns true if one of ten directions certainly separates the first points from the rest. Along it, the first are on
+/// one side of the rest, by more than a distance, at both ends of the motion. So they are at all times. The three axes
+/// are not among the directions, because boxes were compared along them.
+/// @param first_count  1 for a vertex and a face, 2 for two edges.
+/// @param distance  mesh units, >= 0.
 bool are_apart(const FourMovingPoints& points, std::size_t first_count, double distance) {
   const Gaps start = gaps_of(points.start, first_count);
   const Gaps end = gaps_of(points.end, first_count);
@@ -155,9 +156,9 @@ namespace {
 using detail::FeatureKinds;
 
 constexpr std::size_t blocks_per_range = 32;
-constexpr std::size_t most_collisions = std::size_t{1} << 26;  ///< 1.6 GB of them
+constexpr std::size_t most_collisions = std::size_t{1} << 26;  ///< they take 1.6 GB
 
-/// A box with its sides further out, by no less than half the distance that counts as meeting.
+/// Moves the sides of a box outwards, by no less than half the distance that counts as meeting.
 void grow(Box3& box, double min_separation) {
   if (!(min_separation > 0)) return;
   const double by = 0.5 * min_separation;
@@ -168,7 +169,7 @@ void grow(Box3& box, double min_separation) {
   }
 }
 
-/// A hierarchy over the boxes of features, each by the vertices of it.
+/// Returns a hierarchy over the boxes of features, each around the feature's vertices.
 template <class Features, class Vertices>
 MovingBoxBvh hierarchy(const MovingFeatures& moving, const Features& features, const Vertices& vertices_of,
                        double min_separation, const Context& context) {
@@ -188,7 +189,7 @@ std::span<const std::uint32_t> alone(const std::uint32_t& vertex) {
   return {&vertex, 1};
 }
 
-/// Two features of one object or of two.
+/// Returns the points of two features of one object or of two.
 FourMovingPoints points(const MovingFeatures& a, std::span<const std::uint32_t> first, const MovingFeatures& b,
                         std::span<const std::uint32_t> second) {
   FourMovingPoints out;
@@ -213,13 +214,13 @@ MovingObject::MovingObject(const MeshView& mesh, std::span<const Vec3d> end, dou
       edges_(hierarchy(features_, features_.edges(), itself, min_separation, context)),
       faces_(hierarchy(features_, features_.faces(), itself, min_separation, context)) {}
 
-/// What one part of the work finds.
+/// Results of one part of the work.
 template <class Collision>
 struct ImpactSearch::Found {
   std::vector<Collision> collisions;
   std::size_t box_pairs = 0;
   std::size_t exact_tests = 0;
-  bool is_stopped = false;  ///< as the caller asked for it, or as there are too many
+  bool is_stopped = false;  ///< because the caller asked for it, or because of too many collisions
 };
 
 std::vector<VertexFaceCollision> ImpactSearch::vertices_and_faces(const MovingObject& of_vertices,
@@ -256,14 +257,14 @@ std::vector<EdgeEdgeCollision> ImpactSearch::edges_and_edges(const MovingObject&
   return out;
 }
 
-/// What find(block, found) finds in all blocks, in no stated order.
+/// Returns the results of find(block, found) for all blocks, in no stated order.
 template <class Collision, class Find>
 std::vector<Collision> ImpactSearch::gathered(std::size_t blocks, const char* phase, const Find& find) {
   std::vector<Found<Collision>> parts((blocks + blocks_per_range - 1) / blocks_per_range);
   parallel_for(context_, blocks, blocks_per_range, phase, [&](const WorkRange& range) {
     for (std::size_t b = range.begin; b < range.end; ++b) find(b, parts[range.begin / blocks_per_range]);
   });
-  throw_if_cancelled(context_);  // parts that stopped for it have not found all
+  throw_if_cancelled(context_);  // parts that stopped are incomplete
   if (collisions_ > most_collisions) {
     throw OutOfMemory("more than " + std::to_string(most_collisions) +
                       " pairs collide: parts that lie on each other, mostly; take duplicates away");
@@ -277,7 +278,8 @@ std::vector<Collision> ImpactSearch::gathered(std::size_t blocks, const char* ph
   return all;
 }
 
-/// Counts a pair. @return whether it is to be left out, as nothing counts any more.
+/// Counts a pair.
+/// @return  true if it must be skipped, because the search has stopped.
 template <class Collision>
 bool ImpactSearch::stops(Found<Collision>& found) const {
   constexpr std::size_t pairs_between_looks = 256;

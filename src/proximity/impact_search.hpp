@@ -1,4 +1,4 @@
-// Blum: what of moving objects meets. SPDX-License-Identifier: Apache-2.0
+// Blum: search for collisions of moving objects. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <atomic>
@@ -15,19 +15,19 @@
 
 namespace blum {
 
-/// The features of a mesh between two frames. Vertices that are in one place in both are one vertex: of these, the one
-/// that the mesh names with the smallest index stands for all.
+/// The features of a mesh between two frames. Vertices that are in one place at both ends count as one vertex. Among
+/// those that the mesh names, the smallest index stands for all.
 class MovingFeatures {
  public:
-  /// @param mesh  at the start; must stay, as `end` must.
+  /// @param mesh  at the start; must outlive this, like `end`.
   MovingFeatures(const MeshView& mesh, std::span<const Vec3d> end, const Context& context);
 
   [[nodiscard]] const std::vector<std::uint32_t>& vertices() const { return vertices_; }
-  /// Each once; of the vertices that stand for others, the smaller first.
+  /// Returns each edge once, between vertices that stand for others, the smaller one first.
   [[nodiscard]] const std::vector<Segment>& edges() const { return edges_; }
   [[nodiscard]] std::span<const Triangle> faces() const { return mesh_.triangles; }
 
-  /// The vertex that stands for one.
+  /// Returns the vertex that stands for another one.
   [[nodiscard]] std::uint32_t place(std::uint32_t vertex) const { return place_.empty() ? vertex : place_[vertex]; }
 
   [[nodiscard]] const Vec3d& start(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
@@ -45,7 +45,7 @@ class MovingFeatures {
  private:
   MeshView mesh_;
   std::span<const Vec3d> end_;
-  std::vector<std::uint32_t> place_;  ///< empty where each vertex stands for itself
+  std::vector<std::uint32_t> place_;  ///< empty if each vertex stands for itself
   std::vector<std::uint32_t> vertices_;
   std::vector<Segment> edges_;
 };
@@ -53,8 +53,8 @@ class MovingFeatures {
 /// A mesh between two frames, with hierarchies over the boxes of its features.
 class MovingObject {
  public:
-  /// @param mesh            at the start; must stay, as `end` must.
-  /// @param min_separation  how close counts as meeting.
+  /// @param mesh            at the start; must outlive this, like `end`.
+  /// @param min_separation  the distance that counts as meeting.
   MovingObject(const MeshView& mesh, std::span<const Vec3d> end, double min_separation, const Context& context);
 
   [[nodiscard]] const MovingFeatures& features() const { return features_; }
@@ -69,16 +69,17 @@ class MovingObject {
   MovingBoxBvh faces_;
 };
 
-/// Finds what meets, and counts what that took.
+/// Finds collisions of features, and counts the work.
 class ImpactSearch {
  public:
   ImpactSearch(const ImpactOptions& options, const Context& context) : options_(options), context_(context) {}
 
-  /// The pairs of a vertex of one object and a face of another one, or the same one; rising.
+  /// Returns colliding pairs of a vertex of one object and a face of another one, or of the same one; rising.
   /// @throws OutOfMemory, Cancelled.
   [[nodiscard]] std::vector<VertexFaceCollision> vertices_and_faces(const MovingObject& of_vertices,
                                                                     const MovingObject& of_faces);
-  /// The pairs of edges of two objects, the first one's first; or of one, the smaller edge first. Rising.
+  /// Returns colliding pairs of edges of two objects, the first one's first. For one object, the smaller edge is first.
+  /// Rising.
   [[nodiscard]] std::vector<EdgeEdgeCollision> edges_and_edges(const MovingObject& a, const MovingObject& b);
 
   [[nodiscard]] std::size_t box_pairs() const { return box_pairs_; }

@@ -13,7 +13,7 @@
 namespace blum::detail {
 namespace {
 
-/// Edges that lead on from each other.
+/// Chains of edges with common ends.
 class Chains {
  public:
   explicit Chains(const std::vector<Edge>& edges) {
@@ -22,10 +22,10 @@ class Chains {
       at_[b].push_back(a);
     }
   }
-  /// All chains, of vertices.
+  /// Returns all chains, as lists of vertices.
   std::vector<std::vector<std::uint32_t>> all() {
     std::vector<std::vector<std::uint32_t>> out;
-    // Those that end somewhere, then those that do not.
+    // Chains with ends come first, then closed ones.
     for (const bool is_closed : {false, true}) {
       for (const auto& [v, others] : at_) {
         if (!is_closed && others.size() == 2) continue;

@@ -28,21 +28,23 @@ namespace {
 /// The motions of the objects of a scene.
 class SceneMotion {
  public:
-  /// @param objects  how many there are; all rest.
+  /// @param objects  number of objects; all rest.
   explicit SceneMotion(std::size_t objects) : ends_(objects) {}
 
-  /// @throws InvalidMesh, InvalidOption for an object that moves already.
+  /// @throws InvalidMesh
+  /// @throws InvalidOption if an object has a motion already.
   void add(const SceneObject& object, const ObjectMotion& motion, const Context& context);
 
-  /// See ProximityScene::continuous(). @param pairs  that are compared.
+  /// See ProximityScene::continuous().
+  /// @param pairs  the pairs that are compared.
   [[nodiscard]] SceneCollisions collisions(std::span<const TwoObjects> pairs, const ImpactOptions& options,
                                            const Context& context) const;
 
  private:
-  std::vector<std::optional<std::vector<Vec3d>>> ends_;  ///< of objects that move: vertices in the scene
+  std::vector<std::optional<std::vector<Vec3d>>> ends_;  ///< vertices in the scene, of objects that move
 };
 
-/// An object between two frames, with copies of what it is made of.
+/// An object between two frames, with copies of its data.
 struct Moving {
   TriangleMesh mesh;
   std::vector<Vec3d> end;
@@ -137,7 +139,8 @@ void check_distance(const char* what, double distance) {
   throw InvalidOption(std::string(what) + " is " + exact_text(distance) + ", but must be a number of at least 0");
 }
 
-/// Runs what may refuse a mesh or vertices for an object; messages then begin with its name, where it has one.
+/// Runs a change that may reject a mesh or vertices of an object. Messages then begin with the object's name, if it has
+/// one.
 template <class Change>
 void change_named(const std::string& name, const Change& change) {
   if (name.empty()) return change();
@@ -180,7 +183,7 @@ void check(const SceneOptions& options) {
 struct ProximityScene::Data {
   SceneOptions options;
   std::vector<std::optional<SceneObject>> objects;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> excluded;  ///< the smaller first
+  std::set<std::pair<std::uint32_t, std::uint32_t>> excluded;  ///< the smaller one first
 
   [[nodiscard]] const SceneObject& at(ObjectId object) const {
     if (object.value >= objects.size() || !objects[object.value]) {
@@ -214,9 +217,9 @@ struct ProximityScene::Data {
     return detail::closest_pair_by_cells(pair, objects.size(), options.cell_size, max_distance, context, report);
   }
 
-  /// The pairs of objects that are compared and whose boxes are no further apart than this.
+  /// Returns the pairs of objects that are compared and whose boxes are no further apart than a distance.
   [[nodiscard]] std::vector<TwoObjects> compared(double distance, const Context& context) const {
-    static_cast<void>(thread_count(context));  // refused also where there is nothing to do
+    static_cast<void>(thread_count(context));  // refused even with nothing to do
     throw_if_cancelled(context);
     std::vector<Box3> boxes(objects.size());
     for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -232,7 +235,8 @@ struct ProximityScene::Data {
     }
     return out;
   }
-  /// The same, with what comparing primitives needs. @param report  is told of them, and how long that took.
+  /// Returns the same pairs with all that comparing primitives needs.
+  /// @param report  receives the number of pairs and the time spent.
   [[nodiscard]] std::vector<ObjectPair> pairs(double distance, const Context& context, ProximityReport& report) const {
     PhaseTimer timer(report.phases);
     const std::vector<TwoObjects> found = compared(distance, context);
@@ -377,7 +381,7 @@ ProximityPairs ProximityScene::collisions(const Context& context) const {
     timer.lap("primitives");
     return out;
   }
-  // Neighbours that are folded onto each other are no matter of distances: objects with themselves come by boxes.
+  // Folded neighbours are not a question of distances. So objects with themselves are compared by boxes.
   std::vector<ObjectPair> others;
   std::vector<ObjectPair> selves;
   for (const ObjectPair& pair : pairs) (pair.is_self() ? selves : others).push_back(pair);

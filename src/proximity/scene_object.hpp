@@ -17,13 +17,13 @@
 
 namespace blum::detail {
 
-/// A mesh, where it is, and a hierarchy over it.
+/// A mesh, its place, and a hierarchy over it.
 class SceneObject {
  public:
   SceneObject(const MeshView& mesh, ObjectOptions options, const Context& context);
 
   void set_positions(std::span<const Vec3d> vertices, const Context& context);
-  /// @throws as it does, for vertices that it would not take.
+  /// @throws InvalidMesh if set_positions() would reject the vertices.
   void check_positions(std::span<const Vec3d> vertices, const Context& context) const;
   void set_place(const RigidTransform& place);
   void set_mesh(const MeshView& mesh, const Context& context);
@@ -34,19 +34,19 @@ class SceneObject {
   [[nodiscard]] const RigidTransform& place() const { return place_; }
   [[nodiscard]] std::size_t primitives() const { return bvh_->size(); }
   [[nodiscard]] std::size_t triangles() const { return mesh_.triangles.size(); }
-  /// Around all of it in the scene.
+  /// Returns a box around all of it in the scene.
   [[nodiscard]] Box3 bounds() const;
 
-  /// The vertices of a primitive.
+  /// Returns the vertices of a primitive.
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
-  /// Where they are in the scene.
+  /// Returns their positions in the scene.
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
-  /// The vertices where they are in the scene.
+  /// Returns the positions of all vertices in the scene.
   [[nodiscard]] std::vector<Vec3d> positions() const { return positions(mesh_.vertices, place_); }
-  /// Where vertices are with a transform.
+  /// Returns transformed positions.
   [[nodiscard]] static std::vector<Vec3d> positions(std::span<const Vec3d> vertices, const RigidTransform& place);
-  /// For each vertex the smallest one in the same place in the scene.
+  /// Returns for each vertex the smallest one in the same place in the scene.
   [[nodiscard]] std::vector<std::uint32_t> clusters() const;
 
  private:
@@ -61,7 +61,7 @@ class SceneObject {
   std::optional<OrientedBvh> bvh_;
 };
 
-/// What messages call an object: "'arm.ply'", or "object 3" where it has no name.
+/// Returns the name of an object in messages: "'arm.ply'", or "object 3" if it has no name.
 [[nodiscard]] std::string name_of(ObjectId id, const SceneObject& object);
 
 }  // namespace blum::detail

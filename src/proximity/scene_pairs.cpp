@@ -20,14 +20,14 @@ namespace {
 
 constexpr std::size_t blocks_per_range = 16;
 
-/// The coordinates that are computed with.
+/// Returns a bound on the coordinates in computations.
 double largest_coordinate(const SceneObject& object) {
   return object.bounds().largest_coordinate() + object.bvh().bounds().largest_coordinate() +
          length(object.place().translation);
 }
 
-/// How wrong gaps between boxes may be, as the hierarchies see them, beside distances between rounded positions. Either
-/// object is seen through the transforms of both.
+/// Returns the largest difference between gaps of boxes, as the hierarchies see them, and distances between rounded
+/// positions. Either object is seen through the transforms of both.
 double position_slack(const SceneObject& a, const SceneObject& b) {
   constexpr double rounding = 1e-14;
   const double error = a.place().rotation_error() + b.place().rotation_error();
@@ -47,7 +47,7 @@ constexpr std::size_t pairs_among(std::size_t count) {
   return count < 2 ? 0 : count * (count - 1) / 2;
 }
 
-/// How many primitives have a vertex in each place.
+/// Returns the number of primitives with a vertex in each place.
 std::vector<std::uint32_t> primitives_at_vertices(const ObjectPair& objects) {
   const SceneObject& object = objects.a();
   std::vector<std::uint32_t> count(object.mesh().vertices.size(), 0);
@@ -96,7 +96,7 @@ void add(const ProximityReport& report, ProximityReport& to) {
 
 ObjectPair::ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, const SceneObject& b)
     : first_(first), second_(second), a_(&a), b_(&b) {
-  // Without transforms positions are as the hierarchies see them.
+  // Without transforms, positions are those that the hierarchies see.
   const bool is_placed = !(a.place() == RigidTransform{} && b.place() == RigidTransform{});
   if (is_placed) slack_ = position_slack(a, b);
   if (is_self()) clusters_ = a.clusters();
@@ -143,13 +143,13 @@ void CandidateLimit::check() const {
 
 namespace {
 
-/// An object that another one is compared with, as seen from that one.
+/// An object that another one is compared with.
 struct Partner {
   const ObjectPair* pair;
-  bool is_second;  ///< whether the partner is the second of the pair
+  bool is_second;  ///< true if the partner is the second of the pair
 };
 
-/// The closest primitives of the primitives of a block.
+/// Search for the closest primitives of a block's primitives.
 class BlockSearch {
  public:
   BlockSearch(const OrientedBvh& bvh, std::size_t block, double max_distance, CandidateLimit& candidates)
@@ -178,7 +178,7 @@ class BlockSearch {
     bvh_.for_each_near_pair(block_, other.bvh(), place, limit() + pair.slack(), visit);
   }
 
-  /// @param out  of each primitive of the object.
+  /// @param out  closest pair of each primitive of the object.
   void tell(std::vector<std::optional<PrimitivePair>>& out) const {
     for (std::size_t k = 0; k < primitives_.size(); ++k) out[primitives_[k]] = best_[k].pair;
   }
@@ -196,8 +196,8 @@ class BlockSearch {
     return furthest;
   }
 
-  /// The largest primitive of an object that may still be the closest of one here: where all have one at distance zero,
-  /// others must come before it.
+  /// Returns the largest primitive of an object that may still be the closest one of a primitive here. If all have one
+  /// at distance zero, others must come before it.
   [[nodiscard]] std::uint32_t last_of(ObjectId other) const {
     std::uint32_t last = 0;
     for (std::size_t k = 0; k < primitives_.size(); ++k) {
@@ -265,7 +265,7 @@ void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, dou
 
 namespace {
 
-/// The order of pairs by their objects and primitives.
+/// Returns the order of pairs by their objects and primitives.
 std::vector<KeyedIndex> sorted_order(const std::vector<const PrimitivePair*>& pairs) {
   std::vector<std::array<std::uint32_t, 4>> keys;
   keys.reserve(pairs.size());
@@ -277,7 +277,8 @@ std::vector<KeyedIndex> sorted_order(const std::vector<const PrimitivePair*>& pa
   std::vector<KeyedIndex> order(pairs.size());
   std::vector<KeyedIndex> scratch;
   for (std::uint32_t k = 0; k < order.size(); ++k) order[k].index = k;
-  // Stable sorts by one number after the other, the last one first; most scenes have few objects.
+  // Stable sorts by one column after another, the last one first. Columns that do not vary are skipped, because most
+  // scenes have few objects.
   for (std::size_t column = 4; column-- > 0;) {
     if (!varies[column]) continue;
     for (KeyedIndex& one : order) one.key = keys[one.index][column];
@@ -311,11 +312,11 @@ void check_count(std::size_t pairs) {
 
 namespace {
 
-/// What one part of the work finds.
+/// Results of one part of the work.
 struct FoundPairs {
   std::vector<PrimitivePair> pairs;
   ProximityReport report;
-  bool is_stopped = false;  ///< as the caller asked for it, or as there are too many
+  bool is_stopped = false;  ///< because the caller asked for it, or because of too many pairs
 };
 
 class NearSearch {
@@ -377,7 +378,7 @@ bool has_flat_primitives(const SceneObject& object) {
   return false;
 }
 
-/// The collisions of an object with itself: for triangles with an area there is a search that knows neighbours.
+/// Adds the collisions of an object with itself. For triangles with an area, a search exists that handles neighbours.
 void add_self_intersections(const ObjectPair& objects, const Context& context, ProximityPairs& out) {
   const SceneObject& object = objects.a();
   const std::vector<Vec3d> positions = object.positions();
@@ -412,7 +413,7 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
     parallel_for(context, blocks, blocks_per_range, "close pairs", [&](const WorkRange& range) {
       for (std::size_t b = range.begin; b < range.end; ++b) search.look_at(b, parts[range.begin / blocks_per_range]);
     });
-    candidates.check();  // parts that stopped have not found all
+    candidates.check();  // parts that stopped are incomplete
     check_count(count);
     for (FoundPairs& part : parts) {
       all.push_back(std::move(part.pairs));
@@ -433,7 +434,7 @@ void check_neighbours(const ObjectPair& objects) {
 
 void check_equal_triangles(const ObjectPair& objects) {
   const std::vector<std::uint32_t> count = primitives_at_vertices(objects);
-  // Of many equal triangles, each has many at all three corners.
+  // Equal triangles in great number have many primitives at all three corners.
   std::vector<std::array<std::uint32_t, 3>> crowded;
   for (std::uint32_t t = 0; t < objects.a().triangles(); ++t) {
     std::array<std::uint32_t, 3> places = objects.places(t);

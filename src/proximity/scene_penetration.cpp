@@ -32,45 +32,46 @@
 namespace blum::detail {
 namespace {
 
-/// A part of a surface, and another one that it lies in.
+/// A part of a surface, and the other surface that it lies in.
 struct DeepPatch {
   std::vector<std::array<Vec3d, 3>> triangles;  ///< at least one
-  TriangleMesh surface;                         ///< with triangles
+  TriangleMesh surface;                         ///< not empty
 };
 
-/// How deep the deepest point of patches is.
+/// The deepest point of patches, and its depth.
 struct DeepestPoint {
   double distance = 0;
-  double bound = 0;  ///< no point of the patches is deeper than this, but for rounding
+  double bound = 0;  ///< no point of the patches is deeper than this, except by rounding
   Vec3d point;
   Vec3d closest;             ///< of the surface
-  std::size_t patch = 0;     ///< that the point is of
-  std::size_t triangle = 0;  ///< of the patch
+  std::size_t patch = 0;     ///< the patch of the point
+  std::size_t triangle = 0;  ///< triangle of the patch
   std::uint32_t other = 0;   ///< triangle of the surface
 };
 
-/// The triangles of a surface that lie in one plane and hang together, and where that part ends.
+/// Facets of a surface: connected triangles in one plane, and their borders.
 class Facets {
  public:
-  /// @param rounding  how far apart points in one plane may be.
+  /// @param rounding  largest distance from a plane of points that count as in it.
   Facets(const MeshView& mesh, double rounding);
 
-  /// How a triangle lies to a facet, seen along the facet's normal.
+  /// Position of a triangle relative to a facet, seen along the facet's normal.
   struct Lie {
-    bool is_over = false;  ///< all of it is over the facet
-    double furthest = 0;   ///< of the corners from the facet's plane
+    bool is_over = false;  ///< true if all of it is over the facet
+    double furthest = 0;   ///< largest distance of the corners from the facet's plane
     bool is_crossed = false;
-    /// Where a side of the facet crosses it: distances of the corners from the plane through that side, along the
-    /// normal; some above 0, some below.
+    /// If a side of the facet crosses the triangle: distances of the corners from the plane through that side, along
+    /// the normal. Some are above 0, some below.
     std::array<double, 3> sides{};
   };
 
-  /// How many sides and triangles the facet of a triangle has.
+  /// Returns the number of sides and triangles of a triangle's facet.
   [[nodiscard]] std::size_t size(std::uint32_t triangle) const {
     const Facet& facet = facets_[facet_of_[triangle]];
     return facet.border.size() + facet.triangles.size();
   }
-  /// @param triangle  one of the facet's. Cost: O(size of the facet), 10 ns for each.
+  /// @param triangle  one of the facet's triangles.
+  /// Cost: O(size of the facet), 10 ns for each side or triangle.
   [[nodiscard]] Lie lie(const std::array<Vec3d, 3>& points, std::uint32_t triangle) const;
 
  private:
@@ -92,7 +93,7 @@ class Facets {
 
 constexpr std::uint32_t no_facet = 0xffffffffU;
 
-/// Positive left of the line from a to b, by the distance from it; 0 where a and b are one point.
+/// Returns the distance from the line from a to b, positive on its left; 0 if a and b are one point.
 double left_of(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& p) {
   const double x = b[0] - a[0];
   const double y = b[1] - a[1];
@@ -100,7 +101,8 @@ double left_of(const std::array<double, 2>& a, const std::array<double, 2>& b, c
   return size > 0 ? (x * (p[1] - a[1]) - y * (p[0] - a[0])) / size : 0;
 }
 
-/// The part of a segment, from 0 to 1, that lies more than a margin left of a line.
+/// Restricts a segment, from 0 to 1, to the part that lies more than a margin left of a line.
+/// @param from, to  distances of its ends from the line, positive on the left.
 void keep_left(double from, double to, double margin, double& begin, double& end) {
   from -= margin;
   to -= margin;
@@ -178,7 +180,7 @@ Facets::Lie Facets::lie(const std::array<Vec3d, 3>& points, std::uint32_t triang
   if (left_of(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
   double best = 0;
   for (const auto& [a, b] : facet.border) {
-    // What of this side of the facet lies within the triangle.
+    // The part of this side of the facet that lies within the triangle.
     double begin = 0;
     double end = 1;
     for (std::size_t k = 0; k < 3 && begin < end; ++k) {
@@ -206,12 +208,12 @@ Facets::Lie Facets::lie(const std::array<Vec3d, 3>& points, std::uint32_t triang
   return out;
 }
 
-/// Parts are cut no further after this many points were looked at: the bound then says how far that went.
+/// After this many points, parts are cut no further. The bound then shows how far the search went.
 constexpr std::size_t most_points = 200000;
-/// Sides and triangles of facets that are looked at, in all.
+/// Most sides and triangles of facets that are examined, in all.
 constexpr std::size_t most_of_facets = 100'000'000;
 
-/// A point of a patch, and what of the surface is closest to it.
+/// A point of a patch, and the triangle of the surface closest to it.
 struct Sample {
   Vec3d point;
   double distance = 0;
@@ -287,8 +289,9 @@ class Search {
     return out;
   }
 
-  /// The distance from the surface is nowhere larger than that from one of its triangles, which is largest at a corner;
-  /// nor than that of a corner, and the way from there. Where all of the part is over a facet, than from its plane.
+  /// Returns an upper bound on the distance of a part's points from the surface. It is the least of several. The
+  /// distance from any one triangle of the surface is an upper bound, and is largest at a corner. So is the distance of
+  /// a corner, plus the way from there. If all of the part is over a facet, so is the distance from its plane.
   [[nodiscard]] double bound(const Part& part) {
     double least = std::numeric_limits<double>::infinity();
     for (const Sample& from : part.corners) {
@@ -317,9 +320,9 @@ class Search {
     }
   }
 
-  /// Cuts a part along a side of a facet of the surface: over a facet the distance from it is linear. Shallow contacts
-  /// of large faces have few such parts, but could be halved for long.
-  /// @return  whether there is such a side.
+  /// Cuts a part along a side of a facet of the surface, because over a facet the distance from it is linear. Shallow
+  /// contacts of large faces have few such parts, but halving them would take long.
+  /// @return  true if such a side exists.
   bool cut_along_facets(const Part& part) {
     for (const Sample& corner : part.corners) {
       const std::optional<Facets::Lie> lie = lie_to_facet(part, corner.other);
@@ -330,7 +333,7 @@ class Search {
     return false;
   }
 
-  /// @return  nullopt once that has taken too long.
+  /// @return  nullopt after most_of_facets sides and triangles.
   std::optional<Facets::Lie> lie_to_facet(const Part& part, std::uint32_t triangle) {
     const Facets& facets = surfaces_[part.patch].facets;
     looked_at_ += facets.size(triangle);
@@ -342,9 +345,9 @@ class Search {
     return {part.corners[0].point, part.corners[1].point, part.corners[2].point};
   }
 
-  /// @param sides  of the corners: some above 0, some below.
+  /// @param sides  signed distances of the corners: some above 0, some below.
   void cut_along(const Part& part, const std::array<double, 3>& sides) {
-    // The corners of both pieces, around the triangle: those of the cut belong to both.
+    // The corners of both pieces, around the triangle. Those of the cut belong to both pieces.
     std::vector<Sample> above;
     std::vector<Sample> below;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -367,7 +370,7 @@ class Search {
     }
   }
 
-  /// In halves, across the longest side.
+  /// Cuts a part in halves, across its longest side.
   void cut(const Part& part) {
     std::size_t at = 0;
     double longest = -1;
@@ -393,21 +396,21 @@ class Search {
   double known_;
   double tolerance_;
   const Context& context_;
-  double rounding_ = 0;  ///< more than distances may be off
+  double rounding_ = 0;  ///< more than the error of distances
   DeepestPoint best_;
-  double dropped_ = 0;  ///< largest bound of parts that are not looked at further
+  double dropped_ = 0;  ///< largest bound of parts that are not examined further
   std::size_t points_ = 0;
-  std::size_t looked_at_ = 0;  ///< of facets
+  std::size_t looked_at_ = 0;  ///< sides and triangles of facets
   std::priority_queue<Part> parts_;
 };
 
-/// The point of patches that is furthest from the surface that its patch lies in, by branch and bound (Guthe and others
-/// 2005): the distance from a fixed triangle is convex, so over a part of a triangle it is largest at a corner, and the
-/// distance from a surface is no larger than that from any of its triangles.
-/// @param known      a depth that another point is known to have: patches that are nowhere deeper are not looked at
-///                   closely.
-/// @param tolerance  how much larger than the distance told the bound may be, as a part of it; unless 200,000 points
-/// are not enough for that: then the bound says how far they went. @throws Cancelled.
+/// Returns the point of patches that is furthest from the surface that its patch lies in. Uses branch and bound (Guthe
+/// and others 2005). The distance from a fixed triangle is convex, so over a part of a triangle it is largest at a
+/// corner. The distance from a surface is no larger than that from any of its triangles.
+/// @param known      depth of another known point. Patches that are nowhere deeper are not examined closely.
+/// @param tolerance  largest excess of the bound over the returned distance, relative to it. If 200,000 points are not
+///   enough for that, the bound shows how far they went.
+/// @throws Cancelled.
 DeepestPoint deepest_point(std::span<const DeepPatch> patches, double known, double tolerance, const Context& context) {
   return Search(patches, known, tolerance, context).run();
 }
@@ -427,11 +430,11 @@ void check(const PenetrationOptions& options) {
 namespace blum::detail {
 namespace {
 
-/// The surfaces of one object or two in one mesh, and where their triangles come from.
+/// The surfaces of one object or two in one mesh, and the sources of their triangles.
 struct Surfaces {
   TriangleMesh mesh;
-  std::vector<std::uint32_t> triangle_of;  ///< of each triangle, in its object
-  std::size_t of_first = 0;                ///< triangles of the first object: these come first
+  std::vector<std::uint32_t> triangle_of;  ///< triangle of the object, for each triangle
+  std::size_t of_first = 0;                ///< number of triangles of the first object, which come first
 
   [[nodiscard]] bool is_of_first(std::uint32_t triangle) const { return triangle < of_first; }
 
@@ -448,7 +451,8 @@ class SolidSurfaces {
  public:
   explicit SolidSurfaces(const Context& context) : context_(&context) {}
 
-  /// Without what lies in it twice, so that what two surfaces wind around twice is in both.
+  /// Returns the surface without parts that lie in it twice. Then points that two surfaces wind around twice are in
+  /// both.
   /// @throws InvalidMesh; Cancelled.
   const SolidSurface& of(ObjectId id, const SceneObject& object) {
     const auto [at, is_new] = made_.try_emplace(id);
@@ -458,7 +462,8 @@ class SolidSurfaces {
     }
     return at->second;
   }
-  /// As it is. @throws InvalidMesh.
+  /// Returns the surface as it is.
+  /// @throws InvalidMesh.
   static SolidSurface with_itself(ObjectId id, const SceneObject& object) {
     SolidSurface out{mesh_of(object), {}, {}};
     check_faces_outwards(out.mesh, name_of(id, object));
@@ -478,7 +483,7 @@ class SolidSurfaces {
   std::map<ObjectId, SolidSurface> made_;
 };
 
-/// One connected part of what solids have in common.
+/// One connected part of the overlap of solids.
 class Body {
  public:
   Body(const Surfaces& surfaces, const Overlap& overlap, const std::vector<std::uint32_t>& labels,
@@ -494,7 +499,7 @@ class Body {
   }
 
  private:
-  /// A patch, and where its triangles and those of the surface that it lies in come from.
+  /// The sources of the triangles of a patch, and of the surface that it lies in.
   struct Sources {
     std::vector<std::uint32_t> patch;
     std::vector<std::uint32_t> surface;
@@ -508,13 +513,13 @@ class Body {
       out.area[surfaces_.is_of_first(overlap_.source[t]) ? 0 : 1] += length(normal) / 2;
       out.volume += dot(normal, a - origin) / 6;
     }
-    // Rounding may make that of thin parts slightly negative.
+    // Rounding may make the volume of thin parts slightly negative.
     const double rounding = 1e-12 * bounds(overlap_.mesh).largest_coordinate() * (out.area[0] + out.area[1]);
     if (out.volume < 0 && out.volume > -rounding) out.volume = 0;
   }
 
-  /// A few sides, as those of two solids, are looked at together. What meets itself may have thousands: these are
-  /// looked at one after the other, the largest first, and those that are smaller than the depth found are not.
+  /// Few labels, as of two solids, are measured together. An object that meets itself may have thousands of them. These
+  /// are measured one by one, those of largest reach first, until the rest reach less far than the depth found.
   void measure_depth(double tolerance, const Context& context, Penetration& out) const {
     constexpr std::size_t few = 8;
     std::set<std::uint32_t> known;
@@ -528,13 +533,13 @@ class Body {
     }
   }
 
-  /// How far a point of the triangles of a label can be from the others at most.
+  /// Upper bound on the distance of points of a label's triangles from the others.
   struct Reach {
     std::uint32_t label = 0;
-    double reach = 0;  ///< infinite where they do not hang together with others
+    double reach = 0;  ///< infinite if they are not connected to others
   };
 
-  /// The largest first.
+  /// Returns the reaches of all labels, the largest first.
   [[nodiscard]] std::vector<Reach> reaches() const {
     std::map<std::uint32_t, Box3> boxes;
     for (const std::uint32_t t : triangles_) {
@@ -585,7 +590,7 @@ class Body {
     out.direction = out.is_first_deep ? out_of_it : -out_of_it;
   }
 
-  /// The triangles of one label, and those of the others, which they lie in.
+  /// Returns the triangles of one label, and those of the others, which they lie in.
   [[nodiscard]] DeepPatch patch_of(std::uint32_t label, Sources& from) const {
     DeepPatch out;
     out.surface.vertices = overlap_.mesh.vertices;
@@ -602,7 +607,7 @@ class Body {
     return out;
   }
 
-  /// Where a part lies in a solid without meeting its surface: all of that.
+  /// Takes all of the other surface, for a part that lies in a solid without meeting its surface.
   void take_whole_surface(TriangleMesh& surface, Sources& from) const {
     const std::set<std::uint32_t> own(from.patch.begin(), from.patch.end());
     const bool is_of_first = surfaces_.is_of_first(*own.begin());
@@ -621,23 +626,23 @@ class Body {
   std::vector<std::uint32_t> triangles_;
 };
 
-/// Not of length 1.
+/// Returns a normal, not of length 1.
 Vec3d normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
   const auto [a, b, c] = triangle_corners(mesh, triangle);
   return cross(b - a, c - a);
 }
 
-/// Whether a vector comes before its opposite.
+/// Returns true if a vector comes before its opposite.
 bool is_backward(const Vec3d& v) {
   if (v.x != 0) return v.x < 0;
   if (v.y != 0) return v.y < 0;
   return v.z < 0;
 }
 
-/// Where both surfaces are one, each part of the border could be either's; solids that are the same would all be the
-/// first one's surface, with nothing of the other to be deep in. There the border is shared out as if the first solid
-/// were moved by next to nothing along x, and by still less along y and z: what faces backward becomes the first's. Of
-/// one object that meets itself, the first of two triangles that coincide is that with the smaller index.
+/// If both surfaces coincide, each part of the border could belong to either. Equal solids would yield only the first
+/// one's surface, with nothing of the other to be deep in. So the border is divided as if the first solid were moved
+/// infinitely little along x, and still less along y and z. Triangles that face backward become the first's. If one
+/// object meets itself, the first of two triangles that coincide is that with the smaller index.
 void share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& overlap) {
   if (overlap.source.empty()) return;
   const Bvh bvh(surfaces.mesh, SiteTable(surfaces.mesh));
@@ -658,8 +663,9 @@ void share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& ove
   }
 }
 
-/// Which triangles of an overlap belong together: those of one object, or of one part of an object that meets itself.
-/// Parts hang together over common vertices; where triangles have vertices of their own, over places.
+/// Returns equal labels for triangles of an overlap that belong together: those of one object, or of one part of an
+/// object that meets itself. Parts are connected through common vertices, or through places if triangles have vertices
+/// of their own.
 std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self) {
   if (!is_self) {
     std::vector<std::uint32_t> out;
@@ -679,7 +685,7 @@ std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& ov
   });
 }
 
-/// @throws InvalidMesh that says why the parts of two objects cannot be told.
+/// @throws InvalidMesh with the reason why the overlap of two objects cannot be computed.
 [[noreturn]] void refuse(const TwoObjects& two, const std::string& obstacle) {
   const std::string first = name_of(two.first, *two.a);
   const std::string second = name_of(two.second, *two.b);
@@ -689,7 +695,8 @@ std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& ov
                     " have in common cannot be told: " + obstacle);
 }
 
-/// The deepest first. @throws InvalidMesh; Cancelled.
+/// Returns the parts, the deepest first.
+/// @throws InvalidMesh; Cancelled.
 std::vector<Penetration> parts_of(const TwoObjects& two, SolidSurfaces& solids, double tolerance,
                                   const Context& context, std::vector<PhaseTime>& phases) {
   const bool is_self = two.first == two.second;
@@ -724,7 +731,7 @@ std::vector<Penetration> parts_of(const TwoObjects& two, SolidSurfaces& solids, 
     parts.back().first_object = two.first;
     parts.back().second_object = two.second;
   }
-  // Parts come in the order of their smallest triangles; equally deep ones stay in it.
+  // Parts come in the order of their smallest triangles. Equally deep ones keep this order.
   std::vector<std::size_t> order(parts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {

@@ -1,4 +1,4 @@
-// Blum: how deep the objects of a scene lie in each other. SPDX-License-Identifier: Apache-2.0
+// Blum: depths of objects of a scene in each other. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -11,11 +11,11 @@
 
 namespace blum::detail {
 
-/// Whether the boxes of two objects show that they have nothing in common.
+/// Returns true if the boxes of two objects show that they have nothing in common.
 [[nodiscard]] bool are_apart(const TwoObjects& two);
 
-/// See ProximityScene::penetration(): the parts of each of some pairs. What makes an object a solid is looked at once.
-/// @param phases  is told how long that took.
+/// Returns the parts of each pair, as ProximityScene::penetration() does. Each object is converted to a solid once.
+/// @param phases  receives the time spent.
 [[nodiscard]] std::vector<std::vector<Penetration>> penetrations(std::span<const TwoObjects> pairs,
                                                                  const PenetrationOptions& options,
                                                                  const Context& context,

@@ -28,35 +28,35 @@ struct Member {
   std::uint32_t primitive = 0;
 };
 
-/// The primitives of the objects that are compared, in the order of objects and then of primitives.
+/// The primitives of the compared objects, in the order of objects and then of primitives.
 class ScenePrimitives {
  public:
-  /// @param pairs    that are compared; must stay.
-  /// @param objects  how many there are in the scene.
+  /// @param pairs    the compared pairs; must outlive this.
+  /// @param objects  number of objects in the scene.
   ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t objects);
 
   [[nodiscard]] std::size_t size() const { return members_.size(); }
   [[nodiscard]] const Member& member(std::uint32_t row) const { return members_[row]; }
-  /// All of them where they are in the scene, as triangles: a segment is one with a corner twice, a point with one
-  /// thrice.
+  /// Returns all of them in their places in the scene, as triangles. A segment has one corner twice, a point has one
+  /// corner thrice.
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t row) const { return triangle_corners(mesh_, row); }
   [[nodiscard]] Box3 box(std::uint32_t row) const;
-  /// Where a primitive of an object that is compared stands.
+  /// Returns the row of a primitive of a compared object.
   [[nodiscard]] std::uint32_t row(ObjectId object, std::uint32_t primitive) const {
     return first_row_[object.value] + primitive;
   }
 
-  /// Whether two are compared: their objects are, and they are not neighbours in one.
+  /// Returns true if two primitives are compared: their objects are, and they are not neighbours in one.
   [[nodiscard]] bool are_compared(std::uint32_t a, std::uint32_t b) const;
-  /// The closest points, told for the first one.
+  /// Returns the closest points, with `a` as the first primitive.
   [[nodiscard]] PrimitivePair compare(std::uint32_t a, std::uint32_t b) const;
 
  private:
   [[nodiscard]] const ObjectPair* pair(ObjectId a, ObjectId b) const { return pairs_[a.value * objects_ + b.value]; }
 
   std::size_t objects_;
-  std::vector<const ObjectPair*> pairs_;  ///< of each two objects, either way; null where they are not compared
+  std::vector<const ObjectPair*> pairs_;  ///< of any two objects, in either order; null if they are not compared
   std::vector<Member> members_;
   std::vector<std::uint32_t> first_row_;  ///< of each object
   TriangleMesh mesh_;
@@ -114,30 +114,30 @@ struct CellEntry {
   double distance = 0;
 };
 
-/// A sparse grid of the cells that primitives touch, and for each the primitives that may be the closest one of any
-/// point of a primitive in it (Sud 2006, 4.3; docs/theory/proximity.md).
+/// A sparse grid of the cells that primitives touch, with the primitives near each cell. These are all that may be the
+/// closest one of any point of a primitive in the cell (Sud 2006, 4.3; docs/theory/proximity.md).
 class VoronoiCells {
  public:
-  /// @param cell_size     of the side of a cell for that of the box around a primitive, in the mean.
-  /// @param max_distance  further primitives do not count.
-  /// @param is_closest    whether only the closest ones are asked for; else all within max_distance.
+  /// @param cell_size    side of a cell, relative to the mean side of the boxes around primitives.
+  /// @param max_distance  primitives further away do not count.
+  /// @param is_closest    true if only the closest ones are needed; else all within max_distance.
   /// @throws Cancelled.
   VoronoiCells(const ScenePrimitives& primitives, double cell_size, double max_distance, bool is_closest,
                const Context& context);
 
-  /// The cells that a primitive touches; none where it is left to the hierarchy: it touches too many, or one of them
-  /// has too many primitives near it.
+  /// Returns the cells that a primitive touches; none if it touches too many. A primitive is left to the hierarchy if
+  /// it touches too many cells, or a cell with too many primitives near it.
   [[nodiscard]] std::span<const std::uint32_t> cells(std::uint32_t row) const;
   [[nodiscard]] bool is_left_over(std::uint32_t row) const { return is_left_over_[row] != 0; }
-  /// How many are.
+  /// Returns the number of primitives left to the hierarchy.
   [[nodiscard]] std::size_t left_over() const;
-  /// Those near a cell, by rising distance from its middle.
+  /// Returns the primitives near a cell, by rising distance from its middle.
   [[nodiscard]] std::span<const CellEntry> entries(std::uint32_t cell) const;
-  /// Distances of entries are compared with those of the middle; they may be further by this for points of the cell.
+  /// Returns the largest distance of points of a cell from its middle. Distances of entries are those from the middle.
   [[nodiscard]] double radius() const { return radius_; }
-  /// How wrong sums of distances may be.
+  /// Returns the largest error of sums of distances.
   [[nodiscard]] double rounding() const { return rounding_; }
-  /// How many cells there are.
+  /// Returns the number of cells.
   [[nodiscard]] std::size_t size() const { return cell_first_.size(); }
 
  private:
@@ -157,21 +157,22 @@ class VoronoiCells {
   std::vector<std::uint64_t> keys_;         ///< of cells
   std::vector<std::uint32_t> rows_;         ///< primitives that touch cells, cell by cell
   std::vector<std::uint32_t> cell_first_;   ///< of each cell, in rows_
-  std::vector<std::uint32_t> cells_;        ///< that primitives touch, primitive by primitive
+  std::vector<std::uint32_t> cells_;        ///< cells that primitives touch, primitive by primitive
   std::vector<std::uint32_t> row_first_;    ///< of each primitive, in cells_; one more at the end
   std::vector<std::uint8_t> is_left_over_;  ///< of each primitive
   std::vector<std::vector<CellEntry>> entries_;
 };
 
-/// Primitives that touch more cells than this, and those that touch a cell with more primitives near it, are left to
-/// the hierarchy: so memory and time are bounded by the number of primitives.
+/// Most cells that a primitive may touch, and most primitives near a cell. Primitives beyond these limits are left to
+/// the hierarchy, so that the number of primitives bounds memory and time.
 constexpr std::int64_t most_cells = 512;
 constexpr std::size_t most_entries = 256;
 
 constexpr std::int64_t cells_per_axis = std::int64_t{1} << 20;
 constexpr std::size_t grain = 256;
 
-/// A unit vector at right angles to a triangle; 0 where it is thin, so that its own corners would not be level.
+/// Returns a unit vector perpendicular to a triangle. Returns 0 if the triangle is so thin that its own corners would
+/// not be level.
 Vec3d normal_of(const std::array<Vec3d, 3>& p) {
   const Vec3d u = p[1] - p[0];
   const Vec3d v = p[2] - p[0];
@@ -305,8 +306,9 @@ void VoronoiCells::fill_cells(double max_distance, bool is_closest, const Contex
   }
 }
 
-/// The closest one that it is compared with of each primitive that touches the cell tells how far others may be.
-/// @return whether there are few enough.
+/// For each primitive that touches the cell, finds the closest one that it is compared with. This bounds the distance
+/// of others.
+/// @return false if these are too many.
 bool VoronoiCells::fill_closest(const Bvh& bvh, std::uint32_t cell, double max_distance,
                                 std::vector<CellEntry>& out) const {
   const Vec3d q = middle(keys_[cell]);
@@ -350,8 +352,7 @@ bool VoronoiCells::fill_within(const Bvh& bvh, std::uint32_t cell, double distan
   return fits;
 }
 
-/// Calls test(other) for the primitives that may be the closest one of a primitive, or within a distance, each once or
-/// a few times.
+/// Calls test(other) once for each primitive that may be the closest one of a primitive, or within a distance.
 template <class Test>
 void for_each_candidate(const ScenePrimitives& primitives, const VoronoiCells& cells, std::uint32_t row,
                         double max_distance, bool is_closest, std::vector<std::uint32_t>& seen, const Test& test) {
@@ -362,7 +363,7 @@ void for_each_candidate(const ScenePrimitives& primitives, const VoronoiCells& c
     for (const CellEntry& entry : cells.entries(cell)) {
       if (entry.distance > limit) break;
       if (!primitives.are_compared(row, entry.row)) continue;
-      // The first one of these is the second closest at the middle of the cell, beside the primitive itself.
+      // Besides the primitive itself, the first one of these is the closest at the middle of the cell.
       if (is_first) limit = std::min(limit, entry.distance + 2 * cells.radius());
       is_first = false;
       seen.push_back(entry.row);
@@ -373,7 +374,7 @@ void for_each_candidate(const ScenePrimitives& primitives, const VoronoiCells& c
   for (const std::uint32_t other : seen) test(other);
 }
 
-/// The counts of parts of the work, added up.
+/// Adds up the counts of parts of the work.
 void add_all(const std::vector<ProximityReport>& parts, const VoronoiCells& cells, ProximityReport& report) {
   report.culling = Culling::voronoi;
   report.cells += cells.size();
@@ -381,8 +382,8 @@ void add_all(const std::vector<ProximityReport>& parts, const VoronoiCells& cell
   for (const ProximityReport& part : parts) add(part, report);
 }
 
-/// A distance that the closest pair is not further apart than: at the middle of a cell, that of a primitive and that of
-/// the first one in the list that it is compared with, added.
+/// Returns an upper bound on the distance of the closest pair. At the middle of a cell, it adds the distance of a
+/// primitive and that of the first listed one that it is compared with.
 double bound_of_cells(const ScenePrimitives& primitives, const VoronoiCells& cells, std::uint32_t rows,
                       double max_distance) {
   double bound = max_distance;
@@ -414,7 +415,7 @@ std::optional<PrimitivePair> closest_pair_by_cells(const ObjectPair& pair, std::
     report.left_over += primitives.size();
     return closest_pair(pair, max_distance, context, report);
   }
-  // Those of the first object come first.
+  // Primitives of the first object come first.
   const auto rows = static_cast<std::uint32_t>(pair.a().primitives());
   const double bound = bound_of_cells(primitives, cells, rows, max_distance);
   struct Part {
@@ -495,7 +496,7 @@ void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects,
   const VoronoiCells cells(primitives, cell_size, distance, false, context);
   timer.lap("diagram");
   if (cells.left_over() > 0) {
-    // Pairs of these with all others are asked for: the hierarchy finds the rest by the way.
+    // Pairs of these with all others are needed. The hierarchy finds all other pairs along the way.
     near_pairs(pairs, distance, Neighbours::left_out, context, out);
     out.report.left_over = primitives.size();
     timer.lap("exact tests");

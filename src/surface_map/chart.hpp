@@ -20,21 +20,21 @@ namespace blum::surface {
 
 using ChartCorners = std::array<TexturePlace, 3>;
 
-/// Twice the signed area of a chart, square texels.
+/// Returns twice the signed area of a chart, square texels.
 [[nodiscard]] inline double twice_area(const ChartCorners& c) {
   return (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
 }
 
-/// Whether a chart has an area, and not one so small that it is lost in rounding.
+/// Returns true if a chart has an area that is not lost in rounding.
 [[nodiscard]] inline bool has_area(const ChartCorners& places) {
   const double area = twice_area(places);
   return area != 0 && std::isfinite(area) && std::isfinite(1 / area);
 }
 
-/// The map from a texture to the plane of a triangle that it shows: affine.
+/// The affine map from a texture to the plane of the triangle that a chart shows.
 class Chart {
  public:
-  /// @param places  where the triangle's corners are; their triangle has an area.
+  /// @param places  positions of the triangle's corners in the texture; they span an area.
   Chart(const std::array<Vec3d, 3>& corners, const ChartCorners& places) : corners_(corners), places_(places) {
     const double inverse = 1 / twice_area(places);
     sign_ = inverse < 0 ? -1 : 1;
@@ -46,17 +46,19 @@ class Chart {
                  !(length(cross(u, v)) > sliver_ratio * longest_square(corners));
   }
 
-  /// A point of the triangle's plane.
+  /// Returns the point of the triangle's plane for a place.
   [[nodiscard]] Vec3d in_plane(const TexturePlace& at) const {
     return corners_[0] + along_x_ * (at.x - places_[0].x) + along_y_ * (at.y - places_[0].y);
   }
-  /// The point of the triangle for a place: of those beyond the border, the closest one to where the plane has them.
+  /// Returns the point of the triangle for a place. For a place beyond the border, it is the point closest to
+  /// in_plane().
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);
     std::array<bool, 3> is_beyond{};
     for (std::size_t k = 0; k < 3; ++k) is_beyond[k] = beyond(k, at);
     if (!is_beyond[0] && !is_beyond[1] && !is_beyond[2]) return point;
-    // Then it is one of a side that the place is beyond. Of slivers, rounding may say that of none or others.
+    // That point lies on a side that the place is beyond. For slivers, rounding may find no side or others, so all are
+    // tested.
     Vec3d best;
     double closest = HUGE_VAL;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -70,7 +72,7 @@ class Chart {
     }
     return best;
   }
-  /// The most that the map stretches: mesh units per texel (the largest singular value).
+  /// Returns the largest stretch of the map, mesh units per texel (the largest singular value).
   [[nodiscard]] double stretch() const {
     const double xx = squared_length(along_x_);
     const double yy = squared_length(along_y_);
@@ -93,19 +95,19 @@ class Chart {
     }
     return out;
   }
-  /// Whether a place lies on the other side of a side.
+  /// Returns true if a place lies beyond a side.
   [[nodiscard]] bool beyond(std::size_t side, const TexturePlace& at) const {
     return sign_ * twice_area({places_[side], places_[(side + 1) % 3], at}) < 0;
   }
 
   std::array<Vec3d, 3> corners_;
   ChartCorners places_;
-  bool is_sliver_ = false;   ///< in the texture, or in space
+  bool is_sliver_ = false;   ///< true for a sliver in the texture or in space
   double sign_ = 1;          ///< of the chart's area
   Vec3d along_x_, along_y_;  ///< steps of one texel
 };
 
-/// Charts of a mesh times a power of two, so that products of its coordinates are numbers.
+/// Charts of a mesh times a power of two, so that products of its coordinates neither overflow nor underflow.
 struct ScaledCharts {
   const MeshView& mesh;
   const SurfaceAtlas& atlas;
@@ -118,20 +120,21 @@ struct ScaledCharts {
   }
 };
 
-/// The middle of a texel.
+/// Returns the middle of a texel.
 [[nodiscard]] inline TexturePlace middle_of(std::size_t x, std::size_t y) {
   return {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
 }
 
-/// Calls visit(x, y, outside) for the texels that reading within a chart looks at, by the nearest one or bilinearly:
-/// whose middles are within one texel along x and along y of a place of the chart. `outside` is how far the middle is
-/// beyond the side that it is furthest beyond, in texels: 0 or less within the chart.
-/// @param places  with an area. Texels beyond a texture of this size are left out.
+/// Calls visit(x, y, outside) for the texels that nearest or bilinear reading within a chart uses. The middles of these
+/// are within one texel along x and along y of a place of the chart. `outside` is how far the middle is beyond the side
+/// that it is furthest beyond, in texels. It is 0 or less within the chart.
+/// @param places  with an area.
+/// @param width, height  size of the texture; texels beyond it are left out.
 template <class Visit>
 void for_each_texel(const ChartCorners& places, std::uint32_t width, std::uint32_t height, Visit visit) {
   const double sign = twice_area(places) < 0 ? -1 : 1;
   std::array<double, 3> side{};   ///< lengths
-  std::array<double, 3> reach{};  ///< of a square of two texels a side, across the sides
+  std::array<double, 3> reach{};  ///< of a square of two texels a side, across the sides: half its extent
   for (std::size_t k = 0; k < 3; ++k) {
     const TexturePlace& a = places[k];
     const TexturePlace& b = places[(k + 1) % 3];
@@ -163,7 +166,7 @@ void for_each_texel(const ChartCorners& places, std::uint32_t width, std::uint32
 /// A convex polygon in a texture.
 using ChartPart = InlineList<TexturePlace, 12>;
 
-/// What is left on one side of a line along an axis.
+/// Returns the part of a polygon on one side of a line along an axis.
 template <class Coordinate>
 ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limit, double sign) {
   ChartPart out;
@@ -181,7 +184,8 @@ ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limi
   return out;
 }
 
-/// The part of a chart in the square around a place. @param reach  half the square's side, texels.
+/// Returns the part of a chart in the square around a place.
+/// @param reach  half the square's side, texels.
 [[nodiscard]] inline ChartPart part_around(const ChartCorners& places, const TexturePlace& middle, double reach) {
   ChartPart left;
   for (const TexturePlace& at : places) left.push_back(at);
@@ -192,7 +196,7 @@ ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limi
   return left;
 }
 
-/// Square texels.
+/// Returns the area of a part, square texels.
 [[nodiscard]] inline double area_of(const ChartPart& part) {
   double twice = 0;
   for (std::size_t k = 2; k < part.size(); ++k)
@@ -200,7 +204,7 @@ ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limi
   return std::abs(twice) / 2;
 }
 
-/// @throws InvalidMesh unless a mesh is valid and has as many triangles as an atlas.
+/// @throws InvalidMesh if a mesh is not valid, or does not have as many triangles as an atlas.
 inline void check_fits(const MeshView& mesh, const SurfaceAtlas& atlas) {
   validate(mesh);
   if (mesh.triangles.size() == atlas.corners.size()) return;

@@ -13,7 +13,7 @@
 namespace blum::surface {
 namespace {
 
-/// No more primitives at a vertex are looked at.
+/// Most primitives at a vertex that are examined.
 constexpr std::size_t most_primitives = 16;
 using Primitives = std::span<const std::uint32_t>;
 using Corners = std::array<const FacingPoint*, 3>;
@@ -35,7 +35,7 @@ double longest_side(const Corners& corners) {
   return std::sqrt(squared);
 }
 
-/// The distance from a primitive is a convex function, and so is largest at a corner.
+/// Returns a bound from one primitive. The distance from it is a convex function, so it is largest at a corner.
 double bound_by_primitive(const Corners& corners, const std::array<Primitives, 3>& lists, const FacingSurface& surface,
                           std::uint32_t primitive) {
   const std::array<Vec3d, 3> facing = surface.corners_of(primitive);
@@ -49,7 +49,7 @@ double bound_by_primitive(const Corners& corners, const std::array<Primitives, 3
   return std::sqrt(squared);
 }
 
-/// What two primitives have in common: an edge, a vertex twice, or nothing.
+/// Finds the common part of two primitives: an edge, or a vertex twice. Returns false if they have none.
 bool common_part(const FacingSurface& surface, std::uint32_t a, std::uint32_t b, std::array<Vec3d, 2>& part) {
   const Triangle of_a = surface.vertices_of(a);
   const Triangle of_b = surface.vertices_of(b);
@@ -64,8 +64,9 @@ bool common_part(const FacingSurface& surface, std::uint32_t a, std::uint32_t b,
   return true;
 }
 
-/// A corner whose closest point lies on another primitive than the middle one is cut off, where the sides from it come
-/// closest to what both primitives have in common: then its piece faces the one, and what is left the other.
+/// Returns a bound after cutting off a corner whose closest point lies on another primitive than the middle one. The
+/// cut is where the sides from the corner come closest to the common part of both primitives. The corner's piece then
+/// faces its own primitive, and the rest faces the middle one.
 double bound_by_cut(const Corners& corners, std::size_t corner, const std::array<Vec3d, 2>& common) {
   double squared = 0;
   for (const std::size_t other : {(corner + 1) % 3, (corner + 2) % 3}) {
@@ -75,8 +76,9 @@ double bound_by_cut(const Corners& corners, std::size_t corner, const std::array
   return std::sqrt(squared);
 }
 
-/// The triangle is cut into pieces, each of which is a convex set that one primitive faces, with known distances at its
-/// corners: the middle one, and those of closest points that are not on it, which must touch it.
+/// Returns a bound after cutting the triangle into pieces. Each piece is a convex set that one primitive faces, with
+/// known distances at its corners. One of these primitives is the middle one. The others belong to closest points that
+/// are not on it, and must touch it.
 double bound_around(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                     std::uint32_t middle, double enough) {
   double bound = 0;
@@ -94,7 +96,7 @@ double bound_around(const Corners& corners, const FacingSurface& surface, const 
   return bound;
 }
 
-/// The same with each primitive of a closest point in the middle.
+/// Returns the least bound_around() with any primitive of a closest point in the middle.
 double bound_by_cuts(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                      double enough) {
   double best = std::numeric_limits<double>::infinity();
@@ -108,7 +110,7 @@ double bound_by_cuts(const Corners& corners, const FacingSurface& surface, const
   return best;
 }
 
-/// With what the centroid is closest to in the middle: the corners may all lie next to it.
+/// Returns a bound with the primitive closest to the centroid in the middle, because all corners may lie next to it.
 double bound_by_centroid(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                          double largest, double enough) {
   const Vec3d centroid = (corners[0]->point + corners[1]->point + corners[2]->point) / 3.0;
@@ -131,8 +133,8 @@ double bound_by_centroid(const Corners& corners, const FacingSurface& surface, c
 
 double distance_bound(const Corners& corners, const FacingSurface& surface, double enough) {
   const double largest = std::max({corners[0]->distance, corners[1]->distance, corners[2]->distance});
-  // Distances change by no more than one moves, and no point of a triangle is further from its nearest corner than
-  // that.
+  // A distance changes by no more than the way moved. No point of a triangle is further than this from its nearest
+  // corner.
   double best = largest + longest_side(corners) / std::numbers::sqrt3;
   if (best <= enough) return best;
   std::array<Primitives, 3> lists;

@@ -1,4 +1,4 @@
-// Blum: how far a piece of a surface is, at most, from another surface. SPDX-License-Identifier: Apache-2.0
+// Blum: upper bound on the distance of a piece of a surface from another surface. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace blum::surface {
 
-/// A point of a surface and what is closest to it on the other one.
+/// A point of a surface, and the closest point of the other one.
 struct FacingPoint {
   Vec3d point;
   Vec3d closest;
@@ -17,10 +17,10 @@ struct FacingPoint {
   SiteId site;
 };
 
-/// An upper bound on the distance of all points of a triangle from a surface, but for rounding; the triangle may have
-/// lost its area.
-/// @param enough  a bound that is no larger is as good as the best one.
-/// Cost: 10 ns where the corners' distances and the size of the triangle are enough, else up to 1 us.
+/// Returns an upper bound on the distance of all points of a triangle from a surface, except for rounding. The triangle
+/// may have lost its area.
+/// @param enough  any bound up to this one is good enough.
+/// Cost: 10 ns if the corners' distances and the size of the triangle are enough, else up to 1 us.
 /// Method: docs/theory/surface-maps.md.
 [[nodiscard]] double distance_bound(const std::array<const FacingPoint*, 3>& corners, const FacingSurface& surface,
                                     double enough);

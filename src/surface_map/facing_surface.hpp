@@ -1,5 +1,4 @@
-// Blum: the mesh that distances are measured to, with the neighbourhood of its sites. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: the mesh that distances are measured to, with neighbours of sites. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -18,19 +17,21 @@
 
 namespace blum::surface {
 
-/// Finds closest sites, and knows which primitives touch them.
+/// Finds closest sites, and the primitives that touch them.
 class FacingSurface {
  public:
-  /// @param mesh  must stay. @throws Cancelled. Cost: that of a Bvh, and 5 ms for 70,000 triangles.
+  /// @param mesh  must outlive this.
+  /// @throws Cancelled.
+  /// Cost: that of a Bvh, and 5 ms for 70,000 triangles.
   FacingSurface(const MeshView& mesh, const Context& context);
 
   [[nodiscard]] const MeshView& mesh() const { return mesh_; }
   [[nodiscard]] const Bvh& hierarchy() const { return bvh_; }
   [[nodiscard]] const SiteTable& sites() const { return sites_; }
 
-  /// The primitives that a site lies on, in rising order.
+  /// Returns the primitives that a site lies on, in rising order.
   [[nodiscard]] std::span<const std::uint32_t> primitives_at(SiteId site) const;
-  /// The vertices of a primitive; of segments and points one is named more than once.
+  /// Returns the vertices of a primitive. For segments and points, one is repeated.
   [[nodiscard]] Triangle vertices_of(std::uint32_t primitive) const { return primitive_vertices(mesh_, primitive); }
   [[nodiscard]] const Vec3d& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
   [[nodiscard]] std::array<Vec3d, 3> corners_of(std::uint32_t primitive) const;
@@ -41,7 +42,7 @@ class FacingSurface {
   Bvh bvh_;
   /// Primitives of vertex or edge s: primitives_[first_[s] .. first_[s + 1]).
   std::vector<std::uint32_t> first_, primitives_;
-  std::vector<std::uint32_t> all_;  ///< 0, 1, 2, ... : a face's list is one of them
+  std::vector<std::uint32_t> all_;  ///< 0, 1, 2, ... : the list of a face is one of them
 };
 
 }  // namespace blum::surface

@@ -25,9 +25,9 @@ using surface::FacingSurface;
 
 constexpr std::size_t points_per_range = 512;
 constexpr std::size_t pieces_per_range = 64;
-/// Primitives are ruled out together by so many, or more.
+/// Smallest number of primitives that are excluded together.
 constexpr std::size_t smallest_run = 8;
-/// Pieces that are divided at once: few enough that what is found in one round spares work in the next.
+/// Most pieces divided at once: few enough that results of one round save work in the next.
 constexpr std::size_t most_per_round = std::size_t{1} << 16;
 
 /// A part of a primitive: a triangle of evaluated points.
@@ -57,15 +57,16 @@ void check_sizes(const MeshView& a, const MeshView& b, const Box3& both) {
   }
 }
 
-/// A copy in which the largest coordinate of both meshes is about 1: products of coordinates are then numbers.
+/// Returns a copy in which the largest coordinate of both meshes is about 1. Products of coordinates then stay in
+/// range.
 std::vector<Vec3d> scaled(std::span<const Vec3d> vertices, double scale) {
   std::vector<Vec3d> out(vertices.begin(), vertices.end());
   for (Vec3d& v : out) v *= scale;
   return out;
 }
 
-/// Divides the pieces of a mesh that may be furthest from another, until they cannot be much further than a point that
-/// is known.
+/// Finds the point of a mesh that is furthest from another one. Divides the pieces that may contain it, until they
+/// cannot be much further than a known point.
 class FurthestPoint {
  public:
   FurthestPoint(const FacingSurface& mesh, const FacingSurface& other, double tolerance, double rounding,
@@ -77,7 +78,7 @@ class FurthestPoint {
         max_points_(max_points),
         context_(context) {}
 
-  /// All in the units of the meshes as they are given to it.
+  /// Returns the result in the units of the meshes given to the constructor.
   DirectedHausdorff find() {
     const std::size_t count = mesh_.mesh().vertices.size();
     points_.resize(count);
@@ -97,7 +98,7 @@ class FurthestPoint {
  private:
   [[nodiscard]] double furthest() const { return points_[furthest_].distance; }
 
-  /// What is closest to a point; it is known to be within a bound.
+  /// Returns the closest point of the other mesh for a point. That point is known to be within a bound.
   [[nodiscard]] FacingPoint evaluated(const Vec3d& point, double bound) const {
     std::optional<NearestSite> nearest = other_.hierarchy().nearest(point, bound * (1 + 1e-9) + 1e-12);
     if (!nearest) nearest = other_.hierarchy().nearest(point);
@@ -138,8 +139,8 @@ class FurthestPoint {
     evaluate_vertices(unknown);
   }
 
-  /// Whether most primitives have a vertex of the other mesh, judged by a few of them: meshes of which one was made by
-  /// changing a part of the other.
+  /// Returns true if most primitives have a vertex of the other mesh, judged by a few of them. This is so if one mesh
+  /// was made by changing a part of the other.
   bool are_mostly_common(const std::vector<std::uint32_t>& primitives) {
     constexpr std::size_t samples = 32;
     if (primitives.size() < 32 * samples) return false;
@@ -153,7 +154,7 @@ class FurthestPoint {
     return 2 * common >= samples;
   }
 
-  /// Vertices that stand where the other mesh has one need no search.
+  /// Evaluates vertices in the place of a vertex of the other mesh, which need no search.
   void evaluate_common_vertices() {
     std::vector<Vec3d> both(other_.mesh().vertices.begin(), other_.mesh().vertices.end());
     const std::size_t of_other = both.size();
@@ -167,7 +168,7 @@ class FurthestPoint {
     }
   }
 
-  /// Primitives that follow each other in the hierarchy's order, and a box around them.
+  /// Primitives that are consecutive in the hierarchy's order, and a box around them.
   struct Run {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -176,8 +177,8 @@ class FurthestPoint {
     double center_distance = 0;
   };
 
-  /// The primitives that may be further than what is known: whole runs of others are ruled out by what is closest to
-  /// the middle of their boxes.
+  /// Returns the primitives that may be further than the furthest known point. Whole runs of others are excluded by the
+  /// closest points of the middles of their boxes.
   std::vector<std::uint32_t> far_primitives() {
     const std::span<const std::uint32_t> order = mesh_.hierarchy().order();
     std::vector<std::uint32_t> out;
@@ -202,7 +203,7 @@ class FurthestPoint {
         } else if (run.center_distance +
                        half * std::sqrt(static_cast<double>(smallest_run) / static_cast<double>(size)) >
                    furthest() + tolerance_) {
-          take(run);  // its parts will most likely not be ruled out either
+          take(run);  // its parts will probably not be excluded either
         } else {
           further.push_back(run);
         }
@@ -223,7 +224,7 @@ class FurthestPoint {
     return out;
   }
 
-  /// Looks up what is closest to the middles of runs, and to a vertex of each.
+  /// Finds the closest points of the middles of runs, and of a vertex of each.
   void evaluate(std::vector<Run>& runs, std::span<const std::uint32_t> order) {
     parallel_for(context_, runs.size(), 1, "", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
@@ -271,7 +272,7 @@ class FurthestPoint {
     for (const Piece& piece : all) keep(piece);
   }
 
-  /// Pieces that are not worth dividing are done with.
+  /// Keeps a piece that is worth dividing, and settles any other.
   void keep(const Piece& piece) {
     if (piece.bound > furthest() + tolerance_) return pieces_.push_back(piece);
     settled_ = std::max(settled_, piece.bound);
@@ -281,7 +282,7 @@ class FurthestPoint {
   std::vector<Piece> take_furthest() {
     double largest = 0;
     for (const Piece& piece : pieces_) largest = std::max(largest, piece.bound);
-    // What is found of those may settle the others.
+    // Results for these may settle the others.
     const double least = furthest() + (largest - furthest()) / 2;
     const auto middle = std::partition(pieces_.begin(), pieces_.end(), [&](const Piece& p) { return p.bound < least; });
     const auto rank = [](const Piece& p) { return std::pair(-p.bound, p.corners); };
@@ -292,7 +293,7 @@ class FurthestPoint {
     const std::ptrdiff_t count = std::min(pieces_.end() - middle, static_cast<std::ptrdiff_t>(most_per_round));
     std::vector<Piece> taken(middle, middle + count);
     pieces_.erase(middle, middle + count);
-    // Neighbours look at the same places.
+    // Neighbouring pieces search the same parts of the hierarchy.
     std::sort(taken.begin(), taken.end(), [](const Piece& p, const Piece& q) {
       return std::tie(p.primitive, p.corners) < std::tie(q.primitive, q.corners);
     });
@@ -370,14 +371,14 @@ class FurthestPoint {
   const Context& context_;
   std::vector<FacingPoint> points_;     ///< the vertices, then points inside of primitives
   std::vector<std::uint8_t> is_known_;  ///< for each vertex
-  std::vector<Piece> pieces_;           ///< those that may be further than is known, by more than the tolerance
+  std::vector<Piece> pieces_;           ///< may be further than the furthest known point by more than the tolerance
   double settled_ = 0;                  ///< the largest bound of all other pieces
   std::uint32_t furthest_ = 0;
   std::uint32_t primitive_of_furthest_ = 0;
   std::size_t evaluations_ = 0;
 };
 
-/// Two meshes, brought to about 1, and how well the answer is to be known there.
+/// Two meshes scaled to about 1, and the tolerance of the answer at that scale.
 class MeshPair {
  public:
   MeshPair(const MeshView& a, const MeshView& b, const HausdorffOptions& options, const Context& context)
@@ -399,7 +400,7 @@ class MeshPair {
     tolerance_ = std::max(options.tolerance.value_or(1e-4 * box.diagonal()) * scale_, 1e-13 * largest);
   }
 
-  /// How far mesh `which` is from the other one.
+  /// Returns the directed distance of mesh `which` from the other one.
   [[nodiscard]] DirectedHausdorff directed(std::size_t which) const {
     FurthestPoint search(*surfaces_[which], *surfaces_[1 - which], tolerance_, rounding_, max_points_, context_);
     DirectedHausdorff out = search.find();
@@ -410,7 +411,7 @@ class MeshPair {
   }
 
  private:
-  /// Both at once where they are about as large: half of the work is done by one thread.
+  /// Builds both at once if they are of similar size, because one thread alone does half of the work for each.
   void build_surfaces(const Context& context) {
     const auto [fewer, more] = std::minmax({primitive_count(meshes_[0]), primitive_count(meshes_[1])});
     const int threads = thread_count(context);

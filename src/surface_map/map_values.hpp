@@ -1,4 +1,4 @@
-// Blum: what surface maps are filled with. SPDX-License-Identifier: Apache-2.0
+// Blum: values that fill surface maps. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,11 @@
 
 namespace blum::surface {
 
-/// The texels of triangles, triangle after triangle; triangles that are close in space follow each other. It holds of
-/// any places of the vertices, best of those that it was made of.
+/// The texels of triangles, triangle after triangle. Triangles that are close in space are consecutive. The order is
+/// valid for any positions of the vertices, and best for those that it was made of.
 struct TexelOrder {
   std::vector<std::uint32_t> triangles;  ///< all of them
-  std::vector<std::size_t> first;        ///< of triangles[k] are texels[first[k]] .. texels[first[k + 1]]
+  std::vector<std::size_t> first;        ///< triangles[k] has texels[first[k]] .. texels[first[k + 1] - 1]
   std::vector<std::uint32_t> texels;
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t k) const {
@@ -30,48 +30,53 @@ struct TexelOrder {
   }
 };
 
-/// @throws Cancelled. Cost: 0.2 us per triangle, 10 ns per texel.
+/// Returns the order of the texels of an atlas.
+/// @throws Cancelled.
+/// Cost: 0.2 us per triangle, 10 ns per texel.
 [[nodiscard]] TexelOrder texel_order(const MeshView& mesh, const SurfaceAtlas& atlas, const Context& context);
 
-/// The points of the surface that order.texels[begin] ... order.texels[end - 1] stand for.
+/// Computes the surface points that order.texels[begin] ... order.texels[end - 1] stand for.
 /// @param scale  that of ScaledCharts.
 void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, const TexelOrder& order,
                  std::size_t begin, std::size_t end, std::vector<Vec3d>& points);
 
 /// The value at a point of a surface.
 struct SurfaceValue {
-  double distance = 0;  ///< mesh units; infinite where there is nothing
-  Vec3d closest;        ///< the point itself where there is nothing
+  double distance = 0;  ///< mesh units; infinite if nothing was found
+  Vec3d closest;        ///< the point itself if nothing was found
   SiteId site;
 };
 
-/// The smallest triangle at each vertex; none() where there is none.
+/// Returns the smallest triangle at each vertex; none() if it has none.
 [[nodiscard]] std::vector<TriangleId> triangles_at_vertices(const MeshView& mesh);
 
-/// A map with places for values.
+/// Returns a map with room for values.
 [[nodiscard]] SurfaceMap empty_map(std::shared_ptr<const SurfaceAtlas> atlas, SurfaceQuantity quantity);
 /// Writes the value of a texel. The distance is signed.
 void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceValue& value);
 
-/// Fills the texels of a map, range by range and on many threads, and sums up those of each triangle.
-/// @param fill_range  puts the values of order.texels[begin] ... order.texels[end - 1].
+/// Fills the texels of a map, range by range and on many threads, and summarizes those of each triangle.
+/// @param fill_range  callable: puts the values of order.texels[begin] ... order.texels[end - 1].
 void fill_texels(SurfaceMap& map, const TexelOrder& order, std::size_t texels_per_range,
                  FunctionRef<void(std::size_t begin, std::size_t end)> fill_range, const Context& context);
 
-/// Finds values that depend on a point and the triangle that it lies on. @param last  the value of a point that is
-/// probably close by, or null: it may bound the search, but must not change its result.
+/// Returns the value at a point of a triangle.
+/// @param last  the value of a point that is probably close by, or null. It may bound the search, but must not change
+///   its result.
 using ValueAt = FunctionRef<SurfaceValue(const Vec3d& point, TriangleId triangle, const SurfaceValue* last)>;
-/// Fills texels, what they sum up to, and vertices with such values.
+/// Fills the texels, the summaries of triangles and the vertices with such values.
 void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context);
 
-/// Adds a warning where no texel has a value. @param text  of it.
+/// Adds a warning if no texel has a value.
+/// @param text  text of the warning.
 void warn_of_nothing(SurfaceMap& map, const char* text);
 inline constexpr const char* nothing_lies_within = "nothing lies within the distance of any texel";
 
-/// Fills `error`. @param may_jump  whether distances may change their sign off the other mesh.
+/// Fills `error`.
+/// @param may_jump  true if distances may change their sign off the other mesh.
 void bound_errors(SurfaceMap& map, const MeshView& mesh, bool may_jump, const Context& context);
 
-/// The atlas that options ask for.
+/// Returns the atlas that options request.
 [[nodiscard]] std::shared_ptr<const SurfaceAtlas> make_atlas(const MeshView& mesh, const SurfaceMapOptions& options,
                                                              const Context& context);
 /// @throws InvalidOption.

@@ -18,21 +18,21 @@ namespace {
 using surface::for_each_texel;
 
 constexpr std::uint32_t most_a_side = 16384;
-/// Charts begin and end so far within the outermost texel middles that rounding of texture coordinates does not lead to
-/// other texels.
+/// Distance of charts from the outermost texel middles, texels. It prevents that rounding of texture coordinates leads
+/// to other texels.
 constexpr double inset = 1.0 / 64;
-/// Beyond the legs of a chart, in a rectangle that two share.
+/// Texels beyond the legs of a chart, in a rectangle that two charts share.
 constexpr std::uint32_t gutter = 3;
 
-/// More room around large charts, where it costs little: programs that draw a texture smaller than it is read beyond
-/// the texels that they should.
+/// Returns extra room around large charts, texels, where it costs little. Programs that draw a texture at a smaller
+/// size read beyond the texels of a chart.
 double room_around(double shorter_leg) {
   return std::min(std::floor(shorter_leg / 16), 8.0);
 }
 
 /// A triangle of the mesh as a right triangle.
 struct Legs {
-  std::size_t corner = 0;          ///< opposite of the longest side
+  std::size_t corner = 0;          ///< opposite to the longest side
   std::array<double, 2> length{};  ///< of the sides to the next corner and to the one after it, mesh units
 };
 
@@ -40,7 +40,7 @@ std::vector<Legs> legs_of(const MeshView& mesh) {
   std::vector<Legs> out(mesh.triangles.size());
   for (std::size_t t = 0; t < out.size(); ++t) {
     const std::array<Vec3d, 3> p = triangle_corners(mesh, t);
-    std::array<double, 3> side{};  // opposite of corner k
+    std::array<double, 3> side{};  // opposite to corner k
     for (std::size_t k = 0; k < 3; ++k) side[k] = length(p[(k + 2) % 3] - p[(k + 1) % 3]);
     const auto corner = static_cast<std::size_t>(std::max_element(side.begin(), side.end()) - side.begin());
     out[t] = {corner, {side[(corner + 2) % 3], side[(corner + 1) % 3]}};
@@ -48,12 +48,12 @@ std::vector<Legs> legs_of(const MeshView& mesh) {
   return out;
 }
 
-/// A texel fits so many times, rounded up.
+/// Returns the number of texels along a length, rounded up.
 double texels_along(double length, double texel) {
   return std::max(std::ceil(length / texel + 2 * inset), 1.0);
 }
 
-/// About so many texels a texture has.
+/// Returns the approximate number of texels of a texture.
 double texel_count(const std::vector<Legs>& legs, double texel) {
   double sum = 0;
   for (const Legs& one : legs) {
@@ -70,15 +70,15 @@ struct Rectangle {
   std::array<std::uint32_t, 2> triangles{};
   std::size_t count = 1;
   std::uint32_t x = 0, y = 0;
-  std::uint32_t along = 0, across = 0;  ///< of the legs, texels
-  bool is_turned = false;               ///< the first leg lies across
+  std::uint32_t along = 0, across = 0;  ///< lengths of the legs, texels
+  bool is_turned = false;               ///< true if the first leg lies across
 
   [[nodiscard]] std::uint32_t room() const { return static_cast<std::uint32_t>(room_around(across)); }
   [[nodiscard]] std::uint32_t width() const { return along + gutter + 2 * room(); }
   [[nodiscard]] std::uint32_t height() const { return across + gutter + 2 * room(); }
 };
 
-/// Rectangles, the highest first, like ones in a row.
+/// Returns rectangles, the highest first, with similar ones next to each other.
 std::vector<Rectangle> rectangles_of(const std::vector<Legs>& legs, double texel) {
   std::vector<Rectangle> all(legs.size());
   for (std::uint32_t t = 0; t < legs.size(); ++t) {
@@ -103,7 +103,8 @@ std::vector<Rectangle> rectangles_of(const std::vector<Legs>& legs, double texel
   return out;
 }
 
-/// Puts rectangles into rows. @return width and height.
+/// Puts rectangles into rows.
+/// @return  width and height.
 std::array<std::uint64_t, 2> place(std::vector<Rectangle>& rectangles) {
   double area = 0;
   std::uint64_t width = 1;
@@ -129,7 +130,7 @@ std::array<std::uint64_t, 2> place(std::vector<Rectangle>& rectangles) {
   return {width, std::max<std::uint64_t>(y + row, 1)};
 }
 
-/// The chart of triangle `which` of a rectangle: the second one is the first one, turned by half a turn.
+/// Returns the chart of triangle `which` of a rectangle. The second chart is the first one, turned by half a turn.
 std::array<TexturePlace, 3> chart_in(const Rectangle& r, std::size_t which, std::size_t corner) {
   const double along = r.along - 2 * inset;
   const double across = r.across - 2 * inset;

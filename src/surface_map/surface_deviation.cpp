@@ -17,15 +17,15 @@ namespace {
 using surface::LongSum;
 
 constexpr std::size_t triangles_per_range = 256;
-/// So many have about 100 gigabytes.
+/// They take about 100 gigabytes.
 constexpr std::size_t most_pieces = 1'000'000'000;
 
-/// Small triangles, each by its centroid. Lengths are those of the mesh times a scale.
+/// Small triangles, each represented by its centroid. Lengths are those of the mesh times a scale.
 struct Pieces {
   std::vector<Vec3d> centroid;      ///< mesh units
   std::vector<double> area;         ///< scaled
   std::vector<double> mean_square;  ///< of the distance of a piece's points from its centroid, scaled
-  double largest_radius = 0;        ///< how far a corner is from a centroid, scaled
+  double largest_radius = 0;        ///< largest distance of a corner from its centroid, scaled
 
   void append(const Pieces& more) {
     centroid.insert(centroid.end(), more.centroid.begin(), more.centroid.end());
@@ -37,7 +37,7 @@ struct Pieces {
 
 class Cutter {
  public:
-  /// @param size  pieces have no longer sides, scaled.
+  /// @param size  largest length of a side of pieces, scaled.
   Cutter(double scale, double size) : scale_(scale), squared_size_(size * size) {}
 
   void cut(const std::array<Vec3d, 3>& corners, Pieces& out) const {
@@ -54,7 +54,7 @@ class Cutter {
     const Vec3d& b = p[(longest + 1) % 3];
     const Vec3d& c = p[(longest + 2) % 3];
     if (2 * area <= squared[longest] / 8 && 4 * area * area <= squared_size_ * squared[longest]) {
-      // Halves of needles are needles beside each other: it is better to cut across.
+      // Halves of needles are needles side by side, so it is better to cut across.
       const double part = std::clamp(dot(c - a, b - a) / squared[longest], 0.0, 1.0);
       const Vec3d foot = a + (b - a) * part;
       cut_needle(a, foot, c, area * part, out);
@@ -150,8 +150,8 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   const Extent extent = extent_of(mesh, scale);
   if (!(extent.area > 0)) throw InvalidMesh("no triangle of the mesh has an area, so there is no surface to measure");
   const ClosestPointQuery query(other, {options.sign, {}}, context);
-  // Halving right-angled isosceles triangles leaves pieces whose area is a quarter to half of the longest side squared.
-  // Needles are cut along their lengths only.
+  // Halving right-angled isosceles triangles leaves pieces with an area of a quarter to half of the longest side
+  // squared. Needles are cut along their lengths only.
   const auto count = static_cast<double>(options.pieces);
   const double size = std::max(std::sqrt(4 * extent.area / count), extent.longest_sides / count);
   const Pieces pieces = pieces_of(mesh, scale, size, context);
@@ -182,7 +182,7 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   const double sum = areas.value();
   out.mean = mean.value() / sum / scale;
   const double rounding = 4e-15 * (bounds(mesh).largest_coordinate() * scale + largest);
-  // A sign that changes off the other mesh may be another one in the rest of a piece.
+  // If the sign can change off the other mesh, it may be different in the rest of a piece.
   const bool may_jump = query.sign_may_jump();
   out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
   out.rms = surface::root_mean_square(values, pieces.area, largest / scale, sum);

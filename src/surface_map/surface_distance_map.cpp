@@ -18,7 +18,7 @@ namespace {
 
 using surface::SurfaceValue;
 
-/// So many have much in common, and what is found of them stays in caches.
+/// Texels of a batch are close to each other, and their results stay in caches.
 constexpr std::size_t texels_per_batch = 16384;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
@@ -29,7 +29,7 @@ bool have_common_vertex(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-/// Refuses what ClosestPointQuery does not answer, before there are threads.
+/// Rejects meshes that ClosestPointQuery does not support, before threads start.
 void check_range(const MeshView& target, const ClosestPointQuery& query) {
   const Box3 box = bounds(target);
   try {
@@ -42,7 +42,7 @@ void check_range(const MeshView& target, const ClosestPointQuery& query) {
 void fill_distances(SurfaceMap& map, const MeshView& target, const surface::TexelOrder& order,
                     const ClosestPointQuery& query, const Context& context) {
   const double scale = scale_to_one(bounds(target).largest_coordinate());
-  // Each batch is answered by one thread, out of its caches.
+  // One thread answers a batch, out of its caches.
   const Context alone{.threads = 1};
   const auto fill_batch = [&](std::size_t begin, std::size_t end) {
     const std::span texels = std::span(order.texels).subspan(begin, end - begin);
@@ -136,7 +136,7 @@ SurfaceMapper::~SurfaceMapper() = default;
 
 namespace {
 
-/// A mesh with other places of its vertices, which must be as many, and valid.
+/// Moves the vertices of a mesh. The new positions must be as many, and valid.
 void move_vertices(TriangleMesh& mesh, std::span<const Vec3d> vertices) {
   if (vertices.size() != mesh.vertices.size()) {
     throw InvalidMesh("a mesh of " + std::to_string(mesh.vertices.size()) + " vertices is moved to " +
@@ -199,7 +199,7 @@ SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& op
     const auto is_other = [&](std::uint32_t primitive) {
       return !have_common_vertex(own, primitive_vertices(target, primitive));
     };
-    // What was closest to a point close by bounds the search, where it may be found for this one.
+    // The closest point of a point close by bounds the search, if it may be found for this one.
     double limit = furthest;
     if (last != nullptr && last->site.has_value()) {
       const TriangleId on = sites.triangle(last->site);

@@ -32,8 +32,9 @@ void check(const MeshView& mesh, const SurfaceMap& map) {
   }
 }
 
-/// The area of the surface that each texel stands for, of the mesh times a scale: its triangle's, shared out by what
-/// the triangle's chart covers of the texels, or evenly where that is nothing.
+/// Returns the area of the surface that each texel stands for, of the mesh times a scale. The area of a triangle is
+/// divided in proportion to the part of each texel that its chart covers. It is divided evenly if the chart covers
+/// nothing.
 std::vector<double> texel_areas(const MeshView& mesh, const SurfaceAtlas& atlas, double scale) {
   std::vector<double> out(atlas.size());
   std::vector<double> sums(mesh.triangles.size());

@@ -25,10 +25,10 @@ namespace {
 using surface::SurfaceValue;
 
 constexpr double nothing = std::numeric_limits<double>::infinity();
-/// Points move by this part of the way to the centroid of their triangle: at its border, rays would run along
+/// Points at the border of a triangle move by this part of the way to its centroid. At the border, rays would run along
 /// neighbours.
 constexpr double towards_centroid = 1e-7;
-/// A ball that another one would make smaller by no more than this part has been found.
+/// A ball is final if another one would make it smaller by no more than this part.
 constexpr double settled = 1e-12;
 /// Balls shrink to their end in 3 to 10 steps.
 constexpr int most_steps = 200;
@@ -40,7 +40,7 @@ void check(const ThicknessOptions& options) {
   }
 }
 
-/// Finds thicknesses of a solid, brought to about 1.
+/// Computes thicknesses of a solid that is scaled to about 1.
 class ThicknessSearch {
  public:
   ThicknessSearch(const MeshView& solid, const ThicknessOptions& options, const Context& context)
@@ -51,7 +51,7 @@ class ThicknessSearch {
         mesh_(solid) {
     for (Vec3d& v : vertices_) v *= scale_;
     mesh_.vertices = vertices_;
-    // Only triangles make a solid.
+    // Only triangles bound a solid.
     mesh_.segments = {};
     mesh_.points = {};
     surface_.emplace(mesh_, context);
@@ -66,13 +66,14 @@ class ThicknessSearch {
 
   [[nodiscard]] const SiteTable& sites() const { return surface_->sites(); }
 
-  /// What a ball may touch: a point, and the triangle that it lies on.
+  /// A point that a ball may touch, and the triangle that it lies on.
   struct Hint {
     Vec3d point;
     TriangleId triangle;
   };
 
-  /// At a point of a triangle. @param hint  spares work where the ball touches close to it.
+  /// Returns the thickness at a point of a triangle.
+  /// @param hint  saves work if the ball touches close to it.
   [[nodiscard]] Thickness at(const Vec3d& given, TriangleId triangle,
                              const Hint& hint = {{}, TriangleId::none()}) const {
     const auto [a, b, c] = triangle_corners(mesh_, triangle.value);
@@ -91,7 +92,7 @@ class ThicknessSearch {
   }
 
  private:
-  /// Barycentric coordinates of a point; nullopt of triangles without area.
+  /// Returns the barycentric coordinates of a point; nullopt for triangles without area.
   [[nodiscard]] static std::optional<std::array<double, 3>> weights_of(const std::array<Vec3d, 3>& corners,
                                                                        const Vec3d& point) {
     const auto& [a, b, c] = corners;
@@ -103,8 +104,8 @@ class ThicknessSearch {
     return std::array{1 - second - third, second, third};
   }
 
-  /// The mean of the normals of triangles at a corner that are turned by less than the separation from the triangle's
-  /// own, by their angles there.
+  /// Returns the mean normal of triangles at a corner, weighted by their angles there. Only triangles that are turned
+  /// from the triangle's own direction by less than the separation count.
   [[nodiscard]] Vec3d corner_normal(std::uint32_t triangle, std::size_t corner) const {
     const std::uint32_t vertex = mesh_.triangles[triangle][corner];
     Vec3d sum;
@@ -121,7 +122,7 @@ class ThicknessSearch {
     return size > 0 ? sum / size : normals_[triangle];
   }
 
-  /// Of the smooth surface that a mesh approximates: between those of the corners.
+  /// Returns the normal of the smooth surface that the mesh approximates, interpolated between those of the corners.
   [[nodiscard]] Vec3d smooth_normal(const Vec3d& point, std::uint32_t triangle) const {
     const auto weights = weights_of(triangle_corners(mesh_, triangle), point);
     if (!weights) return normals_[triangle];
@@ -145,7 +146,8 @@ class ThicknessSearch {
     return out;
   }
 
-  /// Of the ball that touches a plane at a point, from below, and another place; infinite where none does.
+  /// Returns the radius of the ball that touches a plane at a point, from below, and another place. Infinite if none
+  /// does.
   static double touching_radius(const Vec3d& point, const Vec3d& normal, const Vec3d& place) {
     const Vec3d way = point - place;
     const double below = dot(way, normal);
@@ -153,14 +155,14 @@ class ThicknessSearch {
   }
 
   /// Shrinks a ball until nothing that counts is left in it. Each step takes the closest point to the centre, and the
-  /// ball that touches both it and the plane.
+  /// ball that touches both that point and the plane.
   [[nodiscard]] Thickness of_ball(const Vec3d& point, const Vec3d& normal, std::uint32_t own, const Hint& hint) const {
     const auto counts = [&](std::uint32_t triangle) {
-      // Triangles without area have no normal to be turned.
+      // Triangles without area have no normal to compare.
       return triangle != own && normals_[triangle] != Vec3d{} && dot(normals_[triangle], normal) <= cosine_;
     };
     Thickness out{nothing, point, TriangleId::none()};
-    // No ball inside of the mesh's box is larger, if it touches something.
+    // A ball inside of the mesh's box that touches something is not larger.
     double radius = 4 * surface_->hierarchy().bounds().diagonal();
     const auto touch = [&](const Vec3d& place, TriangleId triangle) {
       const double next = touching_radius(point, normal, place);
@@ -168,7 +170,7 @@ class ThicknessSearch {
       out = {2 * next, place, triangle};
       radius = next;
     };
-    // Most often a point close to the end is known.
+    // Usually a point close to the result is known.
     if (hint.triangle.has_value() && counts(hint.triangle.value)) touch(hint.point, hint.triangle);
     const Thickness far_side = along_ray(point, normal, own);
     if (far_side.triangle.has_value() && counts(far_side.triangle.value)) touch(far_side.opposite, far_side.triangle);
@@ -187,10 +189,10 @@ class ThicknessSearch {
   ThicknessOptions options_;
   double scale_ = 1;
   std::vector<Vec3d> vertices_;
-  double cosine_ = 1;  ///< of the separation, and what rounding makes of the product of two normals
+  double cosine_ = 1;  ///< cosine of the separation, plus the rounding of a product of two normals
   MeshView mesh_;
   std::optional<surface::FacingSurface> surface_;
-  std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 where they have no area
+  std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 if they have no area
 };
 
 void check_solid(const MeshView& solid) {

@@ -7,7 +7,7 @@
 
 namespace blum::surface {
 
-/// A sum of many numbers that keeps what each addition rounds off (Neumaier 1974), so that millions of terms cost no
+/// A sum of many numbers that keeps the rounding error of each addition (Neumaier 1974). Millions of terms cost no
 /// digits.
 class LongSum {
  public:
@@ -23,15 +23,17 @@ class LongSum {
   double rest_ = 0;
 };
 
+/// Returns the weighted root mean square.
 /// @param largest  magnitude of the values; they are divided by it, so that squares neither overflow nor underflow.
 /// @param sum      of the weights, > 0.
 [[nodiscard]] double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest,
                                       double sum);
 
-/// The values below which lie so many percent of the weight.
+/// Returns the values below which the given percentages of the weight lie.
 /// @param values    one or more, fewer than 2^32.
-/// @param sum       of the weights, > 0.
-/// @param percents  in rising order. Cost: O(values log values).
+/// @param sum      of the weights, > 0.
+/// @param percents  in rising order.
+/// Cost: O(values log values).
 [[nodiscard]] std::array<double, 7> percentiles(std::span<const double> values, std::span<const double> weights,
                                                 double sum, const std::array<double, 7>& percents);
 

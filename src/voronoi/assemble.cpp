@@ -21,24 +21,25 @@
 namespace blum::voronoi {
 namespace {
 
-/// What is closest to a point: of all points of labels that are as close, but for 1e-9 of the size, the two that are
-/// seen furthest apart; the same one twice where there is one.
+/// Points of the surface that are closest to a point. Labels count as equally close within 1e-9 of the size. The
+/// two of their points that are seen furthest apart are taken, or the same point twice if only one exists.
 struct WallPoint {
   double radius = 0;                ///< exact distance from the closest label
   std::array<Vec3d, 2> footprints;  ///< relative to the centre of the labels
   std::array<LabelIndex, 2> labels{};
-  double separation_angle = 0;  ///< between them, degrees
+  double separation_angle = 0;  ///< between the footprints, degrees
 };
 
-/// The angle at a point between two others, degrees.
+/// Returns the angle at a point between two others, degrees.
 double separation_angle(const Vec3d& at, const Vec3d& first, const Vec3d& second) {
   const Vec3d a = first - at;
   const Vec3d b = second - at;
   return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
 }
 
-/// @param among  labels that hold all that may be closest.  @param q  relative to the centre of the labels.
-/// Cost: linear in the labels, quadratic in those that are closest.
+/// @param among  labels that contain all that may be closest.
+/// @param q  relative to the centre of the labels.
+/// Cost: linear in the labels, quadratic in the closest ones.
 WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> among, const Vec3d& q) {
   struct Near {
     LabelIndex label = outside;
@@ -49,7 +50,7 @@ WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> 
   double least = std::numeric_limits<double>::infinity();
   for (const LabelIndex label : among) {
     const double reach = least + 1e-9 * geometry.size();
-    if (geometry[label].squared_distance(q) > reach * reach) continue;  // no more than its distance
+    if (geometry[label].squared_distance(q) > reach * reach) continue;  // a lower bound of its squared distance
     const Vec3d point = geometry.closest_point(label, q);
     all.push_back({label, point, length(point - q)});
     least = std::min(least, all.back().distance);
@@ -75,14 +76,14 @@ WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> 
   return out;
 }
 
-/// A box that points must stay in; flat along an axis where both coordinates are equal.
+/// Box that points must stay in; flat along an axis if both coordinates are equal.
 struct PlacedBox {
   Vec3d low, high;
 };
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-/// The solution of a x = b for a symmetric positive definite matrix, by Gaussian elimination.
+/// Solves a x = b for a symmetric positive definite matrix, by Gaussian elimination.
 Vec3d solve(Matrix a, Vec3d b) {
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t i = k + 1; i < 3; ++i) {
@@ -110,10 +111,10 @@ Distance distance_from(const PlacedLabel& label, const Vec3d& q) {
   return {value, value > 0 ? away / value : Vec3d{}};
 }
 
-/// A point near another one that is equally far from all of some labels, or on the surface of all of them, by
-/// Gauss-Newton steps of least length. nullopt where there is none in the box that is near.
-/// @param labels      one of each site, two or more; one does on the surface.
-/// @param on_surface  whether the distance is 0.
+/// Returns a point near `start` that is equally far from all labels, or that lies on all of them (`on_surface`). Uses
+/// Gauss-Newton steps of least length. Returns nullopt if it finds no such point nearby in the box.
+/// @param labels      one of each site; two or more, or one or more on the surface.
+/// @param on_surface  true if the distance must be 0.
 /// @param start, box  relative to the centre of the labels.
 std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const LabelIndex> labels, bool on_surface,
                             const Vec3d& start, const PlacedBox& box) {
@@ -150,13 +151,14 @@ std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const Label
       }
     }
     if (largest <= enough) {
-      // Outside of the box from the nearest point in it on: to and fro it comes to a point of both, where there is one.
+      // If q left the box, the iteration continues from the closest point in the box. Alternating like this reaches a
+      // point of both sets if one exists.
       const Vec3d inside = max(box.low, min(box.high, q));
       if (inside == q) return q;
       q = inside;
       continue;
     }
-    // A little of the identity keeps steps short along directions that nothing is known of.
+    // A small multiple of the identity keeps steps short along directions that the equations do not determine.
     const double trace = normal[0][0] + normal[1][1] + normal[2][2];
     for (std::size_t i = 0; i < 3; ++i) normal[i][i] += 1e-10 * trace + 1e-300;
     const Vec3d move = solve(normal, right);
@@ -176,7 +178,7 @@ bool are_apart(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   return false;
 }
 
-/// Whether a segment meets a triangle and does not lie in its plane: by exact signs.
+/// Returns true if a segment meets a triangle and does not lie in its plane. Uses exact signs.
 bool crosses(const std::array<Vec3d, 2>& segment, const std::array<Vec3d, 3>& triangle) {
   const auto& [p, q] = segment;
   const auto& [a, b, c] = triangle;
@@ -188,7 +190,7 @@ bool crosses(const std::array<Vec3d, 2>& segment, const std::array<Vec3d, 3>& tr
   return least >= 0 || most <= 0;
 }
 
-/// Whether a side of one triangle crosses the other one.
+/// Returns true if a side of one triangle crosses the other one.
 bool cross_each_other(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   if (are_apart(a, b)) return false;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -200,18 +202,18 @@ bool cross_each_other(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>&
 constexpr std::size_t grain = 64;
 constexpr std::uint32_t no_vertex = UINT32_MAX;
 
-/// What a vertex stands for.
+/// A vertex of the complex, before and after it is moved to its place.
 struct Place {
   Vec3d start;  ///< relative to the centre of the labels
   std::uint32_t parts = 0;
   PlacedBox box;
-  CellId cube = no_cell;            ///< that it lies in
-  Vec3d on_wall;                    ///< a place where walls of it cross an edge of the grid
-  Vec3d rim;                        ///< sum of places on convex edges of the mesh at which walls of it end
-  std::uint32_t rims = 0;           ///< how many there are
-  bool is_over_corner = false;      ///< whether its walls are a cone about a corner of the mesh, which the rim is then
+  CellId cube = no_cell;            ///< the cube that it lies in
+  Vec3d on_wall;                    ///< a point at which its walls cross a grid edge
+  Vec3d rim;                        ///< sum of the points on convex edges of the mesh at which its walls end
+  std::uint32_t rims = 0;           ///< number of these points
+  bool is_over_corner = false;      ///< true if its walls are a cone about a corner of the mesh, which is then the rim
   std::vector<LabelIndex> labels;   ///< one of each site
-  std::vector<LabelIndex> surface;  ///< those of them whose own face is part of it
+  std::vector<LabelIndex> surface;  ///< those labels that are triangles of the surface in its component
 };
 
 class Assembly {
@@ -229,7 +231,8 @@ class Assembly {
     return {finish(), largest_diagonal_, std::move(lost)};
   }
 
-  /// Walls lie in the solid, but their triangles may cut corners: where they cross the surface, cubes are too large.
+  /// Returns cubes that are too large. Walls lie in the solid, but their triangles may cut corners and cross the
+  /// surface.
   std::vector<CellId> crossing_cubes() {
     make_triangles();
     const std::vector<std::uint8_t> is_crossing = crossing_triangles();
@@ -286,7 +289,7 @@ class Assembly {
   }
 
   void add_labels(Place& place, const LineEvent& event) const {
-    // Where a thin region lies in between, `at` is on its near side.
+    // If a thin region lies in between, `at` is on its near side.
     for (const LabelIndex label : {event.before, event.thin != outside ? event.thin : event.after}) {
       if (label != outside) add_label(place.labels, label);
     }
@@ -311,7 +314,7 @@ class Assembly {
     return {tree_.lattice.at(low) - labels_.centre(), tree_.lattice.at(high) - labels_.centre()};
   }
 
-  /// The first vertex of a square's components.
+  /// Returns the first vertex of a square's components.
   std::uint32_t vertex_of_square(const CubeCells::Square& cells, CellId cube) {
     std::uint32_t& first = vertex_of_square_[cells.square];
     if (first != no_vertex) return first;
@@ -338,12 +341,12 @@ class Assembly {
     return first;
   }
 
-  /// A wall between the faces of a convex edge ends where that pierces a square: in the first component there that
-  /// both faces touch, best where it crosses the border between them.
+  /// A wall between the two faces of a convex edge ends where the edge pierces a square. That wall is in the first
+  /// component that both faces touch. A component with an event between both faces is preferred.
   void add_rims(const CubeCells::Square& cells, const GridSquare& square, std::uint32_t first) {
     for (const std::uint32_t edge : cells.convex_edges) {
       const auto [t, u] = solid_.sites.triangles_of[edge];
-      std::vector<std::uint8_t> touched(cells.component.size(), 0);  // a bit for each face, one where it is crossed
+      std::vector<std::uint8_t> touched(cells.component.size(), 0);  // a bit per face, one if an event is between both
       for (std::size_t k = 0; k < cells.events.size(); ++k) {
         if (cells.component_of_event[k] == outside) continue;
         const LineEvent& event = tree_.events[cells.events[k]];
@@ -362,7 +365,7 @@ class Assembly {
     }
   }
 
-  /// Where an edge of the mesh passes a square, relative to the centre of the labels.
+  /// Returns the point at which an edge of the mesh pierces a square, relative to the centre of the labels.
   [[nodiscard]] Vec3d piercing(std::uint32_t edge, const GridSquare& square) const {
     const Segment& ends = solid_.table.edges()[edge];
     const Vec3d p = solid_.mesh.vertices[ends[0]] - labels_.centre();
@@ -373,7 +376,7 @@ class Assembly {
     return p + (q - p) * std::clamp(part, 0.0, 1.0);
   }
 
-  /// Whether a corner of the mesh is one of all labels of a vertex, or of other triangles of their faces.
+  /// Returns true if each label of a vertex, or another triangle of its face, has a given corner of the mesh.
   [[nodiscard]] bool are_at(const Vec3d& corner, const Place& place) const {
     const std::vector<LabelIndex>& near = tree_.cubes[place.cube].governors;
     return std::all_of(place.labels.begin(), place.labels.end(), [&](LabelIndex label) {
@@ -424,7 +427,8 @@ class Assembly {
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
       Place& of_component = places_[first + k];
       of_component.start *= 1.0 / of_component.parts;
-      // Rims of one wall go through its middle. Next to a corner of the mesh walls are a cone about it.
+      // A component of one wall has its rim at the mean of the wall's ends. Next to a corner of the mesh, walls are a
+      // cone about the corner, which is then the rim.
       if (of_component.rims > 0 && cells.vertices.size() == 1 &&
           are_at(solid_.mesh.vertices[cells.vertices[0]] - labels_.centre(), of_component)) {
         of_component.rim = solid_.mesh.vertices[cells.vertices[0]] - labels_.centre();
@@ -440,7 +444,7 @@ class Assembly {
     std::vector<std::uint8_t> is_crossing(triangles_.size(), 0);
     parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
       for (std::size_t t = range.begin; t < range.end; ++t) {
-        constexpr float least = 1;  // degrees: between faces that are bent a little walls are of no account
+        constexpr float least = 1;  // degrees: walls between faces that are bent less are ignored
         if (triangle_angle_[t] < least) continue;
         const auto& [a, b, c] = triangles_[t];
         const std::array corners{places_[a].start + labels_.centre(), places_[b].start + labels_.centre(),
@@ -454,13 +458,13 @@ class Assembly {
     return is_crossing;
   }
 
-  /// Whether the corners on an edge of the grid, in a square at it and in a cube at that run counterclockwise as seen
-  /// from the region of the larger site: by where these cells lie, so that the triangles of a region are a closed
-  /// surface.
+  /// Returns true if a triangle's corners run counterclockwise as seen from the region of the larger site. The corners
+  /// lie on a grid edge, in a square at that edge and in a cube at that square. The positions of these cells decide, so
+  /// that the triangles of a region form a closed surface.
   [[nodiscard]] bool faces_larger_site(std::uint32_t event, const GridSquare& square, const GridCube& cube) const {
     const GridEdge& edge = tree_.edges[edge_of_event_[event]];
-    const std::size_t across = 3 - edge.axis - square.axis;  // from the edge into the square
-    bool is_along = next_axis(across) == square.axis;  // whether across, the square's axis, the edge's turn rightly
+    const std::size_t across = 3 - edge.axis - square.axis;  // direction from the edge into the square
+    bool is_along = next_axis(across) == square.axis;  // true if across, the square's, the edge's axis are right-handed
     if (edge.low[across] != square.low[across]) is_along = !is_along;
     if (square.low[square.axis] != cube.low[square.axis]) is_along = !is_along;
     const LineEvent& at = tree_.events[event];
@@ -470,8 +474,8 @@ class Assembly {
     return is_along == is_after_larger;
   }
 
-  /// The angle at which the middle of each triangle sees the planes, lines or points of both sites of its wall; 0 on
-  /// the surface, and where it is none but for rounding.
+  /// Computes the angle at which the middle of each triangle sees the planes, lines or points of its wall's sites. It
+  /// is 0 on the surface, and below the rounding limit `least`.
   void find_angles() {
     constexpr double least = 1e-6;  // degrees
     triangle_angle_.assign(triangles_.size(), 0);
@@ -494,18 +498,19 @@ class Assembly {
         settle_one(places_[k], points_[k]);
         if (places_[k].rims > 0) move_to_rim(places_[k], points_[k]);
         const bool is_on_surface = !places_[k].surface.empty() && points_[k].radius <= near();
-        if (is_on_surface) points_[k].radius = 0;  // but for rounding
+        if (is_on_surface) points_[k].radius = 0;  // removes rounding
       }
     });
   }
 
-  /// A place for a vertex, with what it sees.
+  /// A place for a vertex, and the surface points closest to it.
   struct Settled {
     Vec3d at;
     WallPoint point;
   };
 
-  /// Where some of a vertex's labels are equally close, or on the surface of them; nullopt where that is not on a wall.
+  /// Returns a place where some labels of a vertex are equally close, or that lies on all of them. Returns nullopt if
+  /// that place is not on a wall.
   [[nodiscard]] std::optional<Settled> settled(const Place& place, std::span<const LabelIndex> which) const {
     const auto at = settle(labels_, which, !place.surface.empty(), place.start, place.box);
     if (!at) return std::nullopt;
@@ -513,10 +518,9 @@ class Assembly {
     return is_on_wall(place, out.at, out.point) ? std::optional(out) : std::nullopt;
   }
 
-  /// The best of places on walls between two labels: that with the largest angle, so that narrow sheets are not passed
-  /// over.
+  /// Returns the best place on a wall between two labels. The largest angle wins, so that narrow sheets are not missed.
   [[nodiscard]] std::optional<Settled> settled_between_two(const Place& place) const {
-    constexpr std::size_t most = 10;  // of those where many meet
+    constexpr std::size_t most = 10;  // labels tried if many meet
     const std::size_t count = std::min(most, place.labels.size());
     std::optional<Settled> best;
     for (std::size_t i = 0; i < count; ++i) {
@@ -528,7 +532,7 @@ class Assembly {
     return best;
   }
 
-  /// On a seam: of places where three labels are equally close, that where most are.
+  /// Returns a place on a seam, where three labels are equally close. The place with most closest labels wins.
   [[nodiscard]] std::optional<Settled> settled_on_seam(const Place& place) const {
     constexpr std::size_t most = 10;
     const std::size_t count = std::min(most, place.labels.size());
@@ -549,21 +553,23 @@ class Assembly {
     return best_count > 2 ? best : std::nullopt;
   }
 
-  /// How many of a vertex's sites are closest there.
+  /// Returns the number of a vertex's sites that are closest at its place.
   [[nodiscard]] std::size_t sites_at(const Place& place, const Settled& found) const {
     return static_cast<std::size_t>(std::count_if(place.labels.begin(), place.labels.end(), [&](LabelIndex label) {
       return length(labels_.closest_point(label, found.at) - found.at) <= found.point.radius + near();
     }));
   }
 
-  /// Moves a vertex to the surface where it has a part in it, else to where all its labels are equally close, or two;
-  /// where none of that is found nearby, to where a wall of it crosses an edge of the grid.
+  /// Moves a vertex to the surface if its component contains a part of it. Otherwise moves it to a place where all its
+  /// labels are equally close, or two of them. If no such place is found nearby, moves it to a point where one of its
+  /// walls crosses a grid edge.
   void settle_one(Place& place, WallPoint& out) const {
     const bool is_point = place.box.low == place.box.high;
     std::optional<Settled> found;
     if (!is_point && place.surface.empty()) {
       found = settled(place, place.labels);
-      // Sheets that meet in a corner meet on seams from there on: a vertex of one of them alone is off the others.
+      // Sheets that meet in a corner meet on seams from there on. A vertex on one of them alone would be off the
+      // others.
       if (!found && place.is_over_corner) found = settled_on_seam(place);
       if (!found) found = settled_between_two(place);
     } else if (!is_point) {
@@ -577,9 +583,9 @@ class Assembly {
     out = found->point;
   }
 
-  /// Moves a vertex nearly to where its wall ends on the surface, if the way there is on walls, too.
+  /// Moves a vertex close to the end of its wall on the surface, if its new place is on a wall, too.
   void move_to_rim(Place& place, WallPoint& out) const {
-    constexpr double left = 0.02;  // of the way, so that edges do not touch the surface
+    constexpr double left = 0.02;  // share of the way that remains, so that edges do not touch the surface
     const Vec3d rim = place.rim * (1.0 / place.rims);
     const Vec3d at = rim + (place.start - rim) * left;
     const WallPoint found = seen_from(place, at);
@@ -588,22 +594,24 @@ class Assembly {
     out = found;
   }
 
-  /// What a vertex would see from a point.
+  /// Returns the surface points that are closest to a vertex at a given place.
   [[nodiscard]] WallPoint seen_from(const Place& place, const Vec3d& at) const {
     return wall_point(labels_, tree_.cubes[place.cube].governors, at);
   }
 
-  /// How far points may be off walls and the surface, mesh units.
+  /// Tolerance for points on walls and on the surface, mesh units.
   [[nodiscard]] double near() const { return 1e-9 * labels_.size(); }
 
-  /// Whether a point is as far from two labels, or on the surface, and in the solid.
+  /// Returns true if a point is equally far from two labels and in the solid. A vertex of the surface must lie on the
+  /// surface instead.
   [[nodiscard]] bool is_on_wall(const Place& place, const Vec3d& at, const WallPoint& found) const {
     if (!place.surface.empty()) return found.radius <= near();
     return found.separation_angle > 0 && is_seen_from_inside(place, at, found, 0) &&
            is_seen_from_inside(place, at, found, 1);
   }
 
-  /// Of the surface a point inside sees feet of perpendiculars in faces, and points of reflex edges and vertices.
+  /// Returns true if a point inside can have this footprint. Footprints are feet of perpendiculars in faces, and points
+  /// of reflex edges and vertices.
   [[nodiscard]] bool is_seen_from_inside(const Place& place, const Vec3d& at, const WallPoint& found,
                                          std::size_t which) const {
     if (is_in_domain(found.labels[which], at, found.radius)) return true;

@@ -15,16 +15,16 @@ namespace blum::voronoi {
 struct Assembled {
   Complex complex;
   double largest_diagonal = 0;    ///< of cubes with a component, mesh units
-  std::vector<FailingCube> lost;  ///< cubes that passed before, and do not: none, unless that was decided too early
+  std::vector<FailingCube> lost;  ///< cubes that passed earlier but not now; empty unless they were accepted too early
 };
 
-/// A vertex for each component in a cube that passes, in a square without children and on a grid edge; a triangle for
-/// each three of which one contains the next. Columns as VoronoiComplex says. Vertices settle on what they stand for:
-/// walls, seams, junctions, the surface.
+/// Builds the complex of the components in leaves. It has a vertex for each component in a passing cube, in a square
+/// without children and on a grid edge. It has a triangle for each three of these of which one contains the next.
+/// Columns: see VoronoiComplex. Vertices are moved onto their walls, seams, junctions or the surface.
 [[nodiscard]] Assembled assemble(const CellTree& tree, std::span<const CellId> leaves, const CubeTest& test,
                                  const VoronoiSolid& solid, const Context& context);
 
-/// Those of some leaves, rising, in which the triangles of assemble() cross the surface.
+/// Returns the leaves, rising, in which triangles of assemble() cross the surface.
 [[nodiscard]] std::vector<CellId> crossing_cubes(const CellTree& tree, std::span<const CellId> leaves,
                                                  const CubeTest& test, const VoronoiSolid& solid,
                                                  const Context& context);

@@ -1,4 +1,4 @@
-// Blum: doubles that know how wrong they may be. SPDX-License-Identifier: Apache-2.0
+// Blum: doubles with a bound on their rounding error. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -6,17 +6,17 @@
 
 namespace blum::voronoi {
 
-/// A number in double, and a bound on its distance from the number that exact arithmetic would give: for filters in
-/// front of exact predicates. Each operation adds the most that it can round by, half a unit of the last place; bounds
-/// are themselves rounded, which `grow` makes up for: after n operations on them they are too small by at most 2 n
-/// units, and every operation grows them by 8.
+/// A number in double, with a bound on its distance from the result of exact arithmetic. Serves as a filter in front of
+/// exact predicates. Each operation adds its largest rounding error, half a unit of the last place. Bounds are rounded
+/// themselves: after n operations they are too small by at most 2 n units. `grow` makes up for that: every operation
+/// enlarges them by 8 units.
 class BoundedNumber {
  public:
   BoundedNumber() = default;
-  /// Exact.
+  /// Makes an exact number.
   explicit BoundedNumber(double value) : value_(value) {}
 
-  /// -1, 0 or 1 where the sign is certain, else unknown.
+  /// sign() returns -1, 0 or 1 if the sign is certain, else `unknown`.
   static constexpr int unknown = 2;
   [[nodiscard]] int sign() const {
     if (!(std::abs(value_) <= std::numeric_limits<double>::max())) return unknown;
@@ -34,7 +34,7 @@ class BoundedNumber {
   [[nodiscard]] friend BoundedNumber operator*(const BoundedNumber& a, const BoundedNumber& b) {
     BoundedNumber out = rounded(a.value_ * b.value_,
                                 std::abs(a.value_) * b.error_ + std::abs(b.value_) * a.error_ + a.error_ * b.error_);
-    // Products, also those of bounds, may fall below the normal range, where they lose more: unless they are 0 exactly.
+    // Products, also of bounds, may underflow and lose more than half a unit, unless they are exactly 0.
     if (!is_zero(a) && !is_zero(b)) out.error_ += 16 * std::numeric_limits<double>::min();
     return out;
   }

@@ -18,33 +18,33 @@ using Node = std::array<std::uint32_t, 3>;
 
 using detail::next_axis;
 
-/// Where the nodes of the finest grid are.
+/// Positions of the nodes of the finest grid.
 struct Lattice {
   static constexpr int depth = 26;
   static constexpr std::uint32_t most = 1U << depth;
 
   Vec3d origin;
-  double unit = 1;  ///< distance of neighbouring nodes
+  double unit = 1;  ///< distance of neighbouring nodes, mesh units
 
   [[nodiscard]] double at(std::size_t axis, std::uint32_t k) const { return origin[axis] + unit * k; }
   [[nodiscard]] Vec3d at(const Node& node) const { return {at(0, node[0]), at(1, node[1]), at(2, node[2])}; }
 };
 
-/// Numbers of edges, squares and cubes; children are numbered one after the other.
+/// Number of an edge, square or cube. Children have consecutive numbers.
 using CellId = std::uint32_t;
 constexpr CellId no_cell = UINT32_MAX;
 
-/// An edge of the grid, and what is closest along it.
+/// An edge of the grid, and the labels that are closest along it.
 struct GridEdge {
   Node low{};
   std::uint32_t length = 0;
   std::uint8_t axis = 0;
   LabelIndex first = outside;                     ///< closest at its lower end
   LabelIndex last = outside;                      ///< closest at its upper end
-  std::uint32_t first_event = 0, last_event = 0;  ///< its events, of CellTree::events
+  std::uint32_t first_event = 0, last_event = 0;  ///< its events in CellTree::events
   CellId children = no_cell;                      ///< the first of two
 
-  /// The node at its upper end.
+  /// Returns the node at the upper end.
   [[nodiscard]] Node high() const {
     Node out = low;
     out[axis] += length;
@@ -52,15 +52,15 @@ struct GridEdge {
   }
 };
 
-/// Whether a square's border is known to tell what is inside.
+/// `resolved` if a square's border determines the contents of the square.
 enum class SquareState : std::uint8_t { unknown, resolved };
 
-/// A wall or part of the surface in a square that a part of the diagram does without (PartRule), and that need not
-/// reach its border.
+/// A wall or a part of the surface in a square that a part of the diagram drops (PartRule). It need not reach the
+/// border of the square.
 struct InnerArc {
   std::uint32_t first = 0;   ///< site on one side
-  std::uint32_t second = 0;  ///< site on the other; `outside` of the surface
-  std::uint32_t event = 0;   ///< of the surface: an event of the border next to the same part of the outside
+  std::uint32_t second = 0;  ///< site on the other; `outside` for the surface
+  std::uint32_t event = 0;   ///< for the surface: an event of the border next to the same part of the outside
 };
 
 /// A square across an axis; u is the axis after it, and v the one after u.
@@ -74,13 +74,13 @@ struct GridSquare {
   CellId children = no_cell;     ///< the first of four: u counts first
   CellId inner_edges = no_cell;  ///< the first of four: along u below and above the middle, along v likewise
   std::vector<LabelIndex> governors;
-  std::vector<std::uint32_t> triangles;  ///< that may meet it
-  /// Events of its border that the surface in it joins: where it enters and leaves.
+  std::vector<std::uint32_t> triangles;  ///< triangles that may meet it
+  /// Pairs of events of its border at which the surface enters and leaves.
   std::vector<std::array<std::uint32_t, 2>> chains;
-  std::vector<InnerArc> inner_arcs;    ///< where a part of the diagram alone is looked at
-  std::uint32_t reflex_piercings = 0;  ///< likewise: how many reflex edges pierce it
+  std::vector<InnerArc> inner_arcs;    ///< set only for a part of the diagram
+  std::uint32_t reflex_piercings = 0;  ///< number of reflex edges that pierce it; set only for a part
 
-  /// The corner opposite to `low`.
+  /// Returns the corner opposite to `low`.
   [[nodiscard]] Node high() const {
     Node out = low;
     out[next_axis(axis)] += length;
@@ -98,16 +98,16 @@ struct GridCube {
   std::array<CellId, 6> squares{};  ///< below and above across x, y, z
   CellId children = no_cell;        ///< the first of eight: x counts first, then y
   std::vector<LabelIndex> governors;
-  std::vector<std::uint32_t> triangles;  ///< that may meet it
+  std::vector<std::uint32_t> triangles;  ///< triangles that may meet it
   std::size_t governors_of_parent = 0;
-  std::uint32_t tested_squares = 0;  ///< how many squares without children it had when it was tested
+  std::uint32_t tested_squares = 0;  ///< number of squares without children that it had at its test
 
-  /// The corner opposite to `low`.
+  /// Returns the corner opposite to `low`.
   [[nodiscard]] Node high() const { return {low[0] + length, low[1] + length, low[2] + length}; }
 };
 
-/// A vertex, edge or triangle of the surface is in a square or cube as the grid's planes are by simulation of
-/// simplicity (grid_predicates.hpp).
+/// An octree with its events, edges, squares and cubes. Simulation of simplicity moves the grid's planes
+/// (grid_predicates.hpp). It decides whether a vertex, edge or triangle of the surface is in a square or cube.
 struct CellTree {
   Lattice lattice;
   std::vector<LineEvent> events;
@@ -115,7 +115,8 @@ struct CellTree {
   std::vector<GridSquare> squares;
   std::vector<GridCube> cubes;
 
-  /// Calls visit(edge without children, whether it is traversed downwards) for what an edge consists of.
+  /// Calls visit(edge, is_down) for each edge without children that an edge consists of, in the order of traversal.
+  /// `is_down` is true if the edge is traversed downwards.
   template <class Visit>
   void visit_leaf_edges(CellId edge, bool is_down, const Visit& visit) const {
     const GridEdge& e = edges[edge];
@@ -126,7 +127,7 @@ struct CellTree {
     visit_leaf_edges(e.children + (is_down ? 1U : 0U), is_down, visit);
     visit_leaf_edges(e.children + (is_down ? 0U : 1U), is_down, visit);
   }
-  /// Calls visit(square without children) for what a square consists of.
+  /// Calls visit(square) for each square without children that a square consists of.
   template <class Visit>
   void visit_leaf_squares(CellId square, const Visit& visit) const {
     const GridSquare& s = squares[square];

@@ -35,10 +35,10 @@ class CubeAnalysis {
   /// A connected part of a site's region on the boundary.
   struct Region {
     std::uint32_t site = outside;
-    bool exits = false;    ///< whether a way to a footprint leaves the cube from it
-    bool touches = false;  ///< whether the site meets the boundary in it
+    bool exits = false;    ///< true if a way to a footprint leaves the cube from it
+    bool touches = false;  ///< true if the site meets the boundary in it
   };
-  /// The part of a face in the cube that is connected there: regions that it touches.
+  /// A connected part of a face in the cube, and the regions that it touches.
   struct FacePart {
     std::uint32_t face = 0;
     std::set<std::uint32_t> touched;
@@ -52,7 +52,7 @@ class CubeAnalysis {
     return static_cast<std::uint32_t>(sets.size());
   }
 
-  /// The part that is asked for.
+  /// Returns the components of the requested part of the diagram.
   [[nodiscard]] CubeCells part_of(std::uint32_t component_count) const {
     CubeContents in{cube_, squares_, component_count, vertices_, edges_, piercings_, parts_.size(), false};
     in.has_inner_face =
@@ -98,7 +98,7 @@ class CubeAnalysis {
     return is_resolved;
   }
 
-  /// Joins what is on both sides of an edge of the grid.
+  /// Joins pieces, bodies and walls on both sides of a grid edge.
   void join_across_edges() {
     struct AtArc {
       EdgeArc arc;
@@ -152,7 +152,8 @@ class CubeAnalysis {
     for (std::uint32_t r = 0; r < regions_.size(); ++r) regions_of_site_[regions_[r].site].push_back(r);
   }
 
-  /// Whether ways to footprints leave the cube at once. Of faces all do in a square, or none.
+  /// Marks regions from which ways to footprints leave the cube at once. In one square, either all or none of the ways
+  /// to a face leave.
   void find_exits(const Square& square) {
     const std::size_t axis = square.side / 2;
     const double outwards = square.side % 2 == 1 ? 1 : -1;
@@ -174,7 +175,7 @@ class CubeAnalysis {
     }
   }
 
-  /// The ends of an arc, a little inside, relative to the centre of the labels.
+  /// Returns the ends of an arc, moved inwards a little, relative to the centre of the labels.
   [[nodiscard]] std::array<Vec3d, 2> ends(const EdgeArc& arc) const {
     const GridEdge& edge = t_.tree_.edges[arc.edge];
     const Vec3d at = t_.tree_.lattice.at(edge.low);
@@ -197,8 +198,8 @@ class CubeAnalysis {
     return std::nullopt;
   }
 
-  /// Which edges, vertices and triangles meet the cube, and where the surface meets its boundary. False where a site
-  /// that passes a square has no region there.
+  /// Finds the edges, vertices and triangles that meet the cube, and the places where the surface meets its boundary.
+  /// Returns false if a triangle is missing, or if a site that crosses a square has no region there.
   bool find_surface() {
     if (cube_.triangles.empty()) return true;
     const SiteTable& table = t_.surface_.table();
@@ -229,7 +230,8 @@ class CubeAnalysis {
   }
   [[nodiscard]] bool meets(std::uint32_t edge) const { return std::binary_search(edges_.begin(), edges_.end(), edge); }
 
-  /// A triangle meets the cube where an edge of it does, or an edge of the cube crosses it. False where one is missing.
+  /// A triangle meets the cube if one of its edges does, or if an edge of the cube crosses it. Returns false if a
+  /// triangle is missing.
   bool find_triangles() {
     const SiteTable& table = t_.surface_.table();
     for (std::uint32_t s = 0; s < squares_.size(); ++s) {
@@ -246,7 +248,7 @@ class CubeAnalysis {
       if (by_edge || (at != crossings_.end() && (*at)[0] == t)) triangles_.push_back(t);
     }
     std::sort(triangles_.begin(), triangles_.end());
-    // Parts of the surface, and of faces, in the cube: triangles that share an edge there.
+    // Parts of the surface and of faces in the cube: triangles that share an edge there.
     const auto count = static_cast<std::uint32_t>(triangles_.size());
     sheets_.reset(count);
     face_parts_.reset(count);
@@ -299,7 +301,7 @@ class CubeAnalysis {
     return site >= t_.sites_.face_count && site < t_.sites_.face_count + t_.sites_.reflex_edges.size();
   }
 
-  /// The region of a vertex is convex: it passes if it meets the boundary in one piece.
+  /// The region of a vertex is convex. It passes if it meets the boundary in one piece.
   VoronoiObstacle check_vertices() {
     const std::size_t first = t_.sites_.face_count + t_.sites_.reflex_edges.size();
     for (auto at = regions_of_site_.lower_bound(static_cast<std::uint32_t>(first)); at != regions_of_site_.end();
@@ -313,14 +315,14 @@ class CubeAnalysis {
     return VoronoiObstacle::none;
   }
 
-  /// How many regions of a site neither exit nor touch it.
+  /// Returns the number of regions of a site that neither exit nor touch it.
   [[nodiscard]] std::size_t count_closed(const std::vector<std::uint32_t>& regions) const {
     return static_cast<std::size_t>(std::count_if(
         regions.begin(), regions.end(), [&](std::uint32_t r) { return !regions_[r].exits && !regions_[r].touches; }));
   }
 
   VoronoiObstacle check_edges() {
-    std::set<std::uint32_t> inside;  // sites of edges that meet the cube without passing its boundary
+    std::set<std::uint32_t> inside;  // sites of edges that meet the cube but not its boundary
     for (const std::uint32_t edge : edges_) {
       const std::optional<std::uint32_t> site = t_.labels_.site_of_edge(edge);
       if (!site) continue;
@@ -340,7 +342,7 @@ class CubeAnalysis {
   }
 
   VoronoiObstacle check_faces() {
-    std::set<std::uint32_t> inside;  // faces that lie wholly inside
+    std::set<std::uint32_t> inside;  // faces with a part that does not reach the boundary
     for (const auto& [root, part] : parts_) {
       if (has_hole_near(part.face)) return VoronoiObstacle::face_hole;
       if (part.touched.empty()) {
@@ -357,13 +359,13 @@ class CubeAnalysis {
     return inside.empty() ? VoronoiObstacle::none : VoronoiObstacle::enclosed;
   }
 
-  /// Whether a loop of a face with holes may lie wholly in the cube, as seen along its normal.
+  /// Returns true if a loop of a face with holes may lie wholly in the cube, as seen along its normal.
   [[nodiscard]] bool has_hole_near(std::uint32_t face) const {
     const auto loops = t_.loops_.of(face);
     if (loops.size() < 2) return false;
     const double half = 0.5 * t_.tree_.lattice.unit * cube_.length;
     const Vec3d middle = t_.tree_.lattice.at(cube_.low) + Vec3d{half, half, half} - t_.labels_.centre();
-    // The cube's shadow on the face's plane lies in a disc.
+    // The cube's projection to the face's plane lies in a disc.
     const double reach = std::numbers::sqrt3 * half * (1 + 1e-12) + 4 * t_.labels_.rounding();
     const auto found = std::find_if(triangles_.begin(), triangles_.end(),
                                     [&](std::uint32_t t) { return t_.sites_.face_of[t] == face; });
@@ -376,7 +378,7 @@ class CubeAnalysis {
     });
   }
 
-  /// Components of the solid in the cube must be balls: each has one boundary, of Euler number 2.
+  /// Components of the solid in the cube must be balls: each has one boundary, with Euler number 2.
   VoronoiObstacle check_solid() {
     if (triangles_.empty()) return VoronoiObstacle::none;
     bodies_on_boundary_ = 0;
@@ -387,7 +389,7 @@ class CubeAnalysis {
     const auto body = [&](std::uint32_t k) { return bodies_.find(k); };
     const auto sheet = [&](std::uint32_t triangle) { return body_count + sheets_.find(rank(triangle)); };
     std::vector<bool> is_solid(body_count, false);
-    std::vector<std::pair<std::uint32_t, int>> sums;  // of components: cells with signs
+    std::vector<std::pair<std::uint32_t, int>> sums;  // component, sign of a cell
     for (const Square& square : squares_) {
       std::vector<bool> is_counted(square.cells.body_count, false);
       for (const SquareCells::Run& run : square.cells.runs) {
@@ -431,7 +433,7 @@ class CubeAnalysis {
     return VoronoiObstacle::none;
   }
 
-  /// Intervals of grid edges in the solid, and nodes in it.
+  /// Adds the intervals of grid edges in the solid, and the nodes in it.
   template <class Body>
   void add_intervals(std::vector<std::pair<std::uint32_t, int>>& sums, const Body& body) const {
     std::set<std::array<std::uint32_t, 3>> nodes;
@@ -446,8 +448,8 @@ class CubeAnalysis {
     }
   }
 
-  /// Finds which components of walls and surface on the boundary are one inside: those that a part of the surface
-  /// joins. Whether these are all is told by numbers.
+  /// Finds components of walls and surface on the boundary that a part of the surface joins inside. Counting decides
+  /// whether these are all that are joined.
   VoronoiObstacle check_joins() {
     std::set<std::uint32_t> before;
     for (const auto& [event, wall] : wall_of_event_) before.insert(walls_.find(wall));
@@ -461,7 +463,7 @@ class CubeAnalysis {
     std::set<std::uint32_t> now;
     for (const std::uint32_t wall : before) now.insert(walls_.find(wall));
     if (now.size() < 2) return VoronoiObstacle::none;
-    // As many components are joined as all regions, with the outside, have tunnels.
+    // The number of joins equals the number of tunnels of all regions and the outside.
     std::int64_t joins = bodies_on_boundary_ - bodies_inside_;
     for (const auto& [site, regions] : regions_of_site_) {
       if (site < t_.sites_.face_count) joins += tunnels(site, regions.size());
@@ -473,11 +475,11 @@ class CubeAnalysis {
     return VoronoiObstacle::none;
   }
 
-  /// What a face and its region cover of the lower sides of the cube, seen along the normal.
+  /// Parts of the cube's lower sides, as seen along the normal, that a face and its region cover.
   struct LowerPart {
     std::int64_t pieces = 0;
-    std::map<EdgeArc, int> arcs;          ///< how many lower squares have it
-    std::map<std::uint32_t, int> events;  ///< at which the face crosses grid edges: how many lower squares have it
+    std::map<EdgeArc, int> arcs;          ///< number of lower squares with each arc
+    std::map<std::uint32_t, int> events;  ///< crossings of the face with grid edges: number of lower squares with each
     std::int64_t ends = 0;                ///< of segments in which the face meets lower squares
   };
 
@@ -507,7 +509,7 @@ class CubeAnalysis {
     return out;
   }
 
-  /// Grid nodes amid lower squares, which the region is all around: all arcs there lie between two of them.
+  /// Counts grid nodes amid lower squares that the region surrounds: all arcs there lie between two lower squares.
   [[nodiscard]] std::int64_t nodes_amid(const std::map<EdgeArc, int>& arcs) const {
     std::map<Node, bool> is_on_rim;
     for (const auto& [arc, count] : arcs) {
@@ -519,9 +521,10 @@ class CubeAnalysis {
     return std::count_if(is_on_rim.begin(), is_on_rim.end(), [](const auto& node) { return !node.second; });
   }
 
-  /// Tunnels of a face's region in the cube. Along the normal the region reaches from the face, or the cube's lower
-  /// sides, up to walls: so it retracts to what it covers of these, whose Euler number is a sum over cells.
-  /// @param components  of the region.
+  /// Returns the number of tunnels of a face's region in the cube. Along the normal, the region extends from the face,
+  /// or from the cube's lower sides, up to walls. So it retracts to the parts of these that it covers. Their Euler
+  /// number is a sum over cells.
+  /// @param components  number of components of the region.
   [[nodiscard]] std::int64_t tunnels(std::uint32_t face, std::size_t components) const {
     const LowerPart lower = lower_part(face);
     const auto is_shared = [](const auto& counted) { return counted.second == 2; };

@@ -9,7 +9,8 @@
 namespace blum::voronoi {
 namespace {
 
-/// A cone with an interior, as it is cut. Its rays are products of consecutive constraints, all with the same sign.
+/// A cone with an interior that is cut by one constraint after another. Its rays are products of consecutive
+/// constraints, all with the same sign.
 class Cone {
  public:
   Cone(const Vec3d& v, std::span<const Vec3d> ends) : v_(v), ends_(ends) {}
@@ -28,7 +29,7 @@ class Cone {
     return detail::orient3d(v_, ends_[a], ends_[b], ends_[c]);
   }
 
-  /// Takes three constraints that are independent; whether there are.
+  /// Begins with three independent constraints. Returns false if none exist.
   bool begin() {
     const auto count = static_cast<std::uint32_t>(ends_.size());
     std::uint32_t second = 1;
@@ -36,7 +37,7 @@ class Cone {
     for (std::uint32_t third = second + 1; third < count; ++third) {
       const int sign = determinant(0, second, third);
       if (sign == 0) continue;
-      // x = sign_ (e_a x e_b) must go against the third edge.
+      // x = sign_ (e_a x e_b) must point away from the third edge.
       sign_ = -sign;
       bounds_ = first_ = {0, second, third};
       return true;
@@ -44,9 +45,9 @@ class Cone {
     return false;
   }
 
-  /// Cuts the cone by a half-space; whether something with an interior is left.
+  /// Cuts the cone by a half-space. Returns true if the rest has an interior.
   bool cut(std::uint32_t constraint) {
-    // Where each ray lies: 1 beyond the half-space, -1 inside, 0 on its plane.
+    // Side of each ray: 1 beyond the half-space, -1 inside, 0 on its plane.
     const std::size_t count = bounds_.size();
     side_.resize(count);
     bool has_beyond = false;
@@ -58,13 +59,13 @@ class Cone {
     }
     if (!has_inside) return false;
     if (!has_beyond) return true;
-    // The rays beyond follow each other: from the one after `from` on. A constraint stays that has a ray that stays.
+    // The rays beyond are consecutive, from the one after `from` on. A constraint stays if one of its rays stays.
     std::size_t from = 0;
     while (side_[from] > 0 || side_[(from + 1) % count] <= 0) ++from;
     std::vector<std::uint32_t> left{constraint};
     std::size_t k = (from + 1) % count;
     while (side_[k] > 0) k = (k + 1) % count;
-    // Ray k is the first that stays: it lies between constraints k and k + 1.
+    // Ray k is the first that stays. It lies between constraints k and k + 1.
     for (;; k = (k + 1) % count) {
       left.push_back(bounds_[k]);
       if (k == from) break;

@@ -12,7 +12,7 @@
 namespace blum::voronoi {
 namespace {
 
-/// Whether all corners lie outside of one plane of a label's domain, or behind its triangle.
+/// Returns true if all corners lie outside of one plane of a label's domain, or behind its triangle.
 bool is_apart(const LabelGeometry& labels, LabelIndex label, std::span<const Vec3d> corners) {
   const double margin = labels.rounding();
   const auto all_below = [&](const auto& height) {
@@ -37,7 +37,7 @@ DoubleDouble exact_difference(double a, double b) {
   return {high, (a - (high + part)) + (part - b)};
 }
 
-/// a b - c d, to a few units of the last place of the products times 1e-16.
+/// Returns a b - c d, to a few units of the last place of the products times 1e-16.
 double difference_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
                               const DoubleDouble& d) {
   const double ab = a.high * b.high;
@@ -48,7 +48,7 @@ double difference_of_products(const DoubleDouble& a, const DoubleDouble& b, cons
   return high.high + (high.low + (ab_low - cd_low));
 }
 
-/// How far the rays of a vertex's cone, of length 1, are apart.
+/// Returns the largest distance of the rays of a vertex's cone, of length 1, from the first ray.
 double width_of_cone(const MeshView& mesh, const SiteTable& table, std::span<const std::uint32_t> edges,
                      std::uint32_t v) {
   const std::vector<Vec3d> ends = far_ends(mesh, table, v, edges);
@@ -179,8 +179,8 @@ void LabelGeometry::add_triangles(const MeshView& mesh, const SiteTable& table, 
   add_bisectors(sites);
 }
 
-/// Both from the sides in the planes and from the normals the direction across may be found: the longer difference is
-/// the more precise one.
+/// The direction across an edge is the difference of the side normals in both planes, or of both triangles' normals.
+/// The longer difference is more precise.
 void LabelGeometry::add_bisectors(const PolyhedronSites& sites) {
   bisectors_.resize(3 * labels_.size());
   for (LabelIndex t = 0; t < labels_.size(); ++t) {
@@ -228,7 +228,7 @@ std::optional<Bisector> LabelGeometry::bisector(LabelIndex a, LabelIndex b) cons
     const Vec3d normal = unit(first.point - second.point);
     return Bisector{b, normal, dot(normal, (first.point + second.point) * 0.5)};
   }
-  // With directions away from the common end, the one with the smaller angle to a point is closer.
+  // With directions away from the common end, the edge at the smaller angle to a point is closer.
   for (const double of_a : {1.0, -1.0}) {
     for (const double of_b : {1.0, -1.0}) {
       const Vec3d& end = corners_[a][of_a > 0 ? 0 : 1];
@@ -288,7 +288,7 @@ void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, cons
         planes_.push_back({-side.normal, -side.offset, t, edge});
       }
     }
-    // Where the edge is nearly flat these two leave room below it, too, up to rounding.
+    // If the edge is nearly flat, these two also leave room below it, up to rounding.
     const auto [first, second] = sites.triangles_of[edge];
     const Vec3d upwards = unit(labels_[first].direction + labels_[second].direction);
     planes_.push_back({upwards, dot(upwards, label.point), outside, outside});

@@ -18,16 +18,16 @@
 
 namespace blum::voronoi {
 
-/// A vector of length 1 in the direction of one that is not 0, of any length.
+/// Returns the vector of length 1 in the direction of `v`, which has any length but 0.
 [[nodiscard]] Vec3d unit(const Vec3d& v);
 
-/// The direction of (b - a) x (c - a), also of triangles that are nearly lines.
+/// Returns the unit vector along (b - a) x (c - a), accurate also for triangles that are nearly lines.
 [[nodiscard]] Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-/// The number of a label in SiteLabels::all(); triangles come first, with their own numbers.
+/// Number of a label in SiteLabels::all(). Triangles come first and keep their own numbers.
 using LabelIndex = std::uint32_t;
 
-/// Stands for what is outside of the solid, and for "no label".
+/// Stands for the outside of the solid, and for "no label".
 constexpr LabelIndex outside = std::numeric_limits<LabelIndex>::max();
 
 /// A quadratic function a s^2 + b s + c of one variable.
@@ -43,9 +43,9 @@ struct Quadratic {
 /// A plane that bounds a label's domain.
 struct DomainPlane {
   Vec3d normal;                  ///< of length 1, towards the domain
-  double offset = 0;             ///< normal . q of its points
-  LabelIndex beyond = outside;   ///< the label whose domain lies on its other side, where there is one
-  std::uint32_t edge = outside;  ///< the edge of the mesh that it runs through along its length, where there is one
+  double offset = 0;             ///< normal . q of its points q
+  LabelIndex beyond = outside;   ///< the label whose domain lies on its other side, if one exists
+  std::uint32_t edge = outside;  ///< the edge of the mesh that lies in it, if one does
 
   [[nodiscard]] double height(const Vec3d& q) const { return dot(normal, q) - offset; }
 };
@@ -59,52 +59,52 @@ struct Bisector {
   [[nodiscard]] double height(const Vec3d& q) const { return dot(normal, q) - offset; }
 };
 
-/// A label in double. Places are relative to LabelGeometry::centre().
+/// A label in double. Positions are relative to LabelGeometry::centre().
 struct PlacedLabel {
   SiteKind kind = SiteKind::face;
   std::uint32_t site = 0;
-  Vec3d point;      ///< a corner, an end, the vertex
-  Vec3d direction;  ///< of length 1: of a triangle into the solid, of an edge along it
+  Vec3d point;      ///< a corner of a triangle, an end of an edge, or the vertex
+  Vec3d direction;  ///< of length 1: from a triangle into the solid, or along an edge
   std::uint32_t first_plane = 0, last_plane = 0;
 
-  /// The square of the distance from its plane, line or point.
+  /// Returns the squared distance from its plane, line or point.
   [[nodiscard]] double squared_distance(const Vec3d& q) const { return polar(q, q); }
-  /// The polar form of that.
+  /// Returns the polar form of squared_distance().
   [[nodiscard]] double polar(const Vec3d& q, const Vec3d& r) const {
     if (kind == SiteKind::face) return height(q) * height(r);
     if (kind == SiteKind::edge) return dot(cross(q - point, direction), cross(r - point, direction));
     return dot(q - point, r - point);
   }
-  /// Of a triangle: the signed distance from its plane, positive on the solid's side.
+  /// Returns the signed distance from a triangle's plane, positive on the solid's side.
   [[nodiscard]] double height(const Vec3d& q) const { return dot(direction, q - point); }
-  /// The closest point of its plane, line or point.
+  /// Returns the closest point of its plane, line or point.
   [[nodiscard]] Vec3d foot(const Vec3d& q) const {
     if (kind == SiteKind::face) return q - direction * height(q);
     if (kind == SiteKind::edge) return point + direction * dot(direction, q - point);
     return point;
   }
-  /// The projection of a vector to its plane or line through the origin.
+  /// Returns the projection of a vector to its plane or line, shifted to the origin.
   [[nodiscard]] Vec3d along(const Vec3d& way) const {
     if (kind == SiteKind::face) return way - direction * dot(direction, way);
     return kind == SiteKind::edge ? direction * dot(direction, way) : Vec3d{};
   }
-  /// The squared distance along the line q + s e_axis.
+  /// Returns the squared distance along the line q + s e_axis, as a function of s.
   [[nodiscard]] Quadratic along(const Vec3d& q, std::size_t axis) const;
 };
 
 class LabelGeometry;
 
-/// The polar form of the difference of the squared distances from two labels' planes, lines or points, with a bound on
-/// its rounding.
+/// Polar form of the difference of the squared distances from two labels' planes, lines or points, with a bound on its
+/// rounding.
 ///
-/// With q and r relative to a corner that both have, a squared distance is q . r less the product of the projections to
-/// the label's plane or line. So the difference is that of these products, which are small over the corner: there it is
-/// known much better than from both distances.
+/// Relative to a corner of both labels, a squared distance is q . r less the product of the projections to the label's
+/// plane or line. So the difference is that of these products. They are small over the corner, where this is much more
+/// precise than subtracting both distances.
 class PolarDifference {
  public:
   PolarDifference(const LabelGeometry& labels, LabelIndex first, LabelIndex second);
 
-  /// That of the first less that of the second.
+  /// Returns the polar form of the first label less that of the second.
   [[nodiscard]] double at(const Vec3d& q, const Vec3d& r) const;
   [[nodiscard]] double error(const Vec3d& q, const Vec3d& r) const;
 
@@ -115,30 +115,31 @@ class PolarDifference {
   std::optional<Vec3d> corner_;
 };
 
-/// All labels in double, and how far what they say may be off.
+/// All labels in double, and bounds on their rounding.
 class LabelGeometry {
  public:
-  /// @param mesh, table, sites  of one polyhedron, as SiteLabels takes them.
+  /// @param mesh, table, sites  of one polyhedron, as for SiteLabels.
   LabelGeometry(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, const SiteLabels& labels);
 
-  /// Around the mesh.
+  /// Returns the box around the mesh.
   [[nodiscard]] const Box3& box() const { return box_; }
-  /// Of the box.
+  /// Returns the centre of the box.
   [[nodiscard]] const Vec3d& centre() const { return centre_; }
-  /// Diagonal of the box around the mesh.
+  /// Returns the diagonal of the box.
   [[nodiscard]] double size() const { return size_; }
-  /// How far distances and heights over planes may be off, anywhere in the box.
+  /// Returns the largest error of distances and of heights over planes, anywhere in the box.
   [[nodiscard]] double rounding() const { return rounding_; }
-  /// How far the difference of two squared distances may be off, with a bound on both distances.
+  /// Returns the largest error of the difference of two squared distances.
+  /// @param distance  an upper bound of both distances.
   [[nodiscard]] double rounding_of_squares(double distance) const { return rounding_ * (4 * distance + rounding_); }
 
   [[nodiscard]] std::size_t count() const { return labels_.size(); }
   [[nodiscard]] const PlacedLabel& operator[](LabelIndex label) const { return labels_[label]; }
-  /// Its site; `outside` of the outside.
+  /// Returns the site of a label; `outside` for the outside.
   [[nodiscard]] std::uint32_t site_of(LabelIndex label) const {
     return label == outside ? outside : labels_[label].site;
   }
-  /// The site of an edge or vertex of the mesh: nullopt where it is none, or a thin vertex.
+  /// Returns the site of an edge or vertex of the mesh; nullopt if it is not a site, or is a thin vertex.
   [[nodiscard]] std::optional<std::uint32_t> site_of_edge(std::uint32_t edge) const {
     return site_if_any(label_of_edge_[edge]);
   }
@@ -149,35 +150,35 @@ class LabelGeometry {
     return std::span(planes_).subspan(labels_[label].first_plane,
                                       labels_[label].last_plane - labels_[label].first_plane);
   }
-  /// Of the planes of a domain those between which the distance from a label's plane, line or point is that of a point
-  /// of it: of a triangle all, of an edge those through its ends, of a vertex none.
+  /// Returns the planes of a domain between which a point of the label attains the distance from its plane, line or
+  /// point. These are all planes of a triangle, those through the ends of an edge, and none of a vertex.
   [[nodiscard]] std::span<const DomainPlane> ends(LabelIndex label) const {
     const SiteKind kind = labels_[label].kind;
     return planes(label).first(kind == SiteKind::face ? 3 : kind == SiteKind::edge ? 2 : 0);
   }
-  /// A plane that tells which of two labels is closer, where both domains hold a point: of two triangles, two vertices,
-  /// or two edges with an end in common. Heights may be off by twice the rounding.
+  /// Returns a plane that decides which of two labels is closer, at points in both domains. It exists for two
+  /// triangles, two vertices, and two edges with a common end. Heights may be off by twice the rounding.
   [[nodiscard]] std::optional<Bisector> bisector(LabelIndex a, LabelIndex b) const;
-  /// The same of two triangles at points behind the first, where its distance is its height with the other sign;
-  /// nullopt where one is none.
+  /// Returns the plane of two triangles for points behind the first one, where its distance is minus its height.
+  /// Returns nullopt if a label is not a triangle.
   [[nodiscard]] std::optional<Bisector> bisector_behind(LabelIndex a, LabelIndex b) const;
-  /// Of a triangle, for each of its sides that is a convex edge; other.outside where it is not.
+  /// Returns the bisectors across the sides of a triangle; `other` is `outside` if the side is not a convex edge.
   [[nodiscard]] std::span<const Bisector, 3> bisectors(LabelIndex triangle) const {
     return std::span<const Bisector, 3>(bisectors_.data() + std::size_t{3} * triangle, 3);
   }
-  /// The corners of a label, relative to the centre: three, two or one.
+  /// Returns the corners of a label, relative to the centre: three, two or one.
   [[nodiscard]] std::span<const Vec3d> corners(LabelIndex label) const {
     const std::size_t count = labels_[label].kind == SiteKind::face ? 3 : labels_[label].kind == SiteKind::edge ? 2 : 1;
     return std::span(corners_[label]).first(count);
   }
-  /// The point of a triangle, edge or vertex that is closest.
+  /// Returns the closest point of a triangle, edge or vertex.
   [[nodiscard]] Vec3d closest_point(LabelIndex label, const Vec3d& q) const;
-  /// Whether two labels are triangles on both sides of a reflex edge.
+  /// Returns true if two labels are the triangles on both sides of a reflex edge.
   [[nodiscard]] bool share_reflex_edge(LabelIndex a, LabelIndex b) const;
-  /// A vertex of the mesh that two labels have for a corner.
+  /// Returns a vertex of the mesh that is a corner of both labels.
   [[nodiscard]] std::optional<std::uint32_t> common_vertex(LabelIndex a, LabelIndex b) const;
   [[nodiscard]] bool has_corner(LabelIndex label, const Vec3d& corner) const;
-  /// The vertices of the mesh that are a label's corners, as corners() lists them.
+  /// Returns the vertices of the mesh that are a label's corners, in the order of corners().
   [[nodiscard]] std::span<const std::uint32_t> vertices(LabelIndex label) const {
     return std::span(vertices_[label]).first(corners(label).size());
   }
@@ -185,22 +186,22 @@ class LabelGeometry {
     const std::span<const std::uint32_t> own = vertices(label);
     return std::find(own.begin(), own.end(), v) != own.end();
   }
-  /// Where a vertex of the mesh is, relative to the centre.
+  /// Returns the position of a vertex of the mesh, relative to the centre.
   [[nodiscard]] Vec3d place(std::uint32_t v) const { return places_[v]; }
-  /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
-  /// only at planes of their domains.
+  /// Returns true if a label's site is an edge or vertex of a given site, or the other way round. Between such sites,
+  /// the closest one changes only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
-  /// The same of two sites.
+  /// Returns true if are_incident() holds for two sites.
   [[nodiscard]] bool are_neighbours(std::uint32_t site, std::uint32_t other) const;
-  /// Vertices whose cones are thinner than this many radians: their regions count as part of walls.
+  /// A vertex with a cone thinner than this many radians is thin: its region counts as part of walls.
   static constexpr double thin = 1e-3;
   [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }
-  /// The outside is none.
+  /// Returns true if a label is a thin vertex; false for the outside.
   [[nodiscard]] bool is_thin(LabelIndex label) const {
     return std::binary_search(thin_vertices_.begin(), thin_vertices_.end(), label);
   }
-  /// Thin vertices with cones below this are closest nowhere, as far as labels tell: dents by rounding in faces that
-  /// are flat but for that. No grid in double could meet their regions.
+  /// Thin vertices with cones below this many radians count as closest nowhere. They are dents by rounding in faces
+  /// that are otherwise flat. No grid in double could meet their regions.
   static constexpr double unseen = 1e-12;
   [[nodiscard]] bool is_unseen(LabelIndex label) const {
     return std::binary_search(unseen_vertices_.begin(), unseen_vertices_.end(), label);
@@ -229,22 +230,24 @@ class LabelGeometry {
   std::vector<Bisector> bisectors_;                          ///< three for each triangle
   using ConvexPair = std::array<std::uint32_t, 3>;
   std::vector<ConvexPair> convex_pairs_;  ///< two faces that share a convex edge, and a bisector; sorted
-  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none, or an unseen one
-  /// Pairs of sites of which one is an edge or vertex of the other, both ways round, sorted.
+  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` if none exists, or an unseen one
+
+  /// Pairs of sites of which one is an edge or vertex of the other, in both orders, sorted.
   std::vector<std::array<std::uint32_t, 2>> neighbours_;
 };
 
-/// Of labels among which all are that are closest anywhere in the convex hull of some corners, those that are not ruled
-/// out there: a label is where its domain lies outside of the hull, or where it is further away than one point of the
-/// surface, the closest one to the middle. Less the square of the distance from a point, the square of that from a
-/// plane, line or point is concave, so the corners tell. (Sud 2006, 5.4: governors of a cell.)
+/// Returns the labels that may be closest somewhere in the convex hull of some corners (Sud 2006, 5.4: governors of a
+/// cell). A label is excluded if its domain lies outside of the hull. It is also excluded if the surface point closest
+/// to `middle` is closer than it all over the hull. The corners decide this: the squared distance from a plane, line or
+/// point, less that from a point, is concave.
 ///
-/// @param corners  relative to the centre of the labels, as `middle`, which lies between them.
+/// @param among  contains all labels that are closest anywhere in the hull.
+/// @param corners  relative to the centre of the labels, like `middle`, which lies between them.
 /// Cost: O(labels x corners).
 [[nodiscard]] std::vector<LabelIndex> governors(const LabelGeometry& labels, std::span<const LabelIndex> among,
                                                 std::span<const Vec3d> corners, const Vec3d& middle);
 
-/// The point of some triangles, edges and vertices that is closest to a point, each as a whole.
+/// Returns the closest point of some triangles, edges and vertices, each taken as a whole, regardless of domains.
 /// @param among  not empty.
 [[nodiscard]] Vec3d closest_surface_point(const LabelGeometry& labels, std::span<const LabelIndex> among,
                                           const Vec3d& q);

@@ -14,13 +14,13 @@ class SegmentSearch {
   SegmentSearch(const SiteLabels& labels, const Vec3d& from, std::size_t axis)
       : labels_(labels), from_(from), axis_(axis) {}
 
-  /// A place on the segment, and a label that is closest there; all that are have its site.
+  /// A place on the segment, and a label that is closest there. All labels that are closest there have its site.
   struct Place {
     double at = 0;
     Label label;
   };
 
-  /// nullopt where sites tie.
+  /// Returns nullopt if sites tie.
   [[nodiscard]] std::optional<Place> place_at(double at, std::span<const Label> among) const {
     const std::vector<Label> closest = labels_.closest_labels(among, point(at));
     if (closest.empty()) return std::nullopt;
@@ -29,7 +29,7 @@ class SegmentSearch {
     return Place{at, closest[0]};
   }
 
-  /// Adds the changes between two places; false where they cannot be told.
+  /// Adds the changes between two places. Returns false if they cannot be decided.
   bool add_changes(const Place& begin, const Place& end, std::span<const Label> among, SegmentLabels& out) const {
     const std::vector<Label> left = labels_left(begin, end, among);
     if (is_one_site(left)) return true;
@@ -84,7 +84,7 @@ class SegmentSearch {
            labels_.compare_distances(begin.label, end.label, point(end.at)) > 0;
   }
 
-  /// Near the middle, where no sites tie.
+  /// Returns a place near the middle at which no sites tie.
   [[nodiscard]] std::optional<Place> place_between(double begin, double end, std::span<const Label> among) const {
     for (const double part : {0.5, 0.4375, 0.59375}) {
       const double at = begin + (end - begin) * part;
@@ -106,10 +106,10 @@ struct IntervalEnd {
   double at = 0;
   double error = 0;
   LabelIndex beyond = outside;
-  std::uint32_t edge = outside;  ///< the edge of the mesh that the plane there runs through, along its length
+  std::uint32_t edge = outside;  ///< the edge of the mesh that lies in the plane there
 };
 
-/// A label seen along a line: s is measured from a point of it.
+/// A label along a line; s is measured from a point of the line.
 struct Candidate {
   LabelIndex label = outside;
   std::uint32_t site = 0;
@@ -117,16 +117,16 @@ struct Candidate {
   Quadratic squared;
   IntervalEnd low{-infinity, 0, outside, outside};
   IntervalEnd high{infinity, 0, outside, outside};
-  bool grazes = false;  ///< whether the line runs along a plane of its domain, or nearly
+  bool grazes = false;  ///< true if the line runs along a plane of its domain, or nearly
 };
 
-/// Where a label takes over from the closest one.
+/// The place at which a label takes over from the closest one.
 struct Change {
   double at = infinity;
   double error = 0;
   LabelIndex label = outside;
   std::uint32_t site = 0;
-  bool is_certain = true;  ///< whether it happens, given that nothing happens before
+  bool is_certain = true;  ///< true if it happens, given that nothing happens before
 };
 
 class EnvelopeWalk {
@@ -142,20 +142,20 @@ class EnvelopeWalk {
     for (const LabelIndex label : among) add_candidate(label);
   }
 
-  /// Whether all changes are certain.
+  /// Returns true if all changes are certain.
   bool run(std::vector<LineEvent>& events) {
     LabelIndex current = part_.first;
     std::vector<std::uint32_t> recent;  // sites that ended here, up to rounding
     double at = low_;
     double error = 0;
     bool is_certain = true;
-    // Each pair of labels changes place at most twice; more tells that rounding leads in circles.
+    // Two labels change their order at most twice. With more changes, rounding made the walk go in circles.
     const std::size_t most = 4 * candidates_.size() + 16;
     for (std::size_t count = 0; count < most; ++count) {
       const Change next = next_change(current, recent, at, error, is_certain);
       if (!(next.at - next.error <= high_)) return is_certain && is_as_expected(current);
       if (next.at + next.error >= high_ || next.label == outside) {
-        return false;  // next to the end: doubles do not tell whether it comes before
+        return false;  // too close to the end for doubles to decide
       }
       events.push_back({base_ + next.at, next.error + labels_.rounding(), current, next.label});
       if (next.at - next.error > at + error) recent.clear();
@@ -203,7 +203,7 @@ class EnvelopeWalk {
     return found == candidates_.end() ? nullptr : &*found;
   }
 
-  /// The place at which the second label becomes as close as the first, and closer behind it.
+  /// Returns the place at which the second label becomes as close as the first, and closer beyond it.
   [[nodiscard]] Change crossing(const Quadratic& first, const Candidate& second, double from) const {
     const Quadratic difference = first - second.squared;
     const auto& [a, b, c] = difference;
@@ -214,7 +214,7 @@ class EnvelopeWalk {
     const double distance = std::sqrt(std::max(0.0, first.at(from)));
     double error = labels_.rounding_of_squares(distance + (high_ - low_));
     if (!(discriminant > 0)) {
-      // Their order does not change, unless rounding hides that: where the largest value is 0 up to rounding.
+      // Their order does not change, unless rounding hides a change: then the largest difference is 0 up to rounding.
       if (a < 0 && discriminant > 4 * a * error) {
         out.at = -b / (2 * a);
         out.error = std::sqrt(error / -a);
@@ -231,7 +231,7 @@ class EnvelopeWalk {
       return out;
     }
     error = labels_.rounding_of_squares(std::sqrt(std::max(0.0, first.at(out.at))));
-    // Where the slope changes within the error, the root may not even be there.
+    // If the slope changes within the error, the root may not exist.
     if (root * root < 4 * std::abs(a) * error) {
       out.error = std::sqrt(error / std::abs(a));
       out.is_certain = false;
@@ -241,7 +241,7 @@ class EnvelopeWalk {
     return out;
   }
 
-  /// Whether a label is certainly further than the current one all between two places.
+  /// Returns true if a label is certainly further than the current one everywhere between two places.
   [[nodiscard]] bool is_further(const Candidate& other, const Quadratic& squared, double from, double to) const {
     from = std::max({from, other.low.at - other.low.error, low_});
     to = std::min({to, other.high.at + other.high.error, high_});
@@ -257,8 +257,8 @@ class EnvelopeWalk {
     return end.beyond != outside && labels_[end.beyond].site == candidate.site;
   }
 
-  /// Leaves out a change outside of the label's domain; marks it where this is not certain.
-  /// @param is_next  whether the change is across a convex edge: there the domains overlap.
+  /// Removes a change outside of the label's domain, and marks one for which this is uncertain.
+  /// @param is_next  true if the change is across a convex edge, where the domains overlap.
   void check_domain(const Candidate& candidate, Change& change, bool is_next) const {
     for (const int side : {-1, 1}) {
       const IntervalEnd& end = side < 0 ? candidate.low : candidate.high;
@@ -274,10 +274,10 @@ class EnvelopeWalk {
     if (candidate.grazes) change.is_certain = false;
   }
 
-  /// How two labels of one kind that are next to each other lie.
+  /// Relation of two labels of one kind that are next to each other.
   struct Adjacency {
     std::optional<Bisector> bisector;  ///< across a convex edge or a common end, to the side of the other label
-    bool have_between = false;         ///< whether they share an edge or vertex that is a site itself
+    bool have_between = false;         ///< true if they share an edge or vertex that is a site itself
   };
   [[nodiscard]] Adjacency adjacency(LabelIndex current, const Candidate& other) const {
     const PlacedLabel& face = labels_[current];
@@ -304,15 +304,15 @@ class EnvelopeWalk {
     return out;
   }
 
-  /// The change to a triangle across a convex edge: well known, however flat the edge is.
+  /// Returns the change to a label across a bisector. It is precise however flat the edge between them is.
   [[nodiscard]] Change change_at(const Bisector& bisector, const Candidate& other) const {
     const double slope = bisector.normal[part_.axis];
     if (!(slope > 0)) return {};
     return {-bisector.height(middle_) / slope, labels_.rounding() / slope, other.label, other.site, true};
   }
 
-  /// A change from the current label to another one, if there is one behind a place.
-  /// @param end  the furthest place that the current label's domain reaches to.
+  /// Returns a change from the current label to another one behind a place, if one exists.
+  /// @param end  the furthest place that the current label's domain reaches.
   [[nodiscard]] Change change_to(LabelIndex label, const Quadratic& squared, const Candidate& other, double at,
                                  double error, const IntervalEnd& end) const {
     const PlacedLabel& current = labels_[label];
@@ -320,7 +320,7 @@ class EnvelopeWalk {
       if (other.low.at - other.low.error > end.at + end.error) return {};
       if (other.high.at + other.high.error < at - error) return {};
       const Adjacency adjacent = adjacency(label, other);
-      // Over both sides of a reflex edge or vertex, this is closest in between.
+      // Between the two sides of a reflex edge or vertex, that site itself is closest.
       const bool is_apart =
           other.low.at + other.low.error >= end.at - end.error || other.high.at - other.high.error <= at + error;
       if (adjacent.have_between && is_apart) return {};
@@ -329,18 +329,18 @@ class EnvelopeWalk {
       if (change.at < infinity) check_domain(other, change, adjacent.bisector.has_value());
       return change;
     }
-    // From a face to an edge of it; what edges and vertices change to tells their own domain.
+    // A face changes to its own edge here. Changes from edges and vertices follow from their own domains (add_own_end).
     const IntervalEnd& begin = other.low;
     const bool is_wall = current.kind == SiteKind::face && other.kind == SiteKind::edge && begin.beyond != outside &&
                          labels_[begin.beyond].site == current.site;
     if (!is_wall) return {};
-    // Between the planes of both triangles of a reflex edge there is room, if only for less than rounding.
+    // The planes of both triangles of a reflex edge leave room between them, even if it is less than rounding.
     const bool is_between = other.high.edge == begin.edge && begin.edge != outside;
     const bool may_be_empty = !is_between && begin.at + begin.error > other.high.at - other.high.error;
     return {begin.at, begin.error, other.label, other.site, !may_be_empty && !other.grazes};
   }
 
-  /// The furthest place behind another one that a site's domain reaches to without a gap.
+  /// Returns the furthest place behind another one that a site's domain reaches without a gap.
   [[nodiscard]] IntervalEnd end_of_domain(std::uint32_t site, double at, double error) const {
     IntervalEnd end{at, error, outside, outside};
     for (bool grows = true; grows;) {
@@ -355,14 +355,14 @@ class EnvelopeWalk {
     return end;
   }
 
-  /// Adds the end of the domain of an edge or vertex; whether it is known.
+  /// Adds the end of the domain of an edge or vertex. Returns false if the end is uncertain.
   bool add_own_end(LabelIndex current) const {
     const Candidate* own = find(current);
     if (own == nullptr || own->grazes) return false;
     if (!(own->high.at < infinity)) return true;
     const LabelIndex beyond = own->high.beyond;
     const bool is_known = beyond != outside;
-    // Where its end is no site, another edge with this end may go on.
+    // If its end is not a site, another edge with this end may continue.
     const double reach = own->high.at + own->high.error;
     const bool goes_on = !is_known && std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
       return change.at - change.error <= reach;
@@ -372,7 +372,7 @@ class EnvelopeWalk {
     return true;
   }
 
-  /// @param recent  sites that were closest up to here, the last of which `current` took over from.
+  /// @param recent  sites that were closest up to here; `current` took over from the last of them.
   Change next_change(LabelIndex current, const std::vector<std::uint32_t>& recent, double at, double error,
                      bool& is_certain) const {
     const PlacedLabel& placed = labels_[current];
@@ -386,7 +386,7 @@ class EnvelopeWalk {
       if (!(change.at < infinity) || change.at + change.error < at - error) continue;
       if (change.at - change.error > end.at + end.error) continue;
       if (change.at - change.error <= at + error) {
-        // The change just passed, seen from its other side, or what has ended here.
+        // Skips the change just passed, seen from its other side, and sites that have ended here.
         if (!recent.empty() && other.site == recent.back()) continue;
         const bool was_recent = std::find(recent.begin(), recent.end(), other.site) != recent.end();
         if (was_recent && other.high.at - other.high.error <= at + error) continue;
@@ -400,7 +400,7 @@ class EnvelopeWalk {
     for (const Change& change : changes) {
       if (change.at < first.at) first = change;
     }
-    // A domain ends in the solid where something else is closest.
+    // In the solid, a domain ends only where something else is closest.
     if (!(first.at < infinity) && end.at + end.error < high_) is_certain = false;
     if (!(first.at - first.error <= high_)) return first;
     if (!first.is_certain) is_certain = false;
@@ -468,7 +468,7 @@ bool LineLabels::add_exact_events(const LinePart& part, std::span<const LabelInd
   for (std::size_t k = 0; k < found->changes.size(); ++k) {
     const LabelIndex next = label_of(found->sites[k + 1]);
     auto [low, high] = found->changes[k];
-    // The only change between these: by halving again, to where it is.
+    // Halves the interval further, to the only change in it.
     while (high - low > labels_.rounding()) {
       const double middle = low + (high - low) / 2;
       if (!(low < middle && middle < high)) break;

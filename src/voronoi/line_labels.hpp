@@ -1,4 +1,4 @@
-// Blum: which labels are closest along a line, by the order of events. SPDX-License-Identifier: Apache-2.0
+// Blum: the closest labels along a line, from the order of events. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,43 +15,44 @@
 
 namespace blum::voronoi {
 
-/// The sites that are closest along a segment, one after the other, and where they change.
+/// The closest sites along a segment, in order, and the places where they change.
 struct SegmentLabels {
   std::vector<std::uint32_t> sites;  ///< numbers of SiteLabels::site_of(); neighbours differ
-  /// Between sites k and k + 1: two points of the segment that the only change lies between, coordinates along it.
+  /// Entry k: coordinates along the segment of two points between which sites k and k + 1 change, and no others.
   std::vector<std::array<double, 2>> changes;
 };
 
-/// Finds them exactly, by halving.
+/// Finds the closest sites along a segment exactly, by halving.
 ///
-/// Of a part of the segment, labels are ruled out that lie outside of one plane of their domain there, or that are
-/// further than a label whose distance is attained all over it, as three signs of the polar form tell. A part is done
-/// when the labels left are of one site; or of two labels of two sites, one at each end, of which the squared distances
-/// change their order once: their difference is quadratic, and so changes its sign once where it does between the ends;
-/// of a triangle and its own edge, or an edge and its end, it is a square, and the plane between their domains, which a
-/// segment crosses once, parts them. What is left is halved.
+/// A label is excluded from a part of the segment if that part lies outside of one plane of the label's domain. It is
+/// also excluded if it is further than a label whose distance is attained all over the part. Three signs of the polar
+/// form decide this.
+/// A part is done if the remaining labels belong to one site. It is also done if two labels of two sites remain, one at
+/// each end, and the order of their squared distances changes once. Their difference is quadratic, so it changes its
+/// sign once if it does so between the ends. For a triangle and its own edge, or an edge and its end, the difference is
+/// a square. The plane between their domains separates these, and a segment crosses it once.
+/// All other parts are halved.
 ///
-/// @param among  labels that hold all that are closest anywhere on the segment.
+/// @param among  labels that contain all that are closest anywhere on the segment.
 /// @param from, to  differ along `axis` alone, in rising order; the segment lies in the solid.
-/// @return  nullopt where two sites tie at an end or all over a part of it, and where changes are closer than doubles
-///          can part.
+/// @return  nullopt if two sites tie at an end or all over a part, or if changes are closer than doubles can separate.
 [[nodiscard]] std::optional<SegmentLabels> labels_along(const SiteLabels& labels, std::span<const Label> among,
                                                         const Vec3d& from, const Vec3d& to, std::size_t axis);
 
 /// A place on an axis-parallel line at which the closest site changes.
 struct LineEvent {
   double at = 0;                ///< coordinate along the axis, mesh units, rounded
-  double error = 0;             ///< how far that may be off
+  double error = 0;             ///< largest error of `at`
   LabelIndex before = outside;  ///< closest below it
   LabelIndex after = outside;   ///< closest above it
-  double width = 0;             ///< of thin regions between both, from `at` on
+  double width = 0;             ///< of the thin regions in between, from `at` on
   LabelIndex thin = outside;    ///< the first vertex that has one
-  bool has_several = false;     ///< whether others do, too
+  bool has_several = false;     ///< true if more vertices have one
 
-  /// Where the region above begins.
+  /// Returns the coordinate at which the region above begins.
   [[nodiscard]] double upper() const { return at + width; }
 
-  /// The triangle that the line crosses here, where it enters or leaves the solid.
+  /// Returns the triangle that the line crosses here, if it enters or leaves the solid.
   [[nodiscard]] std::optional<LabelIndex> crossed() const {
     if (before == outside) return after;
     return after == outside ? std::optional(before) : std::nullopt;
@@ -64,35 +65,35 @@ struct LinePart {
   std::size_t axis = 0;
   double low = 0, high = 0;    ///< coordinates of the ends along the axis
   LabelIndex first = outside;  ///< closest at the lower end
-  LabelIndex last = outside;   ///< closest at the upper end, where it is known
+  LabelIndex last = outside;   ///< closest at the upper end, if known
 };
 
-/// How often the order of events was found, and where doubles did not tell it.
+/// Counts of parts of lines whose order of events was searched.
 struct LineCounts {
-  std::size_t parts = 0;      ///< parts of lines
-  std::size_t exact = 0;      ///< where doubles did not tell, and exact signs did
-  std::size_t undecided = 0;  ///< where these did not, either
+  std::size_t parts = 0;      ///< all
+  std::size_t exact = 0;      ///< decided by exact signs, not by doubles
+  std::size_t undecided = 0;  ///< decided by neither
 };
 
-/// Whether a point of a line lies behind the place at which one label takes over from another, exactly: where no other
-/// place at which they do is near.
+/// Returns true if a point of a line lies behind the place at which label `after` takes over from `before`. Exact. No
+/// other place at which it does so may be near.
 [[nodiscard]] bool is_behind_change(const SiteLabels& exact, const LabelGeometry& labels, LabelIndex before,
                                     LabelIndex after, const Vec3d& q);
 
-/// Finds what is closest along lines.
+/// Finds the closest labels along lines.
 ///
-/// Along a line squared distances are quadratic functions and domains are intervals, so what is closest is a lower
-/// envelope: from one end on, the label that is closest stays so until the first place at which another one gets as
-/// close (a root of a quadratic function) or its domain ends. Labels that share a footprint (a face and an edge of it,
-/// an edge and its end) change at planes of domains alone. Roots come with bounds on their rounding; where these do not
-/// tell the order of two of them, labels_along() finds it by exact signs.
+/// Along a line, squared distances are quadratic functions and domains are intervals, so the closest labels form a
+/// lower envelope. From one end on, a label stays closest until another one gets as close (a root of a quadratic
+/// function), or until its domain ends. Labels that share a footprint (a face and its edge, an edge and its end) change
+/// only at planes of domains. Roots have bounds on their rounding. If these leave the order of two roots open,
+/// labels_along() finds it by exact signs.
 class LineLabels {
  public:
   LineLabels(const SiteLabels& exact, const LabelGeometry& labels) : exact_(exact), labels_(labels) {}
 
-  /// Appends the events of a part, in rising order. Between labels of one site there are none.
-  /// @param among  labels that hold all that are closest anywhere on it.
-  /// @return  whether all of it is certain.
+  /// Appends the events of a part, in rising order. No events lie between labels of one site.
+  /// @param among  labels that contain all that are closest anywhere on it.
+  /// @return  true if all events are certain.
   bool add_events(const LinePart& part, std::span<const LabelIndex> among, std::vector<LineEvent>& events) const;
 
   [[nodiscard]] LineCounts counts() const { return {parts_.load(), exact_parts_.load(), undecided_.load()}; }

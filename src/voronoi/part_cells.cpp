@@ -15,7 +15,8 @@
 namespace blum::voronoi {
 namespace {
 
-/// The constraints that hold facets of a dual cone, in the order around it: not those that touch it in a ray.
+/// Returns the constraints that hold facets of a dual cone, in the order around it, without those that touch it in a
+/// ray.
 std::vector<std::uint32_t> facets(const Vec3d& v, std::span<const Vec3d> ends) {
   std::vector<std::uint32_t> out = dual_cone(v, ends);
   for (std::size_t k = 0; k < out.size() && out.size() > 3;) {
@@ -31,7 +32,8 @@ std::vector<std::uint32_t> facets(const Vec3d& v, std::span<const Vec3d> ends) {
   return out;
 }
 
-/// Two reflex edges and flat ones: all faces there lie in two planes, and the edges in the line in which these meet.
+/// Returns the corner at a vertex with two reflex edges and otherwise flat ones. All faces there lie in two planes, and
+/// both edges lie in the line in which these meet.
 std::optional<ReflexCorner> passing_corner(std::uint32_t v, std::span<const std::uint32_t> edges,
                                            const PolyhedronSites& sites, const LabelGeometry& labels) {
   std::vector<std::uint32_t> bent;
@@ -55,7 +57,7 @@ std::optional<ReflexCorner> passing_corner(std::uint32_t v, std::span<const std:
 
 /// The dual cone of a vertex's edges.
 struct Cone {
-  std::vector<std::uint32_t> edges;  ///< that hold facets, in the order around it
+  std::vector<std::uint32_t> edges;  ///< edges that hold facets, in the order around it
   std::vector<Vec3d> rays;           ///< of length 1; ray k lies between facets k and k + 1
 };
 
@@ -149,8 +151,8 @@ class PartOfSquare {
     }
   }
 
-  /// Between two places on the border pieces around a thin region are joined by walls between faces and edges, and
-  /// across it all are. Returns how many arcs it stands for.
+  /// Walls between faces and edges join the pieces around a thin region between two of its places on the border. Across
+  /// the region, all pieces are joined. Returns the number of arcs that the regions stand for.
   std::size_t join_across_thin(detail::UnionFind& classes) {
     std::size_t joins = 0;
     for (const ThinRegion& region : out_.thin) {
@@ -170,7 +172,7 @@ class PartOfSquare {
 
   void add_arc(std::uint32_t a, std::uint32_t b) { out_.arcs.push_back({std::min(a, b), std::max(a, b)}); }
 
-  /// The piece of a site; of the outside, that next to an event. `outside` where there is none.
+  /// Returns the piece of a site; for the outside, the piece next to an event. Returns `outside` if none exists.
   [[nodiscard]] std::uint32_t piece_of(std::uint32_t site, std::uint32_t event) const {
     if (site == outside) {
       const auto at = std::find(cells_.events.begin(), cells_.events.end(), event);
@@ -204,8 +206,8 @@ class PartOfSquare {
     return std::binary_search(out_.arcs.begin(), out_.arcs.end(), Pair{std::min(a, b), std::max(a, b)});
   }
 
-  /// Around the normal of a face at a reflex vertex lie the face, one of its edges, the vertex, and the other edge; at
-  /// a vertex in which edges in one line meet, the face and both edges.
+  /// Around the normal of a face at a reflex vertex lie the face, one of its edges, the vertex, and the other edge. At
+  /// a vertex in which edges in one line meet, the face and both edges lie around it.
   void find_corners() {
     for (const auto& [a, b] : out_.arcs) {
       const std::uint32_t low = cells_.pieces[a].site;
@@ -222,7 +224,7 @@ class PartOfSquare {
       if (rule_.is_vertex(site)) find_corners_of(k);
       if (!rule_.is_edge(site)) continue;
       for (const auto& [edge, v] : rule_.thin_ends(site)) {
-        // It is looked at from the first of its edges.
+        // Each vertex is examined once, from its first edge.
         if (rule_.corner(v).edges.front() == site && !reaches_border(v) && is_surrounded(v)) {
           out_.corners.push_back({outside, v});
         }
@@ -235,7 +237,7 @@ class PartOfSquare {
                        [&](const ThinRegion& region) { return region.vertex == v; });
   }
 
-  /// Whether pieces of all faces and edges of a vertex are joined around it.
+  /// Returns true if pieces of all faces and edges of a vertex are joined around it.
   [[nodiscard]] bool is_surrounded(std::uint32_t v) const {
     const std::vector<std::uint32_t>& edges = rule_.corner(v).edges;
     return std::all_of(edges.begin(), edges.end(), [&](std::uint32_t edge) {
@@ -306,7 +308,7 @@ bool PartRule::drops(std::uint32_t first, std::uint32_t second) const {
   if (first == outside) return is_face(second);
   if (second == outside) return is_face(first);
   if (part_ != VoronoiPart::medial_axis) return false;
-  // Sites are numbered as faces, edges, vertices.
+  // Sites are numbered in the order faces, edges, vertices.
   const std::uint32_t low = std::min(first, second);
   const std::uint32_t high = std::max(first, second);
   const bool is_step = (is_face(low) && is_edge(high)) || (is_edge(low) && is_vertex(high));

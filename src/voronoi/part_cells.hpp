@@ -19,34 +19,35 @@
 
 namespace blum::voronoi {
 
-/// What ends at a vertex v that is a site, or in which two reflex edges in one line meet (a passing vertex).
+/// Walls and lines at a vertex v that is a site, or in which two reflex edges in one line meet (a passing vertex).
 ///
-/// Next to a vertex v the diagram is a cone. The region of v is bounded there by walls between
-/// it and some of its edges, one for each facet of the dual cone; these meet in rays of the cone, of which some are
-/// normals of faces. A passing vertex has no region: between both edges lies a wall, in the plane across them. The
-/// region of a thin vertex counts as a line; that of one around which all edges are reflex is a line around which all
-/// walls are dropped.
+/// Next to a vertex v the diagram is a cone. The region of v is bounded there by walls between v and some of its edges,
+/// one for each facet of the dual cone. These walls meet in rays of the cone, some of which are normals of faces. A
+/// passing vertex has no region: a wall lies between both edges, in the plane across them. The region of a thin vertex
+/// counts as a line. If all its edges are reflex, all walls around that line are dropped.
 struct ReflexCorner {
   std::vector<std::uint32_t> edges;  ///< sites
-  /// Directions of length 1, of the two rays between which each of their facets lies.
+  /// Directions, of length 1, of the two rays between which the facet of each edge lies.
   std::vector<std::array<Vec3d, 2>> rays;
   std::vector<std::uint32_t> faces;  ///< sites, of the normals
-  bool is_passing = false;           ///< then there are two edges, and two faces
-  bool is_thin = false;  ///< then its edges are reflex or flat, the first ones are listed, no faces, and a ray twice
+  bool is_passing = false;           ///< if so, two edges and two faces are listed
+  bool is_thin = false;  ///< if so, its edges are reflex or flat; reflex ones are listed, no faces, and a ray twice
 
-  /// Into how many parts the medial axis falls next to v: around v, walls that are kept are a forest, and Euler's
-  /// formula counts its trees. None where all edges are reflex; more than one only meet in v.
+  /// Returns the number of parts of the medial axis next to v. Around v, the walls that are kept form a forest, and
+  /// Euler's formula counts its trees. The number is 0 if all edges are reflex. Two or more parts meet in v only.
   [[nodiscard]] std::int64_t axis_parts() const {
     if (is_passing || is_thin) return 0;
     return static_cast<std::int64_t>(edges.size()) - static_cast<std::int64_t>(faces.size());
   }
 };
 
-/// That of each vertex of a mesh, empty where it is neither, or a thin vertex with convex edges.
+/// Returns the corner at each vertex of a mesh. It is empty if the vertex is of neither kind, or is thin with convex
+/// edges.
 [[nodiscard]] std::vector<ReflexCorner> reflex_corners(const MeshView& mesh, const SiteTable& table,
                                                        const PolyhedronSites& sites, const LabelGeometry& labels);
 
-/// Which walls a part of the diagram does without. Regions on both sides of one count as joined across it.
+/// Rule for the walls that a part of the diagram drops. Regions on both sides of a dropped wall count as joined across
+/// it.
 class PartRule {
  public:
   PartRule(VoronoiPart part, const PolyhedronSites& sites, const LabelGeometry& labels,
@@ -66,28 +67,29 @@ class PartRule {
   [[nodiscard]] bool is_edge(std::uint32_t site) const { return site >= first_edge_ && site < first_vertex_; }
   [[nodiscard]] bool is_vertex(std::uint32_t site) const { return site >= first_vertex_ && site != outside; }
 
-  /// The vertex of the mesh that is a site.
+  /// Returns the vertex of the mesh that is a site.
   [[nodiscard]] std::uint32_t vertex_of(std::uint32_t site) const {
     return sites_.reflex_vertices[site - first_vertex_];
   }
 
-  /// Whether walls between two sites, or a site and the outside, are left out: the surface is, and from a medial axis
-  /// what lies between a face and its reflex edges, an edge and its ends, or two edges in one line with a common end,
-  /// where both footprints are one point.
+  /// Returns true if walls between two sites, or between a site and the outside, are dropped. Every part but `all`
+  /// drops the surface. A medial axis also drops walls between a face and its reflex edges, and between an edge and its
+  /// ends. It drops walls between two edges in one line with a common end, too. Both footprints of these walls are one
+  /// point.
   [[nodiscard]] bool drops(std::uint32_t first, std::uint32_t second) const;
-  /// The vertex of the mesh in which two edges in one line meet: nullopt where sites are no such edges.
+  /// Returns the vertex of the mesh in which two edges in one line meet; nullopt for other sites.
   [[nodiscard]] std::optional<std::uint32_t> passing_vertex(std::uint32_t edge, std::uint32_t other) const;
-  /// Thin vertices at the ends of an edge around which all walls are dropped.
+  /// Returns the thin vertices at the ends of an edge around which all walls are dropped, each with the edge.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> thin_ends(std::uint32_t edge) const;
-  /// The faces on both sides of an edge: sites.
+  /// Returns the sites of the faces on both sides of an edge.
   [[nodiscard]] std::array<std::uint32_t, 2> faces_of(std::uint32_t edge) const;
-  /// The vertex of the mesh whose thin region an event lies in, where that counts as a line that is dropped.
+  /// Returns the vertex of the mesh whose thin region an event lies in, if that region counts as a dropped line.
   [[nodiscard]] std::optional<std::uint32_t> dropped_thin(LabelIndex thin) const {
     if (!is_medial() || thin == outside) return std::nullopt;
     const std::uint32_t v = vertex_of(labels_[thin].site);
     return corners_[v].is_thin ? std::optional(v) : std::nullopt;
   }
-  /// By vertices of the mesh.
+  /// Returns the corner at a vertex of the mesh.
   [[nodiscard]] const ReflexCorner& corner(std::uint32_t v) const { return corners_[v]; }
 
  private:
@@ -107,24 +109,24 @@ class PartRule {
 
 /// A thin region in a square that counts as a line, and meets the square's border.
 struct ThinRegion {
-  std::uint32_t vertex = 0;         ///< of the mesh
-  std::vector<std::size_t> events;  ///< of the border that lie in it, by their numbers in SquareCells
+  std::uint32_t vertex = 0;         ///< vertex of the mesh
+  std::vector<std::size_t> events;  ///< events of the border that lie in it, by their numbers in SquareCells
 };
 
 /// A part of the diagram in a resolved square.
 ///
-/// Pieces are joined across dropped walls. As each is connected and reaches the border, two of them have one arc in
-/// common at most: two would enclose a third piece. Where joined pieces go around something, it is a point around which
-/// all walls are dropped: where a reflex edge pierces the square, or the normal of a face at a vertex (`corners`); or
-/// it is a component of the part that lies strictly inside (then `is_told` is false). A thin region that reaches the
-/// border in k places is convex, so it joins the k chains of pieces between these as k - 1 arcs would.
+/// Pieces are joined across dropped walls. Each piece is connected and reaches the border, so two of them share at most
+/// one arc: two arcs would enclose a third piece. Joined pieces may go around a point around which all walls are
+/// dropped. There a reflex edge pierces the square, or the normal of a face at a vertex (`corners`). Anything else that
+/// they go around is a component of the part that lies strictly inside; then `is_told` is false. A thin region that
+/// reaches the border in k places is convex. So it joins the k chains of pieces between these as k - 1 arcs would.
 struct PartSquare {
   std::vector<std::array<std::uint32_t, 2>> arcs;  ///< dropped: the pieces on both sides, the smaller one first
   std::vector<std::array<std::uint32_t, 2>>
-      corners;                           ///< the site of a face, or `outside` of a thin vertex; a vertex of the mesh
-  std::vector<std::uint32_t> component;  ///< of the part, of each event; `outside` of dropped ones
+      corners;                           ///< the site of a face, or `outside` for a thin vertex; a vertex of the mesh
+  std::vector<std::uint32_t> component;  ///< of the part, for each event; `outside` for dropped ones
   std::uint32_t component_count = 0;
-  std::vector<ThinRegion> thin;  ///< that reach the border
+  std::vector<ThinRegion> thin;  ///< regions that reach the border
   bool is_told = true;
 };
 

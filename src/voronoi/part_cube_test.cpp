@@ -17,7 +17,7 @@ VoronoiObstacle PartOfCube::find(CubeCells& out) {
   number_components(out);
   const std::int64_t on_boundary = out.component_count;
   if (components != on_boundary) {
-    // Some of those on the boundary are one inside: which, is clear where all are.
+    // Some components on the boundary are joined inside. It is known which ones only if all are.
     if (components != 1 || on_boundary == 0) return VoronoiObstacle::joins;
     for (CubeCells::Square& square : out.squares) square.component.assign(square.component.size(), 0);
     out.component_count = 1;
@@ -36,7 +36,7 @@ void PartOfCube::collect() {
       const Pair sites{square.cells.pieces[a].site, square.cells.pieces[b].site};
       walls_[{std::min(sites[0], sites[1]), std::max(sites[0], sites[1])}].push_back(s);
     }
-    // Of what is dropped arcs in a square count as -1, points as 1.
+    // In a square, dropped arcs count as -1 and dropped points as 1.
     corners_.insert(parts_.back().corners.begin(), parts_.back().corners.end());
     euler_ += static_cast<std::int64_t>(parts_.back().corners.size());
     euler_ -= static_cast<std::int64_t>(parts_.back().arcs.size());
@@ -48,8 +48,8 @@ void PartOfCube::collect() {
   joined_.reset(count);
 }
 
-/// Joins components across edges of the grid, and counts dropped events. False where squares tell different things of
-/// an event, as next to nodes of which different sites are told.
+/// Joins components across edges of the grid, and counts dropped events. Returns false if squares disagree about an
+/// event, which happens next to nodes with contradicting sites.
 bool PartOfCube::join_events() {
   struct AtEvent {
     std::uint32_t event, square, component;
@@ -85,7 +85,7 @@ bool PartOfCube::join_events() {
 }
 
 VoronoiObstacle PartOfCube::add_dropped_walls() {
-  // Without its boundary each counts as 1.
+  // Without its boundary, each counts as 1.
   if (in_.has_inner_face) return VoronoiObstacle::enclosed;
   euler_ += static_cast<std::int64_t>(in_.face_parts);
   if (!solid_.rule.is_medial()) return VoronoiObstacle::none;
@@ -93,7 +93,7 @@ VoronoiObstacle PartOfCube::add_dropped_walls() {
   for (const auto& [sites, squares] : walls_) {
     if (sites[1] == outside) continue;
     if (!solid_.rule.is_face(sites[0])) {
-      ++euler_;  // what is closest to a vertex is convex, and so is its border to an edge
+      ++euler_;  // the region of a vertex is convex, and so is its border to an edge
       continue;
     }
     const VoronoiObstacle obstacle = add_edge_walls(sites, squares);
@@ -102,7 +102,8 @@ VoronoiObstacle PartOfCube::add_dropped_walls() {
   return VoronoiObstacle::none;
 }
 
-/// Whether a wall that begins at an edge or vertex in the cube, or a line at a vertex, does not reach the boundary.
+/// Returns true if a wall that begins at an edge or vertex in the cube does not reach the boundary. Also if a line at a
+/// vertex does not.
 bool PartOfCube::is_any_wall_inside() const {
   const auto has_wall = [&](std::uint32_t a, std::uint32_t b) {
     return walls_.contains({std::min(a, b), std::max(a, b)});
@@ -131,11 +132,12 @@ bool PartOfCube::is_any_wall_inside() const {
   return false;
 }
 
-/// Walls between a face and a reflex edge lie in a plane. On the way along the face's normal to the edge each point
-/// stays in them, until it comes to the edge or leaves the cube: so there are as many as parts of that.
+/// Adds walls between a face and a reflex edge, which lie in a plane. A point of a wall can move along the face's
+/// normal towards the edge. It stays in the wall until it meets the edge or leaves the cube. So the number of walls is
+/// that of connected parts of the edge and of the places where points leave.
 VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares) {
   const auto [face, site] = sites;
-  // That of any triangle of the face: labels have their numbers.
+  // Any triangle of the face has its normal; labels of triangles have their numbers.
   const Vec3d& normal = solid_.labels[solid_.triangle_of_face[face]].direction;
   const auto is_low = [&](std::uint32_t s) { return is_lower_side(in_.squares[s].side, normal); };
   const std::uint32_t edge = solid_.sites.reflex_edges[site - solid_.sites.face_count];
@@ -143,7 +145,7 @@ VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<
   const auto rank = [&](std::uint32_t s) {
     return static_cast<std::uint32_t>(std::lower_bound(squares.begin(), squares.end(), s) - squares.begin());
   };
-  // The last one is the edge's part in the cube.
+  // The last entry is the edge's part in the cube.
   detail::UnionFind parts(count + 1);
   for (const auto& [s, t] : events_of_walls_[sites]) {
     if (is_low(s) && is_low(t)) parts.join(rank(s), rank(t));
@@ -162,23 +164,23 @@ VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<
   return VoronoiObstacle::none;
 }
 
-/// Thin regions that count as lines and meet edges of the grid. One that ends in the cube at its vertex alone is
-/// convex: without the boundary its Euler number is 1 (0 without the vertex) less that of what it has on the boundary,
-/// which must be discs.
+/// Adds thin regions that count as lines and meet edges of the grid. One that ends in the cube only at its vertex is
+/// convex. Without the boundary, its Euler number is 1 less that of its parts on the boundary, which must be discs. If
+/// its vertex is in the cube, 0 takes the place of 1, because the vertex is counted on its own.
 VoronoiObstacle PartOfCube::add_thin_regions() {
   for (const std::uint32_t v : thin_) {
     const ThinOnBoundary met = thin_on_boundary(v);
     if (met.euler != met.parts || may_end_inside(v)) return VoronoiObstacle::joins;
     const bool has_vertex = std::binary_search(in_.vertices.begin(), in_.vertices.end(), v);
     euler_ += (has_vertex ? 0 : 1) - met.euler;
-    corners_.erase({outside, v});  // not a line of its own
+    corners_.erase({outside, v});  // not a separate line
   }
   return VoronoiObstacle::none;
 }
 
 PartOfCube::ThinOnBoundary PartOfCube::thin_on_boundary(std::uint32_t v) const {
   ThinOnBoundary out;
-  std::vector<Pair> events;  // of the tree, square
+  std::vector<Pair> events;  // event of the tree, square
   for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
     const std::int64_t points = std::count(parts_[s].corners.begin(), parts_[s].corners.end(), Pair{outside, v});
     out.euler += points;
@@ -200,8 +202,8 @@ PartOfCube::ThinOnBoundary PartOfCube::thin_on_boundary(std::uint32_t v) const {
   return out;
 }
 
-/// Whether a thin region may have its far end in the cube: whether anything but what has its vertex for a corner may be
-/// closest along its axis, or as far beside it as it is wide.
+/// Returns true if a thin region may have its far end in the cube. It may if a label without its vertex can be closest
+/// on its axis, or beside the axis within its width.
 bool PartOfCube::may_end_inside(std::uint32_t v) const {
   const Vec3d at = solid_.mesh.vertices[v] - solid_.labels.centre();
   const Vec3d way = solid_.corners[v].rays[0][0];
@@ -232,9 +234,9 @@ bool PartOfCube::may_end_inside(std::uint32_t v) const {
   return false;
 }
 
-/// Lines around which all walls are dropped: a reflex edge, the normal of a face at a reflex vertex. Each meets the
-/// cube in one part, which counts as 1 less than its ends on the boundary. Points: reflex vertices, where the parts of
-/// the axis that meet in one alone are kept apart.
+/// Adds lines around which all walls are dropped: reflex edges, and normals of faces at reflex vertices. Each meets the
+/// cube in one part, which counts as 1 less than its ends on the boundary. Then adds points: reflex vertices. Parts of
+/// the axis that meet in such a point alone are kept apart.
 void PartOfCube::add_lines_and_points() {
   if (!solid_.rule.is_medial()) return;
   euler_ -= static_cast<std::int64_t>(corners_.size());

@@ -1,4 +1,4 @@
-// Blum: whether a part of the diagram in a cube is contractible. SPDX-License-Identifier: Apache-2.0
+// Blum: test that a part of the diagram in a cube is contractible. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace blum::voronoi {
 
-/// What is known of a cube in which all components of walls and surface are acyclic.
+/// Contents of a cube in which all components of walls and surface are acyclic.
 struct CubeContents {
   const GridCube& cube;
   std::span<const SquareOfCube> squares;
@@ -23,23 +23,24 @@ struct CubeContents {
   std::span<const std::uint32_t> vertices, edges;           ///< of the mesh that meet the cube, rising
   std::span<const std::array<std::uint32_t, 2>> piercings;  ///< edge, number of the square
   std::size_t face_parts = 0;                               ///< connected parts of faces in the cube
-  bool has_inner_face = false;                              ///< whether one of them does not reach the boundary
+  bool has_inner_face = false;                              ///< true if one of them does not reach the boundary
 };
 
-/// Decides whether all components of a part of the diagram in a cube are acyclic, which they are where each dropped
-/// wall in it reaches the boundary, and which parts on the boundary belong together. Their number is the sum of Euler
-/// numbers of what is dropped (docs/theory/voronoi.md, "Parts").
+/// Decides whether all components of a part of the diagram in a cube are acyclic, and which parts on the boundary
+/// belong together. The components are acyclic if each dropped wall in the cube reaches the boundary. Their number is
+/// that of all components of walls and surface, less the Euler numbers of dropped parts (docs/theory/voronoi.md,
+/// "Parts").
 class PartOfCube {
  public:
   PartOfCube(const VoronoiSolid& solid, const CellTree& tree, const CubeContents& contents)
       : solid_(solid), tree_(tree), in_(contents) {}
 
-  /// Fills in the components where nothing is in the way.
+  /// Returns the obstacle, if any; otherwise fills in the components.
   [[nodiscard]] VoronoiObstacle find(CubeCells& out);
 
  private:
   using Pair = std::array<std::uint32_t, 2>;
-  /// Where walls between two sites are dropped: in which squares.
+  /// Squares in which walls between two sites are dropped.
   using WallsOnBoundary = std::map<Pair, std::vector<std::uint32_t>>;
 
   void collect();
@@ -48,7 +49,7 @@ class PartOfCube {
   [[nodiscard]] VoronoiObstacle add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares);
   [[nodiscard]] bool is_any_wall_inside() const;
   [[nodiscard]] VoronoiObstacle add_thin_regions();
-  /// What a thin region has on the boundary.
+  /// The part of a thin region on the boundary.
   struct ThinOnBoundary {
     std::int64_t euler = 0;
     std::int64_t parts = 0;
@@ -68,7 +69,7 @@ class PartOfCube {
   std::map<Pair, std::vector<Pair>> events_of_walls_;  ///< dropped events between two sites: both squares of each
   std::set<Pair> corners_;                             ///< face, vertex
   std::set<std::uint32_t> thin_;                       ///< vertices with thin regions that meet edges of the grid
-  std::int64_t euler_ = 0;                             ///< of what is dropped in the cube
+  std::int64_t euler_ = 0;                             ///< Euler number of all that is dropped in the cube
 };
 
 }  // namespace blum::voronoi

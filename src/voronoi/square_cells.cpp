@@ -8,7 +8,7 @@
 namespace blum::voronoi {
 namespace {
 
-/// Follows the border: events, runs and arcs.
+/// Collects events, runs and arcs along the border.
 void follow_border(const CellTree& tree, const GridSquare& square, SquareCells& out) {
   out.runs.push_back({});
   bool is_first = true;
@@ -39,8 +39,8 @@ void follow_border(const CellTree& tree, const GridSquare& square, SquareCells& 
   }
 }
 
-/// Numbers the components that the surface cuts the square into: each of its arcs leads from one to another and, where
-/// it ends, back.
+/// Numbers the components into which the surface cuts the square. Each of its arcs leads from one component to another
+/// and, at its end, back.
 void find_bodies(const GridSquare& square, SquareCells& out) {
   std::vector<std::uint32_t> partner(out.events.size(), outside);
   for (const auto& [a, b] : square.chains) {
@@ -78,7 +78,7 @@ EventComponents join_events(std::span<const std::uint32_t> region_of_run) {
     if (first[region] == outside) {
       first[region] = k;
     } else {
-      joined.join(last[region], k - 1);  // the event behind the last run, and the one before this
+      joined.join(last[region], k - 1);  // the event behind the last run, and the one before this run
     }
     last[region] = k;
   }

@@ -15,7 +15,7 @@
 namespace blum::voronoi {
 namespace {
 
-/// The part of a convex polygon where a height is above -margin. Mostly that is all of it, or nothing.
+/// Returns the part of a convex polygon where a height is above -margin. Mostly that is all of it, or nothing.
 template <class Height>
 std::vector<Vec3d> clipped(std::vector<Vec3d> polygon, double margin, const Height& height) {
   const auto is_in = [&](const Vec3d& q) { return height(q) + margin >= 0; };
@@ -34,7 +34,7 @@ std::vector<Vec3d> clipped(std::vector<Vec3d> polygon, double margin, const Heig
   return out;
 }
 
-/// The part of it where heights over some planes are above -margin.
+/// Returns the part of a polygon where heights over some planes are above -margin.
 std::vector<Vec3d> clipped_by(std::vector<Vec3d> polygon, double margin, std::span<const DomainPlane> planes) {
   for (const DomainPlane& plane : planes) {
     polygon = clipped(std::move(polygon), margin, [&](const Vec3d& q) { return plane.height(q); });
@@ -43,14 +43,14 @@ std::vector<Vec3d> clipped_by(std::vector<Vec3d> polygon, double margin, std::sp
   return polygon;
 }
 
-/// The largest distance of a corner from the first one.
+/// Returns the largest distance of a corner from the first one.
 double extent(const std::vector<Vec3d>& polygon) {
   double largest = 0;
   for (const Vec3d& p : polygon) largest = std::max(largest, length(p - polygon[0]));
   return largest;
 }
 
-/// Whether a quadratic function is positive on [0, 1], from its values in Bernstein form.
+/// Returns true if a quadratic function is positive on [0, 1], from its coefficients in Bernstein form.
 bool is_positive(double first, double middle, double last) {
   return first > 0 && last > 0 && (middle >= 0 || middle * middle < first * last);
 }
@@ -63,7 +63,7 @@ bool PartSquareTest::resolve(GridSquare& square) const {
   if (rule_.is_all()) return true;
   square.inner_arcs.clear();
   square.reflex_piercings = 0;
-  // It was resolved, so there is no closed curve.
+  // The square is resolved, so no closed curve exists.
   if (const auto chains = surface_chains(tree_, surface_, square)) add_surface(*chains, square);
   const SquareCells cells = square_cells(tree_, labels_, square);
   bool is_told = true;
@@ -73,7 +73,8 @@ bool PartSquareTest::resolve(GridSquare& square) const {
   return is_told;
 }
 
-/// The surface lies between the outside and faces; where a reflex edge pierces the square, walls begin.
+/// Adds arcs of the surface between the outside and faces, and of walls that begin where a reflex edge pierces the
+/// square.
 void PartSquareTest::add_surface(const SurfaceChains& chains, GridSquare& square) const {
   for (const auto& [chain, triangle] : chains.triangles) {
     square.inner_arcs.push_back({labels_[triangle].site, outside, chains.ends[chain][0]});
@@ -89,7 +90,7 @@ void PartSquareTest::add_surface(const SurfaceChains& chains, GridSquare& square
   }
 }
 
-/// Adds walls between pieces that touch one component of walls. False where it is not known whether there is one.
+/// Adds walls between pieces that touch one component of walls. Returns false if the existence of one is unknown.
 bool PartSquareTest::add_walls(const SquareCells& cells, GridSquare& square) const {
   std::vector<std::array<std::uint32_t, 2>> touching;  // component, site
   std::vector<std::array<std::uint32_t, 2>> known;     // sites
@@ -124,7 +125,7 @@ bool PartSquareTest::add_walls(const SquareCells& cells, GridSquare& square) con
   return true;
 }
 
-/// Whether two pieces have a wall in common.
+/// Answers whether two pieces have a wall in common.
 /// @param low, high  sites: a face and an edge of it, an edge and an end of it, or two edges in one line.
 PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_t high,
                                                  const GridSquare& square) const {
@@ -136,7 +137,7 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
   std::size_t facet = 0;
   if (vertex) {
     corner = &rule_.corner(*vertex);
-    if (corner->is_thin) return Answer::unknown;  // its region has no runs but next to nodes in it, which contradict
+    if (corner->is_thin) return Answer::unknown;  // its region has no runs, except contradicting ones at nodes in it
     while (facet < corner->edges.size() && corner->edges[facet] != edge) ++facet;
     if (facet == corner->edges.size()) return Answer::no;
   }
@@ -145,7 +146,7 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
   if (own == square.governors.end()) return Answer::no;
   const std::optional<DomainPlane> plane = plane_between(*own, other, vertex);
   if (!plane) return Answer::unknown;
-  // In the plane between both domains one is as close as the other.
+  // In the plane between both domains, both are equally close.
   const std::vector<Vec3d> strip = test_.along_plane(*own, *plane, square);
   if (strip.empty() || test_.is_closest_nowhere(*own, square.governors, strip)) return Answer::no;
   if (is_closest_on(strip, *own, other, square)) return Answer::yes;
@@ -153,7 +154,8 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
   return Answer::unknown;
 }
 
-/// The plane that parts the domain of an edge from that of a face or vertex, or of the edge behind a vertex.
+/// Returns the plane that separates the domain of an edge from that of a face or vertex, or of the edge behind a
+/// vertex.
 std::optional<DomainPlane> PartSquareTest::plane_between(LabelIndex edge, std::uint32_t other,
                                                          const std::optional<std::uint32_t>& vertex) const {
   const auto planes = labels_.planes(edge);
@@ -164,7 +166,7 @@ std::optional<DomainPlane> PartSquareTest::plane_between(LabelIndex edge, std::u
   return at == planes.end() ? std::nullopt : std::optional(*at);
 }
 
-/// Whether one of some points along a strip is closest to a label and a site beside it.
+/// Returns true if one of some points along a strip is closest to a label and a site beside it.
 bool PartSquareTest::is_closest_on(const std::vector<Vec3d>& strip, LabelIndex label, std::uint32_t beside,
                                    const GridSquare& square) const {
   std::size_t far = 0;
@@ -179,8 +181,8 @@ bool PartSquareTest::is_closest_on(const std::vector<Vec3d>& strip, LabelIndex l
   return false;
 }
 
-/// Whether a point of a facet of a vertex's cone is closest to the vertex, however narrow the facet is: then no label
-/// that has this vertex for a corner is closer to it.
+/// Returns true if a point of a facet of a vertex's cone is closest to the vertex, however narrow the facet is. Labels
+/// that have this vertex for a corner need no test, because none is closer there.
 bool PartSquareTest::have_wall_at_vertex(const Vec3d& v, const std::array<Vec3d, 2>& rays,
                                          const GridSquare& square) const {
   const Vec3d low = tree_.lattice.at(square.low) - labels_.centre();
@@ -205,7 +207,7 @@ bool PartSquareTest::have_wall_at_vertex(const Vec3d& v, const std::array<Vec3d,
   return false;
 }
 
-/// Whether nothing but a label and a site beside it is as close to a point, and points as near to it as rounding.
+/// Returns true if only a label and a site beside it are closest to a point and to all points within rounding of it.
 bool PartSquareTest::is_closest(LabelIndex label, std::uint32_t beside, const Vec3d& q,
                                 const GridSquare& square) const {
   const double distance = length(labels_.closest_point(label, q) - q);
@@ -237,7 +239,7 @@ bool SquareTest::resolve(GridSquare& square) const {
   sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
   const Polygon whole = polygon(square);
   std::vector<LabelIndex> present;
-  // Over one vertex what single labels leave open may be known all at once.
+  // Over one vertex, labels that are doubtful one by one may be decided all at once.
   const auto is_cone = [&] { return square.chains.empty() && is_over_one_vertex(present, whole); };
   bool is_any_doubtful = false;
   for (const LabelIndex label : square.governors) {
@@ -252,7 +254,7 @@ bool SquareTest::resolve(GridSquare& square) const {
     if (!is_any_doubtful && !is_cone()) return false;
     is_any_doubtful = true;
   }
-  // That takes time linear in the labels, and stars the square of it.
+  // That takes time linear in the labels; stars take quadratic time.
   const bool is_known_cone = is_cone();
   if (is_any_doubtful && !is_known_cone) return false;
   const std::vector<std::uint32_t> single = is_known_cone ? sites_of_one_run(square) : std::vector<std::uint32_t>{};
@@ -264,10 +266,10 @@ bool SquareTest::resolve(GridSquare& square) const {
   return true;
 }
 
-/// Whether labels that are closest somewhere in a square, all of them, have one vertex for a corner, and feet so near
-/// to it that distances in the square are those from the sectors and rays of which they are parts: from a cone about
-/// the vertex. The region of a face or an edge retracts along ways to footprints to its sectors or ray. So where the
-/// square does not meet the surface, none of these has a component strictly inside. (The region of the vertex itself
+/// Returns true if all labels that are closest somewhere in a square have one vertex for a corner, and feet close to
+/// it. Then distances in the square are those from a cone about the vertex: from the sectors and rays that contain the
+/// labels. The region of a face or an edge retracts along ways to footprints to its sectors or ray. So if the square
+/// does not meet the surface, none of these regions has a component strictly inside. (The region of the vertex itself
 /// may lie there.)
 bool SquareTest::is_over_one_vertex(std::span<const LabelIndex> present, const Polygon& whole) const {
   if (present.empty()) return false;
@@ -279,7 +281,7 @@ bool SquareTest::is_over_one_vertex(std::span<const LabelIndex> present, const P
   });
 }
 
-/// Whether feet of a square on a label's plane or line are nearer to a corner of it than its other end or side.
+/// Returns true if a square's feet on a label's plane or line are closer to a corner than the other end or side is.
 bool SquareTest::is_near_corner(LabelIndex label, std::uint32_t v, const Polygon& whole) const {
   const std::span<const Vec3d> corners = labels_.corners(label);
   if (corners.size() == 1) return true;
@@ -296,7 +298,7 @@ bool SquareTest::is_near_corner(LabelIndex label, std::uint32_t v, const Polygon
                      [&](const Vec3d& q) { return length(labels_[label].foot(q) - at) + margin < reach * (1 - 1e-9); });
 }
 
-/// The sites that have one run alone on a square's border, rising.
+/// Returns the sites that have exactly one run on a square's border, rising.
 std::vector<std::uint32_t> SquareTest::sites_of_one_run(const GridSquare& square) const {
   std::vector<std::uint32_t> of_runs;
   for (const SquareCells::Run& run : square_cells(tree_, labels_, square).runs) {
@@ -312,8 +314,8 @@ std::vector<std::uint32_t> SquareTest::sites_of_one_run(const GridSquare& square
   return out;
 }
 
-/// Whether a label is closest nowhere in a square, or next to a point over a corner of it alone, where it has no
-/// islands.
+/// Returns true if a label is closest nowhere in a square. Also if it is closest only next to a point over one of its
+/// corners, where it has no islands.
 bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const {
   const Polygon part = in_domain(label, whole);
   const bool by_incident = !is_thin(label, whole);
@@ -378,7 +380,7 @@ bool SquareTest::is_further(LabelIndex label, LabelIndex other, const std::optio
   return true;
 }
 
-/// A part of a polygon that holds all of it where a label may be as close as another one.
+/// Returns a part of a polygon that contains all points where a label may be as close as another one.
 SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
                                             const Polygon& part) const {
   const double margin = 2 * labels_.rounding();
@@ -388,8 +390,8 @@ SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, 
   const PlacedLabel& near = labels_[other];
   const PlacedLabel& far = labels_[label];
   if (near.kind != SiteKind::face) return part;
-  // The distance from an edge or vertex less that from a plane is convex: where it is positive, its tangent plane parts
-  // what is left from there.
+  // The distance from an edge or vertex less that from a plane is convex. If it is positive at a corner, its tangent
+  // plane there separates that corner from the rest.
   Polygon left = part;
   for (const Vec3d& corner : part) {
     const Vec3d away = corner - far.foot(corner);
@@ -410,21 +412,21 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   Vec3d middle;
   for (const Vec3d& p : part) middle += p;
   middle *= 1.0 / static_cast<double>(part.size());
-  // The closest one to the middle, without the label itself.
+  // Searches for the surface point closest to the middle, without the label's own site.
   std::vector<LabelIndex> others;
   for (const LabelIndex other : all) {
     if (labels_[other].site != labels_[label].site) others.push_back(other);
   }
   if (others.empty()) return false;
-  // One point of the surface may do: less the square of the distance from it, that of the label is concave.
+  // That point may suffice: the label's squared distance less that from the point is concave.
   const Vec3d foot = closest_surface_point(labels_, others, middle);
   const bool is_beyond_foot = std::all_of(part.begin(), part.end(), [&](const Vec3d& q) {
     const double distance = length(q - foot) + labels_.rounding();
     return labels_[label].squared_distance(q) > distance * distance + labels_.rounding_of_squares(distance);
   });
   if (is_beyond_foot) return true;
-  // Or another label, where its distance is that of a point of the surface; what is left has to be covered by others.
-  // Those first which a plane parts from the label.
+  // Otherwise another label may exclude this one where a surface point attains its distance. Others must cover the
+  // rest. Labels that a plane separates from this one are tried first.
   struct Candidate {
     bool is_curved = false;
     double squared = 0;
@@ -446,7 +448,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   for (const Candidate& candidate : candidates) {
     const LabelIndex other = candidate.label;
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
-    // What is between a face's sides is not in its edges' domains; the other way round nothing is known.
+    // Points between a face's sides are not in its edges' domains. The converse is not known.
     const bool is_part_of_it = labels_[other].kind < labels_[label].kind;
     if (are_incident && (!allowed.by_incident || is_part_of_it)) continue;
     const bool from_behind = is_behind(other, middle);
@@ -455,7 +457,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
     const std::optional<Bisector> plane =
         from_behind ? labels_.bisector_behind(other, label) : labels_.bisector(other, label);
     Polygon left;
-    // Domains of labels next to each other meet in their borders alone.
+    // Domains of incident labels meet only in their borders.
     if (!are_incident && !is_further(label, other, plane, inside)) {
       if (from_behind && !plane) continue;
       left = not_further(label, other, plane, inside);
@@ -467,8 +469,8 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   return false;
 }
 
-/// The planes between which the distance from a label's plane, line or point is that of a point of the surface: of a
-/// triangle on one side alone, where its signed height is that distance, or less that.
+/// Returns the planes between which a surface point attains the distance from a label's plane, line or point. A
+/// triangle does so on one side only: in front, its signed height is that distance, and behind, its negative.
 std::vector<DomainPlane> SquareTest::attained_between(LabelIndex label, bool from_behind) const {
   const std::span<const DomainPlane> ends = labels_.ends(label);
   std::vector<DomainPlane> out(ends.begin(), ends.end());
@@ -486,18 +488,18 @@ bool SquareTest::is_attained(LabelIndex label, bool from_behind, const Vec3d& q)
                      [&](const DomainPlane& plane) { return plane.height(q) >= -labels_.rounding(); });
 }
 
-/// Whether a point lies behind a triangle, not on the solid's side. What is behind all of the surface is not in the
-/// solid; but to find that no other label is closest there, the distance from the triangle is enough.
+/// Returns true if a point lies behind a triangle, not on the solid's side. A point behind all of the surface is not in
+/// the solid. But the distance from the triangle suffices to find that no other label is closest there.
 bool SquareTest::is_behind(LabelIndex label, const Vec3d& q) const {
   return labels_[label].kind == SiteKind::face && labels_[label].height(q) < -labels_.rounding();
 }
 
-/// Whether a label is closest nowhere in the part of a polygon that is not between some planes.
+/// Returns true if a label is closest nowhere in the part of a polygon that is not between some planes.
 bool SquareTest::is_absent_outside(LabelIndex label, std::span<const DomainPlane> planes,
                                    std::span<const LabelIndex> all, Polygon part, const Allowance& allowed,
                                    int depth) const {
   for (const DomainPlane& plane : planes) {
-    // Slivers by rounding are shared with the part inside.
+    // The part inside covers slivers by rounding, too.
     const auto beyond = [&](const Vec3d& q) { return -plane.height(q); };
     const bool leaves =
         std::any_of(part.begin(), part.end(), [&](const Vec3d& q) { return beyond(q) > 2 * labels_.rounding(); });
@@ -531,7 +533,7 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   std::vector<LabelIndex> own_labels;
   std::copy_if(others.begin(), others.end(), std::back_inserter(own_labels),
                [&](LabelIndex label) { return labels_[label].site == site; });
-  std::vector<std::optional<Polygon>> domains(others.size());  // in the part, where they are asked for
+  std::vector<std::optional<Polygon>> domains(others.size());  // in `part`, computed on demand
   const auto is_centre = [&](const BorderArc* arc, const Vec3d& from) {
     for (std::size_t k = 0; k < others.size(); ++k) {
       const LabelIndex other = others[k];
@@ -550,12 +552,12 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   });
 }
 
-/// The same, where another label can give way to it in a part of the square alone.
+/// Returns true if no ray from a point of a label's region leaves it to another label and comes back in `domain`.
 bool SquareTest::returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& domain) const {
   if (domain.empty()) return true;
   if (labels_.are_incident(labels_[label].site, other)) return false;
   const PolarDifference difference(labels_, label, other);
-  // Where a ray comes back at q, D(q, q) = 0 and D(from, q) >= 0, as its slope there is -2 D(from, q).
+  // If a ray comes back at q, D(q, q) = 0 and D(from, q) >= 0, because its slope there is -2 D(from, q).
   double error = 0;
   for (const Vec3d& q : domain) error = std::max(error, 4 * difference.error(from, q));
   const Polygon part = clipped(domain, error, [&](const Vec3d& q) { return difference.at(from, q); });
@@ -567,7 +569,7 @@ bool SquareTest::returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d
   return true;
 }
 
-/// Whether a label's domain in a square may be all within rounding of the domains next to it.
+/// Returns true if a label's domain in a square may lie entirely within rounding of the domains next to it.
 bool SquareTest::is_thin(LabelIndex label, Polygon part) const {
   return clipped_by(std::move(part), -2 * labels_.rounding(), labels_.planes(label)).empty();
 }
@@ -591,10 +593,10 @@ SquareTest::Polygon SquareTest::along_plane(LabelIndex label, const DomainPlane&
   return clipped(in_domain(label, polygon(square)), margin, [&](const Vec3d& q) { return -plane.height(q); });
 }
 
-/// Whether the region of a site has no border with that of another label in a square, because their domains have no
-/// point in common there: or one alone, over a corner that both have, where nothing is closer than what has this
-/// corner. There the diagram is a cone, in which regions are connected. Over both sides of a reflex edge regions part,
-/// too.
+/// Returns true if the region of a site has no border with that of another label in a square. Then their domains have
+/// no common point there, or only one over a common corner, and nothing without this corner is closer there. In such a
+/// place the diagram is a cone, in which regions are connected. Regions over both sides of a reflex edge do not meet,
+/// either.
 bool SquareTest::never_meet(const SiteInSquare& own, LabelIndex other, const Vec3d& from,
                             const Polygon& of_other) const {
   return std::all_of(own.labels.begin(), own.labels.end(), [&](LabelIndex label) {
@@ -602,12 +604,12 @@ bool SquareTest::never_meet(const SiteInSquare& own, LabelIndex other, const Vec
     const Polygon common = in_domain(label, of_other);
     if (common.empty() || returns_nowhere(own.on_border, other, from, common)) return true;
     const Allowance allowed{false, labels_.common_vertex(label, other)};
-    // Where they meet something else may be closer, except over a common corner.
+    // Something else may be closer where they meet, except over a common corner.
     return is_absent(other, own.all, common, allowed, 0) || is_absent(label, own.all, common, allowed, 0);
   });
 }
 
-/// Whether a part is next to one point alone, over a corner, where nothing is closer than what has this corner.
+/// Returns true if a part lies next to one point over a corner, and nothing without this corner is closer there.
 bool SquareTest::is_at_corner(const Polygon& part, std::uint32_t v, std::span<const LabelIndex> all) const {
   constexpr double small = 4096;
   if (extent(part) > small * labels_.rounding()) return false;
@@ -619,7 +621,7 @@ bool SquareTest::is_at_corner(const Polygon& part, std::uint32_t v, std::span<co
   });
 }
 
-/// Whether no ray from a point of a label's region leaves it to another label and comes back.
+/// Returns true if no ray from a point of a label's region leaves it to another label and comes back.
 bool SquareTest::stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const {
   const PlacedLabel& own = labels_[label];
   const PlacedLabel& rival = labels_[other];
@@ -633,8 +635,9 @@ bool SquareTest::stays_behind(LabelIndex label, LabelIndex other, const Vec3d& f
   }
   const std::optional<Bisector> plane = labels_.bisector(label, other);
   if (plane && plane->height(from) > 2 * labels_.rounding()) return true;
-  // Along a ray the difference of squares is quadratic: at the start, its polar form, and at the end, as Bernstein
-  // coefficients. It is negative first, and comes back only where the second is positive and the third negative.
+  // Along a ray, the difference of squares is quadratic. Its Bernstein coefficients are its value at the start, its
+  // polar form, and its value at the end. It begins negative. It comes back only if the second is positive and the
+  // third negative.
   const auto polar = [&](const Vec3d& q, const Vec3d& r) { return own.polar(q, r) - rival.polar(q, r); };
   if (!(polar(from, from) < 0)) return false;
   for (std::size_t k = 0; k < square.size(); ++k) {

@@ -1,4 +1,4 @@
-// Blum: whether the border of a square tells what is inside. SPDX-License-Identifier: Apache-2.0
+// Blum: test that the border of a square determines its contents. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,27 +15,27 @@
 
 namespace blum::voronoi {
 
-/// Decides whether a square is resolved: the region of each site in it is connected and touches its border, and the
-/// surface in it consists of arcs that end on the border. Then the components of walls and surface in it are
-/// contractible, and its border tells them (SquareCells).
+/// Decides whether a square is resolved. In a resolved square, the region of each site is connected and touches the
+/// border. The surface consists of arcs that end on the border. Then the components of walls and surface in the square
+/// are contractible, and its border determines them (SquareCells).
 ///
-/// A label that is closest nowhere on the border must be proven absent: the part of the square in its domain is covered
-/// by pieces in domains of others that are closer all over a piece. A site on the border must be star-shaped about a
-/// point of the border, as seen by each of the other labels: along each ray, once another label is closer, this one
-/// stays behind. The region of a vertex is convex.
-/// All of this is one-sided: rounding only leads to another split.
+/// A label that is closest nowhere on the border must be proven absent. To this end, the part of the square in its
+/// domain is covered by pieces. Each piece lies in the domain of another label that is closer all over the piece. A
+/// site on the border must be star-shaped about a point of the border, as seen by each of the other labels. That is:
+/// along each ray, once another label is closer, the site stays behind. The region of a vertex is convex.
+/// The test is one-sided: rounding only leads to another split.
 class SquareTest {
  public:
   SquareTest(const LabelGeometry& labels, const SurfaceInCells& surface, const CellTree& tree)
       : labels_(labels), surface_(surface), tree_(tree) {}
 
-  /// Whether it is resolved; then its chains are set.
+  /// Returns true if the square is resolved, and then sets its chains.
   bool resolve(GridSquare& square) const;
 
   using Polygon = std::vector<Vec3d>;
-  /// A strip that holds where a plane of a label's domain passes its domain in a square.
+  /// Returns a strip of a square that contains the places where a plane of a label's domain bounds that domain.
   [[nodiscard]] Polygon along_plane(LabelIndex label, const DomainPlane& plane, const GridSquare& square) const;
-  /// Whether some other label is closer than a given one all over a part of a square.
+  /// Returns true if a label is proven to be closest nowhere in a part of a square.
   [[nodiscard]] bool is_closest_nowhere(LabelIndex label, std::span<const LabelIndex> all, const Polygon& part) const;
 
  private:
@@ -46,10 +46,10 @@ class SquareTest {
     double error = 0;
   };
 
-  /// What may rule a label out beside labels that are closer.
+  /// Means to exclude a label, in addition to labels that are closer.
   struct Allowance {
-    bool by_incident = false;             ///< the domain of a label next to it, which shares its border alone
-    std::optional<std::uint32_t> vertex;  ///< a corner that it has, where what is left is next to a point over that
+    bool by_incident = false;             ///< the domain of an incident label, which shares only its border
+    std::optional<std::uint32_t> vertex;  ///< a corner of it, if the rest lies next to a point over that corner
   };
 
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const;
@@ -80,8 +80,8 @@ class SquareTest {
   /// A site on the border of a square.
   struct SiteInSquare {
     LabelIndex on_border = outside;      ///< one of its labels
-    std::span<const LabelIndex> labels;  ///< its own that may be in the square
-    std::span<const LabelIndex> all;     ///< those of all sites
+    std::span<const LabelIndex> labels;  ///< its own labels that may be in the square
+    std::span<const LabelIndex> all;     ///< labels of all sites
   };
   [[nodiscard]] bool never_meet(const SiteInSquare& own, LabelIndex other, const Vec3d& from,
                                 const Polygon& of_other) const;
@@ -92,11 +92,11 @@ class SquareTest {
   const CellTree& tree_;
 };
 
-/// Decides whether a square is resolved for a part of the diagram: all of the diagram is (SquareTest), it is known
-/// which pieces have dropped walls in common, and no component of the part lies strictly inside.
+/// Decides whether a square is resolved for a part of the diagram. Then it is resolved for all of the diagram
+/// (SquareTest). The dropped walls between its pieces are known, and no component of the part lies strictly inside.
 ///
-/// A dropped wall that the border does not show may lie between pieces that touch one component of walls: then some
-/// point of it must be found at which nothing else is as close, or its place proven to be closest to other labels.
+/// A dropped wall that the border does not show may lie between pieces that touch one component of walls. Then a point
+/// of it must be found at which nothing else is as close. Or its place must be proven to be closest to other labels.
 class PartSquareTest {
  public:
   PartSquareTest(const VoronoiSolid& solid, const SquareTest& test, const SurfaceInCells& surface, const CellTree& tree)
@@ -108,7 +108,7 @@ class PartSquareTest {
         sites_(solid.sites),
         tree_(tree) {}
 
-  /// Whether it is resolved; then its inner arcs are set.
+  /// Returns true if the square is resolved, and then sets its inner arcs.
   bool resolve(GridSquare& square) const;
 
  private:
@@ -121,7 +121,7 @@ class PartSquareTest {
                                                          const std::optional<std::uint32_t>& vertex) const;
   [[nodiscard]] bool is_closest_on(const std::vector<Vec3d>& strip, LabelIndex label, std::uint32_t beside,
                                    const GridSquare& square) const;
-  /// Relative to the centre of the labels.
+  /// Returns a vertex relative to the centre of the labels.
   [[nodiscard]] Vec3d place_of(std::uint32_t v) const { return mesh_.vertices[v] - labels_.centre(); }
   [[nodiscard]] bool have_wall_at_vertex(const Vec3d& v, const std::array<Vec3d, 2>& rays,
                                          const GridSquare& square) const;

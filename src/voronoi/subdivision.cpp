@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t splitter_grain = 16;
 
-/// Whether a triangle may meet a box, sides included: by its own box and its plane.
+/// Returns true if a triangle may meet a box, sides included. Tests its own box and its plane.
 bool may_meet(const MeshView& mesh, const LabelGeometry& labels, std::uint32_t t, const Box3& box) {
   const std::array<Vec3d, 3> p = triangle_corners(mesh, t);
   const Vec3d low = min(p[0], min(p[1], p[2]));
@@ -75,8 +75,8 @@ class Subdivider {
     return count;
   }
 
-  /// Divides the cubes that wait. What passes may have its squares split for a neighbour afterwards, which tells more
-  /// of its boundary: it is tested again.
+  /// Divides the waiting cubes. After a cube passes, a neighbour may cause a split of its squares. More of its boundary
+  /// is known then, so it is tested again.
   void divide_all() {
     divide();
     for (;;) {
@@ -93,7 +93,7 @@ class Subdivider {
     }
   }
 
-  /// Divides the cubes that wait, the largest first.
+  /// Divides the waiting cubes, the largest first.
   void divide() {
     while (!waiting_.empty()) {
       const auto [depth, cubes] = *waiting_.begin();
@@ -141,7 +141,7 @@ class Subdivider {
     return depth;
   }
 
-  /// Splits leaves that pass, but are to be smaller.
+  /// Splits leaves that pass but must become smaller.
   void split_leaves(const std::vector<CellId>& cubes) {
     std::map<int, std::vector<CellId>> by_depth;
     std::vector<CellId> gone;
@@ -158,7 +158,7 @@ class Subdivider {
     }
   }
 
-  /// Whether the part that is asked for may meet a cube.
+  /// Returns true if the requested part of the diagram may meet a cube.
   [[nodiscard]] bool may_hold_some(const GridCube& cube) const {
     if (solid_.rule.is_all()) return true;
     return std::any_of(cube.governors.begin(), cube.governors.end(), [&](LabelIndex label) {
@@ -166,7 +166,8 @@ class Subdivider {
     });
   }
 
-  /// Whether a cube has so many governors that its test is not worth it, and splitting it makes them fewer.
+  /// Returns true if a cube has too many governors for its test, and its split reduces them. Also true for cubes above
+  /// the least depth that may meet the part.
   [[nodiscard]] bool is_crowded(const GridCube& cube, int depth) const {
     constexpr std::size_t many = 64;
     if (depth < 1) return true;
@@ -174,7 +175,7 @@ class Subdivider {
     return cube.governors.size() > many && cube.governors.size() * 10 < cube.governors_of_parent * 9;
   }
 
-  /// Whether there are so many cells, or so many that are not certain, that no more are made.
+  /// Returns true if no more cells are made: the squares are too many, or the uncertain lines and nodes are.
   [[nodiscard]] bool is_full() const {
     constexpr std::size_t squares_per_cube = 16;
     return out_.tree.squares.size() > squares_per_cube * options_.most_cubes ||
@@ -256,8 +257,9 @@ void CellSplitter::add_root(int grid) {
   const Box3& box = labels_.box();
   const Vec3d size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
-  // Sides and halves must not fit to what shapes have, nor to seams between their faces, which lie at square roots of
-  // numbers: transcendental parts, another one along each axis.
+  // Sides and halves of cells must not coincide with features of shapes. Nor may they coincide with seams between
+  // faces, which lie at square roots of numbers. So the shift takes its fractions from gamma, e and 1 / pi, one for
+  // each axis.
   const Vec3d fractions{std::numbers::egamma, std::numbers::e - 2, std::numbers::inv_pi};
   Vec3d shift;
   for (std::size_t axis = 0; axis < 3; ++axis) shift[axis] = std::fmod(fractions[axis] * (grid + 1), 1.0) - 0.5;
@@ -285,7 +287,7 @@ void CellSplitter::add_root(int grid) {
       square.length = Lattice::most;
       square.low[axis] = side_k * Lattice::most;
       square.state = SquareState::resolved;  // all of it is outside
-      // Along u edges are numbered by v, axis; along v by axis, u.
+      // Edges along u are numbered by v, axis; edges along v by axis, u.
       const auto along_u = [&](CellId at_v) { return static_cast<CellId>(4 * u) + at_v + 2 * side_k; };
       const auto along_v = [&](CellId at_u) { return static_cast<CellId>(4 * v) + side_k + 2 * at_u; };
       square.edges = {along_u(0), along_v(1), along_u(1), along_v(0)};
@@ -369,7 +371,7 @@ void CellSplitter::find_events(NewEdge& made, std::span<const LabelIndex> among,
   if (labels_.is_thin(edge.last)) contradictions_.fetch_add(1, std::memory_order_relaxed);
 }
 
-/// Thin regions are part of walls: the events at both ends of one become one.
+/// Thin regions are part of walls: merges the events at both ends of one.
 void CellSplitter::pass_over_thin(std::vector<LineEvent>& events) const {
   std::size_t count = 0;
   for (const LineEvent& event : events) {
@@ -561,7 +563,7 @@ void CellSplitter::split_squares(std::span<const CellId> squares, const Context&
 
 std::array<CellSplitter::NewEdge, 6> CellSplitter::inner_edges(const GridCube& cube) const {
   const std::uint32_t half = cube.length / 2;
-  // What is closest in the middle of a square: where its inner edges along u meet.
+  // Label in the middle of a square, where its inner edges along u meet.
   const auto middle_of = [&](std::size_t square) {
     return tree_.edges[tree_.squares[cube.squares[square]].inner_edges].last;
   };
@@ -588,8 +590,8 @@ void CellSplitter::place_squares(const GridCube& cube, CellId first_edge, CellId
     for (CellId k = 0; k < 4; ++k) {
       const CellId at_u = k & 1U;
       const CellId at_v = k >> 1U;
-      // Of squares across v the inner edges along u are those along their second axis, of those across u the edges
-      // along v those along their first.
+      // In squares across v, inner edges along u run along the second axis. In squares across u, inner edges along v
+      // run along the first axis.
       const auto along_u = [&](CellId side) {
         return side == at_v ? inner_of(2 * v + side) + 2 + at_u : first_edge + static_cast<CellId>(2 * u) + at_u;
       };

@@ -21,18 +21,18 @@
 
 namespace blum::voronoi {
 
-/// Splits squares and cubes of a CellTree. New edges begin at a node where the closest label is known, so that nothing
-/// is ever searched among all labels; an edge that is split shares its events among its halves.
+/// Splits squares and cubes of a CellTree. New edges begin at a node with a known closest label, so no search covers
+/// all labels. An edge that is split shares its events among its halves.
 class CellSplitter {
  public:
-  /// The side of the first cube, over the longest side of the box around the mesh.
+  /// Side of the first cube, divided by the longest side of the box around the mesh.
   static constexpr double side_of_root = 1.4;
 
   CellSplitter(const MeshView& mesh, const SiteLabels& exact, const LabelGeometry& labels, CellTree& tree)
       : mesh_(mesh), exact_(exact), labels_(labels), lines_(exact, labels), tree_(tree) {}
 
-  /// Makes one cube, around the mesh, whose sides lie outside of the solid.
-  /// @param grid  a number: each has its place of its own.
+  /// Makes one cube around the mesh, whose sides lie outside of the solid.
+  /// @param grid  number of the grid; each has its own position.
   void add_root(int grid);
   /// Splits squares that have no children into four each.
   void split_squares(std::span<const CellId> squares, const Context& context);
@@ -40,11 +40,12 @@ class CellSplitter {
   void split_cubes(std::span<const CellId> cubes, const Context& context);
 
   [[nodiscard]] LineCounts counts() const { return lines_.counts(); }
-  /// Nodes in thin regions, or that two ways to them tell different sites of, as signs contradict each other.
+  /// Returns the number of nodes at which signs contradict each other. These are nodes in thin regions, and nodes for
+  /// which two ways to them yield different sites.
   [[nodiscard]] std::size_t contradictions() const { return contradictions_.load(); }
 
  private:
-  /// What is known of an edge to be made.
+  /// An edge to be made, with its events.
   struct NewEdge {
     GridEdge edge;
     std::vector<LineEvent> events;
@@ -53,7 +54,7 @@ class CellSplitter {
   void split_edges(std::vector<CellId> edges, const Context& context);
   void split_edge(CellId id);
   [[nodiscard]] bool is_below(const GridEdge& edge, const LineEvent& event, const Node& node) const;
-  /// Finds what is closest along an edge from what is at its lower end.
+  /// Finds the labels along an edge from the one at its lower end.
   void find_events(NewEdge& made, std::span<const LabelIndex> among, std::span<const std::uint32_t> triangles) const;
   void pass_over_thin(std::vector<LineEvent>& events) const;
   [[nodiscard]] std::vector<std::uint32_t> crossed(const GridEdge& edge,
@@ -83,37 +84,37 @@ class CellSplitter {
 };
 
 struct SubdivisionOptions {
-  int grid = 0;                        ///< which place of the grid
-  int least_depth = 0;                 ///< all cubes that meet the solid are split at least so often
-  int most_depth = 16;                 ///< and at most so often
-  int most_square_depth = 9;           ///< how often squares of a cube are split before the cube is
-  std::size_t most_cubes = 1'000'000;  ///< those that are split included
+  int grid = 0;                        ///< number of the grid's position
+  int least_depth = 0;                 ///< cubes that may meet the part are split at least this often
+  int most_depth = 16;                 ///< cubes are split at most this often
+  int most_square_depth = 9;           ///< squares of a cube are split at most this often before the cube is
+  std::size_t most_cubes = 1'000'000;  ///< largest number of cubes, including those that are split
 };
 
 struct Subdivision {
-  /// With more lines or nodes that are not certain nothing is split any more: the place of the grid is a bad one.
+  /// With more undecided lines and contradictory nodes than this, splitting stops: the grid's position is bad.
   static constexpr std::size_t most_undecided = 200;
 
   CellTree tree;
   std::vector<CellId> leaves;  ///< cubes that meet the solid and have no children
   std::vector<FailingCube> failing;
-  bool passed_at_first = false;  ///< whether none failed before leaves were refined
-  bool was_full = false;         ///< whether there were as many cubes as there may be
-  std::size_t splits = 0;        ///< of cubes that did not pass
+  bool passed_at_first = false;  ///< true if no cube failed before leaves were refined
+  bool was_full = false;         ///< true if the largest number of cubes was reached
+  std::size_t splits = 0;        ///< number of splits of cubes that did not pass
   LineCounts lines;
   std::size_t contradictions = 0;
   std::size_t governors = 0;  ///< sum over leaves
 };
 
-/// Which of some leaves are to be smaller though they pass.
+/// Returns those of some leaves that must become smaller though they pass.
 using Refine = FunctionRef<std::vector<CellId>(const CellTree&, std::span<const CellId>)>;
 
 struct RefineNothing {
   std::vector<CellId> operator()(const CellTree& /*tree*/, std::span<const CellId> /*leaves*/) const { return {}; }
 };
 
-/// Splits a cube around the mesh until each leaf passes CubeTest, or is at the largest depth; and then those that
-/// `refine` asks for, six times at most.
+/// Splits a cube around the mesh until each leaf passes CubeTest or has the largest depth. Then splits the leaves that
+/// `refine` returns, six times at most.
 [[nodiscard]] Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options,
                                     const Context& context, const Refine& refine = RefineNothing{});
 

@@ -8,7 +8,7 @@
 
 namespace blum::voronoi {
 
-/// The surface runs along triangles from an event of the border or an edge of the mesh to the next.
+/// The surface runs along triangles, from an event of the border or an edge of the mesh to the next one.
 std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceInCells& surface,
                                             const GridSquare& square) {
   SurfaceChains out;
@@ -50,7 +50,7 @@ std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceI
   for (std::uint32_t k = 0; k < count; ++k) ends[joined.find(k)].push_back(events[k]);
   for (std::uint32_t k = 0; k < ends.size(); ++k) {
     if (joined.find(k) != k) continue;
-    if (ends[k].size() != 2) return std::nullopt;  // a closed curve, where there is none
+    if (ends[k].size() != 2) return std::nullopt;  // without ends: a closed curve
     chain_of[k] = static_cast<std::uint32_t>(out.ends.size());
     out.ends.push_back({ends[k][0], ends[k][1]});
   }
@@ -68,7 +68,7 @@ bool SurfaceInCells::pierces(std::uint32_t edge, const GridSquare& square) const
   const bool starts_above = detail::is_above(p[0][axis], plane);
   if (starts_above == detail::is_above(p[1][axis], plane)) return false;
   for (const std::size_t along : {next_axis(axis), next_axis(next_axis(axis))}) {
-    // Seen against the axis that is left, the edge passes the plane above or below a coordinate.
+    // Seen against the third axis, the edge passes the plane above or below a coordinate.
     const std::size_t seen = 3 - axis - along;
     const auto is_beyond = [&](double coordinate) {
       if (detail::is_above(p[0][along], coordinate) == detail::is_above(p[1][along], coordinate)) {
@@ -77,7 +77,7 @@ bool SurfaceInCells::pierces(std::uint32_t edge, const GridSquare& square) const
       const bool axis_is_first = next_axis(seen) == axis;
       const int side = axis_is_first ? detail::side_of_line(p, seen, plane, coordinate)
                                      : detail::side_of_line(p, seen, coordinate, plane);
-      // Where the axis is the first one seen and the edge runs up along it, a line to its left is above it.
+      // If the axis is the first one seen and the edge runs up along it, a line to its left is above it.
       const bool line_is_above = (side > 0) == (axis_is_first ? !starts_above : starts_above);
       return !line_is_above;
     };

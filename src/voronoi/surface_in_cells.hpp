@@ -1,4 +1,4 @@
-// Blum: where the surface passes squares and cubes, exactly. SPDX-License-Identifier: Apache-2.0
+// Blum: places where the surface passes squares and cubes, exactly. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace blum::voronoi {
 
-/// Exact questions about a mesh and the cells of a grid, whose planes count as moved by infinitely small amounts
+/// Exact tests of a mesh against the cells of a grid. The grid's planes count as moved by infinitely small amounts
 /// (grid_predicates.hpp).
 class SurfaceInCells {
  public:
@@ -21,10 +21,10 @@ class SurfaceInCells {
       : mesh_(mesh), table_(table), lattice_(lattice) {}
 
   [[nodiscard]] const SiteTable& table() const { return table_; }
-  /// Whether an edge of the mesh passes through a square.
+  /// Returns true if an edge of the mesh passes through a square.
   [[nodiscard]] bool pierces(std::uint32_t edge, const GridSquare& square) const;
   [[nodiscard]] bool is_in(std::uint32_t vertex, const GridCube& cube) const;
-  /// The edges of some triangles, rising.
+  /// Returns the edges of some triangles, rising.
   [[nodiscard]] std::vector<std::uint32_t> edges_of(std::span<const std::uint32_t> triangles) const;
 
  private:
@@ -33,14 +33,14 @@ class SurfaceInCells {
   const Lattice& lattice_;
 };
 
-/// The arcs in which the surface meets a square: each runs along triangles from an event of the border to another.
+/// The arcs in which the surface meets a square. Each runs along triangles from an event of the border to another.
 struct SurfaceChains {
   std::vector<std::array<std::uint32_t, 2>> ends;       ///< the events at both ends of each
   std::vector<std::array<std::uint32_t, 2>> triangles;  ///< chain, triangle: sorted
-  std::vector<std::uint32_t> edges;                     ///< of the mesh that pierce the square, rising
+  std::vector<std::uint32_t> edges;                     ///< edges of the mesh that pierce the square, rising
 };
 
-/// nullopt where the surface in the square has a closed curve.
+/// Returns the arcs, or nullopt if the surface in the square has a closed curve.
 [[nodiscard]] std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceInCells& surface,
                                                           const GridSquare& square);
 

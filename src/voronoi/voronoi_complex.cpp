@@ -47,10 +47,11 @@ void check(const VoronoiOptions& options) {
   }
 }
 
-/// @throws InvalidMesh where the mesh lies so far from the origin that there is no room for a grid in double around it.
+/// @throws InvalidMesh if the size of the mesh is below 1e-45, or a coordinate above 1e45. Also if the mesh is so far
+///   from the origin that a grid in double has no room around it.
 void check_distance(const MeshView& mesh) {
   const Box3 box = bounds(mesh);
-  constexpr double smallest = 1e-45;  // what magnitudes exact signs are for
+  constexpr double smallest = 1e-45;  // range of magnitudes that exact signs support
   constexpr double largest = 1e45;
   if (!(box.diagonal() >= smallest && box.largest_coordinate() <= largest)) {
     throw InvalidMesh("the mesh has a size of " + exact_text(box.diagonal()) + " and coordinates up to " +
@@ -66,7 +67,8 @@ void check_distance(const MeshView& mesh) {
   throw InvalidMesh(std::string(problem));
 }
 
-/// @throws InvalidMesh where a solid is no polyhedron, or its surface meets itself.
+/// @throws InvalidMesh if a solid is not a polyhedron, has segments or points, or has a surface that meets itself. Also
+///   if check_distance() throws.
 void check(const Solid& solid) {
   if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
   const MeshView surface = solid.surface().mesh;
@@ -75,30 +77,31 @@ void check(const Solid& solid) {
   check_manifold(solid);
 }
 
-/// The volume inside, cubic mesh units.
+/// Returns the volume inside, cubic mesh units.
 double volume_of(const Solid& solid) {
   double sum = 0;
   for (const SolidShell& shell : solid.shells()) sum += shell.depth % 2 == 0 ? shell.volume : -shell.volume;
   return sum;
 }
 
-/// How often a cube is split at least, so that its side is that of the box over the resolution, and its diagonal at
-/// most the tolerance. @throws InvalidOption where that is more than there may be.
+/// Returns the smallest number of splits of a cube that satisfies the resolution and the tolerance. Its side must be at
+/// most the box's longest side over the resolution, and its diagonal at most the tolerance.
+/// @throws InvalidOption if the tolerance needs more splits than allowed.
 int least_depth(const VoronoiOptions& options, const Box3& box) {
   const Vec3d size = box.size();
   const double root = CellSplitter::side_of_root * std::max({size.x, size.y, size.z});
   int depth = 0;
   while ((1 << depth) < CellSplitter::side_of_root * options.resolution) ++depth;
   if (!options.tolerance) return depth;
-  constexpr int most = 12;  // some 10^9 cubes where all of the box is solid
+  constexpr int most = 12;  // some 10^9 cubes if all of the box is solid
   while (depth <= most && std::ldexp(root * std::numbers::sqrt3, -depth) > *options.tolerance) ++depth;
   if (depth <= most) return depth;
   throw InvalidOption("Voronoi complex: a tolerance of " + exact_text(*options.tolerance) +
                       " is below a 2,000th of the box around the mesh");
 }
 
-/// Refuses what can not end well: with the surface, cubes of the size that is asked for fill the solid.
-/// @throws InvalidOption
+/// Refuses options that cannot succeed: with the surface, cubes of the requested size fill the solid.
+/// @throws InvalidOption if these are more than max_cubes.
 void check_count(const VoronoiOptions& options, int least_depth, const Box3& box, double volume) {
   if (options.part != VoronoiPart::all) return;
   const Vec3d size = box.size();
@@ -111,12 +114,12 @@ void check_count(const VoronoiOptions& options, int least_depth, const Box3& box
                       "): a coarser one, walls alone, or more cubes");
 }
 
-/// What keeps an octree from passing.
+/// Returns the number of problems that keep an octree from passing.
 std::size_t obstacles(const Subdivision& cells) {
   return cells.failing.size() + cells.lines.undecided + cells.contradictions;
 }
 
-/// Whether another place of the grid may help: where little does not pass, or where this one was given up.
+/// Returns true if another position of the grid may help: few problems exist, or this grid was given up.
 bool may_pass_elsewhere(const Subdivision& cells) {
   constexpr std::size_t few = 16;
   constexpr std::size_t share = 10;
@@ -154,7 +157,8 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
   add_failing(cells.failing, cells.tree, report);
 }
 
-/// Of the part that is asked for (docs/theory/voronoi.md). @param solid  Betti numbers.
+/// Returns the Betti numbers of the requested part (docs/theory/voronoi.md).
+/// @param solid  Betti numbers of the solid.
 BettiNumbers expected_betti(const VoronoiSolid& sited, const BettiNumbers& solid) {
   BettiNumbers out = solid;
   if (sited.rule.is_medial()) return out;
@@ -167,7 +171,7 @@ BettiNumbers expected_betti(const VoronoiSolid& sited, const BettiNumbers& solid
   return out;
 }
 
-/// @param phases  what was done before.
+/// @param phases  phases done before.
 VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::vector<PhaseTime> phases,
                        const Context& context) {
   VoronoiComplex out;
@@ -197,7 +201,7 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
       return crossing_cubes(tree, leaves, CubeTest(sited, surface, tree), sited, context);
     };
     Subdivision cells = subdivide(sited, how, context, crossing);
-    // What is proven comes before how well triangles keep inside.
+    // A proof is more important than triangles that stay inside.
     if (cells.passed_at_first && !cells.failing.empty()) cells = subdivide(sited, how, context);
     return cells;
   };

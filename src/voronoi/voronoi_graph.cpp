@@ -44,7 +44,7 @@ class GraphBuilder {
   void find_walls() {
     const auto count = static_cast<std::uint32_t>(complex_.triangles.size());
     detail::UnionFind joined(count);
-    // In a cube a wall may have triangles that only its vertex joins.
+    // In a cube, triangles of one wall may be joined only by its vertex.
     std::vector<std::pair<std::array<std::int32_t, 2>, std::uint32_t>> at;  // sites, triangle
     for (std::size_t v = 0; v < complex_.positions.size(); ++v) {
       at.clear();
@@ -81,7 +81,7 @@ class GraphBuilder {
     return out;
   }
 
-  /// Whether walls of three or more regions meet in an edge.
+  /// Returns true if walls of three or more regions meet in an edge.
   [[nodiscard]] bool is_seam(std::size_t e) const {
     const std::span<const std::uint32_t> at = incidence_.triangles_of_edge()[e];
     return at.size() > 2 && sites_of(at).size() > 2;
@@ -107,15 +107,15 @@ class GraphBuilder {
     }
   }
 
-  /// Edges of seams between vertices at which not just two of them meet.
+  /// Edges of seams in a row. At each vertex between them, exactly two of these edges meet.
   struct Chain {
     std::size_t edges = 0;
-    bool has_many_sites = false;      ///< four or more at each edge
-    std::vector<std::uint32_t> ends;  ///< vertices
-    std::uint32_t number = none;      ///< of the seam; none of those that are part of a junction
+    bool has_many_sites = false;      ///< true if each edge has four or more sites
+    std::vector<std::uint32_t> ends;  ///< vertices at its ends
+    std::uint32_t number = none;      ///< of the seam; `none` for a chain that is part of a junction
   };
 
-  /// The chain of each edge; none of those that are on no seam.
+  /// Returns the chain of each edge; `none` for edges on no seam.
   std::vector<std::uint32_t> find_chains() {
     const std::size_t count = incidence_.edges().size();
     std::vector<std::uint8_t> is_on_seam(count, 0);
@@ -151,12 +151,12 @@ class GraphBuilder {
   }
 
   [[nodiscard]] static bool is_short(const Chain& chain) {
-    constexpr std::size_t few = 4;  // from a square into a cube, and on
+    constexpr std::size_t few = 4;  // edges from a square into a cube, and on
     return chain.has_many_sites && chain.edges <= few && chain.ends.size() == 2;
   }
 
-  /// Around a point in which four or more regions meet the vertices of cells next to each other all see them: they are
-  /// one junction.
+  /// Around a point in which four or more regions meet, the vertices of neighbouring cells all see these regions. They
+  /// form one junction.
   void join_junctions() {
     detail::UnionFind joined(static_cast<std::uint32_t>(is_end_.size()));
     for (const Chain& chain : chains_) {
@@ -174,7 +174,7 @@ class GraphBuilder {
       }
       junction_of_[v] = junction;
       VoronoiJunction& own = out_.junctions[junction];
-      // Vertices of cubes have the most triangles, and lie where distances are equal, if that is in their cube.
+      // Vertices of cubes have the most triangles. They lie where distances are equal, if that place is in their cube.
       const IndexRows& at = incidence_.triangles_of_vertex();
       if (at[v].size() > at[own.vertex].size()) own.vertex = v;
       own.position = complex_.positions[own.vertex];
@@ -218,8 +218,8 @@ class GraphBuilder {
   const Incidence incidence_;
   const Context& context_;
   std::vector<std::uint32_t> wall_of_;      ///< of each triangle
-  std::vector<std::uint8_t> is_end_;        ///< of each vertex, whether chains end there
-  std::vector<std::uint32_t> junction_of_;  ///< of each vertex at which some do
+  std::vector<std::uint8_t> is_end_;        ///< of each vertex: 1 if chains end there
+  std::vector<std::uint32_t> junction_of_;  ///< of each vertex at which chains end
   std::vector<Chain> chains_;
   VoronoiGraph out_;
 };
@@ -243,7 +243,7 @@ std::vector<VoronoiRegion> voronoi_regions(const Complex& complex) {
     const auto& [a, b, c] = complex.triangles[t];
     const Vec3d p = complex.positions[a] - middle;
     const Vec3d normal = cross(complex.positions[b] - middle - p, complex.positions[c] - middle - p);
-    // Corners run counterclockwise as seen from the region of site_b: the normal points into it.
+    // Corners run counterclockwise as seen from the region of site_b, so the normal points into that region.
     const double cone = dot(p, normal) / 6;
     const double area = 0.5 * length(normal);
     volumes[site_b[t]] -= cone;

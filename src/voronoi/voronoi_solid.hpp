@@ -1,4 +1,4 @@
-// Blum: all that is known of a polyhedron before space is divided. SPDX-License-Identifier: Apache-2.0
+// Blum: properties of a polyhedron that do not depend on a grid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@
 
 namespace blum::voronoi {
 
-/// The loops of edges that bound each face: one, and one more for each hole. Where a face touches itself in a vertex,
-/// loops follow the triangles around it.
+/// Loops of edges that bound each face: one, plus one for each hole. If a face touches itself in a vertex, loops follow
+/// the triangles around the vertex.
 class FaceLoops {
  public:
   FaceLoops(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
 
-  /// The loops of a face: vertices.
+  /// Returns the loops of a face, as lists of vertices.
   [[nodiscard]] std::span<const std::vector<std::uint32_t>> of(std::uint32_t face) const {
     return std::span(loops_).subspan(first_[face], first_[face + 1] - first_[face]);
   }
-  /// Holes of all faces.
+  /// Returns the number of holes of all faces.
   [[nodiscard]] std::size_t hole_count() const { return loops_.size() + 1 - first_.size(); }
 
  private:
@@ -33,8 +33,8 @@ class FaceLoops {
   std::vector<std::vector<std::uint32_t>> loops_;
 };
 
-/// A polyhedron with its sites, and the part of its diagram that is asked for. Lives no longer than the mesh and its
-/// table, and stays where it is.
+/// A polyhedron with its sites, and the requested part of its diagram. The mesh and its table must outlive it. It
+/// cannot be copied or moved.
 struct VoronoiSolid {
   VoronoiSolid(const MeshView& of, const SiteTable& table_of, VoronoiPart part, const Context& context = {})
       : mesh(of),
@@ -63,7 +63,7 @@ struct VoronoiSolid {
   const FaceLoops loops;
   const std::vector<ReflexCorner> corners;  ///< of each vertex, for a medial axis
   const PartRule rule;
-  std::vector<std::uint32_t> triangle_of_face;  ///< any of each
+  std::vector<std::uint32_t> triangle_of_face;  ///< any triangle of each face
 };
 
 }  // namespace blum::voronoi

@@ -24,7 +24,7 @@ struct Linear {
 
 using MovingVector = std::array<Linear, 3>;
 
-/// Positions over time, and a distance, scaled by one power of two such that all are integers.
+/// Positions over time, and a distance, scaled by one power of two so that all are integers.
 struct IntegerPoints {
   std::array<MovingVector, 4> at;
   Integer distance;
@@ -38,7 +38,7 @@ using PolynomialVector = std::array<Polynomial, 3>;
 [[nodiscard]] Polynomial dot(const PolynomialVector& a, const PolynomialVector& b);
 [[nodiscard]] Polynomial dot(const PolynomialVector& a, const MovingVector& b);
 
-/// A finite double as mantissa * 2^exponent, the mantissa odd or zero.
+/// A finite double as mantissa * 2^exponent. The mantissa is odd or zero.
 struct WholeDouble {
   std::int64_t mantissa;
   int exponent;
@@ -88,7 +88,7 @@ Polynomial operator*(const Linear& a, const Linear& b) {
   return {a.start * b.start, a.start * b.slope + a.slope * b.start, a.slope * b.slope};
 }
 
-/// One component of a cross product.
+/// Returns one component of a cross product.
 Polynomial cross_component(const MovingVector& a, const MovingVector& b, std::size_t axis) {
   const std::size_t next = (axis + 1) % 3;
   const std::size_t last = (axis + 2) % 3;
@@ -113,15 +113,16 @@ Polynomial dot(const PolynomialVector& a, const MovingVector& b) {
   return sum;
 }
 
-/// The depth at which intervals are no wider than a tolerance, from 2^-40 to 1.
+/// Returns the depth at which intervals are no wider than a tolerance, which is from 2^-40 to 1.
 unsigned depth_of(double tolerance) {
   int exponent = 0;
   std::frexp(tolerance, &exponent);
   return static_cast<unsigned>(std::max(1 - exponent, 0)) + 1;
 }
 
-/// Two parts of features (a vertex, the inside of an edge or a face) that are no further apart than the distance where
-/// `excess` is not positive, `parts` are not negative, as the closest points lie on the parts, and `size` is positive.
+/// Two parts of features (a vertex, the inside of an edge or a face). They are no further apart than the distance if
+/// `excess` is not positive, all of `inside` are not negative, and `size` is positive. `inside` expresses that the
+/// closest points lie on the parts.
 struct Parts {
   Polynomial excess;
   std::vector<Polynomial> inside;
@@ -137,7 +138,7 @@ class Approach {
     const MovingVector between = vector(a, b);
     parts_.push_back({dot(between, between) - square_, {}, one_});
   }
-  /// A point, and the line from one to another.
+  /// Adds a point, and the edge from one point to another.
   void add_vertex_and_edge(std::size_t point, std::size_t from, std::size_t to) {
     const MovingVector edge = vector(from, to);
     const MovingVector way = vector(from, point);
@@ -149,8 +150,8 @@ class Approach {
   void add_vertex_and_face() { add_insides(vector(1, 2), vector(1, 3), vector(1, 0), true); }
   void add_edge_and_edge() { add_insides(vector(0, 1), vector(2, 3), vector(0, 2), false); }
 
-  /// They are close for the first time at the start, or where two parts are exactly as far apart as the distance; of
-  /// those that always are, where the closest points come to lie on them.
+  /// Returns the first time at which they are close. That is the start, or a time at which two parts are exactly as far
+  /// apart as the distance. For parts that always are, it is the time at which the closest points come to lie on them.
   [[nodiscard]] std::optional<double> first(double tolerance) const {
     const RealRoots start(Polynomial{0, 1});
     const auto holds_at_start = [&](const Parts& parts) { return holds(parts, start, start.all().front()); };
@@ -172,7 +173,7 @@ class Approach {
     return points_.at[to] - points_.at[from];
   }
 
-  /// Features that are a + s u and, w further on, b + r v; of a face, a point w from a + s u + r v.
+  /// Adds features a + s u and b + r v, with w = b - a. For a face, adds the points a + s u + r v and the point a + w.
   void add_insides(const MovingVector& u, const MovingVector& v, const MovingVector& w, bool is_face) {
     const PolynomialVector normal = cross(u, v);
     const Polynomial size = dot(normal, normal);
@@ -213,7 +214,7 @@ class Approach {
   std::vector<Parts> parts_;
 };
 
-/// Two features, in a plane of which two vectors are along both.
+/// Two features, and two vectors that span their common plane.
 class Features {
  public:
   /// A point that may lie on a segment, by their numbers.
@@ -230,26 +231,26 @@ class Features {
     return {integer_points(points).at, {0, 1}, {2, 3}, {0, 2}, {{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}}};
   }
 
-  /// Zero where all points lie in one plane.
+  /// Returns zero if all points lie in one plane.
   [[nodiscard]] Polynomial volume() const {
     return dot(cross(vector(first_[0], first_[1]), vector(second_[0], second_[1])), vector(between_[0], between_[1]));
   }
-  /// Zero along all axes where the points of a face, or directions of edges, have no plane of their own.
+  /// Returns zero along all axes if the points of a face, or the directions of edges, do not span a plane.
   [[nodiscard]] Polynomial normal(std::size_t axis) const {
     return cross_component(vector(first_[0], first_[1]), vector(second_[0], second_[1]), axis);
   }
-  /// Zero along all axes where the three points lie on a line.
+  /// Returns zero along all axes if the three points lie on a line.
   [[nodiscard]] Polynomial area(const Touch& touch, std::size_t axis) const {
     return cross_component(vector(touch.from, touch.to), vector(touch.from, touch.point), axis);
   }
-  /// On that line: positive beyond the ends of the segment.
+  /// For a point on that line: returns a positive value beyond the ends of the segment.
   [[nodiscard]] Polynomial beyond(const Touch& touch) const {
     return dot(vector(touch.from, touch.point), vector(touch.to, touch.point));
   }
-  /// With no plane, features meet where one of these points lies on its segment.
+  /// Returns the points that may lie on segments. If no plane is spanned, features meet where one of them does.
   [[nodiscard]] const std::vector<Touch>& touches() const { return touches_; }
 
-  /// Whether they meet at a root, where their points lie in one plane.
+  /// Returns true if they meet at a root, where their points lie in one plane.
   [[nodiscard]] bool meet_at(const RealRoots& roots, const RealRoot& root) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (roots.sign_at(root, normal(axis)) != 0) return overlap_along(axis, roots, root);
@@ -270,7 +271,7 @@ class Features {
 
   [[nodiscard]] MovingVector vector(std::size_t from, std::size_t to) const { return points_[to] - points_[from]; }
 
-  /// Whether they meet, seen along an axis that their plane does not hold.
+  /// Returns true if they meet as seen along an axis that is not parallel to their plane.
   [[nodiscard]] bool overlap_along(std::size_t axis, const RealRoots& roots, const RealRoot& root) const {
     const auto side = [&](std::size_t k) { return roots.sign_at(root, area(touches_[k], axis)); };
     const int first = side(0);
@@ -289,19 +290,19 @@ class Features {
   std::vector<Touch> touches_;
 };
 
-/// The first root at which the features meet.
+/// Returns the first root at which the features meet.
 std::optional<double> first_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance) {
   const RealRoots roots(polynomial);
   for (const RealRoot& isolated : roots.all()) {
-    // Narrow, signs next to it are soon told.
+    // In a narrow interval, signs next to the root are decided fast.
     const RealRoot root = roots.refined(isolated, depth_of(tolerance));
     if (features.meet_at(roots, root)) return root.lower_bound();
   }
   return std::nullopt;
 }
 
-/// Of points that never leave their common plane: the features meet for the first time at the start or where one of the
-/// signs that tell it changes.
+/// Returns the first meeting of features whose points never leave their common plane. It is at the start, or where one
+/// of the signs that decide it changes.
 std::optional<double> first_in_plane(const Features& features, double tolerance) {
   std::optional<double> first = first_at_roots_of(Polynomial{0, 1}, features, tolerance);
   const auto look_at = [&](const Polynomial& polynomial) {

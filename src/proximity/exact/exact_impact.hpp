@@ -1,4 +1,4 @@
-// Blum: when moving features meet, without rounding. SPDX-License-Identifier: Apache-2.0
+// Blum: times at which moving features meet, without rounding. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
@@ -7,15 +7,16 @@
 
 namespace blum::detail {
 
-/// When a vertex and a face, or two edges, are for the first time no further apart than a distance, which is positive:
-/// as impacts are told. Some milliseconds at most for usual coordinates.
+/// Returns the first time at which a vertex and a face, or two edges, are no further apart than a distance. The
+/// distance must be positive. Times are those of vertex_face_impact(). Takes some milliseconds at most for usual
+/// coordinates.
 [[nodiscard]] std::optional<double> exact_vertex_face_approach(const FourMovingPoints& points, double distance,
                                                                double tolerance);
 [[nodiscard]] std::optional<double> exact_edge_edge_approach(const FourMovingPoints& points, double distance,
                                                              double tolerance);
 
-/// The answers of vertex_face_impact() and edge_edge_impact() by integers alone: for any finite coordinates, some ten
-/// to a hundred times as slow as by doubles where these tell.
+/// Computes the results of vertex_face_impact() and edge_edge_impact() by integers alone, for any finite coordinates.
+/// Takes some ten to a hundred times as long as doubles that decide the answer.
 [[nodiscard]] std::optional<double> exact_vertex_face_impact(const FourMovingPoints& points, double tolerance);
 [[nodiscard]] std::optional<double> exact_edge_edge_impact(const FourMovingPoints& points, double tolerance);
 

@@ -9,7 +9,8 @@
 namespace blum::detail {
 namespace {
 
-/// The remainders of dividing the first by the second, that by the first remainder, and so on, with the signs changed.
+/// Returns the remainders of dividing the first by the second, that by the first remainder, and so on, with reversed
+/// signs.
 std::vector<Polynomial> remainders(const Polynomial& first, Polynomial second) {
   std::vector<Polynomial> all{first};
   while (!second.is_zero()) {
@@ -21,7 +22,7 @@ std::vector<Polynomial> remainders(const Polynomial& first, Polynomial second) {
   return all;
 }
 
-/// How often the sign changes along a sequence.
+/// Returns how often the sign changes along a sequence.
 int variations(const std::vector<Polynomial>& sequence, const Dyadic& t) {
   int changes = 0;
   int last = 0;
@@ -59,7 +60,7 @@ RealRoots::RealRoots(Polynomial polynomial) : rest_(std::move(polynomial)) {
   std::sort(roots_.begin(), roots_.end(), is_less);
 }
 
-/// Narrows the intervals until no exact root lies within one.
+/// Narrows the intervals until none contains an exact root.
 void RealRoots::separate() {
   for (RealRoot& root : roots_) {
     const auto holds = [&](const RealRoot& other) {
@@ -102,7 +103,7 @@ RealRoot RealRoots::refined(RealRoot root, unsigned depth) const {
   if (root.is_exact || root.depth >= depth) return root;
   const int low_sign = rest_.sign_at(root.low());
   const bool changes_sign = low_sign != rest_.sign_at(root.high());
-  // Where doubles say that it is, it mostly is.
+  // A guess by doubles is mostly right, and is verified.
   constexpr unsigned double_digits = 50;
   if (changes_sign && depth <= double_digits) {
     const RealRoot guess = guessed(root, low_sign, depth);
@@ -121,9 +122,10 @@ RealRoot RealRoots::refined(RealRoot root, unsigned depth) const {
   return root;
 }
 
-/// The part of [0, 1], 2^-depth wide, that halving with doubles leads to. @param low_sign  before the root.
+/// Returns the part of [0, 1], 2^-depth wide, that halving with doubles leads to.
+/// @param low_sign  sign before the root.
 RealRoot RealRoots::guessed(const RealRoot& root, int low_sign, unsigned depth) const {
-  // Scaled alike, so that the largest is about 1.
+  // All are scaled alike, so that the largest has at most 63 bits.
   unsigned most_bits = 0;
   for (int k = 0; k <= rest_.degree(); ++k) {
     const Integer& c = rest_[static_cast<std::size_t>(k)];
@@ -151,12 +153,12 @@ RealRoot RealRoots::guessed(const RealRoot& root, int low_sign, unsigned depth) 
   return {Integer(static_cast<std::uint64_t>(std::ldexp(low, static_cast<int>(depth)))), depth};
 }
 
-/// The sign that a polynomial of degree 2 or less has all over the interval of a root; 0 where it may have several.
+/// Returns the sign of a polynomial of degree 2 or less all over the interval of a root; 0 if it may have several.
 int RealRoots::sign_over(const RealRoot& root, const Polynomial& other) {
   const int low = other.sign_at(root.low());
   if (low == 0 || other.sign_at(root.high()) != low) return 0;
   if (other.degree() < 2) return low;
-  // The Bernstein coefficient between, twice: 2 a + b (low + high) + 2 c low high, times 4^depth.
+  // The Bernstein coefficient in between, twice: 2 a + b (low + high) + 2 c low high, times 4^depth.
   const Integer middle = (((other[0] << (root.depth + 1)) + other[1] * (2 * root.cell + 1)) << root.depth) +
                          other[2] * (root.cell * (root.cell + 1) * 2);
   return middle.sign() == low ? low : 0;
@@ -175,7 +177,7 @@ int RealRoots::sign_at(const RealRoot& root, const Polynomial& other) const {
 int Polynomial::sign_at(const Dyadic& t) const {
   if (size_ == 0) return 0;
   if (t.numerator == 0) return coefficients_[0].sign();
-  // Horner's scheme for 2^(exponent * degree) times the value.
+  // Horner's scheme for the value times 2^(exponent * degree).
   Integer value = coefficients_[size_ - 1];
   unsigned shift = 0;
   for (std::size_t k = size_ - 1; k-- > 0;) {
@@ -194,8 +196,8 @@ Polynomial Polynomial::derivative() const {
 }
 
 Polynomial Polynomial::without_root(const Dyadic& root) const {
-  // In lowest terms, the coefficients of 2^exponent * t - numerator have no common divisor, so that the quotient by it
-  // is of integers (Gauss).
+  // In lowest terms, the coefficients of 2^exponent * t - numerator have no common divisor. So the quotient by it has
+  // integer coefficients (Gauss).
   Dyadic factor = root;
   while (factor.exponent > 0 && !bit_test(factor.numerator, 0)) {
     factor.numerator >>= 1;

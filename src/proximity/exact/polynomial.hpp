@@ -24,13 +24,13 @@ class Polynomial {
   static constexpr std::size_t most_coefficients = 13;
 
   Polynomial() = default;
-  /// From the constant on.
+  /// Makes a polynomial from its coefficients, from the constant on.
   Polynomial(std::initializer_list<Integer> coefficients) {
     for (const Integer& c : coefficients) coefficients_[size_++] = c;
     trim();
   }
 
-  // Copies of what there is: the places behind it would take most of the time.
+  // Only coefficients in use are copied. Copies of the others would take most of the time.
   Polynomial(const Polynomial& other) : size_(other.size_) {
     std::copy_n(other.coefficients_.begin(), size_, coefficients_.begin());
   }
@@ -51,7 +51,7 @@ class Polynomial {
   }
   ~Polynomial() = default;
 
-  /// -1 for zero.
+  /// Returns the degree; -1 for zero.
   [[nodiscard]] int degree() const { return static_cast<int>(size_) - 1; }
   [[nodiscard]] bool is_zero() const { return size_ == 0; }
   [[nodiscard]] const Integer& operator[](std::size_t power) const { return coefficients_[power]; }
@@ -59,17 +59,17 @@ class Polynomial {
 
   [[nodiscard]] int sign_at(const Dyadic& t) const;
   [[nodiscard]] Polynomial derivative() const;
-  /// Without the factor (t - root), as often as it is there.
+  /// Returns the polynomial without the factor (t - root), removed as often as it occurs.
   [[nodiscard]] Polynomial without_root(const Dyadic& root) const;
 
-  /// Makes coefficients that have a common divisor smaller, by a positive number.
+  /// Divides the coefficients by their greatest common divisor, which is positive.
   void divide_by_content();
 
   friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator-(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator-(Polynomial a);
-  /// The remainder of dividing a by b, times a positive number.
+  /// Returns the remainder of a divided by b, times a positive number.
   friend Polynomial positive_remainder(Polynomial a, const Polynomial& b);
 
  private:
@@ -81,7 +81,8 @@ class Polynomial {
   std::size_t size_ = 0;
 };
 
-/// A root: cell / 2^depth where it is exact, else the only one between this and (cell + 1) / 2^depth, which are none.
+/// A root. If it is exact, its value is cell / 2^depth. Otherwise it is the only root between that and (cell + 1) /
+/// 2^depth, and both ends are not roots.
 struct RealRoot {
   Integer cell = 0;
   unsigned depth = 0;
@@ -89,24 +90,24 @@ struct RealRoot {
 
   [[nodiscard]] Dyadic low() const { return {cell, depth}; }
   [[nodiscard]] Dyadic high() const { return {cell + 1, depth}; }
-  /// A number that is no more than the root, and less by 2^-52 at most besides the width of the interval.
+  /// Returns a number that is not above the root. It is below by at most 2^-52 and the width of the interval.
   [[nodiscard]] double lower_bound() const;
 };
 
-/// The real roots of a polynomial in [0, 1], and the signs of others there. All answers are exact.
-/// Method: counts of roots by sequences of remainders (Sturm 1829; of those with a sign condition: Tarski 1951).
+/// Real roots of a polynomial in [0, 1], and the signs of other polynomials there. All answers are exact.
+/// Method: counts of roots by sequences of remainders (Sturm 1829), and of roots with a sign condition (Tarski 1951).
 class RealRoots {
  public:
   /// @param polynomial  not zero.
   explicit RealRoots(Polynomial polynomial);
 
-  /// The roots, each once, by rising value.
+  /// Returns the roots, each once, by rising value.
   [[nodiscard]] const std::vector<RealRoot>& all() const { return roots_; }
 
-  /// The same root in an interval no wider than 2^-depth.
+  /// Returns the same root in an interval no wider than 2^-depth.
   [[nodiscard]] RealRoot refined(RealRoot root, unsigned depth) const;
 
-  /// -1, 0 or 1: that of another polynomial at a root.
+  /// Returns the sign, -1, 0 or 1, of another polynomial at a root.
   [[nodiscard]] int sign_at(const RealRoot& root, const Polynomial& other) const;
 
  private:
@@ -115,7 +116,7 @@ class RealRoots {
   [[nodiscard]] RealRoot guessed(const RealRoot& root, int low_sign, unsigned depth) const;
   [[nodiscard]] static int sign_over(const RealRoot& root, const Polynomial& other);
 
-  Polynomial rest_;  ///< without the roots that were met exactly
+  Polynomial rest_;  ///< without the roots that were found exactly
   std::vector<Polynomial> sequence_;
   std::vector<RealRoot> roots_;
 };
