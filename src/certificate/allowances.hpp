@@ -1,4 +1,4 @@
-// Blum: within which lengths an axis may be off, for the verifier. SPDX-License-Identifier: Apache-2.0
+// Blum: lengths by which an axis may be off, for the verifier. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -9,44 +9,46 @@
 
 namespace blum::verifier {
 
-/// The side of a voxel that an axis says, as far as it can be so: an eighth of the longest side of the solid at most,
-/// as the coarsest grid has it. 1/32 of the diagonal where nothing is said. Where the solid is made of voxels, these
-/// are known. Edges of the axis tell nothing: those in the middle of what is round are as short as its facets make
-/// them.
+/// Returns the side of a voxel that the verifier assumes: `options.spacing`, or 1/32 of the diagonal if that is unset.
+/// It is at most an eighth of the longest side of the solid, as on the coarsest grid. If the solid is made of voxels,
+/// its range is instead from half a voxel's diagonal to the whole diagonal. Edges of the axis are not used: in the
+/// middle of round parts they are as short as the facets of the surface.
 [[nodiscard]] double believed_voxel(const KnownSolid& solid, const CertificateOptions& options, double factor);
 
-/// The same for how far vertices were moved: 1/64 of the diagonal at most, what an edge may cut off a corner.
+/// Returns how far vertices may have been moved: `options.deviation`, or 0 if that is unset. It is at most 1/64 of the
+/// diagonal, which is how much an edge may cut off a corner.
 [[nodiscard]] double believed_deviation(const KnownSolid& solid, const CertificateOptions& options, double factor);
 
-/// Lengths within which an axis may be off, as the verifier sees the solid.
+/// Lengths by which an axis may be off, as the verifier sees the solid.
 ///
-/// What a file says of itself makes none of them wider than the solid shows: next to a ball in the middle between two
-/// walls, all are at most shares of its radius, so that halfway to the wall is off everywhere. Solids of voxels show
-/// nothing smaller than these, and tell themselves how large they are.
+/// Claims of a file never make an allowance wider than the solid justifies. Next to a ball between two walls, an
+/// allowance is limited to a share of the ball's radius, or to what flat cells cut off. So a point halfway to the wall
+/// is always off. Solids of voxels are exempt: they show nothing smaller than these lengths, and their voxel size is
+/// known.
 struct Allowances {
   double voxel = 0;
-  double middle = 0;    ///< of a point of the axis, from the middle
-  double close = 0;     ///< the same, for half of all
-  double missing = 0;   ///< of a point of the middle, from the axis
-  double apart = 0;     ///< footprints that are closer than this count where they are seen from between them, about
-  double lambda = 0;    ///< those that are closer than this count for nothing
-  double rounding = 0;  ///< less than this is nothing
-  double noise = 0;     ///< degrees
+  double middle = 0;    ///< distance of a point of the axis from the middle
+  double close = 0;     ///< the same, for half of all points
+  double missing = 0;   ///< distance of a point of the middle from the axis
+  double apart = 0;     ///< closer footprints count only at steep angles, and not for voxels
+  double lambda = 0;    ///< closer footprints never count
+  double rounding = 0;  ///< shorter lengths count as rounding errors
+  double noise = 0;     ///< degrees from which two walls count as two
   bool of_voxels = false;
 
   static constexpr double steep = 80;  ///< degrees
 
-  /// Whether an axis must have what two footprints so far apart are seen from at an angle. Between walls that are close
-  /// only steep ones are more than roughness; between voxels that are close there is none.
+  /// Returns true if the axis must contain points that see two footprints at this distance and angle. Between close
+  /// walls only steep angles are more than roughness. Between close voxels no angle is.
   [[nodiscard]] bool counts(double between, double angle) const {
     return between >= lambda && (between >= apart || (angle >= steep && !of_voxels));
   }
-  /// How far from the middle a point of a cell so large may be next to a ball of a radius: flat cells cut off what is
-  /// bent. Of nearly all.
+  /// Returns how far from the middle a point of a cell of this size may be, next to a ball of this radius. Nearly all
+  /// points must be within it. Large flat cells may be further off, because they cut off curved parts.
   [[nodiscard]] double middle_at(double radius, double size = 0) const { return limited(middle, radius / 4, size); }
-  /// The same of half of all.
+  /// Returns the same limit for half of all points.
   [[nodiscard]] double close_at(double radius, double size = 0) const { return limited(close, radius / 8, size); }
-  /// How far from the axis a ball of a radius may be: sheets end within a voxel, about.
+  /// Returns how far from the axis a ball of this radius may be. Sheets end within about a voxel.
   [[nodiscard]] double missing_at(double radius) const {
     return of_voxels ? missing : std::min(missing, std::max(radius / 2, 2 * voxel));
   }
@@ -58,7 +60,8 @@ struct Allowances {
   }
 };
 
-/// @param factor  lengths are this many times what the caller knows; those of the options are the caller's.
+/// Computes the allowances for a solid.
+/// @param factor  lengths are this many times the caller's. Lengths of the options are the caller's.
 [[nodiscard]] Allowances allowances(const KnownSolid& solid, const CertificateOptions& options, double factor);
 
 }  // namespace blum::verifier

@@ -10,7 +10,7 @@ namespace blum::verifier {
 
 inline constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
-/// Degrees between two vectors; 0 where one of them has no length.
+/// Returns the angle between two vectors in degrees; 0 if one of them has no length.
 [[nodiscard]] inline double degrees_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) * degrees_per_radian;
 }

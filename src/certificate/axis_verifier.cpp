@@ -26,11 +26,11 @@ struct BoundedSolid {
   ScaledMesh given;
   std::optional<verifier::BoundingMesh> bounding;
   std::optional<ScaledMesh> own;
-  std::optional<KnownSolid> solid;  ///< unset where the mesh bounds no polyhedron
+  std::optional<KnownSolid> solid;  ///< unset if the mesh bounds no polyhedron
   MeshSolidRule rule;
 
   BoundedSolid(const MeshView& mesh, double factor, const Context& context) : given(mesh, factor) {
-    // Nearly always the mesh will do as it is, and is read once.
+    // Nearly all meshes can be used as they are, and are then read once.
     if (find_self_intersections(mesh, 0, context).complete) {
       try {
         solid = verifier::solid_of_mesh(given.view, given.view, context);
@@ -50,7 +50,7 @@ struct BoundedSolid {
   }
 };
 
-/// With what nothing can be said of left out.
+/// Returns the options without checks that depend on a check that is off.
 CertificateOptions consistent(CertificateOptions options) {
   options.radii = options.radii && options.positions;
   options.footprints = options.footprints && options.radii;
@@ -62,7 +62,7 @@ CertificateOptions consistent(CertificateOptions options) {
   return options;
 }
 
-/// Nothing but places.
+/// Options that check only positions.
 constexpr CertificateOptions only_places{.positions = true,
                                          .radii = false,
                                          .footprints = false,
@@ -72,7 +72,7 @@ constexpr CertificateOptions only_places{.positions = true,
                                          .balls = false,
                                          .medial = false};
 
-/// The cells of a complex, with columns of which nothing is looked at.
+/// Returns the cells of a complex with medial columns, which are not checked.
 Complex with_medial_columns(const Complex& complex) {
   Complex out;
   out.positions = complex.positions;
@@ -84,7 +84,7 @@ Complex with_medial_columns(const Complex& complex) {
 
 }  // namespace
 
-/// What is read of a solid.
+/// A solid that is read when it is first needed.
 class AxisVerifier::Reading {
  public:
   explicit Reading(double factor) : factor_(factor) {}
@@ -92,12 +92,12 @@ class AxisVerifier::Reading {
   Reading& operator=(const Reading&) = delete;
   virtual ~Reading() = default;
 
-  /// It is as many times as large as the caller knows it.
+  /// Returns how many times larger the solid is than the caller's.
   [[nodiscard]] double factor() const { return factor_; }
   [[nodiscard]] virtual MeshSolidRule rule(const Context& context) const = 0;
   /// @throws InvalidMesh, InvalidGrid, Cancelled.
   [[nodiscard]] virtual const KnownSolid& solid(const Context& context) const = 0;
-  /// Tells what the solid is.
+  /// Writes the kind of the solid and its voxel size into a certificate.
   virtual void describe(Certificate& certificate) const = 0;
 
  private:
@@ -152,7 +152,7 @@ class AxisVerifier::VoxelReading : public Reading {
  private:
   VoxelSet voxels_;
   GridSpec grid_;
-  double shortest_side_;  ///< as the caller knows it
+  double shortest_side_;  ///< in the caller's units
   std::optional<ScaledMesh> surface_;
   verifier::Lazy<KnownSolid> solid_;
 };

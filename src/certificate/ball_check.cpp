@@ -15,7 +15,7 @@ namespace {
 
 constexpr double rounding_of_diagonal = 1e-9;
 
-/// A ball around a vertex, and the body that it should fill.
+/// A ball around a sample of the axis, and the body that it should fill.
 struct OwnedBall {
   Ball ball;
   std::uint32_t body = 0;
@@ -23,14 +23,14 @@ struct OwnedBall {
 
 constexpr double parts_of_diagonal = 256;
 
-/// How far samples of the axis may be from each other: finer axes have vertices enough.
+/// Returns the largest distance between samples of the axis. Finer axes have enough vertices.
 double step_of_balls(const MedialView& axis, double diagonal) {
   constexpr double most_balls = 50'000;
   constexpr double parts = 200;
   return std::max(diagonal / parts, std::sqrt(area_of(axis) / most_balls));
 }
 
-/// The length of the median edge, or a part of the solid where that is less.
+/// Returns the length of the median edge, or 1/256 of the diagonal if that is less.
 double default_step(const MedialView& axis, double diagonal) {
   std::vector<double> squares;
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
@@ -45,7 +45,7 @@ double default_step(const MedialView& axis, double diagonal) {
   return std::clamp(std::sqrt(*middle), rounding_of_diagonal * diagonal, diagonal / parts_of_diagonal);
 }
 
-/// Fills what the samples of the surface tell.
+/// Measures the distances from samples of the surface to the balls.
 void measure_surface(const std::vector<Sample>& samples, const BallUnion& balls, BallUnionCheck& check,
                      const Context& context) {
   struct Part {
@@ -76,7 +76,7 @@ void measure_surface(const std::vector<Sample>& samples, const BallUnion& balls,
 constexpr std::size_t directions_per_ball = 32;
 constexpr std::size_t most_directions = 100'000;
 
-/// Directions spread evenly along a spiral from pole to pole.
+/// Returns directions spread evenly along a spiral from pole to pole.
 std::array<Vec3d, directions_per_ball> directions() {
   std::array<Vec3d, directions_per_ball> result;
   for (std::size_t k = 0; k < directions_per_ball; ++k) {
@@ -88,12 +88,12 @@ std::array<Vec3d, directions_per_ball> directions() {
   return result;
 }
 
-/// How far points of balls that are in no other ball are from the surface.
+/// Returns the largest distance to the surface, over points of balls that lie in no other ball.
 double balls_to_surface(const std::vector<OwnedBall>& owned, const BallUnion& balls, const SolidOracle& solid,
                         const Context& context) {
   constexpr std::size_t grain = 64;
   const double margin = rounding_of_diagonal * solid.diagonal();
-  // Of very many balls only every so many-th is looked at: neighbours are alike.
+  // If there are very many balls, only every n-th is sampled, because neighbours are alike.
   const std::size_t every = owned.size() * directions_per_ball / most_directions + 1;
   const std::size_t count = (owned.size() + every - 1) / every;
   const auto ways = directions();

@@ -9,7 +9,7 @@
 namespace blum::verifier {
 namespace {
 
-/// Half of what float32 tells apart at 1.
+/// Half the distance between float32 numbers at 1.
 constexpr double rounding = 6e-8;
 
 float rounded_up(double value) {
@@ -58,20 +58,20 @@ Vec3d BallUnion::slope_of(const BoxHierarchy::Places& places) const {
     for (std::size_t a = 0; a < 3; ++a) spread.columns[a] += apart * apart[a];
     rise += apart * ((balls_[k].radius - mean_radius) / size_);
   }
-  // Across a sheet nothing is known: a little more spread keeps the slope along it.
+  // Across a sheet the slope is unknown. A little more spread keeps it along the sheet.
   const double more = 1e-3 * (spread.columns[0].x + spread.columns[1].y + spread.columns[2].z);
   for (std::size_t a = 0; a < 3; ++a) spread.columns[a][a] += more;
   const auto& [x, y, z] = spread.columns;
   const double volume = dot(x, cross(y, z));
   if (!(volume > 0)) return {};
   const Vec3d slope = Vec3d{dot(rise, cross(y, z)), dot(x, cross(rise, z)), dot(x, cross(y, rise))} / volume;
-  constexpr double steepest = 2;  // of true axes 1
+  constexpr double steepest = 2;  // true axes have at most 1
   return squared_length(slope) <= steepest * steepest ? slope : Vec3d{};
 }
 
 void BallUnion::set_child(Node& node, std::size_t k, const Box3& box, const BoxHierarchy::Places& places,
                           double largest) const {
-  constexpr std::uint32_t most_balls = 4096;  // radii of many follow no plane
+  constexpr std::uint32_t most_balls = 4096;  // the radii of more follow no plane
   const Vec3d slope = places.second - places.first <= most_balls ? slope_of(places) : Vec3d{};
   Vec3d middle;
   Vec3d rounded_slope;
@@ -100,7 +100,7 @@ std::uint32_t BallUnion::add_node(const BoxHierarchy& tree, const std::vector<Bo
   const auto is_leaf = [&](std::uint32_t n) { return places[n].second - places[n].first <= width; };
   InlineList<std::uint32_t, width> children;
   children.push_back(index);
-  // What has most balls is halved, as long as there is room.
+  // Splits the child with the most balls while there is room.
   while (!children.is_full()) {
     std::uint32_t* const most =
         std::max_element(children.begin(), children.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -128,8 +128,8 @@ std::uint32_t BallUnion::add_node(const BoxHierarchy& tree, const std::vector<Bo
 }
 
 BallUnion::Four BallUnion::bounds_of(const Node& node, const std::array<float, 3>& at) {
-  // The distance of a centre c less what the radius may be there, |p - c| - radius - slope * (c - middle), is convex in
-  // c: nowhere in the box is it less than what goes on from the middle as it begins there.
+  // The distance of a centre c minus its largest possible radius, |p - c| - radius - slope * (c - middle), is convex in
+  // c. So its tangent at the middle is a lower bound in the whole box.
   std::array<Four, 3> apart{};
   Four squared{};
   Four squared_outside{};
@@ -156,7 +156,7 @@ BallUnion::Four BallUnion::bounds_of(const Node& node, const std::array<float, 3
   }
   for (std::size_t k = 0; k < width; ++k) {
     const float of_box = std::sqrt(squared_outside[k]) - node.largest[k];
-    // Next to the middle rounding turns the way there.
+    // Close to the middle, rounding spoils the direction to it.
     bounds[k] = squared[k] < node.squared_reach[k] || bounds[k] < of_box ? of_box : bounds[k];
   }
   return bounds;
@@ -171,13 +171,13 @@ void BallUnion::search(const Vec3d& p, double least, const Visit& visit) const {
   };
   const Vec3d local = (p - origin_) / size_;
   const double reach = std::abs(local.x) + std::abs(local.y) + std::abs(local.z);
-  if (!(reach < 1e15)) {  // squares would be no numbers
+  if (!(reach < 1e15)) {  // squares would overflow
     for (std::uint32_t place = 0; place < balls_.size(); ++place) least = visit(place);
     return;
   }
   const std::array<float, 3> at{static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z)};
   const double slack = slack_ + rounding * 20 * reach;
-  InlineList<Item, 128> stack;  // three more for each level, and levels quarter
+  InlineList<Item, 128> stack;  // three more per level, and each level has a quarter of the balls
   stack.push_back({-HUGE_VAL, 0, 0});
   while (!stack.empty()) {
     const Item item = stack.pop_back();
@@ -186,7 +186,7 @@ void BallUnion::search(const Vec3d& p, double least, const Visit& visit) const {
     if (item.count > 0) continue;
     const Node& node = nodes_[item.first];
     const Four bounds = bounds_of(node, at);
-    // The lowest one is looked at first.
+    // The child with the lowest bound is searched first.
     std::size_t lowest = 0;
     for (std::size_t k = 1; k < node.children; ++k) lowest = bounds[k] < bounds[lowest] ? k : lowest;
     const auto push = [&](std::size_t k) {
@@ -217,7 +217,7 @@ double BallUnion::gap(const Vec3d& p, std::uint32_t& first) const {
 
 bool BallUnion::holds(const Vec3d& p, double margin, Holders& holders) const {
   if (balls_.empty()) return false;
-  double wanted = -margin;  // nothing is below -infinity: the search ends
+  double wanted = -margin;  // -infinity once a ball is found, which ends the search
   for (auto holder = holders.begin(); holder != holders.end(); ++holder) {
     if (!(gap_to(p, *holder) < wanted)) continue;
     std::rotate(holders.begin(), holder, holder + 1);

@@ -1,4 +1,4 @@
-// Blum: how edges of an axis lie in a body, for the verifier. SPDX-License-Identifier: Apache-2.0
+// Blum: edges of an axis in a body, for the verifier. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -16,19 +16,20 @@
 namespace blum::verifier {
 
 inline constexpr double corner_of_diagonal = 1.0 / 64;
-/// What it may cost to push an edge in. Edges along a hole of no width take for ever where little is allowed.
+/// Limits of the cost of pushing an edge inside. Edges along a hole of no width would take for ever if little is
+/// allowed.
 struct PushBudget {
-  int moves = 64;                                               ///< points of it that may be moved
-  std::size_t looks = std::numeric_limits<std::size_t>::max();  ///< points of it whose depth is asked for
+  int moves = 64;                                               ///< points that may be moved
+  std::size_t looks = std::numeric_limits<std::size_t>::max();  ///< points whose depth may be computed
 };
 
-/// A point, and how deep it lies in a body.
+/// A point and its depth in a body.
 struct Stop {
   Vec3d at;
   double depth = 0;
 };
 
-/// What edges are asked about.
+/// Queries about the edges in one body.
 class BodyEdges {
  public:
   BodyEdges(const SolidOracle& solid, std::uint32_t body, double allowed)
@@ -38,22 +39,23 @@ class BodyEdges {
         corner_(std::max(corner_of_diagonal * solid.diagonal(body), solid.grain() / 2)) {}
 
   [[nodiscard]] double allowed() const { return allowed_; }
-  /// How far out an edge may be that can be pushed in.
+  /// Returns how far out an edge may be to be pushed inside.
   [[nodiscard]] double corner() const { return corner_; }
 
-  /// Whether a segment is known to meet no boundary.
+  /// Returns true if a segment is known to lie inside, without meeting the boundary.
   [[nodiscard]] bool is_inside(const Stop& a, const Stop& b) const {
     if (!(a.depth > 0 && b.depth > 0)) return false;
     return a.depth + b.depth >= length(b.at - a.at) || solid_.is_clear(a.at, b.at, body_);
   }
 
-  /// The point of a segment that is furthest out, as far as that is more than is allowed. A ball as large as a point is
-  /// deep lies in the body, so that only what is between such balls is left to ask about. In a thin wall these are
-  /// many: so first it is asked whether the segment meets the boundary at all.
-  /// @param looks  how many points may be asked for yet; nullopt where these are not enough.
+  /// Returns the point of a segment that is furthest out, to within a quarter. If no point is out by more than
+  /// `allowed`, any point may be returned. Around each point, a ball with the point's depth as radius lies in the body.
+  /// So only the parts between such balls are searched. In a thin wall these are many, so the segment is first tested
+  /// against the boundary.
+  /// @param looks  how many more points may be searched. Returns nullopt if they do not suffice.
   [[nodiscard]] std::optional<Stop> furthest_out(const Stop& a, const Stop& b, double allowed,
                                                  std::size_t& looks) const {
-    constexpr double nearly = 1.25;  // enough of what is too much anyway
+    constexpr double nearly = 1.25;  // points are searched only if they may be worse by this factor
     Stop worst = a.depth < b.depth ? a : b;
     if (is_inside(a, b)) return worst;
     std::vector<std::pair<Stop, Stop>> stack{{a, b}};
@@ -61,7 +63,7 @@ class BodyEdges {
       const auto [p, q] = stack.back();
       stack.pop_back();
       const double gap = length(q.at - p.at);
-      // The least depth that distances leave room for is half of this.
+      // The left side is twice the least depth that is possible in between.
       if (p.depth + q.depth - gap >= 2 * std::min(-allowed, nearly * worst.depth)) continue;
       const double begin = std::max(p.depth, 0.0);
       const double end = gap - std::max(q.depth, 0.0);
@@ -77,17 +79,17 @@ class BodyEdges {
     }
     return worst;
   }
-  /// The same however many it takes.
+  /// Returns the same, with any number of points.
   [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
     std::size_t looks = PushBudget().looks;
     return *furthest_out(a, b, allowed, looks);
   }
 
-  /// Whether a segment that leaves the body can be pushed into it: the point that is furthest out goes through the
-  /// closest point of the surface, and both parts are asked again. Past an edge of the solid that soon succeeds; across
-  /// a gap it never does.
-  /// @param budget  is what is left of it afterwards.
-  /// @param way     is given the moved points, from a to b.
+  /// Returns true if a segment that leaves the body can be pushed into it. The point furthest out is moved through the
+  /// closest point of the surface, and both parts are tested again. Past an edge of the solid that soon succeeds.
+  /// Across a gap it never does.
+  /// @param budget  reduced to what is left.
+  /// @param way     receives the moved points, from a to b.
   [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, PushBudget& budget, std::vector<Vec3d>& way) const {
     const std::optional<Stop> worst = furthest_out(a, b, allowed_, budget.looks);
     if (!worst) return false;
@@ -100,7 +102,7 @@ class BodyEdges {
   }
 
  private:
-  /// A point as far inside as one is outside, or less far in where the body is thin.
+  /// Returns a point as deep inside as `out` is outside, or a quarter as deep in thin parts, else the surface point.
   [[nodiscard]] Stop pushed_in(const Stop& out) const {
     const Vec3d foot = solid_.closest_point(out.at, body_);
     for (const double far : {1.0, 0.25}) {
@@ -116,7 +118,7 @@ class BodyEdges {
   double corner_;
 };
 
-/// An edge that leaves its body, and the points between its ends over which it can run inside of it.
+/// An edge that leaves its body, and the points between its ends that keep it inside.
 struct PushedEdge {
   std::uint32_t edge = 0;
   std::vector<Vec3d> way;

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t most_pairs = 100000;
 
-/// @throws NoPolyhedron
+/// Returns the places where a mesh touches itself.
+/// @throws NoPolyhedron if it crosses itself, or touches itself in too many places.
 SelfIntersections without_crossings(const MeshView& mesh, const Context& context) {
   SelfIntersections found = find_self_intersections(mesh, most_pairs, context);
   if (found.crossing > 0) throw NoPolyhedron("the mesh crosses itself");
@@ -28,7 +29,7 @@ SelfIntersections without_crossings(const MeshView& mesh, const Context& context
   return found;
 }
 
-/// @throws NoPolyhedron for a mesh that bounds no polyhedron.
+/// @throws NoPolyhedron if a mesh bounds no polyhedron.
 void check_polyhedron(const MeshView& mesh, const Context& context) {
   const ScaledMesh own(mesh, factor_for(bounds(mesh).diagonal()));
   ClosedShells shells = cut_into_shells(own.view, context);
@@ -40,12 +41,12 @@ void check_polyhedron(const MeshView& mesh, const Context& context) {
   }
 }
 
-/// How often a mesh winds around points, by counting what lines cross.
+/// Winding numbers of a mesh around points, from the crossings of lines.
 class Windings {
  public:
   Windings(const MeshView& mesh, const Context& context) : mesh_(mesh), search_(mesh, {}, context) {}
 
-  /// nullopt where that cannot be told, as on the surface.
+  /// Returns nullopt if the winding number is undecided, for example on the surface.
   std::optional<int> around(const Vec3d& p) {
     constexpr std::uint32_t most_lines = 24;
     for (std::uint32_t attempt = 0; attempt < most_lines; ++attempt) {
@@ -73,7 +74,7 @@ class Windings {
   std::vector<Crossing> crossings_;
 };
 
-/// Random points in a box, and on both sides of triangles.
+/// Returns random points in the box of a mesh, and points on both sides of triangles.
 std::vector<Vec3d> probes(const MeshView& mesh) {
   constexpr std::size_t in_box = 1000;
   constexpr std::size_t at_triangles = 4000;
@@ -98,7 +99,8 @@ std::vector<Vec3d> probes(const MeshView& mesh) {
   return out;
 }
 
-/// @throws NoPolyhedron unless a mesh winds once or more, at all points that are tried, where another one winds once.
+/// @throws NoPolyhedron unless, at every point tried, `resolved` winds once if `mesh` winds once or more, else not at
+/// all.
 void check_same_inside(const MeshView& mesh, const MeshView& resolved, const Context& context) {
   const double factor = factor_for(bounds(mesh).diagonal());
   const ScaledMesh given(mesh, factor);

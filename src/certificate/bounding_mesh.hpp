@@ -10,11 +10,15 @@
 
 namespace blum::verifier {
 
-/// A mesh that bounds a polyhedron as it is; or, where it crosses or touches itself, what resolve_crossings() makes of
-/// it, if that does bound one by the verifier's own reading, with the same inside as the mesh at thousands of points.
+/// A mesh that bounds a polyhedron.
+///
+/// It is the given mesh if that bounds one, else the result of resolve_crossings(). The verifier checks by its own
+/// reading that this result bounds a polyhedron. It also checks at thousands of points that the inside is that of the
+/// given mesh.
 class BoundingMesh {
  public:
-  /// @param mesh  must stay. @throws InvalidMesh, NoPolyhedron where neither bounds one, Cancelled.
+  /// @param mesh  must outlive this object.
+  /// @throws InvalidMesh, NoPolyhedron if neither mesh bounds a polyhedron, Cancelled.
   BoundingMesh(const MeshView& mesh, const Context& context);
 
   [[nodiscard]] MeshView view() const { return resolved_ ? resolved_->mesh.view() : mesh_; }
@@ -25,7 +29,7 @@ class BoundingMesh {
   std::optional<ResolvedMesh> resolved_;
 };
 
-/// What solid_rule() says of a mesh that bounds a polyhedron.
+/// Returns the result of solid_rule() for a mesh that bounds a polyhedron.
 [[nodiscard]] MeshSolidRule rule_of_polyhedron(bool is_resolved);
 
 }  // namespace blum::verifier

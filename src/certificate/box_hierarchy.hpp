@@ -1,4 +1,4 @@
-// Blum: boxes in a tree, for the verifier of medial axes. SPDX-License-Identifier: Apache-2.0
+// Blum: a tree of boxes, for the verifier of medial axes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace blum::verifier {
 
-/// Squared distance of a point from a box; 0 inside.
+/// Returns the squared distance of a point from a box; 0 inside.
 [[nodiscard]] inline double squared_distance(const Vec3d& p, const Box3& box) {
   const Vec3d outside = max(max(box.lower - p, p - box.upper), Vec3d{0, 0, 0});
   return squared_length(outside);
@@ -24,7 +24,7 @@ namespace blum::verifier {
 /// A number for each of two siblings in a tree.
 using Two = std::array<double, 2>;
 
-/// Two boxes, one beside the other, from which compilers make one operation for both.
+/// Two boxes stored side by side, so that the compiler vectorizes operations on both.
 struct TwoBoxes {
   std::array<Two, 3> lower{}, upper{};
 
@@ -36,7 +36,7 @@ struct TwoBoxes {
   }
 };
 
-/// Squared distances of a point from two boxes, or of two points from a box each; 0 inside.
+/// Returns the squared distances of a point from two boxes, or of two points from one box each; 0 inside.
 [[nodiscard]] inline Two squared_distances(const std::array<Two, 3>& p, const TwoBoxes& boxes) {
   Two sum{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -54,40 +54,41 @@ struct TwoBoxes {
   return squared_distances({{{p.x, p.x}, {p.y, p.y}, {p.z, p.z}}}, boxes);
 }
 
-/// A binary tree over the boxes of things, halved at the median until few are left. It knows nothing of the things.
+/// A binary tree over the boxes of items. Nodes are halved at the median until few items are left. The tree knows only
+/// boxes.
 class BoxHierarchy {
  public:
   struct Node {
     Box3 box;
-    std::uint32_t first = 0;  ///< place in order() of its first thing, or its first child; the second one follows
-    std::uint32_t count = 0;  ///< of its things; 0 where it has children
+    std::uint32_t first = 0;  ///< place in order() of its first item, or its first child, which the second one follows
+    std::uint32_t count = 0;  ///< number of its items; 0 if it has children
   };
 
   BoxHierarchy() = default;
   /// @throws Cancelled. Cost: O(n log n).
   explicit BoxHierarchy(const std::vector<Box3>& boxes, const Context& context = {});
 
-  /// The things, those of one leaf beside each other.
+  /// Returns the items, those of one leaf next to each other.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes_.size()); }
   [[nodiscard]] const Node& node(std::uint32_t index) const { return nodes_[index]; }
-  /// The pair of siblings that a node other than the root is in, numbered from 0.
+  /// Returns the number of the pair of siblings that a node belongs to, from 0. The root has no pair.
   [[nodiscard]] static constexpr std::size_t pair_of(std::size_t node) { return (node - 1) / 2; }
-  /// Its place in this: 0 or 1.
+  /// Returns the place of a node in its pair: 0 or 1.
   [[nodiscard]] static constexpr std::size_t place_in_pair(std::size_t node) { return (node - 1) % 2; }
-  /// The boxes of a first child and its sibling.
+  /// Returns the boxes of a first child and its sibling.
   [[nodiscard]] const TwoBoxes& two_boxes(std::uint32_t first_child) const { return pairs_[pair_of(first_child)]; }
 
-  /// For each node, the places in order() of all things below it: from the first to before the second.
+  /// For each node, the places in order() of all items below it: the first one, and one past the last.
   using Places = std::pair<std::uint32_t, std::uint32_t>;
   [[nodiscard]] std::vector<Places> places() const;
 
-  /// For each node the largest of the values of its things, given in the order of order().
+  /// Returns for each node the largest value of its items. `values` has the order of order().
   [[nodiscard]] std::vector<double> node_maxima(std::span<const double> values) const;
 
-  /// Goes down into the nodes whose bound is below the best value so far, the lower one first, and calls
-  /// best = visit(place in order()) for their things. bounds(first child) gives those of it and of its sibling; the
-  /// root is gone into at any rate.
+  /// Searches the nodes whose bound is below the best value so far, the lower one first. Calls best = visit(place in
+  /// order()) for their items. bounds(first child) returns the bounds of that child and of its sibling. The root is
+  /// always searched.
   template <class Bounds, class Visit>
   void search(double best, const Bounds& bounds, const Visit& visit) const {
     if (nodes_.empty()) return;
@@ -95,7 +96,7 @@ class BoxHierarchy {
       double least;
       std::uint32_t node;
     };
-    InlineList<Item, 64> stack;  // one more for each level, and levels halve
+    InlineList<Item, 64> stack;  // one more per level, and each level halves the items
     stack.push_back({-HUGE_VAL, 0});
     while (!stack.empty()) {
       const auto [least, index] = stack.pop_back();
@@ -112,8 +113,8 @@ class BoxHierarchy {
     }
   }
 
-  /// Calls visit(place in order()) for the things of all leaves that may_meet(box) is true of, and of the root, until
-  /// it returns false.
+  /// Calls visit(place in order()) for the items of all nodes whose box may_meet(box) accepts, until visit() returns
+  /// false. The root is always searched.
   template <class MayMeet, class Visit>
   void visit_where(const MayMeet& may_meet, const Visit& visit) const {
     const auto distance_to = [&](std::uint32_t n) { return may_meet(nodes_[n].box) ? 0.0 : 2.0; };
@@ -124,7 +125,7 @@ class BoxHierarchy {
 
  private:
   struct Thing {
-    Vec3d middle;  ///< of its box, twice
+    Vec3d middle;  ///< twice the centre of its box
     std::uint32_t index = 0;
   };
   static void sort_halves(const Node& node, std::vector<Thing>& things);

@@ -17,15 +17,15 @@
 namespace blum::verifier {
 namespace {
 
-constexpr double noise = 10;               ///< degrees from which two footprints are two walls
+constexpr double noise = 10;               ///< degrees from which two footprints count as two walls
 constexpr double nearly = 10;              ///< degrees by which an angle may be below those of all its corners
-constexpr double about = 20;               ///< degrees by which it may be above what is seen around it
+constexpr double about = 20;               ///< degrees by which it may exceed the angle seen around it
 constexpr double same = 1e-3;              ///< degrees: rounding of float32
 constexpr double most_below = 0.8;         ///< share of the area: see docs/theory/medial-axis.md
 constexpr double most_above = 0.2;         ///< share of samples
-constexpr double most_curves_above = 0.6;  ///< the same of curves: those of true axes wind within a voxel
-constexpr double most_low_rims = 0.25;     ///< share of their length and that of curves
-constexpr std::size_t few = 64;            ///< cells, or samples, from which shares tell something
+constexpr double most_curves_above = 0.6;  ///< share of samples of curves: those of true axes wind within a voxel
+constexpr double most_low_rims = 0.25;     ///< share of the length of rims and curves
+constexpr std::size_t few = 64;            ///< fewest cells or samples from which shares are judged
 constexpr std::size_t most_samples = 1'024;
 constexpr std::size_t grain = 32;
 
@@ -33,9 +33,9 @@ std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";
 }
 
-/// Something to take samples of by its size.
+/// A cell to sample by its size.
 struct Sized {
-  double end = 0;  ///< the sum of the sizes so far
+  double end = 0;  ///< sum of the sizes up to this cell
   std::uint32_t cell = 0;
 };
 
@@ -49,7 +49,7 @@ double area(const MedialView& axis, const std::array<std::uint32_t, 3>& corners)
   return 0.5 * length(cross(axis.positions[corners[1]] - p, axis.positions[corners[2]] - p));
 }
 
-/// The largest angle at which a point sees two of the points of the surface that are closest to places near by.
+/// Returns the largest angle at which a point sees two surface points that are closest to places around it.
 double seen_around(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, double reach) {
   std::array<Vec3d, 15> towards;
   std::size_t count = 0;
@@ -76,7 +76,7 @@ class Angles {
          const std::vector<std::uint32_t>& body_of, double reach)
       : axis_(axis), incidence_(incidence), solid_(*solid.solid), body_of_(body_of), reach_(reach) {}
 
-  /// Triangles and curves that say less than what each of their corners sees.
+  /// Measures the area of triangles whose angle is below those of all their corners.
   void compare_with_corners(AngleCheck& check) const {
     double all = 0;
     double below = 0;
@@ -92,7 +92,8 @@ class Angles {
     if (all > 0) check.below_share = below / all;
   }
 
-  /// Rims and seams have the largest angle of their triangles, or less after vertices were taken out.
+  /// Compares rims and seams with their triangles. Their angle is the largest of the triangles, or less after vertices
+  /// were removed.
   void compare_with_triangles(AngleCheck& check) const {
     for (std::size_t n = 0; n < axis_.edges.size(); ++n) {
       const auto triangles = incidence_.triangles_of_edge()[incidence_.edge_of_listed()[n]];
@@ -105,7 +106,8 @@ class Angles {
     }
   }
 
-  /// Sheets that reach no more than theta have no rim: what only homotopy keeps is closed, or ends at seams.
+  /// Measures the rims of sheets whose angles are all at most theta. A correct axis has no such rims: a sheet that only
+  /// homotopy keeps is closed, or ends at seams.
   void look_for_low_rims(double theta, AngleCheck& check) const {
     std::vector<float> of_sheet;
     for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -129,7 +131,7 @@ class Angles {
     if (all > 0) check.low_rims_share = low / all;
   }
 
-  /// Samples of what says that it is seen at more than 0.
+  /// Samples triangles and curves with an angle above 0, and compares that with the angle seen around them.
   void compare_with_surface(AngleCheck& check, const Context& context) const {
     std::vector<Sized> triangles;
     for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -164,7 +166,7 @@ class Angles {
     return least;
   }
 
-  /// How many samples there are, and the share of them that say too much.
+  /// Returns the number of samples, and the share of them whose angle is too large.
   template <class IsAbove>
   [[nodiscard]] static std::pair<std::size_t, double> share_above(const std::vector<Sized>& cells,
                                                                   const IsAbove& is_above, const Context& context) {
@@ -191,8 +193,9 @@ class Angles {
   double reach_;
 };
 
-/// @param by_voxels  whether the solid is made of voxels: many of their faces are as close, and in those of a mesh
-/// walls are seen that bound nothing, so that shares that places tell are told, and not judged.
+/// @param by_voxels  true if the solid is made of voxels, or voxels define the inside of a mesh. Many faces are then
+/// equally close, and a mesh may have walls that bound nothing. So the shares that depend on places are reported, not
+/// judged.
 void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<std::string>& mismatches) {
   if (!by_voxels && check.triangles >= few && check.below_share > most_below) {
     mismatches.push_back("of the triangles whose corners see two walls, " + percent(check.below_share) +

@@ -22,7 +22,7 @@ namespace {
 using Edge = std::array<std::uint32_t, 2>;
 using Face = std::array<std::uint32_t, 3>;
 
-/// Cells in the order of the bodies that they are in, with corners counted within these, and where each body begins.
+/// Cells sorted by body, with corners numbered within the body, and the first cell of each body.
 template <class Corners>
 struct Sorted {
   std::vector<Corners> cells;
@@ -47,12 +47,13 @@ Sorted<Corners> sorted_by_body(std::span<const Corners> cells, const std::vector
   return sorted;
 }
 
-/// Sorts the parts of an axis into bodies. @throws as homology().
+/// Sorts the parts of an axis into bodies.
+/// @throws as homology().
 AxisParts parts_in_bodies(const ComplexView& axis, const std::vector<Location>& locations, std::uint32_t body_count,
                           const Context& context) {
   throw_if_cancelled(context);
   AxisParts parts;
-  // Where bodies touch, a vertex may lie on both: the deepest one of those that are joined lies in one for certain.
+  // Where bodies touch, a vertex may lie on both. So the deepest vertex of a connected part decides.
   std::vector<std::uint32_t> deepest = components(axis);
   const std::vector<std::uint32_t> component = deepest;
   for (std::uint32_t v = 0; v < component.size(); ++v) {
@@ -75,8 +76,8 @@ AxisParts parts_in_bodies(const ComplexView& axis, const std::vector<Location>& 
   return parts;
 }
 
-/// Adds what cannot be so of what an axis says of itself, and takes it out: theta, lambda, spacing, deviation.
-/// @param diagonal  of the solid, as the caller knows it.
+/// Reports and removes impossible claims of an axis: theta, lambda, spacing, deviation.
+/// @param diagonal  of the solid, in the caller's units.
 void check_claims(CertificateOptions& options, double diagonal, std::vector<std::string>& mismatches) {
   const auto check = [&](std::optional<double>& value, const char* what, double least, double most, const char* must) {
     if (!value || (*value >= least && *value <= most)) return;
@@ -85,7 +86,7 @@ void check_claims(CertificateOptions& options, double diagonal, std::vector<std:
     value.reset();
   };
   check(options.theta, "theta", 0, 180, "0 to 180 degrees");
-  // No two points of the solid are further apart than the diagonal.
+  // No two points of the solid are further apart than its diagonal.
   check(options.lambda, "lambda", 0, diagonal, "at least 0, and no more than the diagonal of the solid");
   check(options.spacing, "spacing", 1e-9 * diagonal, diagonal, "above 0, and no more than the diagonal of the solid");
   check(options.deviation, "deviation", 0, diagonal, "at least 0, and no more than the diagonal of the solid");
@@ -118,7 +119,8 @@ std::string counted(std::int64_t count, const char* thing) {
   return count_text(static_cast<std::uint64_t>(count)) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// Compares body by body. @param name  of a body, by its number.
+/// Compares Betti numbers body by body.
+/// @param name  returns the name of a body, by its number.
 template <class Name>
 void compare_topology(Certificate& certificate, const Name& name) {
   constexpr std::array<const char*, 3> things{"component", "tunnel", "void"};

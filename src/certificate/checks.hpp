@@ -1,4 +1,4 @@
-// Blum: the parts of a certificate. SPDX-License-Identifier: Apache-2.0
+// Blum: the checks of a certificate. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -22,18 +22,19 @@ namespace blum::verifier {
          std::isfinite(axis.separation_angle[vertex]);
 }
 
-/// Coordinates, as messages tell them.
+/// Returns coordinates as text for messages.
 [[nodiscard]] inline std::string place_text(const Vec3d& at) {
   return rounded_text(at.x) + " " + rounded_text(at.y) + " " + rounded_text(at.z);
 }
 
-/// Of what vertices are allowed: an edge along the surface is asked about as often as this goes into it.
+/// Tolerance of edges, as a multiple of that of vertices. An edge along the surface costs its length divided by this
+/// tolerance.
 inline constexpr double more_for_edges = 10;
 
-/// How far off positions may be in each body.
+/// Returns the tolerance of positions in each body.
 [[nodiscard]] std::vector<double> tolerances(const KnownSolid& solid);
 
-/// An error that is the worst of its kind, measured by what is allowed for it.
+/// The worst error of its kind, relative to what is allowed for it.
 struct Worst {
   double error = 0;
   double allowed = 1;
@@ -45,60 +46,66 @@ struct Worst {
   [[nodiscard]] bool is_too_much() const { return error > allowed; }
 };
 
-/// A part of an axis in each body.
+/// The parts of an axis, by body.
 struct AxisParts {
-  std::vector<std::uint32_t> body_of;  ///< of each vertex: the body of the deepest vertex that is joined with it
-  std::vector<BettiNumbers> betti;     ///< of what is in each body
+  std::vector<std::uint32_t> body_of;  ///< for each vertex, the body of the deepest vertex connected to it
+  std::vector<BettiNumbers> betti;     ///< of the parts in each body
 };
 
-/// Where each vertex lies; nowhere in particular where it is not finite.
+/// Returns the location of each vertex; a default one if it is not finite.
 [[nodiscard]] std::vector<Location> locate_vertices(const MedialView& axis, const SolidOracle& solid,
                                                     const Context& context);
 
-/// Looks at every vertex, and adds what is wrong. @param factor  lengths are this many times what the caller knows.
+/// Checks every vertex, and adds mismatches.
+/// @param factor  lengths are this many times the caller's.
 [[nodiscard]] GeometryCheck check_vertices(const MedialView& axis, const KnownSolid& solid,
                                            const std::vector<Location>& locations, const CertificateOptions& options,
                                            double factor, std::vector<std::string>& mismatches, const Context& context);
 
-/// Edges that are not simply inside, rising.
+/// Edges that are not simply inside, in rising order.
 struct EdgeWays {
-  std::vector<PushedEdge> pushed;      ///< those that were pushed into the solid
-  std::vector<std::uint32_t> grazing;  ///< those that leave it by no more than the tolerance
+  std::vector<PushedEdge> pushed;      ///< pushed into the solid
+  std::vector<std::uint32_t> grazing;  ///< leave it by no more than the tolerance
 };
 
-/// The same for what lies between vertices. @param incidence  of the axis.  @param ways  is filled.
+/// Checks edges between their ends, and adds mismatches.
+/// @param incidence  of the axis.
+/// @param ways       is filled.
 [[nodiscard]] EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                                     const std::vector<Location>& locations, const AxisParts& parts, double factor,
                                     EdgeWays& ways, std::vector<std::string>& mismatches, const Context& context);
 
-/// The same for triangles between their edges.
+/// Checks triangles between their edges, and adds mismatches.
 [[nodiscard]] TriangleCheck check_triangles(const MedialView& axis, const KnownSolid& solid,
                                             const std::vector<Location>& locations, const AxisParts& parts,
                                             const CertificateOptions& options, double factor,
                                             std::vector<std::string>& mismatches, const Context& context);
 
-/// The same for roles and sheets.
+/// Checks roles and sheets, and adds mismatches.
 [[nodiscard]] LabelCheck check_labels(const MedialView& axis, const Incidence& incidence,
                                       std::vector<std::string>& mismatches, const Context& context);
 
-/// The same for the separation angles of triangles and edges. @param body_of  of each vertex: see AxisParts.
+/// Checks the separation angles of triangles and edges, and adds mismatches.
+/// @param body_of  of each vertex: see AxisParts.
 [[nodiscard]] AngleCheck check_angles(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                                       const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
                                       double factor, std::vector<std::string>& mismatches, const Context& context);
 
-/// Looks at points of sheets and curves, and for what is missing, and adds what is wrong.
+/// Checks points of sheets and curves, searches for missing parts, and adds mismatches.
 /// @param body_of  of each vertex: see AxisParts.
-/// @param factor   lengths are this many times what the caller knows; those of the options are the caller's.
+/// @param factor   lengths are this many times the caller's. Lengths of the options are the caller's.
 [[nodiscard]] MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid,
                                        const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
                                        double factor, std::vector<std::string>& mismatches, const Context& context);
 
+/// Measures how much of the solid the balls of an axis fill.
 /// @throws Cancelled.
 [[nodiscard]] BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid,
                                          const std::vector<Location>& locations, const Context& context);
 
-/// All of it. @param complex  with the columns of a medial axis, `factor` times as large as the caller knows it, as is
-/// the solid. @throws InvalidOption, Cancelled.
+/// Runs all checks.
+/// @param complex  with the columns of a medial axis. Like the solid, it is `factor` times as large as the caller's.
+/// @throws InvalidOption, Cancelled.
 [[nodiscard]] Certificate certify_against(const Complex& complex, const KnownSolid& solid, double factor,
                                           const CertificateOptions& options, const Context& context);
 

@@ -1,4 +1,4 @@
-// Blum: balls that touch the surface of a solid, from random points of it, for the verifier.
+// Blum: balls from random points of a solid that touch its surface, for the verifier.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,26 +17,28 @@
 
 namespace blum::verifier {
 
-/// A ball inside of a solid whose surface it touches in two points.
+/// A ball in a solid that touches the surface at two points.
 struct TouchingBall {
   Vec3d centre;
   double radius = 0;
-  Vec3d first, second;    ///< where it touches
-  double angle = 0;       ///< between these as the centre sees them, degrees
-  bool is_whole = false;  ///< whether a body holds all of it
+  Vec3d first, second;    ///< touching points
+  double angle = 0;       ///< between these, seen from the centre, degrees
+  bool is_whole = false;  ///< true if the surface does not reach into it
 };
 
-/// The balls through a point of the surface, with centres on one line from there, from a large one down to the one that
-/// nothing reaches into. Each touches what reaches into the one before.
-/// Method: shrinking balls (Ma, Bae, Choi, "3D medial axis point approximation using nearest neighbors and the normal
-/// field", The Visual Computer 28(1), 2012), from outside inwards, with exact closest points.
+/// Balls through a point of the surface, with centres on one line from there. They shrink from a large ball to the one
+/// that nothing reaches into. Each touches a point that reaches into the previous one.
+///
+/// Method: shrinking balls, from outside inwards, with exact closest points. Source: Ma, Bae, Choi, "3D medial axis
+/// point approximation using nearest neighbors and the normal field", The Visual Computer 28(1), 2012.
 class ShrinkingBall {
  public:
-  /// @param first  the closest point of the surface to p.  @param more  see grown_ball().
+  /// @param first  the closest point of the surface to p.
+  /// @param more   see grown_ball().
   ShrinkingBall(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first, double more);
 
-  /// Goes to the next ball. False, and nothing is changed, where there is none; or where its centre sees the two points
-  /// at less than `floor` degrees: then it may be asked for again, at a lower floor.
+  /// Computes the next ball. Returns false and changes nothing if none exists, or if its centre sees the two points at
+  /// less than `floor` degrees. In the latter case a call with a lower floor may succeed.
   [[nodiscard]] bool shrink(const SolidOracle& solid, double floor, TouchingBall& ball);
 
  private:
@@ -48,45 +50,45 @@ class ShrinkingBall {
   Vec3d first_, along_, other_;
 };
 
-/// What is furthest away from the wall next to a point: the ball through the closest point of the surface, with its
-/// centre on the line from there through the point, is grown until it touches another wall. Touching points that the
-/// centre sees at less than `floor` from the first one count as the same wall: shallow edges between facets, say.
+/// Grows the ball that touches the wall next to p until it touches another wall. It touches the first wall at the
+/// closest point, and its centre lies on the line from there through p. Touching points that the centre sees at less
+/// than `floor` from the first one count as the same wall. Examples are shallow edges between facets.
 /// @param p       in the body, and not on its surface.
 /// @param first   the closest point of the surface.
 /// @param floor   degrees, above 0.
-/// @param more    how much larger than the distance of p the first ball is that is tried; 0: twice as large. The walls
-///                that are first found from a small one may be the same wall, where those of a larger one are not.
-/// @return        radius 0 where nothing is touched at that angle, or p lies on the surface.
+/// @param more    by how much the radius of the first ball tried exceeds the distance of p; 0: twice that distance. The
+/// first walls that a small ball finds may be the same wall, where a larger ball finds another.
+/// @return        radius 0 if nothing is touched at that angle, or p lies on the surface.
 [[nodiscard]] TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first,
                                       double floor, double more = 0);
 
-/// How far a point is from the middle between the two walls that a ball around it would touch, about.
+/// Returns the approximate distance of a point from the middle between the two walls that a ball touches.
 [[nodiscard]] double distance_to_middle(const Vec3d& p, const TouchingBall& ball);
 
-/// Balls that shrink from random points until they touch two walls. The points are the same for every axis, and so are
-/// the balls: what one axis asked for is kept for the next one. May be asked from many threads at once.
+/// Balls that shrink from random points until they touch two walls. The points, and so the balls, are the same for
+/// every axis. Balls computed for one axis are kept for the next one. Thread-safe.
 class BallDraws {
  public:
   struct Start {
     Vec3d point;
     std::uint32_t body = 0;
   };
-  /// @param draw  gives the k-th point, the same each time; nullopt where it lies in no body.
+  /// @param draw  returns the k-th point, the same each time; nullopt if it lies in no body.
   BallDraws(const SolidOracle& solid, std::size_t count, std::function<std::optional<Start>(std::size_t)> draw);
 
   [[nodiscard]] std::size_t size() const { return list_.size(); }
 
-  /// The ball from the k-th point whose two walls are seen at `floor` degrees or more, as grown_ball() gives it; radius
-  /// 0 where there is none that counts.
-  /// @param counts    whether a ball does.
-  /// @param reach_in  how far the surface may reach into a ball of that radius.
+  /// Returns the ball from the k-th point whose two walls are seen at `floor` degrees or more, as grown_ball() defines
+  /// it. Returns radius 0 if no ball counts.
+  /// @param counts    returns true if a ball counts.
+  /// @param reach_in  returns how far the surface may reach into a ball of that radius.
   template <class Counts, class ReachIn>
   [[nodiscard]] TouchingBall grown(std::size_t k, double floor, const Counts& counts, const ReachIn& reach_in) const;
 
  private:
   static constexpr std::size_t per_lock = 64;
 
-  /// A ball, and what was asked of its centre so far.
+  /// A ball, and the results computed for its centre so far.
   struct Known {
     TouchingBall ball;
     std::optional<double> distance;  ///< from the surface of its body
@@ -96,10 +98,10 @@ class BallDraws {
     bool is_drawn = false;
     std::uint32_t body = 0;
     std::optional<ShrinkingBall> next;
-    std::vector<Known> balls;  ///< from the largest one on
+    std::vector<Known> balls;  ///< largest first
   };
 
-  /// The last ball before the first one that is seen at less than a floor; nullptr where there is none.
+  /// Returns the last ball before the first one that is seen at less than `floor`; nullptr if none exists.
   [[nodiscard]] Known* shrunk(std::size_t k, double floor) const;
   [[nodiscard]] double distance(const Shrinking& from, Known& known) const;
   [[nodiscard]] bool is_inside(const Shrinking& from, Known& known) const;
@@ -110,18 +112,18 @@ class BallDraws {
   mutable std::vector<std::mutex> locks_;
 };
 
-/// Balls from random points of a solid as a whole, and of some of its bodies.
+/// Balls from random points of a whole solid, and of some of its bodies.
 class DrawnBalls {
  public:
   DrawnBalls(const SolidOracle& solid, std::uint32_t body_count);
   DrawnBalls(const DrawnBalls&) = delete;
   DrawnBalls& operator=(const DrawnBalls&) = delete;
 
-  /// From random points of the boxes of the bodies; none where these have no volume.
+  /// Returns balls from random points of the boxes of the bodies; none if these have no volume.
   [[nodiscard]] const BallDraws& in_solid() const { return in_solid_; }
-  /// Every so many-th body has draws of its own: body 0, and so on.
+  /// Returns n: every n-th body, from body 0, has draws of its own.
   [[nodiscard]] std::uint32_t every() const { return every_; }
-  /// From random points beside the surface of a body, where that has triangles; else of its box.
+  /// Returns balls from random points beside the surface of a body if that has triangles, else from its box.
   [[nodiscard]] const BallDraws& in_body(std::uint32_t body) const { return in_bodies_[body / every_]; }
 
  private:

@@ -13,10 +13,10 @@
 namespace blum::verifier {
 namespace {
 
-/// What is found of some of the edges.
+/// Findings about some of the edges.
 struct Findings {
   EdgeCheck check;
-  double allowed = 0;  ///< for the worst
+  double allowed = 0;  ///< for the worst edge
   EdgeWays ways;
 
   void add(const Findings& other) {
@@ -35,7 +35,7 @@ struct Findings {
   }
 };
 
-/// Looks at one edge.
+/// Checks single edges.
 class EdgeLook {
  public:
   EdgeLook(const SolidOracle& solid, std::uint32_t body, double allowed)
@@ -72,11 +72,11 @@ class EdgeLook {
   }
 
  private:
-  static constexpr double grazes = 1e-4;  ///< of what is allowed: more than rounding
+  static constexpr double grazes = 1e-4;  ///< share of what is allowed; more than rounding
 
-  /// A way that is out by no more than is allowed may cross a gap as narrow.
+  /// Searches for gaps. A way that is out by no more than the tolerance may cross a gap as narrow.
   void look_for_gaps(const std::vector<Stop>& way, Findings& found) const {
-    constexpr double beside = 2;  // from the middle of a gap both walls are half as far away as they are apart
+    constexpr double beside = 2;  // in the middle of a gap, both walls are half its width away
     for (std::size_t k = 0; k + 1 < way.size(); ++k) {
       if (edges_.is_inside(way[k], way[k + 1])) continue;
       const auto is_across = solid_.crosses_gap(way[k].at, way[k + 1].at, body_, beside * edges_.allowed());

@@ -16,13 +16,13 @@ namespace {
 constexpr std::uint32_t no_sheet = 0xffffffffU;
 constexpr std::uint32_t many_sheets = 0xfffffffeU;
 
-/// What ends or lies at a vertex.
+/// Edges and sheets at a vertex.
 struct Around {
   std::uint32_t rims = 0, seams = 0, curves = 0;
   std::uint32_t sheet = no_sheet;
 };
 
-/// What an edge of so many triangles is; MedialRole::sheet where it is not listed.
+/// Returns the role of an edge by the number of its triangles; MedialRole::sheet if it is not to be listed.
 MedialRole role_of_edge(std::size_t triangles) {
   switch (triangles) {
     case 0:
@@ -48,7 +48,7 @@ MedialRole role_of_vertex(const Around& at) {
   return at.rims > 0 ? MedialRole::rim : MedialRole::sheet;
 }
 
-/// How many cells name the same vertices as another one.
+/// Returns how many cells have the same vertices as another one.
 template <class Cell>
 std::size_t doubled(std::span<const Cell> cells) {
   std::vector<Cell> sorted(cells.begin(), cells.end());
@@ -62,7 +62,7 @@ class Labels {
  public:
   Labels(const MedialView& axis, const Incidence& incidence) : axis_(axis), incidence_(incidence) {}
 
-  /// Which edges are listed, and as what.
+  /// Checks which edges are listed, and their roles.
   void check_edges(LabelCheck& check) {
     const std::size_t count = incidence_.edges().size();
     std::vector<bool> is_listed(count, false);
@@ -102,7 +102,7 @@ class Labels {
     }
   }
 
-  /// Whether each sheet hangs together, and ends nowhere but at rims and seams.
+  /// Checks that each sheet is connected, and ends only at rims and seams.
   void check_sheets(LabelCheck& check) const {
     std::vector<bool> is_on_seam(axis_.positions.size(), false);
     for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
@@ -129,7 +129,7 @@ class Labels {
   }
 
   void count_torn(detail::UnionFind& joined, LabelCheck& check) const {
-    std::vector<std::array<std::uint32_t, 2>> parts;  // sheet, and a triangle that stands for a part of it
+    std::vector<std::array<std::uint32_t, 2>> parts;  // sheet, and a triangle that represents a part of it
     for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
       if (joined.find(t) == t) parts.push_back({static_cast<std::uint32_t>(axis_.sheet[t]), t});
     }

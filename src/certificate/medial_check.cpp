@@ -25,13 +25,13 @@
 namespace blum::verifier {
 namespace {
 
-/// Balls in the middle between two walls that see these at an angle, and how far they are from an axis.
+/// Distances from an axis of balls that touch two walls at a large enough angle.
 struct FoundBalls {
   Offsets all;                  ///< from random points of the whole solid
-  std::vector<Offsets> bodies;  ///< from random points of each body, by its surface where it has triangles
+  std::vector<Offsets> bodies;  ///< from random points of each body, beside its surface if that has triangles
 };
 
-/// The cells of an axis to look for the closest of.
+/// Returns a search tree over the cells of an axis.
 TriangleSearch search_of(const MedialView& axis, const Context& context) {
   TriangleMesh cells;
   cells.vertices.assign(axis.positions.begin(), axis.positions.end());
@@ -52,13 +52,13 @@ TriangleSearch search_of(const MedialView& axis, const Context& context) {
   return {cells, {}, context};
 }
 
-/// Which balls count as being in the middle between two walls.
+/// Decides which balls count as lying between two walls.
 class BallJudge {
  public:
   BallJudge(const Allowances& allowed, double theta, double sought)
       : allowed_(allowed), sought_(sought), above_theta_(sought - theta) {}
 
-  /// The k-th ball; radius 0 where that is none.
+  /// Returns the k-th ball; radius 0 if it does not count.
   [[nodiscard]] TouchingBall ball(const BallDraws& draws, std::size_t k) const {
     return draws.grown(
         k, sought_,
@@ -67,12 +67,12 @@ class BallJudge {
   }
 
  private:
-  /// The surface may reach a little into the ball, because the facets of a round thing are all near at once. On a plane
-  /// that reaches by d into a ball of radius r, the closest point is up to acos(1 - d/r) aside from where the ball was
-  /// thought to touch it, and the angle is less by as much: d is no more than the step from theta to the sought angle
-  /// gives. In a wedge of 164 degrees, 0.1 voxel alone would show 175.
+  /// Returns how far the surface may reach into a ball. It may do so a little, because all facets of a round part are
+  /// about equally close. Let a plane reach by d into a ball of radius r. Then the closest point is up to acos(1 - d/r)
+  /// aside of the assumed touching point, and the angle is smaller by as much. So d is limited by the step from theta
+  /// to the sought angle. In a wedge of 164 degrees, 0.1 voxel alone would show 175.
   [[nodiscard]] double reach_in(double radius) const {
-    constexpr double nearly_whole = 0.1;  // voxels: the facets of round things are all near at once
+    constexpr double nearly_whole = 0.1;  // voxels: all facets of round parts are about equally close
     return std::min(nearly_whole * allowed_.voxel, radius * (1 - std::cos(above_theta_ / degrees_per_radian)));
   }
 
@@ -80,33 +80,35 @@ class BallJudge {
   double sought_, above_theta_;
 };
 
-/// How far the axis is from the balls.
+/// Measures the distances of the axis from the balls.
 Offsets offsets_of_balls(const BallDraws& draws, const BallJudge& judge, const TriangleSearch& search,
                          const Allowances& allowed, const Context& context) {
   const auto add = [&](Offsets& offsets, std::size_t k) {
     const TouchingBall ball = judge.ball(draws, k);
     if (!(ball.radius > 0)) return;
     const double near = allowed.missing_at(ball.radius);
-    // What is neither far nor the furthest so far need not be known.
+    // Distances below both the allowance and the largest so far need not be exact.
     const double enough = std::min(near, offsets.furthest);
     offsets.add(search.distance_above(ball.centre, enough, no_group), near, near, near, ball.centre);
   };
   return gathered_offsets(draws.size(), "looking for what is missing", add, context);
 }
 
-/// Grows balls from random points, the same in every run. @param theta  degrees.  @param sought  the least angle.
+/// Grows balls from random points, the same in every run.
+/// @param theta   degrees.
+/// @param sought  the least angle, degrees.
 /// @throws Cancelled.
 FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const Allowances& allowed, double theta,
                       double sought, const Context& context) {
   const auto body_count = static_cast<std::uint32_t>(solid.bodies.size());
   FoundBalls found{{}, std::vector<Offsets>(body_count)};
-  if (!(sought > theta)) return found;  // at 180 degrees there is nothing more to see
+  if (!(sought > theta)) return found;  // no angle is above theta = 180 degrees
   const DrawnBalls& drawn = solid.drawn_balls();
   if (drawn.in_solid().size() == 0) return found;
   const TriangleSearch search = search_of(axis, context);
   const BallJudge judge(allowed, theta, sought);
   found.all = offsets_of_balls(drawn.in_solid(), judge, search, allowed, context);
-  // Of a small body that is all that a coarse grid has for certain.
+  // In a small body, a coarse grid is certain to show only steep angles.
   const BallJudge steep_judge(allowed, theta, std::max(sought, Allowances::steep));
   for (std::uint32_t b = 0; b < body_count; b += drawn.every()) {
     found.bodies[b] = offsets_of_balls(drawn.in_body(b), steep_judge, search, allowed, context);
@@ -114,42 +116,42 @@ FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const All
   return found;
 }
 
-constexpr double least_share = 0.95;       ///< of samples that must be in the middle: true axes have 0.99
-constexpr double least_near_share = 0.9;   ///< of samples that must be near it for a wall so thick: true axes have 0.94
-constexpr double least_close_share = 0.5;  ///< of samples that must be close to the middle: true axes have 0.8
-constexpr double most_missed = 0.05;       ///< share of balls that may be far from the axis: of true axes 0.01 are
-constexpr double most_vertices_off = 0.1;  ///< share of vertices that see one wall away from the middle
+constexpr double least_share = 0.95;       ///< share of samples that must be in the middle: true axes have 0.99
+constexpr double least_near_share = 0.9;   ///< share of samples that must be near it, by the wall: true axes have 0.94
+constexpr double least_close_share = 0.5;  ///< share of samples that must be close to the middle: true axes have 0.8
+constexpr double most_missed = 0.05;       ///< share of balls that may be far from the axis: true axes have 0.01
+constexpr double most_vertices_off = 0.1;  ///< share of vertices that may see one wall away from the middle
 constexpr double most_deep_of_one_wall =
-    0.6;                              ///< of vertices deep inside: of true axes 0.4 have one footprint (a rod at 0)
-constexpr double enough_sheet = 256;  ///< square voxels from which that is asked
-constexpr double far_off = 1.5;       ///< allowances for what is missing, that such vertices may be off the middle
-constexpr double few_vertices = 16;   ///< that may do so at any rate
-constexpr double thin_part = 1;       ///< voxels: radius from which parts are not thin
-constexpr double one_footprint = 5;   ///< degrees between two that are one
-constexpr double well_above = 30;     ///< degrees over theta from where the axis must have all
-constexpr double most_missed_of_surface = 0.1;  ///< the same by the surface of bodies: of true axes 0.06 are
-constexpr double most_missed_of_body = 0.5;     ///< and of one of several, where a coarse grid may miss a sheet
-constexpr double most_missed_of_voxels = 0.1;   ///< the same where only voxels tell inside from outside
-constexpr double few_missed = 3;                ///< balls that may be missed at any rate
-constexpr std::size_t few_balls = 20;           ///< too few to tell anything
+    0.6;                              ///< share of deep vertices: true axes have 0.4 with one footprint (a rod at 0)
+constexpr double enough_sheet = 256;  ///< square voxels of sheets from which that is checked
+constexpr double far_off = 1.5;       ///< multiple of missing_at() by which such vertices may be off the middle
+constexpr double few_vertices = 16;   ///< vertices that may be off in any case
+constexpr double thin_part = 1;       ///< voxels: smallest radius of parts that are not thin
+constexpr double one_footprint = 5;   ///< degrees below which two footprints count as one
+constexpr double well_above = 30;     ///< degrees above theta from which the axis must be complete
+constexpr double most_missed_of_surface = 0.1;  ///< share of balls beside surfaces: true axes have 0.06
+constexpr double most_missed_of_body = 0.5;     ///< the same in one of several bodies: a coarse grid may miss a sheet
+constexpr double most_missed_of_voxels = 0.1;   ///< the same if only voxels define the inside
+constexpr double few_missed = 3;                ///< balls that may be missed in any case
+constexpr std::size_t few_balls = 20;           ///< fewest balls that are judged
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
 constexpr std::size_t most_samples_of_vertices = 4'096;
-constexpr std::size_t enough_samples = 12;  ///< of a sheet, to judge it by itself
-constexpr double most_off_of_sheet = 0.5;   ///< share of these off the middle: of true axes 0.25 are
-constexpr double small_sheet = 4;           ///< square voxels from which it is judged
+constexpr std::size_t enough_samples = 12;  ///< fewest samples of a sheet that is judged by itself
+constexpr double most_off_of_sheet = 0.5;   ///< share of these that may be off the middle: true axes have 0.25
+constexpr double small_sheet = 4;           ///< square voxels from which a sheet is judged
 constexpr std::size_t most_samples_of_small = 4'096;
 constexpr std::size_t grain = 64;
 
-/// A point of the axis to look at.
+/// A point of the axis to check.
 struct AxisPoint {
   Vec3d at;
   std::uint32_t body = 0;
-  double size = 0;   ///< of the cell that it lies on
-  double depth = 0;  ///< of the deepest corner of this
+  double size = 0;   ///< longest side of its cell
+  double depth = 0;  ///< largest radius at the corners of that cell
 };
 
-/// As many as a size can hold at so many for each unit, few where it is small.
+/// Returns 16 samples per unit, at least 64 and at most `most`; 0 unless `units` is above 0.
 std::size_t sample_count(double units, std::size_t most) {
   constexpr double per_unit = 16;
   constexpr std::size_t least = 64;
@@ -162,9 +164,9 @@ class Middle {
  public:
   Middle(const KnownSolid& solid, const Allowances& allowed) : solid_(*solid.solid), allowed_(allowed) {}
 
-  /// How far a point is from the middle between two walls, about, and how large the ball between them is.
+  /// Approximate distance of a point from the middle between two walls, and the radius of the ball between them.
   struct Found {
-    double off = HUGE_VAL;  ///< stays so where there is no second wall
+    double off = HUGE_VAL;  ///< unchanged if no second wall exists
     double radius = 0;
   };
   [[nodiscard]] Found find(const AxisPoint& point) const {
@@ -172,14 +174,14 @@ class Middle {
     const double depth = length(point.at - foot);
     const double nothing = 1e-9 * solid_.diagonal(point.body);
     if (!(depth > nothing)) return {is_thin(point) ? 0 : HUGE_VAL, 0};
-    // Nearly always another wall is close behind.
+    // In most cases another wall is close.
     TouchingBall ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise, allowed_.middle);
     if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise);
     return ball.radius > 0 ? Found{distance_to_middle(point.at, ball), ball.radius} : Found{};
   }
 
  private:
-  /// Whether a point of the surface has the other side of the solid near by, all around.
+  /// Returns true if the other side of the solid is close to a surface point in all directions.
   [[nodiscard]] bool is_thin(const AxisPoint& point) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const double sign : {-1.0, 1.0}) {
@@ -195,7 +197,8 @@ class Middle {
   const Allowances& allowed_;
 };
 
-/// @param point  gives the k-th of some points.  @param note  is told of each whether it is off the middle.
+/// @param point  returns the k-th point.
+/// @param note   receives k, and true if that point is off the middle.
 template <class Point, class Note>
 Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& allowed, const Point& point,
                    const Note& note, const Context& context) {
@@ -203,7 +206,7 @@ Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& al
     const AxisPoint p = point(k);
     const Middle::Found found = middle.find(p);
     note(k, !(found.off <= allowed.middle));
-    // Between the mouth of a thin part and the middle of a thick one only the edges of the mouth are close.
+    // Between the mouth of a thin part and the middle of a thick one, only the edges of the mouth are close.
     const double radius = std::max(found.radius, p.depth);
     offsets.add(found.off, allowed.close_at(radius, p.size), allowed.middle_at(radius, p.size), allowed.middle, p.at);
   };
@@ -228,17 +231,17 @@ double area(const MedialView& axis, std::size_t t) {
   return 0.5 * length(cross(axis.positions[b] - axis.positions[a], axis.positions[c] - axis.positions[a]));
 }
 
-/// Between a vertex's footprints, degrees.
+/// Returns the angle between a vertex's footprints, degrees.
 double angle_at(const MedialView& axis, std::uint32_t v) {
   const Vec3d& p = axis.positions[v];
   return degrees_between(axis.footprint(v, 0) - p, axis.footprint(v, 1) - p);
 }
 
-/// What of an axis is seen at more than theta, by what it says of itself.
+/// The parts of an axis that two walls should see at more than theta, by the axis's own angles.
 class Claimed {
  public:
-  /// @param noise           degrees up to which one rough wall is seen.
-  /// @param has_footprints  whether footprints are known, without which no vertex sees anything.
+  /// @param noise           degrees up to which two walls are one rough wall.
+  /// @param has_footprints  true if footprints are known. Without them no vertex sees anything.
   Claimed(const MedialView& axis, double theta, double noise, bool has_footprints)
       : angles_(axis.positions.size(), 0),
         is_claimed_(axis.positions.size(), false),
@@ -263,13 +266,13 @@ class Claimed {
   [[nodiscard]] const Spread& sheets() const { return sheets_; }
   [[nodiscard]] const Spread& curves() const { return curves_; }
   [[nodiscard]] bool contains(std::size_t vertex) const { return is_claimed_[vertex]; }
-  /// Whether a vertex should see two walls by what is beside it: by the angle of a cell and by its other corners.
+  /// Returns true if a vertex should see two walls, by the angle of one of its cells and by that cell's other corners.
   [[nodiscard]] bool is_between_walls(std::size_t vertex) const { return is_between_walls_[vertex]; }
-  /// Between a vertex's footprints, degrees.
+  /// Returns the angle between a vertex's footprints, degrees.
   [[nodiscard]] double angle(std::size_t vertex) const { return angles_[vertex]; }
-  /// The smallest radius in the cells at a vertex.
+  /// Returns the smallest radius in the cells at a vertex.
   [[nodiscard]] double least_radius_around(std::size_t vertex) const { return least_radius_[vertex]; }
-  /// Of the area of all triangles, what is only there for homotopy.
+  /// Returns the share of the area of all triangles that only homotopy keeps.
   [[nodiscard]] double rest_of_area() const { return all_ > 0 ? std::max(0.0, 1 - sheets_.total() / all_) : 0; }
 
  private:
@@ -290,12 +293,12 @@ class Claimed {
   std::vector<double> angles_;
   std::vector<bool> is_claimed_, is_between_walls_;
   std::vector<double> least_radius_;
-  double two_walls_ = 0;  ///< degrees from which two walls are seen, not one rough one
+  double two_walls_ = 0;  ///< degrees from which two walls are seen, not one rough wall
   Spread sheets_, curves_;
   double all_ = 0;
 };
 
-/// Looks at the vertices with one wall of those that should have two: at some of them, where they are many.
+/// Checks the vertices with one footprint among those that should see two walls: a sample of them if they are many.
 void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Middle& middle, const Allowances& allowed,
                       const std::vector<std::uint32_t>& body_of, MedialCheck& check, const Context& context) {
   std::vector<std::uint32_t> single;
@@ -318,7 +321,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   });
   for (std::size_t k = 0; k < found.size(); ++k) {
     const std::uint32_t v = single[k * every];
-    // Between the mouth of a thin part and the middle of a thick one the edges of the mouth are all that is close.
+    // Between the mouth of a thin part and the middle of a thick one, only the edges of the mouth are close.
     const auto& [off, radius] = found[k];
     if (!(off > allowed.middle_at(radius)) || claimed.least_radius_around(v) < thin_part * allowed.voxel) continue;
     ++check.one_wall_off;
@@ -327,7 +330,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   }
 }
 
-/// Points of the sheets that two walls should see.
+/// Random points of the sheets that two walls should see.
 class SheetPoints {
  public:
   SheetPoints(const MedialView& axis, const Spread& triangles, const std::vector<std::uint32_t>& body_of,
@@ -357,7 +360,7 @@ class SheetPoints {
   std::size_t count_;
 };
 
-/// Judges sheets one by one, so that none can hide among others that are in the middle.
+/// Judges sheets one by one, so that a wrong one cannot hide among others.
 class SheetJudge {
  public:
   void add(std::int32_t sheet, bool is_off, const Vec3d& at) {
@@ -386,7 +389,7 @@ class SheetJudge {
   std::map<std::int32_t, Sheet> sheets_;
 };
 
-/// Looks at sheets that too few samples fell on to judge them, the largest first.
+/// Checks sheets with too few samples to be judged, the largest first.
 void look_at_small_sheets(const MedialView& axis, const Claimed& claimed, const Middle& middle,
                           const Allowances& allowed, const std::vector<std::uint32_t>& body_of, SheetJudge& judge,
                           const Context& context) {
@@ -413,14 +416,14 @@ void look_at_small_sheets(const MedialView& axis, const Claimed& claimed, const 
   }
 }
 
-// ---- What is said of it ----
+// ---- Messages ----
 
 std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";
 }
 
-/// @param by_voxels  whether only voxels tell inside from outside: walls inside of the solid, which bound nothing, are
-/// as close as others there, so that what is in the middle is told, and not judged.
+/// @param by_voxels  true if only voxels define the inside. Walls in the solid that bound nothing are then as close as
+/// others. So shares in the middle are reported, not judged.
 void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>& mismatches) {
   const double most_missed_here = by_voxels ? most_missed_of_voxels : most_missed;
   const std::string allowed = " (allowed: " + rounded_text(check.allowance) + ")";
@@ -518,7 +521,8 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
                          const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
                          const Context& context) {
   const Allowances allowed = allowances(solid, options, factor);
-  // Steps of voxels see each other at smaller angles everywhere: what a theta below that keeps lies between these.
+  // Steps of voxels see each other at up to this angle everywhere. So cells that only a smaller theta keeps are not
+  // judged.
   const double least = allowed.of_voxels ? 2 * allowed.noise : 0;
   const Claimed claimed(axis, options.angles ? std::max(options.theta.value_or(0), least) : HUGE_VAL, allowed.noise,
                         options.footprints);
@@ -536,7 +540,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   const Offsets sheets = offsets_of(
       on_sheets, middle, allowed, [&](std::size_t k) { return points.at(k); },
       [&](std::size_t k, bool off) { is_off[k] = off ? 1 : 0; }, context);
-  // In images of noise, steps of voxels see each other from most of a small sheet.
+  // In noisy images, most points of a small sheet lie between steps of voxels.
   if (!allowed.of_voxels) {
     SheetJudge judge;
     for (std::size_t k = 0; k < on_sheets; ++k) judge.add(points.sheet(k), is_off[k] != 0, points.at(k).at);
@@ -554,7 +558,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
                          std::max(axis.radius[a], axis.radius[b])};
       },
       [](std::size_t, bool) {}, context);
-  // A curve counts as much as a strip of sheet a voxel wide.
+  // A curve counts as a strip of sheet one voxel wide.
   const double size_of_curves = claimed.curves().total() * allowed.voxel;
   const double size = claimed.sheets().total() + size_of_curves;
   note_share(check, sheets, curves, size > 0 ? claimed.sheets().total() / size : 1);

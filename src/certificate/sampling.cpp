@@ -16,8 +16,8 @@ double area(const Corners& t) {
   return 0.5 * length(cross(t[1] - t[0], t[2] - t[0]));
 }
 
-/// Halves a triangle across its longest side until no side is longer than the step, or as short as numbers can tell
-/// apart, and calls use(piece); ends when that is false.
+/// Halves a triangle across its longest side until no side is longer than `step`, or doubles cannot distinguish the
+/// halves. Calls use(piece) for each piece, and ends when that returns false.
 template <class Use>
 void cut(const Corners& whole, double step, const Use& use) {
   std::vector<Corners> stack{whole};
@@ -47,18 +47,18 @@ void cut(const Corners& whole, double step, const Use& use) {
   }
 }
 
-/// Triangles to take samples of.
+/// Triangles to sample.
 class SampledTriangles {
  public:
   SampledTriangles(std::vector<Corners> triangles, const Context& context)
       : triangles_(std::move(triangles)), context_(context) {}
 
-  /// The step, or the smallest larger one, about, that needs few enough samples.
+  /// Returns `step`, or about the smallest larger one that needs few enough samples.
   [[nodiscard]] double affordable(double step) const {
     double total = 0;
     for (const Corners& t : triangles_) total += area(t);
     const std::size_t most = std::max(most_samples, triangles_.size());
-    // No piece is larger than a triangle of three sides as long as the step.
+    // No piece is larger than an equilateral triangle with `step` as its side.
     step = std::max(step, std::sqrt(total / (0.43 * static_cast<double>(most))));
     while (!is_affordable(step, most)) step *= 1.25;
     return step;
@@ -110,7 +110,7 @@ Samples samples_of_triangles(const MeshView& mesh, std::span<const std::uint32_t
   const SampledTriangles sampled(std::move(triangles), context);
   step = sampled.affordable(step);
   Samples result{sampled.samples(step), step};
-  // Corners are what balls fill last.
+  // Corners are the last places that balls fill.
   for (std::size_t v = 0; v < is_named.size(); ++v) {
     if (is_named[v]) result.list.push_back({mesh.vertices[v], 0});
   }

@@ -19,13 +19,13 @@
 
 namespace blum::verifier {
 
-/// Points of triangles, and all their corners, as SolidOracle::samples() gives them.
-/// @param groups  of each triangle; those of no_group are left out. Empty: all are taken.
+/// Returns points of triangles and all their corners, as SolidOracle::samples() does.
+/// @param groups  of each triangle. Triangles of no_group are left out. Empty: all triangles are sampled.
 /// @throws Cancelled.
 [[nodiscard]] Samples samples_of_triangles(const MeshView& mesh, std::span<const std::uint32_t> groups, double step,
                                            const Context& context);
 
-/// Points of triangles or edges, spread evenly over their size.
+/// Triangles or edges that are sampled in proportion to their sizes.
 class Spread {
  public:
   void add(double size, std::uint32_t cell) {
@@ -36,7 +36,7 @@ class Spread {
   }
   [[nodiscard]] double total() const { return total_; }
   [[nodiscard]] const std::vector<std::uint32_t>& cells() const { return cells_; }
-  /// The cell at a share of all.
+  /// Returns the cell at a share of the total size, 0 to 1.
   [[nodiscard]] std::uint32_t at(double share) const {
     const auto end = std::upper_bound(ends_.begin(), ends_.end(), share * total_);
     return cells_[std::min(static_cast<std::size_t>(end - ends_.begin()), cells_.size() - 1)];
@@ -48,7 +48,7 @@ class Spread {
   std::vector<double> ends_;
 };
 
-/// A point of a triangle, all alike.
+/// Returns a random point of a triangle, with uniform density.
 [[nodiscard]] inline Vec3d random_point(const std::array<Vec3d, 3>& corners, Random& random) {
   double u = random.uniform();
   double v = random.uniform();
@@ -59,13 +59,14 @@ class Spread {
   return corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
 }
 
-/// What is told of samples.
+/// Statistics of the offsets of samples.
 struct Offsets {
   std::size_t count = 0, close = 0, not_near = 0, off = 0;
   double furthest = 0;
   Vec3d where;
 
-  /// @param allowed  what the file says of itself allows.  @param near  no more than that: what the solid shows there.
+  /// @param allowed  the offset that the claims of the file allow.
+  /// @param near     the offset that the solid allows there, at most `allowed`.
   void add(double offset, double close_enough, double near, double allowed, const Vec3d& at) {
     ++count;
     if (offset <= close_enough) ++close;
@@ -86,7 +87,9 @@ struct Offsets {
   }
 };
 
-/// All that add(offsets, k) adds for each k below `count`. @param phase  as parallel_for() takes it. @throws Cancelled.
+/// Returns the sum of what add(offsets, k) adds for each k below `count`.
+/// @param phase  as parallel_for() takes it.
+/// @throws Cancelled.
 template <class Add>
 [[nodiscard]] Offsets gathered_offsets(std::size_t count, std::string_view phase, const Add& add,
                                        const Context& context) {

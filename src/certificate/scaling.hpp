@@ -13,15 +13,15 @@
 
 namespace blum::verifier {
 
-/// Solids of any size are looked at as if they were about 1 large, for the fourth powers of lengths to be numbers. The
-/// factor is a power of two, which changes no digit, and 1 unless the size is extreme.
+/// Returns the factor that scales a solid of extreme size to about 1, so that fourth powers of lengths stay finite. It
+/// is a power of two, which changes no digit, and 1 unless the size is extreme.
 inline double factor_for(double size) {
   constexpr int extreme = 100;
   const int exponent = size > 0 && std::isfinite(size) ? std::ilogb(size) : 0;
   return std::abs(exponent) < extreme ? 1 : std::ldexp(1.0, -exponent);
 }
 
-/// A medial axis, all of whose lengths are `factor` times as large.
+/// Returns a medial axis with all lengths multiplied by `factor`.
 inline Complex scaled(Complex axis, double factor) {
   for (Vec3d& position : axis.positions) position *= factor;
   for (double& radius : axis.vertex_columns.edit<double>(medial_columns::radius)) radius *= factor;
@@ -31,7 +31,7 @@ inline Complex scaled(Complex axis, double factor) {
   return axis;
 }
 
-/// A mesh and its vertices, which are its own.
+/// A scaled mesh that owns its vertices.
 struct ScaledMesh {
   std::vector<Vec3d> vertices;
   MeshView view;

@@ -1,4 +1,4 @@
-// Blum: how close two segments are, for the verifier. SPDX-License-Identifier: Apache-2.0
+// Blum: distances of segments, for the verifier. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ struct Segment3 {
   Vec3d a, b;
 
   [[nodiscard]] Vec3d at(double along) const { return a + (b - a) * along; }
-  /// How far along the point is that is closest to another one: 0 to 1.
+  /// Returns the parameter of the point that is closest to p: 0 to 1.
   [[nodiscard]] double closest(const Vec3d& p) const {
     const double squared = squared_length(b - a);
     return squared > 0 ? std::clamp(dot(p - a, b - a) / squared, 0.0, 1.0) : 0.0;
@@ -19,10 +19,10 @@ struct Segment3 {
   [[nodiscard]] Vec3d closest_point(const Vec3d& p) const { return at(closest(p)); }
 };
 
-/// How far along a segment the point is that is closest to another segment: 0 to 1; where they run along each other,
-/// the middle of that part.
+/// Returns the parameter of the point of a segment that is closest to another segment: 0 to 1. If they run along each
+/// other, that is the middle of the common part.
 [[nodiscard]] inline double closest_along(const Segment3& segment, const Segment3& other) {
-  constexpr double parallel = 1e-12;  // squared, the sine of the angle between them
+  constexpr double parallel = 1e-12;  // squared sine of the angle between them
   const Vec3d along = segment.b - segment.a;
   const Vec3d across = other.b - other.a;
   const double product = squared_length(along) * squared_length(across);
@@ -34,7 +34,7 @@ struct Segment3 {
   return segment.closest(other.at(other.closest(segment.at(std::clamp(s, 0.0, 1.0)))));
 }
 
-/// Squared distance of two segments.
+/// Returns the squared distance of two segments.
 [[nodiscard]] inline double squared_distance(const Segment3& segment, const Segment3& other) {
   const Vec3d p = segment.at(closest_along(segment, other));
   double best = squared_length(p - other.closest_point(p));

@@ -12,7 +12,7 @@
 namespace blum::verifier {
 namespace {
 
-/// Sets that are joined, told apart by their smallest member.
+/// Disjoint sets, identified by their smallest members.
 class Sets {
  public:
   explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -33,15 +33,15 @@ class Sets {
 /// A side of a triangle.
 struct Side {
   std::uint32_t low = 0, high = 0;
-  std::uint32_t corner = 0;  ///< 3 * triangle + where the side begins
-  bool rises = false;        ///< from the lower vertex to the higher one
+  std::uint32_t corner = 0;  ///< 3 * triangle + the corner where the side begins
+  bool rises = false;        ///< true if it runs from the lower vertex to the higher one
 };
 
 bool names_a_vertex_twice(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// All sides, those of an edge beside each other.
+/// Returns all sides, those of an edge next to each other.
 std::vector<Side> sorted_sides(const MeshView& mesh, const Context& context) {
   std::vector<std::size_t> begin(mesh.vertices.size() + 1, 0);
   const auto for_each_side = [&](const auto& use) {
@@ -88,7 +88,7 @@ void for_each_edge(const std::vector<Side>& sides, const Use& use) {
   }
 }
 
-/// The corner of a triangle after a given one, both as 3 * triangle + k.
+/// Returns the next corner of the same triangle, both as 3 * triangle + k.
 std::uint32_t after(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
@@ -96,10 +96,10 @@ std::uint32_t after(std::uint32_t corner) {
 /// The triangle on the other side of a side.
 struct Neighbour {
   std::uint32_t triangle = 0;
-  std::int8_t agrees = 0;  ///< 1 where both face one way, else -1
+  std::int8_t agrees = 0;  ///< 1 if both face the same way, else -1
 };
 
-/// Of each side, as 3 * triangle + k.
+/// Returns the neighbour at each side, at 3 * triangle + k.
 std::vector<Neighbour> neighbours(const MeshView& mesh, const std::vector<Side>& sides) {
   std::vector<Neighbour> beside(3 * mesh.triangles.size());
   for_each_edge(sides, [&](const Side& a, const Side& b) {
@@ -110,8 +110,9 @@ std::vector<Neighbour> neighbours(const MeshView& mesh, const std::vector<Side>&
   return beside;
 }
 
-/// For each triangle 1 or -1, such that those with one sign, and the others turned, face one way. Shells begin with 1.
-/// @throws NoPolyhedron for a surface that has only one side.
+/// Returns 1 or -1 for each triangle, so that all face the same way if those with -1 are reversed. The first triangle
+/// of each shell has 1.
+/// @throws NoPolyhedron if a surface has only one side.
 std::vector<std::int8_t> facings(const MeshView& mesh, const std::vector<Neighbour>& beside, const Context& context) {
   throw_if_cancelled(context);
   std::vector<std::int8_t> facing(mesh.triangles.size(), 0);
@@ -138,7 +139,7 @@ std::vector<std::int8_t> facings(const MeshView& mesh, const std::vector<Neighbo
   return facing;
 }
 
-/// @throws NoPolyhedron where the triangles around a vertex are more than one fan.
+/// @throws NoPolyhedron if the triangles around a vertex are more than one fan.
 void check_fans(const MeshView& mesh, Sets& corners) {
   std::vector<std::uint32_t> fan(mesh.vertices.size(), no_group);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -154,7 +155,7 @@ void check_fans(const MeshView& mesh, Sets& corners) {
   }
 }
 
-/// Triangles of each shell.
+/// Returns the triangles of each shell.
 std::vector<std::vector<std::uint32_t>> members(const ClosedShells& shells) {
   std::vector<std::vector<std::uint32_t>> lists(shells.shells.size());
   for (std::uint32_t t = 0; t < shells.of_triangle.size(); ++t) {
@@ -163,13 +164,13 @@ std::vector<std::vector<std::uint32_t>> members(const ClosedShells& shells) {
   return lists;
 }
 
-/// A shell, and whether it faces outwards: 1 if so, -1 if inwards, 0 where rounding leaves doubt.
+/// A shell, and its direction: 1 if it faces outwards, -1 if inwards, 0 if rounding leaves doubt.
 struct Measured {
   ClosedShell shell;
   std::int8_t faces_outwards = 0;
 };
 
-/// Measures a shell: its genus by its homology, its volume by the tetrahedra over a point of it.
+/// Measures a shell: its genus from its homology, its volume from the tetrahedra over one of its points.
 Measured measured(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
                   const std::vector<std::int8_t>& facing, std::vector<std::uint32_t>& number, const Context& context) {
   std::vector<Triangle> own;
@@ -177,7 +178,7 @@ Measured measured(const MeshView& mesh, const std::vector<std::uint32_t>& triang
   std::vector<std::uint32_t> vertices;
   const Vec3d origin = mesh.vertices[mesh.triangles[triangles.front()][0]];
   double volume = 0;
-  double sum = 0;  // of what is added to it
+  double sum = 0;  // of absolute volumes
   for (const std::uint32_t t : triangles) {
     Triangle& corners = own.emplace_back(mesh.triangles[t]);
     std::array<Vec3d, 3> at;
@@ -200,13 +201,13 @@ Measured measured(const MeshView& mesh, const std::vector<std::uint32_t>& triang
   return {{betti[1] / 2, std::abs(volume), 0, 0}, static_cast<std::int8_t>(!is_certain ? 0 : volume > 0 ? 1 : -1)};
 }
 
-/// A stretch of a line between two crossings that lies in a shell.
+/// A part of a line between two crossings that lies in a shell.
 struct Stretch {
   double length = 0;
-  std::vector<std::uint32_t> around;  ///< the shells that it lies in, rising
+  std::vector<std::uint32_t> around;  ///< the shells that it lies in, in rising order
 };
 
-/// The longest stretch inside of a shell along a line; nullopt where the crossings make no sense.
+/// Returns the longest stretch of a line in a shell; nullopt if the crossings are inconsistent.
 std::optional<Stretch> longest_inside(const std::vector<Crossing>& crossings,
                                       const std::vector<std::uint32_t>& of_triangle, std::uint32_t shell) {
   Stretch longest;
@@ -226,7 +227,7 @@ std::optional<Stretch> longest_inside(const std::vector<Crossing>& crossings,
   return around.empty() ? std::optional(longest) : std::nullopt;
 }
 
-/// Lines through random points of a shell; the longest of their stretches inside of it.
+/// Sends lines through random points of a shell, and returns the longest stretch in it.
 class Prober {
  public:
   Prober(const MeshView& mesh, const ClosedShells& shells, const TriangleSearch& search)
@@ -264,7 +265,7 @@ class Prober {
   std::vector<Crossing> crossings_;
 };
 
-/// Of two shells that hold a common point, and do not cross, the larger one is around the other.
+/// Returns true if `outer` is around `inner`. The shells contain a common point and do not cross, so the larger one is.
 bool encloses(const ClosedShell& outer, const ClosedShell& inner) {
   if (std::abs(outer.volume - inner.volume) <= 1e-12 * inner.volume) {
     throw NoPolyhedron(
@@ -284,7 +285,7 @@ ClosedShells cut_into_shells(const MeshView& mesh, const Context& context) {
   if (sides.empty()) throw NoPolyhedron("the mesh has no triangle that names three vertices: it bounds nothing");
   for_each_edge(sides, [&](const Side& a, const Side& b) {
     triangles.join(a.corner / 3, b.corner / 3);
-    // One side begins where the other one ends, unless their triangles face different ways.
+    // One side begins where the other one ends, unless the triangles face different ways.
     const bool is_opposite = a.rises != b.rises;
     corners.join(a.corner, is_opposite ? after(b.corner) : b.corner);
     corners.join(after(a.corner), is_opposite ? b.corner : after(b.corner));

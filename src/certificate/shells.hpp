@@ -1,4 +1,4 @@
-// Blum: the shells of a closed mesh and how they nest, for the verifier. SPDX-License-Identifier: Apache-2.0
+// Blum: the shells of a closed mesh and their nesting, for the verifier. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -13,44 +13,44 @@
 
 namespace blum::verifier {
 
-/// A connected part of the surface.
+/// A closed, connected part of the surface.
 struct ClosedShell {
   std::int64_t genus = 0;
-  double volume = 0;        ///< that it encloses, > 0, whichever way it faces
-  std::uint32_t depth = 0;  ///< how many shells it lies in: at even depth it bounds a body, at odd depth a void
-  std::uint32_t body = 0;   ///< counts the shells at even depth; a void belongs to the body around it
+  double volume = 0;        ///< enclosed, > 0, whichever way the shell faces
+  std::uint32_t depth = 0;  ///< number of shells around it: at even depth it bounds a body, at odd depth a void
+  std::uint32_t body = 0;   ///< numbers the shells at even depth; a void has the number of the body around it
 };
 
 struct ClosedShells {
   std::vector<ClosedShell> shells;
   std::vector<std::uint32_t> of_triangle;  ///< no_group for triangles that name a vertex twice: they bound nothing
-  std::vector<std::int8_t> outwards;       ///< 1 where a triangle's normal leads out of its shell, -1 in, 0 unknown
-  std::vector<std::uint32_t> beside;       ///< of each side, as 3 * triangle + k: the triangle on the other side of it
+  std::vector<std::int8_t> outwards;       ///< 1 if a triangle's normal points out of its shell, -1 if in, 0 if unknown
+  std::vector<std::uint32_t> beside;       ///< for each side, at 3 * triangle + k: the triangle on the other side of it
   std::uint32_t bodies = 0;
 };
 
-/// A mesh that bounds no polyhedron.
+/// Thrown for a mesh that bounds no polyhedron.
 class NoPolyhedron : public InvalidMesh {
  public:
   explicit NoPolyhedron(const std::string& reason) : InvalidMesh(reason), reason_(reason) {}
-  /// One sentence.
+  /// Returns the reason as one sentence.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
   std::string reason_;
 };
 
-/// Cuts a mesh into its shells. Which of them lies in which is not yet known.
-/// @throws NoPolyhedron unless every edge has two triangles that traverse it in opposite directions, and every vertex
-/// one fan of triangles; Cancelled.
+/// Cuts a mesh into its shells. Their nesting is not yet known.
+/// @throws NoPolyhedron unless every edge has two triangles, every vertex one fan of triangles, and the surface two
+/// sides; Cancelled.
 [[nodiscard]] ClosedShells cut_into_shells(const MeshView& mesh, const Context& context);
 
-/// Finds depths and bodies from lines through each shell. Shells may touch, but not cross.
-/// @param search  the triangles with their shells as groups.
-/// @throws NoPolyhedron where a shell encloses nothing, or just what another one does; Cancelled.
+/// Computes depths and bodies from lines through each shell. Shells may touch, but not cross.
+/// @param search  the triangles, with their shells as groups.
+/// @throws NoPolyhedron if a shell encloses nothing, or exactly what another one does; Cancelled.
 void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& search, const Context& context);
 
-/// Of each body of the solid that nested shells bound.
+/// Returns the Betti numbers of each body of the solid that nested shells bound.
 [[nodiscard]] std::vector<BettiNumbers> betti_numbers(const ClosedShells& shells);
 
 }  // namespace blum::verifier

@@ -21,18 +21,20 @@
 namespace blum::verifier {
 namespace {
 
-/// Where segments go out of a body and come in again, and whether a way along its surface joins both places. Past an
-/// edge of the solid, or a hair beside it, one does; across a gap none does, however narrow the gap is.
+/// Finds out if the places where a segment leaves a body and enters it again are joined by a way along its surface.
+/// Past an edge of the solid, or a hair beside it, such a way exists. Across a gap none does, however narrow the gap
+/// is.
 class GapSearch {
  public:
-  /// All that is given must stay. @param search  the triangles of the mesh, with bodies as groups.
-  /// @param beside  for each side of a triangle the triangle on the other side of it.
+  /// All arguments must outlive this object.
+  /// @param search  the triangles of the mesh, with bodies as groups.
+  /// @param beside  for each side of a triangle, the triangle on its other side.
   GapSearch(const SolidOracle& solid, const TriangleSearch& search, const MeshView& mesh,
             std::span<const std::uint32_t> body_of, std::span<const std::uint32_t> beside)
       : solid_(solid), search_(search), mesh_(mesh), body_of_(body_of), beside_(beside) {}
 
-  /// Whether a part of a segment outside of a body cannot be replaced by a way along the surface that keeps within
-  /// `reach` of it; nullopt where that cannot be told.
+  /// Returns true if no way along the surface within `reach` can replace a part of a segment outside a body. Returns
+  /// nullopt if that is undecided.
   [[nodiscard]] std::optional<bool> crosses(const Vec3d& a, const Vec3d& b, std::uint32_t body, double reach) const;
 
  private:
@@ -83,7 +85,7 @@ std::optional<std::vector<GapSearch::Meeting>> GapSearch::meetings(const Vec3d& 
   Random random(0x9a9U);
   std::vector<Crossing> crossings;
   bool is_certain = search_.crossings(line_between(a, b), crossings, whole);
-  // What runs through edges of the mesh cannot be told: others next to it can.
+  // A segment through edges of the mesh is undecided. Segments next to it can be decided.
   double aside = 0;
   for (std::uint32_t k = 0; k < most_attempts && !is_certain; ++k) {
     const Vec3d from = a + random.in_ball() * aside;
@@ -230,8 +232,8 @@ class ShellOracle : public SolidOracle {
     });
   }
 
-  /// Where a part of the boundary goes through a triangle, it ends at a side of the triangle, or a side of its own
-  /// comes through.
+  /// If the boundary passes through a triangle, it crosses a side of the triangle, or one of its own edges pierces the
+  /// triangle.
   [[nodiscard]] bool is_clear(const std::array<Vec3d, 3>& triangle, std::uint32_t body) const override {
     const auto& [a, b, c] = triangle;
     return is_clear(a, b, body) && is_clear(b, c, body) && is_clear(c, a, body) && search_.is_unpierced(triangle, body);
@@ -251,7 +253,7 @@ class ShellOracle : public SolidOracle {
   }
 
   [[nodiscard]] std::unique_ptr<Complement> make_complement(const Context& context) const override {
-    std::vector<std::vector<std::uint32_t>> walls(shells_.shells.size());  // the triangles of voids
+    std::vector<std::vector<std::uint32_t>> walls(shells_.shells.size());  // triangles of each void
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       const std::uint32_t shell = shells_.of_triangle[t];
       if (shell != no_group && shells_.shells[shell].depth % 2 == 1) walls[shell].push_back(t);
@@ -267,14 +269,14 @@ class ShellOracle : public SolidOracle {
  private:
   enum class Side { inside, outside, unknown };
 
-  /// On which side of its closest triangle a point lies, seen from the solid. Nothing of the boundary is in between: so
-  /// where that point of the triangle is no point of others, its height tells; and where it is one of the edge to just
-  /// one other triangle, the sum of both heights does (Baerentzen and Aanaes 2005).
+  /// Returns on which side of its closest triangle a point lies, as seen from the solid. No boundary is in between. If
+  /// the closest point belongs to no other triangle, the height above the triangle decides. If it lies on the edge to
+  /// exactly one other triangle, the sum of both heights decides (Baerentzen and Aanaes 2005).
   [[nodiscard]] Side side_of(const Vec3d& p, const TriangleSearch::Nearest& closest) const {
     constexpr double nearly = 1 - 1e-6;
-    constexpr double clearly = 0.1;  // of the distance: not at an edge as sharp as a knife
+    constexpr double clearly = 0.1;  // of the distance: leaves out edges as sharp as a knife
     constexpr double next_to =
-        1e-7;  // of the diagonal: closer than this, others at a corner may be missed for rounding
+        1e-7;  // of the diagonal: for closer points, rounding may miss other triangles at a corner
     if (!closest.others || *closest.others > 1) return Side::unknown;
     if (!(closest.distance > (*closest.others == 1 ? next_to : 1e-9) * diagonal())) return Side::unknown;
     const std::optional<double> own = height_above(closest.triangle, p, closest.distance);
@@ -291,11 +293,13 @@ class ShellOracle : public SolidOracle {
     const bool is_void = shells_.shells[shells_.of_triangle[closest.triangle]].depth % 2 == 1;
     return (height < 0) != is_void ? Side::inside : Side::outside;
   }
-  /// How far a point is above the plane of a triangle, out of its shell; nullopt where that is not known to a small
-  /// part of the point's distance from the triangle, as rounding turns the normals of thin ones.
+  /// Returns the height of a point above the plane of a triangle, positive out of its shell. Returns nullopt if
+  /// rounding makes it too inexact, compared with the point's distance from the triangle. Rounding turns the normals of
+  /// thin triangles.
   [[nodiscard]] std::optional<double> height_above(std::uint32_t triangle, const Vec3d& p, double distance) const {
     const auto [a, b, c] = corners_of(mesh_, triangle);
-    // A normal may be off by the rounding of longest^2 / size, and a height by as much of `longest`.
+    // With L as the longest side, rounding turns a normal by up to rounding * L^2 / size, and changes a height by L
+    // times that.
     constexpr double rounding = 1e-13;
     const Vec3d normal = cross(b - a, c - a);
     const double size = length(normal);
@@ -309,9 +313,9 @@ class ShellOracle : public SolidOracle {
     return std::find(first, first + 3, other) != first + 3;
   }
 
-  /// Points deep in a void: the deepest of the middles of some chords, others on both sides of it, halfway to the wall,
-  /// and middles of other chords that are at least half as deep. Flat triangles of an axis in a bent wall reach into
-  /// what is beside the wall, so that a point near the wall may be on either side of them.
+  /// Returns points deep in a void. The first is the deepest of the middles of some chords. Others lie on both sides of
+  /// it, halfway to the wall, and at the middles of other chords that are at least half as deep. Flat triangles of an
+  /// axis in a bent wall reach out of the wall. So a point near the wall may be on either side of them.
   [[nodiscard]] std::vector<Vec3d> points_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
     constexpr std::size_t pairs = 4;
     constexpr std::size_t most_middles = 16;
@@ -337,10 +341,10 @@ class ShellOracle : public SolidOracle {
 
   struct DeepPoint {
     Vec3d at;
-    double depth = 0;  ///< in a void, from its wall; above 0
+    double depth = 0;  ///< distance from the wall of a void, above 0
   };
 
-  /// The middles of chords of a void from some of its triangles.
+  /// Returns the middles of chords of a void from some of its triangles.
   [[nodiscard]] std::vector<DeepPoint> middles_of_chords(std::uint32_t shell,
                                                          const std::vector<std::uint32_t>& walls) const {
     constexpr std::size_t most_chords = 32;
@@ -357,8 +361,8 @@ class ShellOracle : public SolidOracle {
     return middles;
   }
 
-  /// Halfway from the centre of a triangle along its normal to what is met first; nullopt where that is nothing, or
-  /// cannot be told.
+  /// Returns the point halfway from the centre of a triangle to the first triangle that its normal meets. Returns
+  /// nullopt if the normal meets nothing, or if that is undecided.
   [[nodiscard]] std::optional<Vec3d> middle_of_chord(std::uint32_t triangle, double side) const {
     const std::array<Vec3d, 3> corners = corners_of(mesh_, triangle);
     const Vec3d start = (corners[0] + corners[1] + corners[2]) / 3.0;
@@ -376,7 +380,7 @@ class ShellOracle : public SolidOracle {
     return start + (end - start) * (0.5 * first / reach);
   }
 
-  /// The innermost shell around a point; nullopt where there is none, or the point lies on the surface.
+  /// Returns the innermost shell around a point; nullopt if none exists, or the point lies on the surface.
   [[nodiscard]] std::optional<std::uint32_t> innermost_around(const Vec3d& p) const {
     constexpr std::uint32_t most_lines = 24;
     const double nothing = 1e-13 * diagonal();
@@ -404,7 +408,7 @@ class ShellOracle : public SolidOracle {
     return std::nullopt;
   }
 
-  /// Those that are named an odd number of times.
+  /// Returns the shells that are listed an odd number of times.
   static std::vector<std::uint32_t> odd_ones(std::vector<std::uint32_t>& shells) {
     std::sort(shells.begin(), shells.end());
     std::vector<std::uint32_t> odd;
@@ -419,13 +423,13 @@ class ShellOracle : public SolidOracle {
   }
 
   MeshView mesh_;
-  MeshView named_;  ///< whose sites are asked of
+  MeshView named_;  ///< mesh whose sites distances refer to
   ClosedShells shells_;
   std::vector<std::uint32_t> body_of_;  ///< of each triangle
   std::vector<Box3> boxes_;             ///< of each body
-  std::vector<Spread> surfaces_;        ///< the triangles of each body
+  std::vector<Spread> surfaces_;        ///< triangles of each body
   SiteTable sites_;                     ///< of `named_`
-  TriangleSearch search_;               ///< bodies are its groups
+  TriangleSearch search_;               ///< with bodies as groups
 };
 
 }  // namespace

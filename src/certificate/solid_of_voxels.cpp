@@ -16,7 +16,7 @@
 namespace blum::verifier {
 namespace {
 
-/// Voxels of an image, whose surface are the faces.
+/// The voxels of an image. Their faces are the surface.
 class VoxelOracle : public SolidOracle {
  public:
   VoxelOracle(const VoxelSet& voxels, const GridSpec& grid, VoxelBodies bodies, const Context& context)
@@ -63,7 +63,7 @@ class VoxelOracle : public SolidOracle {
     return voxel && body_of(*voxel) == body ? faces_.distance(p) : -faces_.distance(p);
   }
 
-  /// Bodies have no corner in common, so that a segment in the voxels is in one body.
+  /// Bodies have no corner in common, so a segment in the voxels lies in one body.
   [[nodiscard]] bool holds(const Vec3d& a, const Vec3d& b, std::uint32_t body) const override {
     const auto voxel = faces_.held(a, b);
     return voxel && body_of(*voxel) == body;
@@ -110,7 +110,7 @@ class VoxelOracle : public SolidOracle {
     return bodies_.of(voxel[0], voxel[1], voxel[2]);
   }
 
-  /// The body that has a face.
+  /// Returns the body that a face belongs to.
   [[nodiscard]] std::uint32_t body_beside(const VoxelFaces::Face& face) const {
     std::array<std::int64_t, 3> voxel = face.voxel;
     if (!faces_.voxels().contains(voxel[0], voxel[1], voxel[2])) --voxel[face.axis];
@@ -130,7 +130,7 @@ class VoxelOracle : public SolidOracle {
     return size[(axis + 1) % 3] * size[(axis + 2) % 3];
   }
 
-  /// parts x parts points of each face.
+  /// Returns parts x parts points of each face.
   [[nodiscard]] std::vector<Sample> samples_of_faces(int parts, const Context& context) const {
     std::vector<Sample> list;
     for (std::size_t b = 0; b < faces_.brick_count(); ++b) {
@@ -150,7 +150,7 @@ class VoxelOracle : public SolidOracle {
     return list;
   }
 
-  /// Along each axis one face of each brick that has any.
+  /// Returns one sample per brick and axis: the centre of a face, with the area of all faces there.
   [[nodiscard]] std::vector<Sample> samples_of_bricks(const Context& context) const {
     std::vector<Sample> list;
     for (std::size_t b = 0; b < faces_.brick_count(); ++b) {
@@ -171,7 +171,7 @@ class VoxelOracle : public SolidOracle {
   VoxelBodies bodies_;
 };
 
-/// Voxels that stand for the inside of a mesh: distances are to the mesh, and a voxel more or less is no matter.
+/// Voxels that represent the inside of a mesh. Distances are to the mesh, and a voxel more or less does not matter.
 class WindingOracle : public VoxelOracle {
  public:
   WindingOracle(const VoxelSet& voxels, const GridSpec& grid, VoxelBodies bodies, const MeshView& surface,
@@ -218,7 +218,7 @@ class WindingOracle : public VoxelOracle {
   SiteTable sites_;
 };
 
-/// @throws InvalidGrid unless the voxels of a grid hold all triangles.
+/// @throws InvalidGrid unless the voxels of a grid contain all triangles.
 void check_covers(const GridSpec& grid, const MeshView& surface) {
   for (const Triangle& triangle : surface.triangles) {
     for (const std::uint32_t v : triangle) {

@@ -1,4 +1,4 @@
-// Blum: what the verifier asks a solid. SPDX-License-Identifier: Apache-2.0
+// Blum: queries to a solid, for the verifier. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -21,12 +21,12 @@
 
 namespace blum::verifier {
 
-/// A value that is made when it is first asked for, and then kept. Many threads may ask at once: one makes it, the
-/// others wait. Where making it throws, the next one that asks tries again.
+/// A value that is computed when it is first needed, and then kept. If many threads need it at once, one computes it
+/// and the others wait. If computing it throws, the next request tries again.
 template <class T>
 class Lazy {
  public:
-  /// @param make  gives the value, the same whoever asks. It must not ask for the same one.
+  /// @param make  computes the value, the same for every caller. It must not request the same value.
   template <class Make>
   const T& get(const Make& make) const {
     const std::scoped_lock lock(mutex_);
@@ -39,15 +39,15 @@ class Lazy {
   mutable std::optional<T> value_;
 };
 
-/// Where a point lies.
+/// The location of a point.
 struct Location {
-  std::uint32_t body = 0;  ///< that it lies in, or outside of all of them, the closest one
+  std::uint32_t body = 0;  ///< around the point, or the closest one if it is outside of all
   double distance = 0;     ///< from the surface of that body
   double outside_by = 0;   ///< distance from the solid; 0 inside
-  double depth = 0;        ///< in that body, from its boundary; below 0 outside
+  double depth = 0;        ///< distance from the boundary of that body; below 0 outside
 };
 
-/// A point of the surface, and how much of the surface it stands for.
+/// A point of the surface, and the area that it represents.
 struct Sample {
   Vec3d point;
   double area = 0;
@@ -58,7 +58,7 @@ struct Samples {
   double step = 0;  ///< each point of the surface is at most this far from a sample
 };
 
-/// A solid and its surface. All of it may be asked from many threads at once.
+/// A solid and its surface. All functions are thread-safe.
 class SolidOracle {
  public:
   SolidOracle() = default;
@@ -66,68 +66,72 @@ class SolidOracle {
   SolidOracle& operator=(const SolidOracle&) = delete;
   virtual ~SolidOracle() = default;
 
-  [[nodiscard]] virtual double diagonal() const = 0;  ///< of its box
+  [[nodiscard]] virtual double diagonal() const = 0;  ///< of the solid's box
   [[nodiscard]] virtual Box3 box(std::uint32_t body) const = 0;
-  /// Of the box of a body, which may be turned.
+  /// Returns the diagonal of the box of a body, which may be rotated.
   [[nodiscard]] virtual double diagonal(std::uint32_t body) const { return box(body).diagonal(); }
   [[nodiscard]] virtual Location locate(const Vec3d& p) const = 0;
-  /// Exact distance of a point from the surface of a body.
+  /// Returns the exact distance of a point from the surface of a body.
   [[nodiscard]] virtual double distance(const Vec3d& p, std::uint32_t body) const = 0;
-  /// The same; where it is below `enough` maybe more, but below it, too, which costs less.
+  /// Returns the same distance, exact if it is at least `enough`. Otherwise it may be too large, but stays below
+  /// `enough`. This costs less.
   [[nodiscard]] virtual double distance_above(const Vec3d& p, double /*enough*/, std::uint32_t body) const {
     return distance(p, body);
   }
-  /// How deep a point lies in a body; below 0 outside of it. No two points differ by more than they are apart.
+  /// Returns the depth of a point in a body; below 0 outside. The depths of two points differ by at most their
+  /// distance.
   [[nodiscard]] virtual double depth(const Vec3d& p, std::uint32_t body) const = 0;
-  /// The same, but below 0 wherever the boundary is closer than `near`; and where `other_depth` is above that, or below
-  /// its negative, that of another point near by is used, which costs less.
+  /// Returns the same depth, but a value below 0 if the boundary is closer than `near`. If the absolute value of
+  /// `other_depth` is above `near`, the depth of the nearby point `other` is used, which costs less.
   [[nodiscard]] virtual double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& /*other*/,
                                             double /*other_depth*/, double /*near*/) const {
     return depth(p, body);
   }
-  /// Whether the segment between two points is known to lie in a body, boundary included; false also where this solid
-  /// cannot tell.
+  /// Returns true if the segment between two points is known to lie in a body, boundary included. Returns false also if
+  /// this solid cannot decide.
   [[nodiscard]] virtual bool holds(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// Whether the segment between two points is known to meet no boundary of a body; false also where rounding leaves
-  /// doubt, or this solid cannot tell.
+  /// Returns true if the segment between two points is known not to meet the boundary of a body. Returns false also if
+  /// rounding leaves doubt, or this solid cannot decide.
   [[nodiscard]] virtual bool is_clear(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// The same for a triangle, sides included.
+  /// Returns the same for a triangle, sides included.
   [[nodiscard]] virtual bool is_clear(const std::array<Vec3d, 3>& /*triangle*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// Whether a part of a segment between two points that is outside of a body crosses a gap: no way along the surface,
-  /// within `reach` of that part, leads from where it goes out to where it comes in; nullopt where that cannot be told.
+  /// Returns true if a part of a segment outside a body crosses a gap. Then no way along the surface, within `reach` of
+  /// that part, joins its ends. Returns nullopt if that is undecided.
   [[nodiscard]] virtual std::optional<bool> crosses_gap(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/,
                                                         double /*reach*/) const {
     return false;
   }
-  /// The closest point of the surface of a body.
+  /// Returns the closest point of the surface of a body.
   [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
-  /// The same, and maybe faster, where some point of it is known to be within a distance.
+  /// Returns the same, and maybe faster, if some point of the surface is known to be within a distance.
   [[nodiscard]] virtual Vec3d closest_point_within(const Vec3d& p, double /*within*/, std::uint32_t body) const {
     return closest_point(p, body);
   }
-  /// A random point of a body beside its surface, all parts of this alike; nullopt where there is none, or the surface
-  /// has no triangles.
+  /// Returns a random point of a body beside its surface, with uniform density. Returns nullopt if none exists, or the
+  /// surface has no triangles.
   [[nodiscard]] virtual std::optional<Vec3d> beside_surface(std::uint32_t /*body*/, Random& /*random*/) const {
     return std::nullopt;
   }
-  /// Whether the surface is that of the bodies, and has triangles.
+  /// Returns true if the surface is that of the bodies, and has triangles.
   [[nodiscard]] virtual bool has_triangles() const { return false; }
-  /// The diagonal of a voxel, where the solid is made of voxels; else 0.
+  /// Returns the diagonal of a voxel if the solid is made of voxels, else 0.
   [[nodiscard]] virtual double grain() const { return 0; }
-  /// How far outside of the solid is not outside: 0, unless only voxels tell inside from outside.
+  /// Returns how far outside of the solid a point still counts as inside: 0, unless only voxels define the inside.
   [[nodiscard]] virtual double slack() const { return 0; }
-  /// Distance of a point from a site; HUGE_VAL where there is no such site.
+  /// Returns the distance of a point from a site; HUGE_VAL if the site does not exist.
   [[nodiscard]] virtual double distance_from_site(const Vec3d& p, SiteId site) const = 0;
-  /// What linking and winding numbers are taken with; nullptr where that is not known. Made once. @throws Cancelled.
+  /// Returns the paths and points for linking and winding numbers; nullptr if these are unknown. Computed once.
+  /// @throws Cancelled.
   [[nodiscard]] const Complement* complement(const Context& context) const;
-  /// Points of the surface, close enough together for `step` unless they would be too many. Those of the last step are
-  /// kept. @throws Cancelled.
+  /// Returns points of the surface, close enough together for `step` unless they would be too many. Those of the last
+  /// step are kept.
+  /// @throws Cancelled.
   [[nodiscard]] std::shared_ptr<const Samples> samples(double step, const Context& context) const;
 
  private:
@@ -138,12 +142,12 @@ class SolidOracle {
 
   Lazy<std::unique_ptr<Complement>> complement_;
   mutable std::mutex samples_mutex_;
-  mutable std::shared_ptr<const Samples> samples_;  ///< the last ones
+  mutable std::shared_ptr<const Samples> samples_;  ///< of the last step
   mutable double step_of_samples_ = 0;
 };
 
-/// No more samples of a mesh than this are taken, unless it has more triangles. Each is searched for among all balls,
-/// which is told and not judged: five times as many cost more than all that is judged.
+/// Largest number of samples of a mesh, unless it has more triangles. Each sample is searched for among all balls, and
+/// the result is reported, not judged. Five times as many would cost more than all checks that are judged.
 inline constexpr std::size_t most_samples = 50'000;
 
 class DrawnBalls;
@@ -158,7 +162,7 @@ struct KnownSolid {
   KnownSolid& operator=(KnownSolid&&) noexcept;
   ~KnownSolid();
 
-  /// Made once.
+  /// Returns the drawn balls. Computed once.
   [[nodiscard]] const DrawnBalls& drawn_balls() const;
 
  private:
@@ -166,13 +170,14 @@ struct KnownSolid {
   std::unique_ptr<Later> later_;
 };
 
-/// What closed shells bound. @param named  the mesh whose sites distances are asked of: the input.
-/// @throws InvalidMesh, Cancelled. The meshes must outlive the solid.
+/// Returns the solid that closed shells bound. The meshes must outlive it.
+/// @param named  the input mesh, whose sites distances refer to.
+/// @throws InvalidMesh, Cancelled.
 [[nodiscard]] KnownSolid solid_of_mesh(const MeshView& mesh, const MeshView& named, const Context& context);
 
-/// Closed voxels. @param surface  distances are to its triangles; nullptr: to the voxels' faces.
-/// @throws InvalidMesh where the surface has no triangles, InvalidGrid where the grid does not cover it, Cancelled. The
-/// voxels and the mesh must outlive the solid.
+/// Returns the solid of closed voxels. The voxels and the mesh must outlive it.
+/// @param surface  distances are to its triangles; nullptr: to the voxels' faces.
+/// @throws InvalidMesh if the surface has no triangles, InvalidGrid if the grid does not cover it, Cancelled.
 [[nodiscard]] KnownSolid solid_of_voxels(const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
                                          const Context& context);
 

@@ -17,12 +17,12 @@ namespace {
 
 using Piece = std::array<Stop, 3>;
 
-/// Points of one triangle that are asked about: in walls that are as thin as nothing they would be endless. After a few
-/// it is seen whether the others would do.
+/// Most points of one triangle that are tested. In extremely thin walls they would never suffice. After a few points,
+/// an estimate decides if the others would.
 constexpr std::size_t most_points = 512;
 constexpr std::size_t few_points = 64;
 
-/// What is found of some of the triangles.
+/// Findings about some of the triangles.
 struct Findings {
   TriangleCheck check;
 
@@ -36,9 +36,9 @@ struct Findings {
   }
 };
 
-/// Whether the balls that are as large as the corners are deep cover a piece, to within an amount: those of both ends
-/// of each side meet on it, and all three hold one more point, here the centre. They are convex, so that they then hold
-/// the six parts that the centre is a corner of.
+/// Returns true if balls around the corners, with their depths as radii, cover a piece up to `allowed`. The balls of
+/// both ends of each side must meet on it, and all three must contain one more point, here the centre. Balls are
+/// convex, so they then contain the six parts that have the centre as a corner.
 bool covers(const Piece& piece, double allowed) {
   const Vec3d centre = (piece[0].at + piece[1].at + piece[2].at) / 3.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -50,7 +50,7 @@ bool covers(const Piece& piece, double allowed) {
   return true;
 }
 
-/// Whether one ball does.
+/// Returns true if one ball covers a piece up to `allowed`.
 bool covers(const Stop& ball, const Piece& piece, double allowed) {
   return std::all_of(piece.begin(), piece.end(),
                      [&](const Stop& corner) { return length(corner.at - ball.at) <= ball.depth + allowed; });
@@ -61,14 +61,14 @@ class TriangleInBody {
   TriangleInBody(const SolidOracle& solid, std::uint32_t body, double allowed)
       : solid_(solid), body_(body), allowed_(allowed) {}
 
-  /// The point that is furthest out, about; sets is_undecided where too many points would have to be asked about.
+  /// Returns approximately the point that is furthest out. Sets is_undecided if too many points would be needed.
   [[nodiscard]] Stop furthest_out(const Piece& triangle, bool& is_undecided) const {
-    constexpr double nearly = 1.25;  // enough of what is too much anyway
+    constexpr double nearly = 1.25;  // points are searched only if they may be worse by this factor
     Stop worst = *std::min_element(triangle.begin(), triangle.end(),
                                    [](const Stop& a, const Stop& b) { return a.depth < b.depth; });
-    // One as thin as this is where its sides are, and these are judged as edges.
+    // A sliver lies where its sides are, and these are checked as edges.
     if (is_sliver(triangle)) return worst;
-    // In thin walls balls are many: so first it is asked whether the triangle meets the boundary at all.
+    // In thin walls balls are many, so the triangle is first tested against the boundary.
     if (worst.depth > 0 && solid_.is_clear({triangle[0].at, triangle[1].at, triangle[2].at}, body_)) return worst;
     const std::size_t most = points_for(triangle);
     std::vector<Piece> stack{triangle};
@@ -110,14 +110,15 @@ class TriangleInBody {
     return 2 * area(triangle) <= thin * allowed_ * longest;
   }
 
-  /// Whether balls at all the points would cover a quarter of a triangle only, to go by what they cover by now.
+  /// Returns true if balls at all the points would cover less than a quarter of a triangle, judged by the area covered
+  /// so far.
   /// @param covered  share of the area.
   [[nodiscard]] static bool is_too_slow(double covered, std::size_t points) {
     return 4 * covered * static_cast<double>(most_points) < static_cast<double>(points);
   }
 
-  /// Few where balls as large as those of the corners would have to be far too many to cover a triangle: these only
-  /// find what lies well outside. Each part that is halved no more is at most as large as the square of a ball's
+  /// Returns few points if balls as large as those of the corners are far too many to cover a triangle. Few points only
+  /// find what lies well outside. Each part that is not halved any more is at most as large as the square of a ball's
   /// radius.
   [[nodiscard]] std::size_t points_for(const Piece& triangle) const {
     const double deepest = std::max({triangle[0].depth, triangle[1].depth, triangle[2].depth}) + allowed_;
@@ -125,7 +126,7 @@ class TriangleInBody {
     return is_hopeless ? few_points : most_points;
   }
 
-  /// Across the longest side; as long as numbers can tell the halves apart.
+  /// Halves a piece across its longest side, if doubles can distinguish the halves.
   void halve(const Piece& piece, Stop& worst, std::vector<Piece>& stack) const {
     std::size_t longest = 0;
     for (std::size_t k = 1; k < 3; ++k) {
@@ -149,7 +150,8 @@ class TriangleInBody {
   double allowed_;
 };
 
-/// Looks at one triangle. @param most  how far out it may be.
+/// Checks one triangle.
+/// @param most  how far out it may be.
 Findings look_at(const Piece& corners, const TriangleInBody& body, double allowed, double most) {
   Findings found;
   bool is_undecided = false;

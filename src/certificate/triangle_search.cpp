@@ -14,7 +14,7 @@ namespace {
 
 enum class Meeting : std::uint8_t { none, crossing, doubtful };
 
-/// Whether a line meets a triangle, from the triangle's shadow across the line.
+/// Decides if a line meets a triangle, from the projection of the triangle along the line.
 Meeting meet(const ProbeLine& line, const std::array<Vec3d, 3>& corners, double& at) {
   constexpr double rounding = 1e-14;
   std::array<double, 3> x{};
@@ -55,12 +55,12 @@ Meeting meet(const ProbeLine& line, const std::array<Vec3d, 3>& corners, double&
   return Meeting::crossing;
 }
 
-/// Whether a stretch of a line may meet a box, with room for rounding.
+/// Returns true if a stretch of a line may meet a box, with room for rounding.
 bool may_meet(const ProbeLine& line, const Box3& box, double begin, double end, double slack) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double low = box.lower[axis] - line.point[axis];
     const double high = box.upper[axis] - line.point[axis];
-    if (std::abs(line.along[axis]) < 1e-6) {  // beside it or not: rounding is no matter
+    if (std::abs(line.along[axis]) < 1e-6) {  // nearly parallel to the slab
       const double room = std::abs(end) < HUGE_VAL ? slack + 1e-6 * end : HUGE_VAL;
       if (low > room || high < -room) return false;
       continue;
@@ -73,10 +73,11 @@ bool may_meet(const ProbeLine& line, const Box3& box, double begin, double end, 
   return begin <= end + slack;
 }
 
-/// A triangle, and whether things come through it; where rounding leaves doubt, they may.
+/// A triangle that segments may pierce. If rounding leaves doubt, they may.
 class PiercedTriangle {
  public:
-  /// @param normal  of length 1.  @param slack  what rounding may amount to.
+  /// @param normal  of length 1.
+  /// @param slack   largest effect of rounding.
   PiercedTriangle(const std::array<Vec3d, 3>& corners, const Vec3d& normal, double slack)
       : corners_(corners), normal_(normal), slack_(slack) {
     for (const Vec3d& corner : corners) box_.extend(corner);
@@ -92,7 +93,7 @@ class PiercedTriangle {
     return std::abs(height(0.5 * (box.lower + box.upper))) <= reach + slack_;
   }
 
-  /// By a segment.
+  /// Returns true if the segment from p to q may pierce the triangle.
   [[nodiscard]] bool may_be_pierced(const Vec3d& p, const Vec3d& q) const {
     const double above = height(p);
     const double below = height(q);
@@ -135,8 +136,8 @@ Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
   const Vec3d ab = b - a;
   const Vec3d ac = c - a;
   const Vec3d normal = cross(ab, ac);
-  // The weights of the corners at the foot on the plane, times this. Next to an edge, and where rounding leaves doubt
-  // whether the foot is beyond it, the edge is looked at too.
+  // Weights of the corners at the foot on the plane, times `squared`. The edge is tested, too, if the foot is next to
+  // it, or if rounding leaves doubt about its side.
   const double squared = squared_length(normal);
   const double to_b = dot(cross(to_p, ac), normal);
   const double to_c = dot(cross(ab, to_p), normal);
@@ -154,7 +155,7 @@ Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
   if (!(squared - to_b - to_c > doubt)) look_at(Segment3{b, c}.closest_point(p));
   if (!(to_b > doubt)) look_at(Segment3{c, a}.closest_point(p));
   if (!(to_c > doubt)) look_at(Segment3{a, b}.closest_point(p));
-  // Whatever the rounding, a mean of the corners is a point of the triangle.
+  // A mean of the corners is a point of the triangle, whatever the rounding.
   if (!(squared > 0)) return best;
   const double share_b = to_b / squared;
   const double share_c = to_c / squared;
@@ -190,12 +191,12 @@ double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Ve
 
 namespace {
 
-constexpr double as_close = 1 + 1e-8;  ///< of squared distances: about the same
+constexpr double as_close = 1 + 1e-8;  ///< ratio of squared distances that count as equal
 
 /// The points of triangles that are about as close to a point as the closest one.
 class ClosePoints {
  public:
-  /// @param best  the least squared distance so far, this one included.
+  /// @param best  the least squared distance so far, including this one.
   void add(const Vec3d& point, double squared, std::uint32_t triangle, double best) {
     const auto is_far = [&](const Found& found) { return found.squared > best * as_close; };
     if (found_.is_full()) {
@@ -204,9 +205,9 @@ class ClosePoints {
     is_full_ = is_full_ || found_.is_full();
     if (!is_full_) found_.push_back({point, squared, triangle});
   }
-  /// Adds to a result what is at the place of the closest one.
+  /// Counts in `nearest` the triangles whose closest points are at the place of the best one.
   void count(double best, TriangleSearch::Nearest& nearest) const {
-    constexpr double as_near = 1e-12;  // squared, of the squared distance
+    constexpr double as_near = 1e-12;  // squared, relative to the squared distance
     if (is_full_ || found_.empty()) return;
     const Found* closest = std::min_element(found_.begin(), found_.end(),
                                             [](const Found& a, const Found& b) { return a.squared < b.squared; });
@@ -336,7 +337,7 @@ TriangleSearch::Nearest TriangleSearch::nearest_within(const Vec3d& p, double wi
     }
     return best * as_close;
   });
-  if (best == unknown && within < HUGE_VAL) return nearest(p, group);  // nothing is that close after all
+  if (best == unknown && within < HUGE_VAL) return nearest(p, group);  // nothing is within that distance
   Nearest found{std::sqrt(best), triangle, std::nullopt};
   close.count(best, found);
   return found;
@@ -351,7 +352,7 @@ Vec3d TriangleSearch::closest_point_within(const Vec3d& p, double within, std::u
       best = squared;
       point = closest;
     }
-    return best * as_close;  // of those as close the same one as nearest_within() finds
+    return best * as_close;  // of equally close ones, finds the same as nearest_within()
   });
   return best == unknown && within < HUGE_VAL ? closest_point_within(p, HUGE_VAL, group) : point;
 }
@@ -362,7 +363,7 @@ double TriangleSearch::distance_above(const Vec3d& p, double enough, std::uint32
   double best = HUGE_VAL;
   search(p, best, group, [&](std::uint32_t /*place*/, const Vec3d& /*closest*/, double squared) {
     best = std::min(best, squared);
-    return best < enough_squared ? -HUGE_VAL : best;  // nothing is below that: the search ends
+    return best < enough_squared ? -HUGE_VAL : best;  // nothing is below: the search ends
   });
   return std::sqrt(best);
 }

@@ -17,8 +17,8 @@
 
 namespace blum::verifier {
 
-/// How often the way from p to q crosses the triangle a, b, c: 1 or -1 by the side that it comes from, or 0; nullopt
-/// where it meets the border of the triangle, or runs in its plane, or ends in it.
+/// Returns how often the segment from p to q crosses the triangle a, b, c. It is 1 or -1 by the side that the segment
+/// comes from, or 0. Returns nullopt if the segment meets the border of the triangle, runs in its plane, or ends in it.
 [[nodiscard]] inline std::optional<int> exact_crossing(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& p,
                                                        const Vec3d& q) {
   using detail::orient3d;
@@ -34,63 +34,67 @@ namespace blum::verifier {
   return to;
 }
 
-/// The same for all triangles that go with no group.
+/// Marks triangles that belong to no group. In queries: all groups.
 inline constexpr std::uint32_t no_group = 0xffffffffU;
 
-/// A line, and two directions across it, all of length 1 and at right angles.
+/// A line, and two directions across it. All directions are unit vectors at right angles.
 struct ProbeLine {
   Vec3d point;
   Vec3d along, across, up;
 };
-/// One of a fixed sequence of directions, none of them nearly along a plane of two axes.
+/// Returns a line with one of a fixed sequence of directions. None of these is nearly parallel to a plane of two axes.
 [[nodiscard]] ProbeLine line_through(const Vec3d& point, std::uint32_t attempt);
-/// From one point to another one.
+/// Returns the line from one point to another one.
 [[nodiscard]] ProbeLine line_between(const Vec3d& from, const Vec3d& to);
 
-/// Where a line meets a triangle.
+/// A place where a line meets a triangle.
 struct Crossing {
-  double at = 0;  ///< along the line, from its point; mesh units
+  double at = 0;  ///< position along the line from its point, mesh units
   std::uint32_t triangle = 0;
 };
 
-/// Triangles in a tree of boxes. The triangles of a mesh may belong to groups, of which one at a time is asked.
+/// Triangles in a tree of boxes. The triangles of a mesh may belong to groups. A query is about one group, or about
+/// all.
 class TriangleSearch {
  public:
   struct Nearest {
     double distance = 0;
     std::uint32_t triangle = 0;
-    /// Of those asked of, how many more have their closest points at the same place, up to rounding; nullopt where
-    /// these are too many to tell.
+    /// Number of other triangles of the query whose closest points are at the same place, up to rounding; nullopt if
+    /// too many to count.
     std::optional<std::size_t> others;
-    std::uint32_t other = 0;  ///< one of them, where there are any
+    std::uint32_t other = 0;  ///< one of them, if any exist
   };
 
   TriangleSearch() = default;
-  /// @param groups  of each triangle; those of no_group are left out. Empty: all triangles are in group 0.
+  /// @param groups  of each triangle. Triangles of no_group are left out. Empty: all triangles are in group 0.
   /// @throws Cancelled.
   TriangleSearch(const MeshView& mesh, std::span<const std::uint32_t> groups, const Context& context);
 
-  /// The closest triangle of a group, or for no_group of all. Exact up to rounding. HUGE_VAL where there is none.
+  /// Returns the closest triangle of a group, or of all triangles for no_group. Exact up to rounding. The distance is
+  /// HUGE_VAL if there are no triangles.
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::uint32_t group = no_group) const;
-  /// The same, and faster, where a triangle is known to be within a distance.
+  /// Returns the same, and faster, if a triangle is known to be within a distance.
   [[nodiscard]] Nearest nearest_within(const Vec3d& p, double within, std::uint32_t group) const;
 
-  /// The closest point of the triangles of a group, where one is known to be within a distance; costs less than
+  /// Returns the closest point of the triangles of a group, if one is known to be within a distance. Costs less than
   /// nearest_within().
   [[nodiscard]] Vec3d closest_point_within(const Vec3d& p, double within, std::uint32_t group) const;
-  /// The distance of the closest triangle of a group; where that is below `enough`, maybe more, but below it, too.
+  /// Returns the distance of the closest triangle of a group, exact if it is at least `enough`. Otherwise it may be too
+  /// large, but stays below `enough`.
   [[nodiscard]] double distance_above(const Vec3d& p, double enough, std::uint32_t group) const;
 
-  /// Finds all crossings of a line, those with triangles near its first `reach` at least; false if it comes too close
-  /// to an edge to tell.
+  /// Finds all crossings of a line, at least those with triangles near its first `reach`. Returns false if the line is
+  /// too close to an edge to decide.
   [[nodiscard]] bool crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach = HUGE_VAL) const;
 
-  /// The same for a segment, triangles of a group and without rounding, but for the places: also where the segment runs
-  /// beside edges, closer than rounding. False where it touches one.
+  /// Finds the crossings of a segment with the triangles of a group, without rounding except in their positions. The
+  /// segment may run beside edges, closer than rounding. Returns false if exact_crossing() is undecided for a triangle.
   [[nodiscard]] bool exact_crossings(const Vec3d& from, const Vec3d& to, std::uint32_t group,
                                      std::vector<Crossing>& found) const;
 
-  /// Whether no side of the triangles of a group comes through a triangle; false also where rounding leaves doubt.
+  /// Returns true if no side of the triangles of a group pierces a triangle. Returns false also if rounding leaves
+  /// doubt.
   [[nodiscard]] bool is_unpierced(const std::array<Vec3d, 3>& triangle, std::uint32_t group) const;
 
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
@@ -98,13 +102,13 @@ class TriangleSearch {
  private:
   using Corners = std::array<Vec3d, 3>;
 
-  /// A box along the mean normal of some triangles: flat where they are, so that far queries reach few of them.
+  /// A box along the mean normal of some triangles. It is flat if they are, so that far queries reach few of them.
   struct FlatBox {
     Vec3d origin;
     Mat3 axes;
     Box3 box;  ///< from the origin, along the axes
   };
-  /// Those of siblings, or their boxes where one of them has too many triangles for it.
+  /// The flat boxes of two siblings. A sibling with too many triangles has its plain box instead.
   struct TwoFlatBoxes {
     std::array<Two, 3> origin{};
     std::array<std::array<Two, 3>, 3> axes{};
@@ -127,7 +131,7 @@ class TriangleSearch {
   Box3 bounds_;
 };
 
-/// Distance of a point from a vertex, an edge or a triangle of a mesh; HUGE_VAL where there is no such site.
+/// Returns the distance of a point from a vertex, an edge or a triangle of a mesh; HUGE_VAL if the site does not exist.
 [[nodiscard]] double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Vec3d& p, SiteId site);
 
 [[nodiscard]] inline std::array<Vec3d, 3> corners_of(const MeshView& mesh, std::uint32_t triangle) {
@@ -135,9 +139,9 @@ class TriangleSearch {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
-/// The point of a triangle, which may be a segment or a point, that is closest to a point.
+/// Returns the point of a triangle that is closest to p. The triangle may be a segment or a point.
 [[nodiscard]] Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners);
-/// Squared distance of a point from a triangle, which may be a segment or a point.
+/// Returns the squared distance of a point from a triangle, which may be a segment or a point.
 [[nodiscard]] double squared_distance(const Vec3d& p, const std::array<Vec3d, 3>& corners);
 
 }  // namespace blum::verifier

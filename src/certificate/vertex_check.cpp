@@ -14,7 +14,7 @@ namespace {
 constexpr double tolerance_of_diagonal = 1e-6;
 constexpr double tolerance_of_angles = 1e-4;  // degrees
 
-/// What is found of some of the vertices.
+/// Findings about some of the vertices.
 struct Findings {
   GeometryCheck check;
   Worst outside, radius, off_surface, footprint, site, angle;
@@ -43,7 +43,7 @@ void note(double& largest, Worst& worst, double error, double allowed) {
   worst.add(error, allowed);
 }
 
-/// Adds what the footprints of a vertex are off by.
+/// Adds the errors of a vertex's footprints.
 void look_at_footprints(const MedialView& axis, std::size_t v, const Location& location, const SolidOracle& solid,
                         double allowed, const CertificateOptions& options, Findings& found) {
   for (std::size_t k = 0; k < 2; ++k) {
@@ -58,7 +58,7 @@ void look_at_footprints(const MedialView& axis, std::size_t v, const Location& l
   if (!options.angles) return;
   const Vec3d a = axis.footprint(v, 0) - axis.positions[v];
   const Vec3d b = axis.footprint(v, 1) - axis.positions[v];
-  // Positions that may be off turn the directions of footprints.
+  // Errors of positions turn the directions of footprints.
   const double turned = 2 * allowed / std::max(std::min(length(a), length(b)), allowed) * degrees_per_radian;
   note(found.check.angle_error, found.angle, std::abs(axis.separation_angle[v] - degrees_between(a, b)),
        tolerance_of_angles + turned);

@@ -11,7 +11,7 @@
 namespace blum::verifier {
 namespace {
 
-/// The first bit of a row from i on that is `wanted`; `end` where there is none.
+/// Returns the first bit of a row from i on that equals `wanted`; `end` if none does.
 std::int64_t next_in(std::span<const std::uint64_t> row, std::int64_t i, std::int64_t end, bool wanted = true) {
   for (auto w = static_cast<std::size_t>(i / 64); w < row.size(); ++w) {
     std::uint64_t bits = wanted ? row[w] : ~row[w];
@@ -26,12 +26,12 @@ struct Stretch {
   std::int64_t j = 0, k = 0, begin = 0, end = 0;
 };
 
-/// What is left of a set, taken away stretch by stretch.
+/// The rest of a set, from which stretches are removed.
 class Flood {
  public:
   Flood(VoxelSet voxels, const Context& context) : rest_(std::move(voxels)), context_(context) {}
 
-  /// Takes everything away, and calls found(i, j, k) for the first voxel of each part that is joined over faces.
+  /// Removes all voxels, and calls found(i, j, k) for the first voxel of each part that is connected over faces.
   template <class Found>
   void take_all(const Found& found) {
     for (std::int64_t k = 0; k < rest_.size()[2]; ++k) {
@@ -57,13 +57,13 @@ class Flood {
     }
   }
 
-  /// Takes what of a row reaches into a range.
+  /// Removes the stretches of a row that reach into a range.
   void take_row(std::int64_t j, std::int64_t k, std::int64_t begin, std::int64_t end, std::vector<Stretch>& stack) {
     if (j < 0 || k < 0 || j >= rest_.size()[1] || k >= rest_.size()[2]) return;
     for (std::int64_t i = next(j, k, begin); i < end; i = next(j, k, i)) stack.push_back(taken_at(i, j, k));
   }
 
-  /// Takes the stretch around a voxel.
+  /// Removes and returns the stretch around a voxel.
   Stretch taken_at(std::int64_t i, std::int64_t j, std::int64_t k) {
     Stretch all{j, k, i, i};
     while (rest_.contains(all.begin - 1, j, k)) rest_.erase(--all.begin, j, k);
@@ -71,7 +71,7 @@ class Flood {
     return all;
   }
 
-  /// The first voxel of a row from i on; the row's end where there is none.
+  /// Returns the first voxel of a row from i on; the end of the row if none exists.
   [[nodiscard]] std::int64_t next(std::int64_t j, std::int64_t k, std::int64_t i) const {
     return next_in(std::as_const(rest_).row(j, k), i, rest_.size()[0]);
   }
@@ -81,13 +81,13 @@ class Flood {
   std::size_t steps_ = 0;
 };
 
-/// The voxels of a row, none where there is no such row.
+/// Returns 64 voxels of a row; none if the row does not exist.
 std::uint64_t word_of(const VoxelSet& voxels, std::int64_t j, std::int64_t k, std::size_t w) {
   if (j < 0 || k < 0 || j >= voxels.size()[1] || k >= voxels.size()[2]) return 0;
   return voxels.row(j, k)[w];
 }
 
-/// All voxels that are not in a set, in its box and one voxel beyond it.
+/// Returns all voxels that are not in a set, in its box and one voxel around it.
 VoxelSet surroundings(const VoxelSet& voxels, const Context& context) {
   const auto& size = voxels.size();
   VoxelSet rest({size[0] + 2, size[1] + 2, size[2] + 2});
@@ -99,7 +99,7 @@ VoxelSet surroundings(const VoxelSet& voxels, const Context& context) {
       for (std::size_t w = 0; left > 0; ++w, left -= 64) {
         const std::uint64_t bits = w < voxels.words_per_row() ? word_of(voxels, j - 1, k - 1, w) : 0;
         const std::uint64_t in_box = left < 64 ? (std::uint64_t{1} << left) - 1 : ~std::uint64_t{0};
-        rest.row(j, k)[w] = ~(bits << 1U | carry) & in_box;  // one voxel further along x
+        rest.row(j, k)[w] = ~(bits << 1U | carry) & in_box;  // shifted by one voxel along x
         carry = bits >> 63U;
       }
     }
@@ -107,9 +107,8 @@ VoxelSet surroundings(const VoxelSet& voxels, const Context& context) {
   return rest;
 }
 
-/// What the corner of voxels that a vertex of the lattice is adds to the Euler number, times eight, by the voxels
-/// around it: bit 0 of a voxel's place tells the side along x, bit 1 along y, bit 2 along z. Each cell is shared out
-/// evenly among its vertices.
+/// Returns the contribution of a lattice vertex to the Euler number, times eight, for each set of voxels around it.
+/// Bits 0, 1 and 2 of a voxel's place are its sides along x, y and z. Each cell is shared equally among its vertices.
 std::array<std::int8_t, 256> shares_of_vertices() {
   std::array<std::int8_t, 256> shares{};
   for (unsigned around = 1; around < 256; ++around) {
@@ -121,7 +120,7 @@ std::array<std::int8_t, 256> shares_of_vertices() {
         for (unsigned voxel = 0; voxel < 8; ++voxel) {
           is_there = is_there || ((voxel & ~flat) == side && (around >> voxel & 1U) != 0);
         }
-        const int size = 1 << std::popcount(flat);  // of 8: a voxel has 8 vertices, a square 4
+        const int size = 1 << std::popcount(flat);  // eighths: a voxel has 8 vertices, a square 4
         if (is_there) share += std::popcount(flat) % 2 == 1 ? size : -size;
       }
     }
@@ -130,12 +129,12 @@ std::array<std::int8_t, 256> shares_of_vertices() {
   return shares;
 }
 
-/// The voxels around a vertex of the lattice, from four rows and those rows moved by one voxel.
+/// The voxels around the vertices of a lattice row, from four rows and their copies shifted by one voxel.
 class VertexRow {
  public:
   VertexRow(const VoxelSet& voxels, std::int64_t j, std::int64_t k) : voxels_(voxels), j_(j), k_(k) {}
 
-  /// Calls use(i, around) for the vertices between voxels that are in and others.
+  /// Calls use(i, around) for the vertices between voxels in the set and others.
   template <class Use>
   void for_each(const Use& use) {
     std::array<std::uint64_t, 4> carry{};
@@ -166,7 +165,7 @@ class VertexRow {
   std::int64_t j_, k_;
 };
 
-/// Euler numbers of the bodies. All voxels around a vertex belong to one.
+/// Returns the Euler numbers of the bodies. All voxels around a vertex belong to one body.
 std::vector<std::int64_t> euler_numbers(const VoxelSet& voxels, const VoxelBodies& bodies, const Context& context) {
   const std::array<std::int8_t, 256> shares = shares_of_vertices();
   std::vector<std::int64_t> eighths(bodies.count(), 0);
@@ -252,7 +251,7 @@ std::vector<BettiNumbers> voxel_betti_numbers(const VoxelSet& voxels, const Voxe
   std::vector<BettiNumbers> betti(bodies.count(), {1, 0, 0});
   bool is_outside = true;
   Flood(surroundings(voxels, context), context).take_all([&](std::int64_t i, std::int64_t j, std::int64_t k) {
-    // What is found first is the outside. Below the first voxel of a void is the body around it.
+    // The first part found is the outside. The voxel below the first voxel of a void belongs to the body around it.
     if (!is_outside) ++betti[bodies.of(i - 1, j - 1, k - 2)][2];
     is_outside = false;
   });

@@ -12,21 +12,21 @@
 
 namespace blum::verifier {
 
-/// The bodies of a union of closed voxels: those that are joined over corners, numbered in the order of their first
-/// voxels.
+/// The bodies of a union of closed voxels. Voxels that share a corner belong to one body. Bodies are numbered in the
+/// order of their first voxels.
 class VoxelBodies {
  public:
   /// @throws Cancelled.
   VoxelBodies(const VoxelSet& voxels, const Context& context);
 
-  /// The voxels from `lower` to `upper`, both included, that a body lies within.
+  /// The range of voxels that a body lies in, `lower` and `upper` included.
   struct Extent {
     std::array<std::int64_t, 3> lower, upper;
   };
 
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(extents_.size()); }
   [[nodiscard]] const Extent& extent(std::uint32_t body) const { return extents_[body]; }
-  /// The body of a voxel, which must be in the set.
+  /// Returns the body of a voxel, which must be in the set.
   [[nodiscard]] std::uint32_t of(std::int64_t i, std::int64_t j, std::int64_t k) const;
 
  private:
@@ -42,16 +42,17 @@ class VoxelBodies {
   }
 
   std::array<std::int64_t, 3> size_{};
-  std::vector<std::size_t> first_;  ///< run of each row, and the end
+  std::vector<std::size_t> first_;  ///< first run of each row, and the end
   std::vector<Run> runs_;
   std::vector<Extent> extents_;
 };
 
-/// Betti numbers of each body: tunnels from the number of cells; a void, by flooding over faces, belongs to the body
-/// around it. @throws Cancelled. Memory: two more sets.
+/// Returns the Betti numbers of each body. Tunnels follow from the number of cells. A void, found by flooding over
+/// faces, belongs to the body around it.
+/// @throws Cancelled. Memory: two more sets.
 [[nodiscard]] std::vector<BettiNumbers> voxel_betti_numbers(const VoxelSet& voxels, const VoxelBodies& bodies,
                                                             const Context& context);
-/// Of all bodies together.
+/// Returns the Betti numbers of all bodies together.
 [[nodiscard]] BettiNumbers voxel_betti_numbers(const VoxelSet& voxels, const Context& context);
 
 }  // namespace blum::verifier

@@ -74,7 +74,7 @@ void VoxelFaces::find_bricks(std::int32_t layer, std::vector<Brick>& found) cons
   for (std::int32_t j = 0; j <= voxels_.size()[1] / 4; ++j) {
     for (std::int32_t i = 0; i <= voxels_.size()[0] / 4; ++i) {
       const Window bits = window({i, j, layer});
-      // All in, or none: no faces. Others may have none either, where only voxels before them differ.
+      // Windows with all voxels or none have no faces. Others may have none either, if only voxels before them differ.
       const bool is_even = bits[0] == (bits[0] & 1U ? 31U : 0U) &&
                            std::all_of(bits.begin(), bits.end(), [&](std::uint8_t b) { return b == bits[0]; });
       if (!is_even) found.push_back({i, j, layer});
@@ -92,15 +92,15 @@ Box3 VoxelFaces::rectangle(const Face& face) const {
 }
 
 struct VoxelFaces::Apart {
-  std::array<std::array<double, 4>, 3> planes;  ///< below each of four voxels
-  std::array<std::array<double, 4>, 3> slabs;   ///< between its lower and its upper plane
+  std::array<std::array<double, 4>, 3> planes;  ///< to the lower plane of each of four voxels
+  std::array<std::array<double, 4>, 3> slabs;   ///< to the slab between its lower and its upper plane
 };
 
 VoxelFaces::Apart VoxelFaces::apart(const Vec3d& q, const Brick& brick) const {
   Apart all;
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t k = 0; k < 4; ++k) {
-      // The same numbers as those of rectangle(), and the same distances as from that.
+      // The same numbers as in rectangle(), so that distances agree exactly.
       const auto voxel = static_cast<double>(4 * std::int64_t{brick[a]} + static_cast<std::int64_t>(k));
       const double lower = (voxel - 0.5) * grid_.spacing[a];
       const double upper = (voxel + 0.5) * grid_.spacing[a];
@@ -141,7 +141,7 @@ VoxelFaces::Nearest VoxelFaces::nearest(const Vec3d& p) const {
 }
 
 std::optional<VoxelFaces::Voxel> VoxelFaces::voxel_around(const Vec3d& a, const Vec3d& b) const {
-  // A voxel holds all that is between two of its points.
+  // A voxel contains all points between two of its points.
   std::array<std::array<std::int64_t, 2>, 3> between{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double low = std::min(a[k], b[k]);
@@ -169,7 +169,7 @@ std::optional<VoxelFaces::Voxel> VoxelFaces::held(const Vec3d& from, const Vec3d
   Voxel voxel{};
   Voxel step{};
   Vec3d next;   // share of the segment at which the next plane is met
-  Vec3d every;  // and what is between two planes
+  Vec3d every;  // share between two planes
   for (std::size_t k = 0; k < 3; ++k) {
     const double way = end[k] - begin[k];
     step[k] = way > 0 ? 1 : way < 0 ? -1 : 0;
@@ -183,7 +183,7 @@ std::optional<VoxelFaces::Voxel> VoxelFaces::held(const Vec3d& from, const Vec3d
   while (voxels_.contains(voxel[0], voxel[1], voxel[2])) {
     const double least = std::min({next.x, next.y, next.z});
     if (!(least < 1)) return voxel;
-    for (std::size_t k = 0; k < 3; ++k) {  // through an edge or a corner at once
+    for (std::size_t k = 0; k < 3; ++k) {  // passes an edge or a corner in one step
       if (next[k] > least) continue;
       voxel[k] += step[k];
       next[k] += every[k];

@@ -15,45 +15,46 @@
 
 namespace blum::verifier {
 
-/// The squares, edges or corners of voxels that lie between those in a set and those that are not.
+/// The faces between voxels in a set and voxels that are not in it.
 class VoxelFaces {
  public:
   using Voxel = std::array<std::int64_t, 3>;
-  /// The lower face of a voxel along an axis; the voxel may lie just beyond the box.
+  /// The lower face of a voxel along an axis. The voxel may lie just beyond the box of the set.
   struct Face {
     Voxel voxel{0, 0, 0};
     std::size_t axis = 0;
   };
 
-  /// The voxels must outlive it. @throws Cancelled.
+  /// The voxels must outlive this object.
+  /// @throws Cancelled.
   VoxelFaces(const VoxelSet& voxels, const GridSpec& grid, const Context& context);
 
   struct Nearest {
     double distance = HUGE_VAL;
     Face face;
   };
-  /// Exact distance from a point of the world to the closest face; HUGE_VAL where there is none.
+  /// Returns the closest face to a point of the world, and the exact distance; HUGE_VAL if no face exists.
   [[nodiscard]] Nearest nearest(const Vec3d& p) const;
   [[nodiscard]] double distance(const Vec3d& p) const { return nearest(p).distance; }
-  /// The voxel of the set that a point lies in; where voxels meet, one of them; nullopt outside.
+  /// Returns the voxel of the set that contains a point, or one of them where voxels meet; nullopt outside.
   [[nodiscard]] std::optional<Voxel> voxel_at(const Vec3d& p) const;
   [[nodiscard]] bool contains(const Vec3d& p) const { return voxel_at(p).has_value(); }
 
-  /// The number of bricks of 4 x 4 x 4 voxels that have faces.
+  /// Returns the number of bricks of 4 x 4 x 4 voxels that have faces.
   [[nodiscard]] std::size_t brick_count() const { return bricks_.size(); }
-  /// Calls use(face) for the faces of a brick.
+  /// Calls use(face) for each face of a brick.
   template <class Use>
   void for_each_face(std::size_t brick, const Use& use) const;
 
-  /// One of the voxels of the set that a segment lies in, boundaries included; nullopt where it leaves them, or where
-  /// rounding leaves doubt.
+  /// Returns one of the voxels of the set that contain a segment, boundaries included. Returns nullopt if the segment
+  /// leaves the set, or rounding leaves doubt.
   [[nodiscard]] std::optional<Voxel> held(const Vec3d& from, const Vec3d& to) const;
 
-  /// The rectangle of a face: along the axes of the grid, from its first node.
+  /// Returns the rectangle of a face, along the axes of the grid and relative to its first node.
   [[nodiscard]] Box3 rectangle(const Face& face) const;
   [[nodiscard]] const GridSpec& grid() const { return grid_; }
   [[nodiscard]] const VoxelSet& voxels() const { return voxels_; }
-  /// The box around the faces, along the axes of the grid.
+  /// Returns the box of the faces, along the axes of the grid.
   [[nodiscard]] const Box3& box() const { return box_; }
 
  private:
@@ -62,17 +63,18 @@ class VoxelFaces {
   using Window = std::array<std::uint8_t, 25>;
 
   [[nodiscard]] Window window(const Brick& brick) const;
-  /// Calls use(x, y, z, axis) for the faces in a window: of the voxel there, counted from the brick's first one.
+  /// Calls use(x, y, z, axis) for the faces in a window. Voxels are counted from the first one of the brick.
   template <class Use>
   static void for_each_face(const Window& in, const Use& use);
-  /// Squared distances of a point from the planes and the slabs of voxels of a brick, along each axis.
+  /// Squared distances of a point from the planes and the slabs of a brick's voxels, along each axis.
   struct Apart;
   [[nodiscard]] Apart apart(const Vec3d& q, const Brick& brick) const;
   [[nodiscard]] std::uint8_t five_bits(std::int64_t i, std::int64_t j, std::int64_t k) const;
   void find_bricks(std::int32_t layer, std::vector<Brick>& found) const;
-  /// One of the voxels of the set that have both points. @param a  voxels are from whole numbers to the next ones.
+  /// Returns one of the voxels of the set that contain both points.
+  /// @param a  in units of voxels, which reach from one whole number to the next.
   [[nodiscard]] std::optional<Voxel> voxel_around(const Vec3d& a, const Vec3d& b) const;
-  /// With the centres of voxels at whole numbers.
+  /// Returns a point in units of voxels, with their centres at whole numbers.
   [[nodiscard]] Vec3d in_voxels(const Vec3d& p) const {
     const Vec3d q = local(p);
     return {q.x / grid_.spacing.x, q.y / grid_.spacing.y, q.z / grid_.spacing.z};
@@ -82,8 +84,8 @@ class VoxelFaces {
   const VoxelSet& voxels_;
   GridSpec grid_;
   std::vector<Brick> bricks_;    ///< in the tree's order
-  std::vector<Window> windows_;  ///< of each
-  std::vector<Box3> boxes_;      ///< around the faces of each
+  std::vector<Window> windows_;  ///< of each brick
+  std::vector<Box3> boxes_;      ///< around the faces of each brick
   BoxHierarchy tree_;
   Box3 box_;
 };

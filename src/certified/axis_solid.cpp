@@ -5,13 +5,13 @@
 namespace blum {
 namespace {
 
-/// @param value  empty where the name alone says it.
+/// @param value  empty if the name needs none.
 std::string option_text(OptionStyle style, const std::string& name, const std::string& value) {
   if (style == OptionStyle::python) return name + "=" + value;
   return "--" + name + (value.empty() ? "" : " ") + value;
 }
 
-/// What a selection says of such input; empty where it leaves all to defaults.
+/// Returns the option that a selection sets for this input; empty if it leaves all to defaults.
 std::string selection_text(const SolidSelection& selection, bool is_image, OptionStyle style) {
   if (is_image && selection.label) return option_text(style, "label", std::to_string(*selection.label));
   if (is_image && selection.threshold) return option_text(style, "threshold", rounded_text(*selection.threshold));

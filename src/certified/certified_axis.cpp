@@ -15,11 +15,11 @@
 namespace blum {
 namespace {
 
-/// A way to take an axis of one angle from that of all angles.
+/// A way to derive the axis of one angle from that of all angles.
 struct AxisForm {
-  bool is_fitted = false;           ///< MedialAxis::lean() or fitted(), not simplify()
-  std::optional<double> tolerance;  ///< vertices go within it; without it all stay
-  std::string_view without;         ///< how a sentence begins that says why the next form was taken
+  bool is_fitted = false;           ///< by MedialAxis::lean(), not simplify()
+  std::optional<double> tolerance;  ///< vertices are removed within it; unset: all stay
+  std::string_view without;         ///< start of a sentence that explains why the next form is used
 };
 
 constexpr std::string_view without_borders = "borders of sheets stay at the cells of the grid: elsewhere, ";
@@ -32,7 +32,8 @@ double checked_tolerance(double tolerance) {
   return tolerance;
 }
 
-/// @param is_given  whether sheets were pruned, so that the axis is a complex that cannot be fitted any more.
+/// Returns the forms to try, in order.
+/// @param is_given  true if sheets were pruned. The axis is then a complex that can no longer be fitted.
 std::vector<AxisForm> forms_of(const MedialAxisReport& report, std::optional<double> tolerance, bool is_given) {
   const double most = checked_tolerance(tolerance.value_or(0.25 * least_spacing(report)));
   std::vector<AxisForm> forms;
@@ -56,7 +57,7 @@ std::string theta_text(const MedialMetadata& metadata) {
   return metadata.theta ? "at theta " + rounded_text(*metadata.theta) : "of the axis";
 }
 
-/// Where a certificate is made and its time goes.
+/// How axes are certified, and where the time is recorded.
 struct Certifying {
   CertifyAxis certify;
   const MedialAxis* whole = nullptr;
@@ -64,7 +65,7 @@ struct Certifying {
   std::vector<PhaseTime>& phases;
 };
 
-/// The first of the forms that is certified, or the last one.
+/// Returns the first of the forms that is certified, or the last one.
 CertifiedAxis first_certified(const std::vector<AxisForm>& forms, const MedialMetadata& metadata,
                               FunctionRef<DecimatedAxis(const AxisForm&)> make, const Certifying& by) {
   CertifiedAxis out;
@@ -83,7 +84,7 @@ CertifiedAxis first_certified(const std::vector<AxisForm>& forms, const MedialMe
   return out;
 }
 
-/// All axes on one grid.
+/// Makes and certifies all axes on one grid.
 CertifiedAxes axes_on(const AxisGrids& grids, double shift, CertifyAxis certify, const CertifiedAxisOptions& options,
                       const Context& context) {
   CertifiedAxes out;
@@ -113,7 +114,7 @@ CertifiedAxes axes_on(const AxisGrids& grids, double shift, CertifyAxis certify,
   return out;
 }
 
-/// Parts of a voxel to move a grid by, as far as it may be moved.
+/// Returns shifts of the grid to try, in voxels, as far as it may be moved.
 std::vector<double> steps_from(double grid_shift) {
   constexpr std::size_t most = 3;
   std::vector<double> out;
@@ -123,10 +124,10 @@ std::vector<double> steps_from(double grid_shift) {
   return out;
 }
 
-/// What certified_axes() asks of an axis of all angles.
+/// Returns the options of the axis of all angles that certified_axes() needs.
 MedialAxisOptions with_angles(MedialAxisOptions medial, const CertifiedAxisOptions& options) {
   const auto [least, most] = std::minmax_element(options.thetas.begin(), options.thetas.end());
-  // Sheets are pruned whole, so they must be whole first.
+  // Sheets are pruned as a whole, so they must be whole first.
   medial.least_theta = options.prunes_sheets ? 0 : *least;
   medial.greatest_theta = options.prunes_sheets ? MedialAxisOptions{}.greatest_theta : *most;
   return medial;
@@ -155,7 +156,7 @@ CertifiedAxis the_only(CertifiedAxes axes) {
   return out;
 }
 
-/// Certified in memory.
+/// Certifies an axis in memory, and records the time.
 Certificate timed(const AxisCandidate& candidate, FunctionRef<Certificate(const MedialClaims&)> verify) {
   PhaseTimer timer(candidate.phases);
   Certificate out = verify({candidate.metadata});
@@ -163,7 +164,8 @@ Certificate timed(const AxisCandidate& candidate, FunctionRef<Certificate(const 
   return out;
 }
 
-/// Certifies axes of a mesh in memory. @param verifier, context  must outlive what is returned.
+/// Certifies axes of a mesh in memory.
+/// @param verifier, context  must outlive the returned function.
 auto certified_by(const MeshAxisVerifier& verifier, const Context& context) {
   return [&verifier, &context](const AxisCandidate& candidate) {
     return timed(candidate, [&](const MedialClaims& claims) {
@@ -209,7 +211,7 @@ CertifiedAxes certified_axes(const AxisGrids& grids, CertifyAxis certify, const 
         {WarningCode::grid_moved, "the grid was moved by " + rounded_text(step) + " voxels: as it was, " + reason});
     const bool is_better = next.report.topology_matches && next.mismatches.size() < best.mismatches.size();
     if (is_better) std::swap(best, next);
-    // Grids that were tried in vain took their time, too.
+    // Grids that were tried in vain took time, too.
     best.phases.insert(best.phases.end(), next.phases.begin(), next.phases.end());
   }
   return best;

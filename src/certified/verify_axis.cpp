@@ -16,7 +16,7 @@
 namespace blum {
 namespace {
 
-/// What can be checked of an axis whose file holds so much.
+/// Returns the checks that the contents of a file allow.
 CertificateOptions checkable(const MedialClaims& claims, SiteIds sites, CertificateOptions options) {
   options.radii = options.radii && claims.has_radii;
   options.balls = options.balls && claims.has_radii;
@@ -53,7 +53,7 @@ std::string sides_text(const GridSpec& grid) {
   return rounded_text(grid.spacing.x) + " " + rounded_text(grid.spacing.y) + " " + rounded_text(grid.spacing.z);
 }
 
-/// Of a file that Blum wrote: all vertices have both sites.
+/// Reports vertices without both sites. In a file that Blum wrote, all vertices have both.
 std::vector<std::string> missing_sites(const MedialView& axis, const MedialClaims& claims) {
   std::size_t count = 0;
   for (std::size_t v = 0; v < axis.positions.size(); ++v) {
@@ -64,8 +64,8 @@ std::vector<std::string> missing_sites(const MedialView& axis, const MedialClaim
           plural(count, "vertex has", "vertices have") + " a footprint without a site"};
 }
 
-/// @throws InvalidGrid where fewer voxels than the coarsest grid has lie along the longest side of a mesh: another grid
-/// would have other tunnels, or parts of the mesh no voxel.
+/// @throws InvalidGrid if fewer voxels lie along the longest side of a mesh than in the coarsest grid. Such a grid
+/// would have other tunnels, or parts of the mesh without a voxel.
 void check_fine_enough(const GridSpec& grid, const MeshView& mesh) {
   constexpr double least = 8;
   constexpr double rounding = 1e-9;
@@ -114,7 +114,7 @@ std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule foun
     out.push_back("the file says that its spacing is " + rounded_text(*metadata.spacing) +
                   ", and its grid has steps of " + sides_text(*metadata.grid));
   }
-  if (metadata.version.empty()) return out;  // of another program, which need not know all of it
+  if (metadata.version.empty()) return out;  // of another program, which need not write all of it
   const SiteIds sites = found == SolidRule::voxels ? SiteIds::voxels : SiteIds::features;
   for (const auto& [is_there, what] :
        {std::pair{claims.has_radii, "radii"}, std::pair{claims.has_footprints, "footprints"},
@@ -149,7 +149,7 @@ std::shared_ptr<const MeshAxisVerifier::Voxels> MeshAxisVerifier::voxels_on(cons
   if (voxels_ != nullptr && voxels_->grid == grid) return voxels_;
   validate(grid);
   check_fine_enough(grid, mesh_);
-  // Distances, winding numbers, and what the fields beside them take.
+  // Distances, winding numbers, and the memory of the fields beside them.
   const double bytes = 16.0 * static_cast<double>(grid.node_count());
   if (bytes > available_memory) {
     throw OutOfMemory("the grid that the axis names, of " + count_text(grid.node_count()) + " nodes, needs " +

@@ -106,7 +106,7 @@ void Columns::append(const Columns& other) {
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     std::visit(
         [&]<class T>(std::vector<T>& values) {
-          // A copy, as the other columns may be these.
+          // A copy, because `other` may be this object.
           const std::vector<T> more = std::get<std::vector<T>>(other.columns_[c].values);
           values.insert(values.end(), more.begin(), more.end());
         },

@@ -17,7 +17,8 @@ void append_cells(std::vector<std::array<std::uint32_t, n>>& cells, std::span<co
   }
 }
 
-/// @param count  of the cells that there are so far.  @param more_count  of those that `more` belongs to.
+/// @param count       number of cells so far.
+/// @param more_count  number of cells that `more` belongs to.
 void append_columns(Columns& columns, std::size_t count, const Columns& more, std::size_t more_count) {
   if (more_count == 0) return;
   if (count == 0) {

@@ -19,8 +19,8 @@ namespace {
 
 using Face = std::array<std::uint32_t, 3>;
 
-/// Triangles with rising corners, each once and in rising order: sorted by their first corner in one pass, then each of
-/// these parts, so that a caller who wants to stop need not wait for all.
+/// Returns each triangle once, with rising corners and in rising order. They are sorted by their first corner in one
+/// pass, then part by part, so that cancelling need not wait for all.
 std::vector<Face> distinct_triangles(const ComplexView& complex, const Context& context) {
   std::vector<std::size_t> first(complex.vertex_count + 1, 0);
   const auto rising = [](Face face) {
@@ -44,7 +44,7 @@ std::vector<Face> distinct_triangles(const ComplexView& complex, const Context& 
   return out;
 }
 
-/// What a complex is made of, each cell once.
+/// The cells of a complex, each once.
 struct Cells {
   std::vector<Face> triangles;
   Incidence incidence;
@@ -58,7 +58,7 @@ struct Cells {
   }
 };
 
-/// Rank of the map from edges to vertices: vertices less components.
+/// Returns the rank of the map from edges to vertices: the number of vertices minus that of components.
 std::size_t vertex_rank(std::size_t vertex_count, const Incidence& incidence) {
   detail::UnionFind joined(vertex_count);
   std::size_t joins = 0;
@@ -66,7 +66,7 @@ std::size_t vertex_rank(std::size_t vertex_count, const Incidence& incidence) {
   return joins;
 }
 
-/// Columns that are removed one by one, and the rows that only one of those that are left has.
+/// Columns that are removed one by one, and the rows that only one remaining column has.
 /// @tparam Columns  size(), and [k]: the rows of column k, none twice.
 template <class Columns>
 class Peeling {
@@ -87,7 +87,7 @@ class Peeling {
     std::uint32_t row = 0;
     std::uint32_t column = 0;  ///< the only one that has it
   };
-  /// A row that one column has, if there is any.
+  /// Returns a row that only one column has; nullopt if none exists.
   std::optional<Free> next() {
     while (!free_.empty()) {
       const std::uint32_t row = free_.back();
@@ -102,25 +102,25 @@ class Peeling {
       if (--count_[row] == 1) free_.push_back(row);
     }
   }
-  /// Of the columns that are left, how many have a row.
+  /// Returns how many of the remaining columns have a row.
   [[nodiscard]] std::uint32_t count(std::uint32_t row) const { return count_[row]; }
 
  private:
   const Columns& columns_;
   std::vector<std::uint32_t> count_;
-  std::vector<std::uint64_t> sum_;  ///< of the columns that have a row: the last one is the sum
+  std::vector<std::uint64_t> sum_;  ///< sum of the columns that have a row: equals the last one
   std::vector<std::uint32_t> free_;
 };
 
-/// A matrix over Z/2 and its rank: of the boundaries of surfaces, say, seams as rows.
+/// A sparse matrix over Z/2 and its rank, for example of the boundaries of surfaces with seams as rows.
 ///
-/// A column with a row that no other column has is paired with that row and removed, over and over. Where none
-/// has one (the surface is closed) a column is set aside, and it goes on. Each paired row is no row of columns
-/// removed later: paired columns are independent, and only those set aside need elimination, rows that were paired
-/// first coming first.
+/// A column with a row that no other column has is paired with that row and removed, over and over. If none has one
+/// (the surface is closed), a column is set aside, and pairing goes on. A paired row is in no column that is removed
+/// later. So paired columns are independent, and only those set aside need elimination. Elimination starts with the
+/// rows that were paired first.
 class SparseMatrix {
  public:
-  /// @param columns  the rows of each, none twice.
+  /// @param columns  the rows of each column, none twice.
   SparseMatrix(const IndexRows& columns, std::size_t row_count, const Context& context)
       : context_(context), columns_(columns), key_(row_count, none) {}
 
@@ -133,7 +133,7 @@ class SparseMatrix {
  private:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  /// Fills paired_ and key_; returns the columns set aside.
+  /// Fills paired_ and key_. Returns the columns set aside.
   std::vector<std::uint32_t> pair_up() {
     Peeling peeling(columns_, key_.size());
     std::vector<bool> is_gone(columns_.size(), false);
@@ -157,7 +157,7 @@ class SparseMatrix {
     return set_aside;
   }
 
-  /// A column that was set aside, freed of all paired rows: the rows that remain, rising.
+  /// Frees a column that was set aside of all paired rows. Returns the rows that remain, in rising order.
   std::vector<std::uint32_t> rest_of(std::uint32_t set_aside) {
     using Entry = std::pair<std::uint32_t, std::uint32_t>;  // when the row was paired, and the row
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> column;
@@ -171,7 +171,7 @@ class SparseMatrix {
       const auto [key, row] = column.top();
       column.pop();
       if (!column.empty() && column.top().second == row) {
-        column.pop();  // twice is not at all
+        column.pop();  // twice is 0 modulo 2
       } else if (key == none) {
         rest.push_back(row);
       } else {
@@ -182,7 +182,7 @@ class SparseMatrix {
     return rest;
   }
 
-  /// Reduces a column by those before it, and keeps it if anything is left.
+  /// Reduces a column by those before it, and keeps it unless nothing is left.
   void add_rest(std::vector<std::uint32_t> column) {
     std::vector<std::uint32_t> sum;
     while (!column.empty()) {
@@ -206,17 +206,17 @@ class SparseMatrix {
   const Context& context_;
   std::size_t steps_ = 0;
   const IndexRows& columns_;
-  std::vector<std::uint32_t> key_;                                       ///< of each row: its place in paired_
+  std::vector<std::uint32_t> key_;                                       ///< for each row: its place in paired_
   std::vector<std::uint32_t> paired_;                                    ///< columns, in order of removal
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> rests_;  ///< by their first row
 };
 
 /// The dimension of the cycles of triangles over Z/2.
 ///
-/// A cycle has none of two triangles at an edge or both, so it is made of whole sheets: triangles that are joined
-/// across edges with two of them. A triangle with an edge of its own is in no cycle; what is left when none has one is
-/// sheets that end at seams, and at each edge of a seam an even number of them. Seams that the same sheets end at
-/// say the same.
+/// At an edge of two triangles, a cycle contains both or none. So it consists of whole sheets: triangles that are
+/// joined across edges of two triangles. A triangle with an edge of its own is in no cycle. When none has one, the rest
+/// are sheets that end at seams. A cycle contains an even number of them at each edge of a seam. Seams where the same
+/// sheets end give the same condition.
 class CyclesOfSheets {
  public:
   CyclesOfSheets(const Incidence& incidence, const Context& context)
@@ -236,7 +236,7 @@ class CyclesOfSheets {
  private:
   static constexpr std::uint32_t no_sheet = 0xffffffffU;
 
-  /// Removes triangles with an edge of their own, until there is none.
+  /// Removes triangles with an edge of their own, until none has one.
   void remove_open() {
     sheet_.assign(sides_.size(), 0);
     std::size_t steps = 0;
@@ -247,10 +247,10 @@ class CyclesOfSheets {
     }
   }
 
-  /// Numbers the sheets; returns how many there are.
+  /// Numbers the sheets, and returns how many there are.
   std::size_t join_sheets() {
     detail::UnionFind joined(static_cast<std::uint32_t>(sides_.size()));
-    std::vector<std::uint32_t> first(edge_count_, no_sheet);  // triangle at an edge
+    std::vector<std::uint32_t> first(edge_count_, no_sheet);  // triangle at each edge
     for (std::uint32_t t = 0; t < sides_.size(); ++t) {
       if (sheet_[t] == no_sheet) continue;
       for (const std::uint32_t e : sides_[t]) {
@@ -274,7 +274,7 @@ class CyclesOfSheets {
     return sheets;
   }
 
-  /// For each seam the sheets that end at it an odd number of times, rising; each list once.
+  /// Returns for each seam the sheets that end at it an odd number of times, in rising order; each list once.
   IndexRows distinct_seams() {
     std::vector<std::array<std::uint32_t, 2>> ends;  // edge, sheet
     for (std::uint32_t t = 0; t < sides_.size(); ++t) {
@@ -321,9 +321,9 @@ class CyclesOfSheets {
   }
 
   using Sides = std::span<const std::array<std::uint32_t, 3>>;
-  const Sides sides_;  ///< the edges of each triangle
+  const Sides sides_;  ///< edges of each triangle
   const std::size_t edge_count_;
-  Peeling<Sides> left_;               ///< triangles, edges as rows
+  Peeling<Sides> left_;               ///< triangles as columns, edges as rows
   std::vector<std::uint32_t> sheet_;  ///< of each triangle
   const Context& context_;
 };

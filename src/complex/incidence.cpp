@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t vertices_per_range = 4096;
 
-/// Calls use(a, b, number) for the listed edges and then the sides of triangles, numbered through; a < b.
+/// Calls use(a, b, number) for the listed edges and then the sides of triangles, numbered consecutively; a < b.
 template <class Use>
 void for_each_pair(const ComplexView& complex, const Use& use) {
   std::uint32_t number = 0;
@@ -28,11 +28,11 @@ void for_each_pair(const ComplexView& complex, const Use& use) {
   }
 }
 
-/// The pairs of vertices that listed edges and sides of triangles join, of each smaller vertex together.
+/// The pairs of vertices that listed edges and sides of triangles join, grouped by the smaller vertex.
 struct VertexPairs {
   std::vector<std::size_t> first;    ///< of each vertex, and the end
-  std::vector<std::uint64_t> pairs;  ///< the larger vertex in the upper half, then the number: they sort by these
-  std::uint32_t listed = 0;          ///< so many numbers are of listed edges
+  std::vector<std::uint64_t> pairs;  ///< sort keys: the larger vertex in the upper half, then the number
+  std::uint32_t listed = 0;          ///< numbers below this are of listed edges
 
   VertexPairs(const ComplexView& complex, const Context& context)
       : first(complex.vertex_count + 1, 0), listed(static_cast<std::uint32_t>(complex.edges.size())) {
@@ -45,8 +45,8 @@ struct VertexPairs {
     });
   }
 
-  /// The same as for_each_pair(), but by threads that go over all pairs, each for a range of smaller vertices: reading
-  /// them one after the other costs less than writing all over the lists.
+  /// Does the same as for_each_pair(), on several threads. Each goes over all pairs, and uses those of its range of
+  /// smaller vertices. Reading all pairs in order costs less than writing all over the lists.
   template <class Use>
   static void for_each_of_own(const ComplexView& complex, const Context& context, const Use& use) {
     constexpr std::size_t most_ranges = 8;
@@ -65,13 +65,14 @@ struct VertexPairs {
   }
   [[nodiscard]] std::uint32_t larger(std::size_t k) const { return static_cast<std::uint32_t>(pairs[k] >> 32U); }
   [[nodiscard]] std::uint32_t number(std::size_t k) const { return static_cast<std::uint32_t>(pairs[k]); }
-  /// Of sorted ones, whether a pair is the first one of its two vertices. @param a  the smaller one.
+  /// Returns true if a pair is the first one of its two vertices. Pairs must be sorted.
+  /// @param a  the smaller vertex.
   [[nodiscard]] bool is_new_edge(std::size_t k, std::size_t a) const {
     return k == first[a] || larger(k) != larger(k - 1);
   }
 };
 
-/// Whether cells name vertices that there are, none twice.
+/// Returns true if cells name existing vertices, none twice.
 template <std::size_t n>
 bool are_good(std::span<const std::array<std::uint32_t, n>> cells, std::size_t vertex_count, const Context& context) {
   constexpr std::size_t cells_per_range = 65536;
@@ -108,7 +109,7 @@ Incidence::Incidence(const ComplexView& complex, const Context& context) {
   });
 }
 
-/// Ranges of vertices sort and count their pairs, and then write edges where those of the ranges before end.
+/// Ranges of vertices sort and count their pairs. Then each range writes its edges after those of the ranges before it.
 void Incidence::find_edges(const ComplexView& complex, const Context& context) {
   VertexPairs pairs(complex, context);
   const std::size_t ranges = (complex.vertex_count + vertices_per_range - 1) / vertices_per_range;

@@ -9,7 +9,8 @@ namespace {
 
 namespace names = medial_columns;
 
-/// @param count  of what the columns belong to.  @param kind  what that is.
+/// @param count  number of cells that the columns belong to.
+/// @param kind   name of these cells.
 template <ColumnNumber T>
 std::span<const T> column(const Columns& columns, std::size_t count, const char* kind, std::string_view name,
                           std::size_t components = 1) {
@@ -35,7 +36,7 @@ bool is_role_of_edges(std::int32_t number) {
          number != static_cast<std::int32_t>(MedialRole::junction);
 }
 
-/// What is wrong with one vertex; null where nothing is.
+/// Returns the problem of one vertex; null if it has none.
 const char* vertex_problem(const MedialView& axis, std::size_t v, std::int32_t role) {
   if (!std::isfinite(axis.radius[v]) || axis.radius[v] < 0) return "has a radius that is negative or not finite";
   if (!is_finite(axis.footprint(v, 0)) || !is_finite(axis.footprint(v, 1))) return "has a footprint that is not finite";
@@ -47,7 +48,8 @@ const char* vertex_problem(const MedialView& axis, std::size_t v, std::int32_t r
   return is_role(role) ? nullptr : "has a role that is not known";
 }
 
-/// The first of some numbers that is wrong. @param is_wrong  asked of each number.
+/// Returns the problem of the first wrong number; empty if none is wrong.
+/// @param is_wrong  returns true for a wrong number.
 template <class T, class Test>
 std::string problem_of_numbers(std::span<const T> numbers, const char* what, const char* problem,
                                const Test& is_wrong) {
@@ -56,7 +58,7 @@ std::string problem_of_numbers(std::span<const T> numbers, const char* what, con
   return place(what, static_cast<std::size_t>(at - numbers.begin())) + " " + problem;
 }
 
-/// Every sheet has a triangle, so that a file cannot make anyone count to more sheets than it has triangles.
+/// Allows at most as many sheets as triangles, so that a file cannot make anyone count further.
 std::string problem_of_sheets(std::span<const std::int32_t> sheets) {
   std::int64_t count = 0;
   for (std::size_t t = 0; t < sheets.size(); ++t) {
@@ -97,7 +99,7 @@ std::string problem_of_values(const Complex& axis) {
   return {};
 }
 
-/// What a check says, or throws where a column is missing or of another type.
+/// Returns the result of a check, or the message if a column is missing or of another type.
 template <class Check>
 std::string problem_in(const Check& check) {
   try {

@@ -31,7 +31,7 @@ void* allocate_aligned(std::size_t bytes) {
   }
 #if defined(__linux__)
   if (alignment == huge_page)
-    madvise(memory, bytes, MADV_HUGEPAGE);  // best effort: without it only page faults cost more
+    madvise(memory, bytes, MADV_HUGEPAGE);  // best effort: without it, page faults only cost more
 #endif
   return memory;
 }

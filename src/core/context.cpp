@@ -13,7 +13,7 @@
 namespace blum {
 namespace {
 
-/// Cores that this process may use: a container's or taskset's share, not the machine's.
+/// Returns the number of cores that this process may use: a container's or taskset's share, not the machine's.
 int usable_cores() {
 #if defined(__linux__)
   cpu_set_t set;

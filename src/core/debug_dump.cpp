@@ -12,7 +12,7 @@
 namespace blum {
 namespace {
 
-/// The arrays of a file: each is a tag, and its numbers at the end of the file behind the count of their bytes.
+/// The arrays of a file. Each is a tag, and its numbers at the end of the file after the count of their bytes.
 class Arrays {
  public:
   /// @param attributes  type and name.
@@ -35,7 +35,7 @@ class Arrays {
   std::string bytes_;
 };
 
-/// One kind of cells: the corners of all of them, one cell after the other.
+/// Cells of one kind: the corners of all of them, one cell after the other.
 struct Cells {
   std::string_view kind;
   std::size_t corners_each = 1;
@@ -53,14 +53,14 @@ struct Cells {
   }
 };
 
-/// The points that cells may name, and those that none does.
+/// The points that cells may name, and which of them no cell names.
 class Points {
  public:
   explicit Points(std::span<const Vec3d> points) : points_(points), is_alone_(points.size()) {
     std::transform(points.begin(), points.end(), is_alone_.begin(), [](const Vec3d& p) { return is_finite(p); });
   }
 
-  /// The cells that can be drawn.
+  /// Returns the cells that can be drawn: their points exist and are finite.
   template <std::size_t corners>
   [[nodiscard]] Cells drawn(std::string_view kind, std::span<const std::array<std::uint32_t, corners>> cells) {
     Cells out{kind, corners, {}};

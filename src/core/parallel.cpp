@@ -25,11 +25,11 @@ namespace blum {
 namespace {
 
 #if defined(BLUM_THREADS_TBB)
-/// Arenas that no call uses now, by their number of slots. oneTBB keeps memory of each arena that is destroyed (7 KB in
-/// 2021.8), which calls of every frame would add up; so arenas are used again.
+/// Unused arenas, by their number of slots. They are used again, because oneTBB keeps memory of each destroyed arena (7
+/// KB in 2021.8). Over the calls of every frame that would add up.
 class ArenaPool {
  public:
-  /// An arena for as long as the lease lives.
+  /// An arena for the lifetime of the lease.
   class Lease {
    public:
     Lease(ArenaPool& pool, int slots) : pool_(pool), slots_(slots), arena_(pool.take(slots)) {}
@@ -44,7 +44,7 @@ class ArenaPool {
     std::unique_ptr<tbb::task_arena> arena_;
   };
 
-  /// Never destroyed: oneTBB may be gone when static objects are.
+  /// Never destroyed, because oneTBB may be gone before static objects are.
   static ArenaPool& instance() {
     static ArenaPool& pool = *new ArenaPool;
     return pool;
@@ -60,7 +60,7 @@ class ArenaPool {
     const std::scoped_lock lock(mutex_);
     Arenas& arenas = arenas_[slots];
     if (arenas.free.empty()) {
-      arenas.free.reserve(++arenas.made);  // so that giving it back needs no memory
+      arenas.free.reserve(++arenas.made);  // giving it back then needs no memory
       return std::make_unique<tbb::task_arena>(slots);
     }
     std::unique_ptr<tbb::task_arena> arena = std::move(arenas.free.back());
@@ -77,10 +77,10 @@ class ArenaPool {
 };
 #endif
 
-/// Starts run(0) .. run(workers-1), as concurrently as the back end can, and waits for all of them.
+/// Calls run(0) to run(workers - 1), as concurrently as the back end can, and waits for all of them.
 void run_workers(int workers, const std::function<void(int)>& run) {
 #if defined(BLUM_THREADS_TBB)
-  // More slots than TBB has threads would only make it print a warning; idle workers' shares go to the others.
+  // More slots than TBB has threads would only cause a warning. Other workers take the shares of idle ones.
   ArenaPool::Lease lease(ArenaPool::instance(), std::min(workers, tbb::info::default_concurrency()));
   lease.arena().execute(
       [&] { tbb::parallel_for(0, workers, [&](int worker) { run(worker); }, tbb::simple_partitioner()); });
@@ -94,7 +94,7 @@ void run_workers(int workers, const std::function<void(int)>& run) {
 #endif
 }
 
-/// Passes progress on at most every 30 ms, never from two threads at once.
+/// Reports progress at most every 30 ms, and never from two threads at once.
 class ProgressReporter {
  public:
   ProgressReporter(const Context& context, std::string_view phase, std::size_t total)

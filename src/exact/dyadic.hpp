@@ -1,4 +1,4 @@
-// Blum: numbers that doubles make by sums and products, exactly. SPDX-License-Identifier: Apache-2.0
+// Blum: exact sums and products of doubles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -36,7 +36,7 @@ class Dyadic {
 
  private:
   static constexpr int digits = 53;
-  /// integer * 2^power.
+  /// Returns integer * 2^power.
   static Integer times_power(Integer integer, int power) {
     constexpr int most = 62;
     for (; power > most; power -= most) integer *= std::int64_t{1} << most;

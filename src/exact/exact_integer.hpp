@@ -1,4 +1,4 @@
-// Blum: whole numbers of any size, for layers that build with the compiler alone. SPDX-License-Identifier: Apache-2.0
+// Blum: integers of any size, for layers that build with the compiler alone. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -7,21 +7,21 @@
 
 namespace blum::detail {
 
-/// A whole number of any size: a sign and a magnitude.
+/// An integer of any size: a sign and a magnitude.
 class ExactInteger {
  public:
   ExactInteger() = default;
   ExactInteger(std::int64_t value);  // NOLINT(google-explicit-constructor): numbers are numbers
 
-  /// -1, 0, 1.
+  /// Returns -1, 0 or 1.
   [[nodiscard]] int sign() const { return limbs_.empty() ? 0 : negative_ ? -1 : 1; }
-  /// Of the magnitude; 0 for 0.
+  /// Returns the number of bits of the magnitude; 0 for 0.
   [[nodiscard]] std::size_t bits() const;
-  /// How many times 2 divides it; 0 for 0.
+  /// Returns how many times 2 divides the number; 0 for 0.
   [[nodiscard]] std::size_t twos() const;
 
   [[nodiscard]] ExactInteger operator-() const;
-  /// Times or divided by a power of two; bits that are shifted out are lost.
+  /// Multiplies or divides by a power of two. Bits that are shifted out are lost.
   [[nodiscard]] ExactInteger operator<<(std::size_t count) const;
   [[nodiscard]] ExactInteger operator>>(std::size_t count) const;
 
@@ -34,7 +34,8 @@ class ExactInteger {
   friend ExactInteger operator*(const ExactInteger& a, const ExactInteger& b);
   [[nodiscard]] friend bool operator==(const ExactInteger&, const ExactInteger&) = default;
 
-  /// numerator / denominator * 2^exponent, rounded to the nearest double, ties to even. @param denominator  > 0.
+  /// Returns numerator / denominator * 2^exponent, rounded to the nearest double, ties to even.
+  /// @param denominator  > 0.
   [[nodiscard]] static double rounded_ratio(const ExactInteger& numerator, const ExactInteger& denominator,
                                             int exponent);
 
@@ -44,12 +45,12 @@ class ExactInteger {
   static ExactInteger sum(const ExactInteger& a, const ExactInteger& b, bool b_negative);
   static int compare_magnitudes(const ExactInteger& a, const ExactInteger& b);
   static void add_magnitude(std::vector<Limb>& to, const std::vector<Limb>& what);
-  /// @param to  at least as large as what is taken off.
+  /// @param to  at least as large as `what`.
   static void take_magnitude(std::vector<Limb>& to, const std::vector<Limb>& what);
   void trim();
   void halve();
 
-  std::vector<Limb> limbs_;  ///< the lowest first; the last one is not 0
+  std::vector<Limb> limbs_;  ///< lowest first; the last one is not 0
   bool negative_ = false;    ///< false for 0
 };
 

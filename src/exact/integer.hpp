@@ -1,4 +1,4 @@
-// Blum: integers of any size, by Boost: the fast ones. SPDX-License-Identifier: Apache-2.0
+// Blum: fast integers of any size, by Boost. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -7,7 +7,7 @@
 
 namespace blum::detail {
 
-/// An integer of any size. Up to 1024 bits, which is enough for most coordinates, it needs no memory of its own.
+/// An integer of any size. Up to 1024 bits, enough for most coordinates, it allocates no memory.
 using Integer = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<1024, 0, boost::multiprecision::signed_magnitude,
                                            boost::multiprecision::unchecked, std::allocator<unsigned long long>>,

@@ -39,7 +39,7 @@ Box3 padded(const Box3& box, double padding) {
   return {box.lower - Vec3d{pad, pad, pad}, box.upper + Vec3d{pad, pad, pad}};
 }
 
-/// The smallest grid of this spacing that covers the box, centred on it.
+/// Returns the smallest grid of this spacing that covers the box, centred on it.
 GridSpec cover(const Box3& box, double spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing)) throw InvalidGrid("the grid's spacing must be positive and finite");
   GridSpec grid;

@@ -18,7 +18,7 @@ Parameter count_parameter(std::string name, std::string description, int value, 
           true};
 }
 
-/// The shape's own parameters, and those of the grid.
+/// Returns the shape's own parameters, and those of the grid.
 std::vector<Parameter> with_spacing(std::vector<Parameter> parameters) {
   for (const char* axis : {"x", "y", "z"}) {
     parameters.push_back({std::string("spacing_") + axis,

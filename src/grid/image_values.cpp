@@ -20,7 +20,7 @@ constexpr std::size_t most_distinct = 100000;
 constexpr double exact_integer_limit = 9007199254740992.0;  // 2^53
 constexpr std::size_t most_named = 10;
 
-/// Whether a value can be a label.
+/// Returns true if a value can be a label.
 template <class T>
 bool is_label(T value) {
   if constexpr (std::is_floating_point_v<T>) {

@@ -58,7 +58,7 @@ std::size_t select_voxels(const VoxelImageView& image, const LabelSelection& sel
   mask.words_per_row = (row_length + 63) / 64;
   if (mask.words.size() != rows * mask.words_per_row) mask.words = Buffer<std::uint64_t>(rows * mask.words_per_row);
 
-  // A task is a stretch of one row or several whole rows: about 2^20 voxels, few enough to stop quickly.
+  // A task is a part of one row, or several whole rows: about 2^20 voxels, few enough to stop quickly.
   constexpr std::size_t task_voxels = std::size_t{1} << 20U;
   const std::size_t stretch = std::min(row_length, task_voxels);
   const std::size_t stretches = (row_length + stretch - 1) / stretch;

@@ -16,10 +16,10 @@ struct Run {
   std::int32_t end;
 };
 
-/// The runs of all rows, and which of them are connected.
+/// The runs of all rows, and their connected components.
 class RunComponents {
  public:
-  /// @param reach     how far runs of neighbouring rows may be apart and still touch: 0 by faces, 1 by corners too.
+  /// @param reach     how far apart runs of neighbouring rows may be and still touch: 0 by faces, 1 by corners, too.
   RunComponents(const VoxelSet& voxels, bool of_background, std::int32_t reach, const Context& context)
       : size_(voxels.size()), reach_(reach) {
     first_.reserve(static_cast<std::size_t>(size_[1] * size_[2]) + 1);
@@ -39,7 +39,7 @@ class RunComponents {
     }
   }
 
-  /// Joins the runs that touch the border of the box with what lies beyond it.
+  /// Joins the runs that touch the border of the box with the outside.
   void join_border() {
     ++count_;
     const auto outside = static_cast<std::uint32_t>(runs_.size());
@@ -56,7 +56,7 @@ class RunComponents {
 
   [[nodiscard]] std::int64_t count() const { return count_; }
 
-  /// Adds the runs that are not joined with what lies beyond the box to a set.
+  /// Adds the runs that are not joined with the outside to a set.
   void add_inner(VoxelSet& voxels) {
     const std::uint32_t outside = joined_.find(static_cast<std::uint32_t>(runs_.size()));
     for (std::int64_t k = 0; k < size_[2]; ++k) {
@@ -76,7 +76,7 @@ class RunComponents {
 
   void list_runs(std::span<const std::uint64_t> words, bool of_background) {
     std::int64_t at = 0;
-    // The first place from `at` on where a voxel is in the runs' set or not, or the row's end.
+    // Returns the first place from `at` on that is in a run (if `is_member`) or in none, else the end of the row.
     const auto next = [&](bool is_member) {
       const std::uint64_t flip = is_member == of_background ? ~std::uint64_t{0} : 0;
       while (at < size_[0]) {
@@ -129,7 +129,7 @@ class RunComponents {
   std::int64_t count_ = 0;
 };
 
-/// Rows of a set, with empty ones beyond the box.
+/// Rows of a set, with empty ones beyond its box.
 class Rows {
  public:
   explicit Rows(const VoxelSet& voxels) : voxels_(voxels), empty_(voxels.words_per_row(), 0) {}
@@ -144,7 +144,7 @@ class Rows {
   std::vector<std::uint64_t> empty_;
 };
 
-/// Sums V - E + F - C over the lattice lines j, k: cells that start there.
+/// Returns the sum of V - E + F - C over the lattice lines j, k: cells that start there.
 std::int64_t euler_of_line(const Rows& rows, std::int64_t j, std::int64_t k) {
   const auto here = rows.at(j, k);
   const auto before_y = rows.at(j - 1, k);
@@ -169,7 +169,7 @@ std::int64_t euler_of_line(const Rows& rows, std::int64_t j, std::int64_t k) {
   return sum;
 }
 
-/// For each voxel of a neighbourhood, its neighbours there (itself left out).
+/// Returns for each voxel of a neighbourhood its neighbours there, without itself.
 template <bool by_faces>
 constexpr std::array<std::uint32_t, 27> make_neighbours() {
   std::array<std::uint32_t, 27> out{};
@@ -189,7 +189,7 @@ constexpr auto face_neighbours = make_neighbours<true>();
 constexpr auto all_neighbours = make_neighbours<false>();
 constexpr std::uint32_t middle = 1U << 13;
 
-/// The component of `seed` (one bit) within `set`.
+/// Returns the component of `seed` (one bit) within `set`.
 std::uint32_t grow(std::uint32_t seed, std::uint32_t set, const std::array<std::uint32_t, 27>& neighbours) {
   std::uint32_t grown = seed;
   std::uint32_t fresh = seed;

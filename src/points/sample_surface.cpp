@@ -24,14 +24,14 @@ namespace blum::detail {
 namespace {
 
 constexpr std::size_t grain = 4096;
-constexpr double steepness = 8;       // of a neighbour's weight, as Yuksel has it
-constexpr double floor_share = 0.65;  // below that part of what is expected distances count less
+constexpr double steepness = 8;       // of a neighbour's weight, as in Yuksel 2015
+constexpr double floor_share = 0.65;  // below this share of the expected distance, distances count less
 constexpr double floor_power = 1.5;
-/// How much they still count; Yuksel's count nothing. Where the two sides of a thin plate are closer than points, all
-/// have neighbours below the floor, and those at nearly no distance are to go first.
+/// How much they still count. In Yuksel 2015 they count nothing. If the two sides of a thin plate are closer than
+/// points, all points have neighbours below the floor. Those at nearly no distance must be removed first.
 constexpr double below_floor = 0.3;
 
-/// Points in cells of a grid as wide as the distance at which they are neighbours.
+/// Points in cells of a grid, as wide as the distance at which points are neighbours.
 class Cells {
  public:
   Cells(std::span<const Vec3d> points, double width) : points_(points), width_(width) {
@@ -44,7 +44,7 @@ class Cells {
     for (std::size_t b = 0; b < buckets; ++b) first_[b + 1] += first_[b];
   }
 
-  /// Calls visit(other, squared distance) for the points closer than the width.
+  /// Calls visit(other, squared distance) for the other points closer than the width.
   template <class Visit>
   void for_each_near(std::uint32_t point, const Visit& visit) const {
     const Vec3d& p = points_[point];
@@ -53,7 +53,7 @@ class Cells {
     std::size_t count = 0;
     for (int n = 0; n < 27; ++n) {
       const std::uint32_t b = bucket({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1});
-      // Two cells may have one bucket.
+      // Two cells may have the same bucket.
       if (std::find(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(count), b) !=
           seen.begin() + static_cast<std::ptrdiff_t>(count)) {
         continue;
@@ -93,7 +93,7 @@ class Cells {
   std::vector<std::uint32_t> first_;
 };
 
-/// What a neighbour weighs.
+/// The weight of a neighbour.
 class Weight {
  public:
   Weight(double width, double share)
@@ -109,13 +109,14 @@ class Weight {
   double floor_;
 };
 
-/// The points that are left when, again and again, the one goes that has the most, and the closest, neighbours
-/// (weighted sample elimination, Yuksel 2015): they lie at nearly equal distances.
+/// Returns points at nearly equal distances, by weighted sample elimination (Yuksel 2015). The point with the most and
+/// closest neighbours is removed, over and over.
 /// @param area  of the surface that the points lie on.
-/// @return      indices of `count` points, rising. @throws Cancelled. Cost: 0.6 us per point, on one core.
+/// @return      indices of `count` points, in rising order.
+/// @throws Cancelled. Cost: 0.6 us per point, on one core.
 std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t count, double area,
                                      const Context& context) {
-  // Points in a lattice of triangles would be 2 r apart; neighbours are those closer than that.
+  // Points in a lattice of triangles would be 2 r apart. Neighbours are closer than that.
   const double width = 2 * std::sqrt(area / (2 * std::numbers::sqrt3 * static_cast<double>(count)));
   const Cells cells(points, width);
   const Weight weight(width, static_cast<double>(count) / static_cast<double>(points.size()));
@@ -126,7 +127,7 @@ std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t 
                           [&](std::uint32_t, double squared) { sum[k] += weight(squared); });
     }
   });
-  // The heaviest on top; entries whose weight has changed are looked at again when they come up.
+  // The heaviest is on top. Entries whose weight has changed are tested again when they come up.
   using Entry = std::tuple<double, std::uint32_t>;
   std::vector<Entry> entries;
   entries.reserve(points.size());
@@ -160,9 +161,9 @@ std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t 
 namespace blum {
 namespace {
 
-/// Each block of points has random numbers of its own, so that they do not depend on threads.
+/// Points per block. Each block has its own random numbers, so that points do not depend on threads.
 constexpr std::size_t block = 4096;
-/// Blue noise is chosen from so many times as many points.
+/// Blue noise is chosen from this many times as many points.
 constexpr std::size_t candidates_per_point = 5;
 constexpr std::size_t most_points = std::size_t{1} << 31;
 
@@ -176,13 +177,13 @@ void check_count(std::size_t count) {
   throw OutOfMemory("more than 2^31 points are asked for: ask for fewer, with several seeds");
 }
 
-/// Triangles by area.
+/// Triangles, weighted by area.
 class AreaTable {
  public:
   explicit AreaTable(const MeshView& mesh) : mesh_(mesh) {
     validate(mesh);
     const Box3 box = bounds(mesh);
-    scale_ = 1 / std::max(box.diagonal(), 1e-300);  // squares of coordinates may be beyond all numbers
+    scale_ = 1 / std::max(box.diagonal(), 1e-300);  // squares of coordinates may overflow
     sums_.reserve(mesh.triangles.size());
     double sum = 0;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -195,9 +196,9 @@ class AreaTable {
     if (triangles_.empty()) throw InvalidMesh("no triangle of the mesh has an area, so there is no surface to sample");
   }
 
-  /// What brings the mesh to about 1.
+  /// Returns the factor that scales the mesh to a size of about 1.
   [[nodiscard]] double scale() const { return scale_; }
-  /// Of the mesh times its scale.
+  /// Returns the area of the scaled mesh.
   [[nodiscard]] double scaled_area() const { return 0.5 * sums_.back(); }
 
   void sample(Random& random, Vec3d& point, Vec3d& normal, TriangleId& triangle) const {
@@ -240,7 +241,7 @@ SurfaceSamples sample(const AreaTable& table, std::size_t count, std::uint64_t s
   return out;
 }
 
-/// Two numbers of a normal distribution (Box and Muller 1958).
+/// Returns two numbers of a normal distribution (Box and Muller 1958).
 std::array<double, 2> normal_pair(Random& random) {
   const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
   const double angle = 2 * std::numbers::pi * random.uniform();
@@ -286,7 +287,7 @@ NearSamples sample_near(const MeshView& mesh, std::size_t count, const NearSampl
   out.points = sample(table, count - in_box, options.seed, context).points;
   const Box3 box = bounds(mesh);
   const double sigma = options.sigma.value_or(0.01 * box.diagonal());
-  constexpr std::uint64_t of_offsets = 0x6f66667365747300u;  // other random numbers than those of the points
+  constexpr std::uint64_t of_offsets = 0x6f66667365747300u;  // random numbers other than those of the points
   parallel_for(context, out.points.size(), block, "offsets", [&](const WorkRange& range) {
     Random random = random_of(options.seed ^ of_offsets, range.begin / block);
     for (std::size_t k = range.begin; k < range.end; ++k) {

@@ -1,4 +1,4 @@
-// Blum: how the shape catalog is put together. SPDX-License-Identifier: Apache-2.0
+// Blum: parts of the shape catalog. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace blum::detail {
 
 using Betti = std::optional<std::array<std::int64_t, 3>>;
 
-/// The groups of the catalog, one file each.
+/// Groups of the catalog, one file each.
 [[nodiscard]] std::vector<ShapeInfo> round_shapes();
 [[nodiscard]] std::vector<ShapeInfo> machined_shapes();
 [[nodiscard]] std::vector<ShapeInfo> loose_shapes();
@@ -23,11 +23,11 @@ using Betti = std::optional<std::array<std::int64_t, 3>>;
 inline constexpr double largest_length = 1e9;
 inline constexpr double smallest_length = 1e-9;
 
-/// A length above 0, in mesh units.
+/// Returns a parameter for a length above 0, in mesh units.
 inline ShapeParameter length_parameter(std::string name, std::string description, double value) {
   return {std::move(name), std::move(description) + ", in mesh units", value, smallest_length, largest_length, false};
 }
-/// A length that may be 0, in mesh units.
+/// Returns a parameter for a length that may be 0, in mesh units.
 inline ShapeParameter length_or_zero(std::string name, std::string description, double value) {
   return {std::move(name), std::move(description) + ", in mesh units", value, 0, largest_length, false};
 }
@@ -43,7 +43,7 @@ inline ShapeParameter seed_parameter() {
   return {"seed", "seed of the random numbers", 1, 0, 4294967295.0, true};
 }
 
-/// Reads parameters that complete_parameters() has checked.
+/// Parameters that complete_parameters() has checked.
 struct Values {
   const ShapeParameters& map;
   [[nodiscard]] double real(const char* name) const { return map.at(name); }
@@ -52,7 +52,7 @@ struct Values {
   [[nodiscard]] std::uint64_t seed() const { return static_cast<std::uint64_t>(map.at("seed")); }
 };
 
-/// Topology that does not depend on the parameters.
+/// Returns a topology that does not depend on the parameters.
 inline auto always(std::int64_t components, std::int64_t tunnels, std::int64_t voids) {
   return [=](const ShapeParameters&) -> Betti { return {{components, tunnels, voids}}; };
 }

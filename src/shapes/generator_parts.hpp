@@ -1,4 +1,4 @@
-// Blum: what the generators share. SPDX-License-Identifier: Apache-2.0
+// Blum: common parts of the generators. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -24,27 +24,28 @@ void require_at_least(double value, double minimum, const char* what);
 /// @throws InvalidOption for more than 50 million triangles (or segments, points).
 void require_triangle_count(double count);
 
-/// Two triangles for the quad a, b, c, d, which goes around counter-clockwise.
+/// Adds two triangles for the quad a, b, c, d, whose corners are counter-clockwise.
 void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
 
-/// A surface of rings: ring s has `sides` vertices position(s, k), counter-clockwise around the direction in which s
-/// grows. Closed off by the two poles.
+/// A ring of `sides` vertices of a surface, counter-clockwise around the direction in which the rings follow each
+/// other. All rings have the same number. Two poles close the surface off.
 struct Ring {
   std::vector<Vec3d> points;
 };
 [[nodiscard]] TriangleMesh loft(const Vec3d& first_pole, std::span<const Ring> rings, const Vec3d& last_pole);
 
-/// The same without poles: the last ring is followed by the first.
+/// Returns the same without poles: the last ring is followed by the first.
 [[nodiscard]] TriangleMesh closed_loft(std::span<const Ring> rings);
 
-/// Turns a profile of (radius, z) points, rising along z, around the z axis; both ends close on the axis.
+/// Rotates a profile of (radius, z) points around the z axis. z rises along it, and both ends close on the axis.
 [[nodiscard]] TriangleMesh revolve(std::span<const std::array<double, 2>> profile, double first_z, double last_z,
                                    int sides);
 
-/// Unit directions of an icosahedron whose edges are cut into `frequency` parts, with triangles facing outwards.
+/// Returns unit directions of an icosahedron whose edges are cut into `frequency` parts, with triangles facing
+/// outwards.
 [[nodiscard]] TriangleMesh geodesic(int frequency);
 
-/// Corners of a regular polygon around a centre, counter-clockwise; the first at angle `phase` (radians).
+/// Returns the corners of a regular polygon around a centre, counter-clockwise; the first at angle `phase` (radians).
 [[nodiscard]] std::vector<std::array<double, 2>> circle(double x, double y, double radius, int sides, double phase = 0);
 
 }  // namespace blum::detail

@@ -39,7 +39,8 @@ struct Blocks {
   }
 };
 
-/// The boundary of the filled cells; position maps lattice points to places. Neighbouring faces share vertices.
+/// Returns the boundary of the filled cells. `position` maps lattice points to places. Neighbouring faces share
+/// vertices.
 template <class Position>
 TriangleMesh surface_of(const Blocks& blocks, Position position) {
   TriangleMesh mesh;
@@ -91,7 +92,7 @@ TriangleMesh surface_of(const Blocks& blocks, Position position) {
   return mesh;
 }
 
-/// Whether a cube of the Menger sponge is there: no digit of base 3 has two of its coordinates at 1.
+/// Returns true if a cube belongs to the Menger sponge: no digit of base 3 is 1 in two of its coordinates.
 bool is_in_menger(int x, int y, int z) {
   for (; x > 0 || y > 0 || z > 0; x /= 3, y /= 3, z /= 3) {
     if ((x % 3 == 1) + (y % 3 == 1) + (z % 3 == 1) >= 2) return false;
@@ -114,8 +115,8 @@ TriangleMesh make_box(const BoxOptions& options) {
     return options.size[axis] * (static_cast<double>(index) / options.segments[axis] - 0.5);
   };
   const auto& n = options.segments;
-  // Vertices of the faces are numbered through a table per face, and shared along the box's edges through a map from
-  // lattice points on its surface: full layers at the bottom and top, rims between them.
+  // Lattice points on the surface are numbered, so that faces share vertices: full layers at the bottom and top, rims
+  // between them.
   const auto nx = static_cast<std::uint32_t>(n[0]);
   const auto ny = static_cast<std::uint32_t>(n[1]);
   const auto nz = static_cast<std::uint32_t>(n[2]);

@@ -19,13 +19,13 @@
 namespace blum::detail {
 namespace {
 
-/// A polygon with holes: the outline counter-clockwise, then the holes clockwise, each as a run of points.
+/// A polygon with holes: the outline counter-clockwise, then the holes clockwise, each as consecutive points.
 struct Polygon {
   std::vector<std::array<double, 2>> points;
-  std::vector<std::uint32_t> loop_starts;  ///< first point of each loop; the outline's is 0
+  std::vector<std::uint32_t> loop_starts;  ///< first point of each loop; that of the outline is 0
 
-  /// Adds a loop; turns it around where its direction is not the one above. @throws InvalidOption for fewer than three
-  /// points, more than 20,000 in all, or no area.
+  /// Adds a loop, and reverses it if its direction is not as above.
+  /// @throws InvalidOption for fewer than three points, more than 20,000 in all, or no area.
   void add_loop(std::span<const std::array<double, 2>> loop);
   [[nodiscard]] std::uint32_t loop_end(std::size_t loop) const;
 };
@@ -42,9 +42,9 @@ double doubled_area(std::span<const Point> loop) {
   return sum;
 }
 
-/// Whether the open segments ab and cd cross or overlap, or an end of one lies inside the other.
+/// Returns true if the open segments ab and cd cross or overlap, or an end of one lies inside the other.
 bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& d) {
-  const auto between = [](const Point& p, const Point& q, const Point& r) {  // r on the line pq: strictly inside pq
+  const auto between = [](const Point& p, const Point& q, const Point& r) {  // for r on the line pq: strictly inside pq
     return std::min(p, q) < r && r < std::max(p, q);
   };
   const int c_side = orient2d(a, b, c);
@@ -56,7 +56,7 @@ bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& 
          (b_side == 0 && between(c, d, b));
 }
 
-/// @throws InvalidOption where two sides cross or touch other than in a common corner. Sides are swept by rising x.
+/// @throws InvalidOption if two sides cross or touch other than in a common corner. Sides are swept by rising x.
 void require_simple(const Polygon& polygon, const Context& context) {
   struct Side {
     Point lower, upper;  // by (x, y)
@@ -88,13 +88,13 @@ void require_simple(const Polygon& polygon, const Context& context) {
   }
 }
 
-/// The outline with its holes joined to it by bridges: one loop of point indices, in which bridge ends come twice.
+/// The outline with its holes joined to it by bridges: one loop of point indices, which lists bridge ends twice.
 class JoinedLoop {
  public:
   JoinedLoop(const Polygon& polygon, const Context& context) : polygon_(polygon), context_(context) {
     loop_.resize(polygon.loop_end(0));
     std::iota(loop_.begin(), loop_.end(), 0U);
-    // The rightmost hole first: then the bridge of a hole can only cross the loop joined so far.
+    // The rightmost hole comes first. Then the bridge of a hole can only cross the loop joined so far.
     std::vector<Hole> holes;
     for (std::size_t h = 1; h < polygon.loop_starts.size(); ++h) holes.push_back(rightmost(h));
     std::sort(holes.begin(), holes.end(), [&](const Hole& a, const Hole& b) {
@@ -119,7 +119,7 @@ class JoinedLoop {
     return {loop, best};
   }
 
-  /// Whether the ray from loop_[at] to the point starts inside the polygon at that corner.
+  /// Returns true if the ray from loop_[at] to the point starts inside the polygon at that corner.
   [[nodiscard]] bool leaves_inwards(std::size_t at, const Point& target) const {
     const std::size_t n = loop_.size();
     const Point& before = polygon_.points[loop_[(at + n - 1) % n]];
@@ -148,7 +148,7 @@ class JoinedLoop {
       const Point& q = polygon_.points[loop_[at]];
       return (q[0] - start[0]) * (q[0] - start[0]) + (q[1] - start[1]) * (q[1] - start[1]);
     };
-    // The closest first, which nearly always is free.
+    // The closest comes first, because it is nearly always free.
     const auto goes_later = [&](std::size_t a, std::size_t b) {
       return squared(a) != squared(b) ? squared(a) > squared(b) : a > b;
     };
@@ -164,7 +164,7 @@ class JoinedLoop {
     throw InvalidOption("the polygon cannot be triangulated: a hole lies outside the outline or in another hole");
   }
 
-  /// Inserts: the hole's loop from its start back to its start, and the bridge's end once more.
+  /// Inserts the hole's loop from its start back to its start, and the bridge's end once more.
   void splice(std::size_t at, const Hole& hole) {
     std::vector<std::uint32_t> inserted;
     const std::uint32_t first = polygon_.loop_starts[hole.loop];
@@ -195,9 +195,9 @@ std::uint32_t Polygon::loop_end(std::size_t loop) const {
   return loop + 1 < loop_starts.size() ? loop_starts[loop + 1] : static_cast<std::uint32_t>(points.size());
 }
 
-/// Counter-clockwise triangles over the polygon's points, by cutting off ears; holes are first joined to the outline.
-/// Every edge of a loop is an edge of exactly one triangle, and no point is added.
-/// @throws InvalidOption where loops cross or touch, or a hole is not inside the outline; Cancelled. Cost: O(n^2) for n
+/// Returns counter-clockwise triangles over the polygon's points, by cutting off ears. Holes are first joined to the
+/// outline. Every edge of a loop is an edge of exactly one triangle, and no point is added.
+/// @throws InvalidOption if loops cross or touch, or a hole is not inside the outline; Cancelled. Cost: O(n^2) for n
 /// points, in practice.
 std::vector<Triangle> triangulate(const Polygon& polygon, const Context& context) {
   require_simple(polygon, context);
@@ -227,8 +227,9 @@ using detail::require_at_least;
 using detail::require_positive;
 using detail::require_triangle_count;
 
-/// The outline of a gear, counter-clockwise: on each tooth's share of the circle, an arc at the root, a flank, an arc
-/// at the tip, a flank. Fractions of the share; the last flank ends where the next tooth begins.
+/// Returns the outline of a gear, counter-clockwise. On its share of the circle, each tooth has an arc at the root, a
+/// flank, an arc at the tip, and a flank. Numbers are fractions of the share. The last flank ends where the next tooth
+/// begins.
 std::vector<Point2> gear_outline(const GearOptions& options) {
   struct Corner {
     double along;
@@ -306,7 +307,7 @@ TriangleMesh make_gear(const GearOptions& options) {
   require_positive(options.root_radius, "root_radius");
   require_positive(options.tip_radius, "tip_radius");
   require(options.tip_radius > options.root_radius, "tip_radius", "above root_radius", options.tip_radius);
-  // Half an arc at the root is a chord, whose middle lies deeper than the root.
+  // Half an arc at the root is a chord, whose middle is closer to the centre than the root radius.
   const double inner_radius = options.root_radius * std::cos(0.175 * detail::pi / options.teeth);
   require(options.bore_radius >= 0 && options.bore_radius < inner_radius, "bore_radius", "0 to below root_radius",
           options.bore_radius);
@@ -359,7 +360,7 @@ TriangleMesh make_nested_shells(const NestedShellsOptions& options) {
   require_positive(options.radius, "radius");
   require_at_least(options.frequency, 1, "frequency");
   require_triangle_count(20.0 * options.shells * options.frequency * options.frequency);
-  // All shells are scaled copies of one convex polyhedron around the origin: they cannot touch.
+  // All shells are scaled copies of one convex polyhedron around the origin, so they cannot touch.
   const TriangleMesh outer = make_sphere({options.radius, options.frequency});
   TriangleMesh mesh;
   for (int shell = 0; shell < options.shells; ++shell) {

@@ -14,21 +14,21 @@
 namespace blum::detail {
 namespace {
 
-/// A solid glued from boxes and triangular prisms whose faces match exactly where they meet: faces that two of them
-/// share vanish, the rest is the boundary. Corners at equal coordinates are one vertex.
+/// A solid of boxes and triangular prisms whose faces match exactly where they meet. Faces that two of them share
+/// vanish, and the rest is the boundary. Corners at equal coordinates are one vertex.
 class PrismComplex {
  public:
-  /// An axis-aligned box.
+  /// Adds an axis-aligned box.
   void add_box(const Vec3d& lower, const Vec3d& upper);
-  /// The prism between two triangles; `base` turns counter-clockwise seen from `top`, and so does top from beyond it.
+  /// Adds the prism between two triangles. `base` is counter-clockwise seen from `top`, and `top` is so from beyond it.
   void add_prism(const std::array<Vec3d, 3>& base, const std::array<Vec3d, 3>& top);
-  /// The closed boundary, facing outwards. Cost: O(n log n).
+  /// Returns the closed boundary, facing outwards. Cost: O(n log n).
   [[nodiscard]] TriangleMesh boundary() const;
 
  private:
   struct Face {
     std::array<std::uint32_t, 4> key{};      ///< its corners, sorted
-    std::array<std::uint32_t, 4> corners{};  ///< in order; a triangle names its last corner twice
+    std::array<std::uint32_t, 4> corners{};  ///< in order; a triangle lists its last corner twice
   };
   std::uint32_t vertex(const Vec3d& p);
   void add_face(const std::array<std::uint32_t, 4>& corners);
@@ -74,7 +74,7 @@ void PrismComplex::add_prism(const std::array<Vec3d, 3>& base, const std::array<
 }
 
 TriangleMesh PrismComplex::boundary() const {
-  // The order of the result is that in which faces were added.
+  // The result keeps the order in which faces were added.
   std::vector<std::uint32_t> order(faces_.size());
   for (std::uint32_t f = 0; f < order.size(); ++f) order[f] = f;
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -102,9 +102,10 @@ TriangleMesh PrismComplex::boundary() const {
   return mesh;
 }
 
-/// Triangles of a rectangle with a round hole, counter-clockwise. Indices 0 to 3 are the rectangle's corners, starting
-/// at the upper right, counter-clockwise; 4 to 3 + sides the hole's points, counter-clockwise, the first to the right
-/// of the centre. `sides` is a multiple of 4. Each side of the rectangle is an edge of one triangle.
+/// Returns the triangles of a rectangle with a round hole, counter-clockwise. Indices 0 to 3 are the corners of the
+/// rectangle, counter-clockwise from the upper right. Indices 4 to 3 + sides are the points of the hole,
+/// counter-clockwise from the right of the centre. `sides` is a multiple of 4. Each side of the rectangle is an edge of
+/// one triangle.
 std::vector<Triangle> triangulate_holed_rectangle(std::uint32_t sides) {
   std::vector<Triangle> triangles;
   const std::uint32_t quarter = sides / 4;
@@ -142,7 +143,8 @@ struct Span {
   [[nodiscard]] double size() const { return upper - lower; }
 };
 
-/// A box with a round hole through it along the third axis; place(u, v, w) puts a point into space without mirroring.
+/// Adds a box with a round hole through it along the third axis. place(u, v, w) maps a point into space without
+/// mirroring.
 template <class Place>
 void add_holed_box(PrismComplex& solid, const Span& u, const Span& v, const Span& w, double radius, int sides,
                    Place place) {
@@ -173,7 +175,7 @@ class BracketBuilder {
     const int bays = std::max(1, options_.holes);
     return (options_.width - (bays + 1) * rib_width_) / bays;
   }
-  /// The largest hole radius that leaves material on all sides.
+  /// Returns the radius below which holes leave material on all sides.
   [[nodiscard]] double room_for_holes() const {
     return 0.5 * std::min({bay_width(), options_.length - rib_x_, options_.height - rib_z_});
   }
@@ -224,7 +226,7 @@ class BracketBuilder {
   PrismComplex solid_;
 };
 
-/// Numbers the vertices of a plate: lattice corners and hole points, below and above.
+/// Numbering of the vertices of a plate: lattice corners and hole points, below and above.
 struct PlateLayout {
   std::uint32_t cells_x, cells_y, sides;
 

@@ -17,14 +17,14 @@ using detail::require_positive;
 using detail::require_triangle_count;
 using detail::Ring;
 
-/// A circle around `center` in the plane of two orthonormal vectors, counter-clockwise around first x second.
+/// Returns a circle around `center` in the plane of two orthonormal vectors, counter-clockwise around first x second.
 Ring ring_around(const Vec3d& center, const Vec3d& first, const Vec3d& second, double radius, int sides) {
   Ring ring;
   for (const auto& [x, y] : detail::circle(0, 0, radius, sides)) ring.points.push_back(center + first * x + second * y);
   return ring;
 }
 
-/// A torus in the plane of two orthonormal vectors.
+/// Returns a torus in the plane of two orthonormal vectors.
 TriangleMesh torus_in_plane(const TorusOptions& options, const Vec3d& first, const Vec3d& second) {
   std::vector<Ring> rings;
   for (const auto& [x, y] : detail::circle(0, 0, 1, options.ring_segments)) {
@@ -36,7 +36,7 @@ TriangleMesh torus_in_plane(const TorusOptions& options, const Vec3d& first, con
   return detail::closed_loft(rings);
 }
 
-/// A point of a torus knot, its unit tangent, and the normal of the torus that it lies on.
+/// A point of a torus knot, its unit tangent, and the normal of the torus there.
 struct KnotFrame {
   Vec3d position, tangent, normal;
 };
@@ -53,8 +53,8 @@ KnotFrame knot_frame(const TorusKnotOptions& options, double turn) {
   return {radial * distance + Vec3d{0, 0, options.wind_radius * std::sin(wind)}, velocity / length(velocity), normal};
 }
 
-/// The largest radius of a tube around the curve that does not touch itself: the least radius of a circle through one
-/// point of the curve that is tangent to it at another (Gonzalez, Maddocks 1999), over samples.
+/// Returns the largest radius of a tube around the curve that does not touch itself, over samples. It is the least
+/// radius of a circle through one point of the curve that is tangent to it at another (Gonzalez, Maddocks 1999).
 double curve_thickness(const std::vector<KnotFrame>& curve) {
   double thickness = HUGE_VAL;
   for (const KnotFrame& a : curve) {
@@ -102,7 +102,7 @@ class SpoonSections {
 
  private:
   [[nodiscard]] double bowl_x(double x) const { return x / bowl_half_length_ - 1; }
-  /// Falls to 0 like an ellipse at the end of the handle.
+  /// Returns a factor that falls to 0 like an ellipse at the end of the handle.
   [[nodiscard]] double rounding(double x) const {
     const double left = (options_.length - x) / (0.5 * options_.handle_width);
     return left >= 1 ? 1 : std::sqrt(std::max(0.0, 1 - (1 - left) * (1 - left)));
@@ -112,7 +112,7 @@ class SpoonSections {
   double bowl_half_length_;
 };
 
-/// A bump in a direction: how far it reaches, and how narrow it is.
+/// A bump in a direction: its height, and how narrow it is.
 struct Lobe {
   Vec3d direction;
   double height = 0;
@@ -128,7 +128,7 @@ const std::vector<Lobe>& organic_lobes() {
   return lobes;
 }
 
-/// Sums of random plane waves, as fine as the mesh can show.
+/// A sum of random plane waves, as fine as the mesh can show.
 class Skin {
  public:
   Skin(double amplitude, std::uint64_t seed) {
@@ -156,7 +156,7 @@ class Skin {
   std::vector<Wave> waves_;
 };
 
-/// Leaves out the triangles within `rings` steps of a vertex.
+/// Removes the triangles within `rings` steps of a vertex.
 void cut_hole(TriangleMesh& mesh, std::uint32_t center, int rings) {
   std::vector<bool> inside(mesh.vertices.size(), false);
   inside[center] = true;
@@ -261,7 +261,7 @@ TriangleMesh make_linked_tori(const LinkedToriOptions& options) {
   const TorusOptions link{options.ring_radius, options.tube_radius, options.ring_segments, options.tube_segments};
   const TriangleMesh flat = torus_in_plane(link, {1, 0, 0}, {0, 1, 0});
   const TriangleMesh upright = torus_in_plane(link, {1, 0, 0}, {0, 0, 1});
-  // Neighbours are 2 R - step apart, every other link 2 step - 2 R: both above 2 r for this step.
+  // Neighbours are 2 R - step apart, every other link 2 step - 2 R. Both are above 2 r for this step.
   const double step = 1.5 * options.ring_radius - 0.5 * options.tube_radius;
   TriangleMesh mesh;
   for (int i = 0; i < options.count; ++i) {
@@ -327,7 +327,7 @@ TriangleMesh make_organic(const OrganicOptions& options) {
   if (options.holes > 0) require_at_least(options.frequency, 8, "frequency (with holes)");
   TriangleMesh mesh = detail::geodesic(options.frequency);
   const Skin skin(options.detail, options.seed);
-  // The twelve corners of the icosahedron come first; they are `frequency` edges apart, so that holes do not meet.
+  // The twelve corners of the icosahedron come first. They are `frequency` edges apart, so that holes do not meet.
   for (int hole = 0; hole < options.holes; ++hole) {
     cut_hole(mesh, static_cast<std::uint32_t>(hole), 1 + options.frequency * (1 + hole % 3) / 12);
   }

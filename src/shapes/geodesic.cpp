@@ -29,7 +29,7 @@ std::array<Vec3d, 12> icosahedron_corners() {
            {-g, 0, 1}}};
 }
 
-/// Lays out the vertices: 12 corners, then the inner points of 30 edges, then those of 20 faces.
+/// Order of the vertices: 12 corners, then the inner points of 30 edges, then those of 20 faces.
 class Layout {
  public:
   explicit Layout(std::uint32_t frequency) : frequency_(frequency) {
@@ -43,7 +43,7 @@ class Layout {
   }
   [[nodiscard]] std::uint32_t vertex_count() const { return 10 * frequency_ * frequency_ + 2; }
 
-  /// The vertex of a face with weights (w0, w1, w2) at its corners, which sum to the frequency.
+  /// Returns the vertex of a face with weights (w0, w1, w2) at its corners, which sum to the frequency.
   [[nodiscard]] std::uint32_t vertex(std::uint32_t face, const std::array<std::uint32_t, 3>& weights) const {
     const Triangle& corners = icosahedron_faces[face];
     for (std::size_t k = 0; k < 3; ++k) {

@@ -24,8 +24,9 @@ namespace {
 
 constexpr int most_moves = 32;
 
-/// The best of some directions from a point, by steps that become longer.
-/// @param prefers  whether a point is better than others that are as deep.
+/// Returns the deepest point that `prefers` accepts, of some directions and the shortest step that leads deep enough.
+/// Otherwise returns the deepest point tried; nullopt if none is inside.
+/// @param prefers  returns true if a point is acceptable.
 template <class Prefers>
 std::optional<Vec3d> best_step(const SolidOracle& solid, std::uint32_t body, const Vec3d& point, double step,
                                std::span<const Vec3d> directions, const Prefers& prefers) {
@@ -46,23 +47,23 @@ std::optional<Vec3d> best_step(const SolidOracle& solid, std::uint32_t body, con
   return deepest;
 }
 
-/// A point beside one of the segment from a to b.
+/// Returns a point beside a point of the segment from a to b.
 std::optional<Vec3d> moved_aside(const SolidOracle& solid, std::uint32_t body, const Vec3d& a, const Vec3d& b,
                                  double along, double step) {
   constexpr std::size_t count = 12;
-  constexpr double turn = 0.1;  // from directions along axes
+  constexpr double turn = 0.1;  // radians from directions along axes
   const ProbeLine line = line_between(a, b);
   std::array<Vec3d, count> directions;
   for (std::size_t k = 0; k < count; ++k) {
     const double angle = turn + 2 * std::numbers::pi * static_cast<double>(k) / count;
     directions[k] = line.across * std::cos(angle) + line.up * std::sin(angle);
   }
-  // Across a gap narrower than the step a point is inside, too.
+  // Beyond a gap narrower than the step, a point is inside, too.
   const auto is_beside = [&](const Vec3d& p) { return solid.is_clear(a, p, body) && solid.is_clear(p, b, body); };
   return best_step(solid, body, a + (b - a) * along, step, directions, is_beside);
 }
 
-/// Adds what lies between a and b, and b.
+/// Adds the points between a and b that lead past touched segments, and b. Returns false if that fails.
 bool lead_between(const SolidOracle& solid, std::uint32_t body, const Curtains& curtains, double step, const Vec3d& a,
                   const Vec3d& b, int& moves_left, Way& way) {
   const auto touched = curtains.first_touched(a, b, body);
@@ -76,8 +77,8 @@ bool lead_between(const SolidOracle& solid, std::uint32_t body, const Curtains& 
          lead_between(solid, body, curtains, step, *middle, b, moves_left, way);
 }
 
-/// A point inside of a body, a little way from one on its surface: the first one that is deep enough for the step that
-/// led there, else the deepest one tried; nullopt where none is inside.
+/// Returns a point in a body, close to one on its surface. It is the first one that is deep enough for its step, else
+/// the deepest one tried; nullopt if none is inside.
 /// @param step  the shortest tried; the longest is 16 times as long.
 std::optional<Vec3d> moved_inside(const SolidOracle& solid, std::uint32_t body, const Vec3d& point, double step) {
   std::vector<Vec3d> directions;
@@ -91,9 +92,10 @@ std::optional<Vec3d> moved_inside(const SolidOracle& solid, std::uint32_t body, 
   return best_step(solid, body, point, step, directions, [](const Vec3d&) { return true; });
 }
 
-/// Adds points to a way that touches segments of paths, so that it passes them inside of the body. Way points that lie
-/// on the surface are moved inside, but for both ends.
-/// @param step  as above.  @return  whether it touches nothing any more.
+/// Adds points to a way that touches segments of paths, so that it passes them inside the body. Way points on the
+/// surface are moved inside, except for both ends.
+/// @param step  as above.
+/// @return      true if the way touches nothing any more.
 bool lead_inside(const SolidOracle& solid, std::uint32_t body, const Curtains& curtains, double step, Way& way) {
   for (std::size_t k = 1; k + 1 < way.size(); ++k) {
     if (solid.depth(way[k], body) >= step) continue;
@@ -108,7 +110,7 @@ bool lead_inside(const SolidOracle& solid, std::uint32_t body, const Curtains& c
   return true;
 }
 
-/// Of the tolerance of positions: far less than edges are allowed to be outside by, and far more than rounding.
+/// Share of the tolerance of positions: far below the tolerance of edges, and far above rounding.
 constexpr double of_tolerance = 1.0 / 16;
 
 }  // namespace
@@ -226,7 +228,7 @@ std::vector<std::uint32_t> AxisLabels::triangles_across(const Context& context) 
   std::unordered_set<std::uint32_t> looked_at;
   std::unordered_set<std::uint32_t> found(across.begin(), across.end());
   SparseRow row;
-  for (std::size_t k = 0; k < across.size(); ++k) {  // grows
+  for (std::size_t k = 0; k < across.size(); ++k) {  // `across` grows
     throw_if_cancelled(context);
     for (const std::uint32_t e : given_.incidence.sides()[across[k]]) {
       if (looked_at.size() >= most_looked_at || !looked_at.insert(e).second || !take(e, closer_look(e))) continue;
@@ -254,7 +256,7 @@ void AxisLabels::lead_over_triangles(std::vector<std::uint32_t>& across, const C
       for (std::size_t k = 0; k < 3 && is_across(t, row); ++k) {
         const std::uint32_t e = given_.incidence.sides()[t][k];
         const auto pushed = replaced_.find(e);
-        if (pushed == replaced_.end()) continue;  // none of its sides is doubtful, as it is across
+        if (pushed == replaced_.end()) continue;  // no side of a triangle across is doubtful
         const auto before = count_at(e);
         std::vector<Label> other = over_other_sides(t, k);
         other.swap(pushed->second);
@@ -304,7 +306,7 @@ bool AxisLabels::look_at_thin_parts(const Context& context) {
 }
 
 bool AxisLabels::look_closely(std::span<const std::uint32_t> edges, const Context& context) {
-  // Few at a time: together they may take more looks than are left.
+  // Few at a time: together they may use more looks than are left.
   constexpr std::size_t most_at_a_time = 32;
   bool is_changed = false;
   std::vector<CloserLook> found;

@@ -17,12 +17,12 @@ using Face = std::array<std::uint32_t, 3>;
 
 constexpr std::uint32_t none = 0xffffffffU;
 
-/// Whether a triangle passes a side of its own from the lower vertex to the higher one.
+/// Returns true if a triangle passes one of its sides from the lower vertex to the higher one.
 bool rises(const Face& face, std::size_t side) {
   return face[side] < face[(side + 1) % 3];
 }
 
-/// The triangles that are left when what has a free edge is taken away, in bodies with voids; each once.
+/// The triangles that remain when those with free edges are removed, in bodies with voids; each once.
 class Core {
  public:
   Core(const ComplexView& axis, const Incidence& incidence, const std::vector<bool>& is_wanted)
@@ -56,7 +56,7 @@ class Core {
       if (is_in_[t]) use(t);
     }
   }
-  /// Those at an edge.
+  /// Returns the remaining triangles at an edge.
   [[nodiscard]] std::vector<std::uint32_t> at_edge(std::uint32_t e) const {
     std::vector<std::uint32_t> found;
     for (const std::uint32_t t : incidence_.triangles_of_edge()[e]) {
@@ -65,7 +65,7 @@ class Core {
     return found;
   }
   [[nodiscard]] const Face& face(std::uint32_t t) const { return axis_.triangles[t]; }
-  /// 1 or -1 by the way that a triangle passes one of its sides.
+  /// Returns 1 or -1 by the direction in which a triangle passes one of its sides.
   [[nodiscard]] int sign(std::uint32_t t, std::uint32_t edge) const {
     const auto& sides = incidence_.sides()[t];
     const auto side = static_cast<std::size_t>(std::find(sides.begin(), sides.end(), edge) - sides.begin());
@@ -75,7 +75,7 @@ class Core {
   [[nodiscard]] std::size_t size() const { return is_in_.size(); }
 
  private:
-  /// Of triangles with the same sides the first one stays.
+  /// Keeps the first of triangles with the same sides.
   void take_doubles() {
     const auto sorted = [&](std::uint32_t t) {
       Face sides = incidence_.sides()[t];
@@ -96,7 +96,7 @@ class Core {
   std::vector<bool> is_in_;
 };
 
-/// Triangles that hang together over edges of two triangles, turned alike as far as possible.
+/// Triangles that are connected over edges of two triangles, with the same orientation as far as possible.
 class Sheets {
  public:
   explicit Sheets(const Core& core) : sheet_(core.size(), none), facing_(core.size(), 0) {
@@ -142,7 +142,7 @@ class Sheets {
   std::vector<std::uint32_t> first_;
 };
 
-/// For each sheet its border along the seams; seams that the same sheets meet in alike count once.
+/// The border of each sheet along the seams. Seams where the same sheets meet alike count once.
 struct Borders {
   std::vector<SparseRow> rows;
   std::uint32_t columns = 0;
@@ -162,7 +162,7 @@ struct Borders {
   }
 
  private:
-  /// Adds entries of one sheet, and turns all alike.
+  /// Adds entries of one sheet, and makes the first entry positive.
   static void tidy_keeping_parity(SparseRow& row) {
     tidy(row);
     if (row.empty() || row.front().second > 0) return;
@@ -170,7 +170,7 @@ struct Borders {
   }
 };
 
-/// Counts what lines from the voids to a far point cross.
+/// Counts crossings of lines from the voids to a far point.
 class VoidLines {
  public:
   VoidLines(const Core& core, const Sheets& sheets, const std::vector<Vec3d>& positions,
@@ -186,7 +186,8 @@ class VoidLines {
   }
 
   /// Adds to each sheet's row how often lines from a point of each void cross it.
-  /// @param choice  which of its points, or the last one.  @return  for each void whether that could not be told.
+  /// @param choice  which point of a void is used, or the last one.
+  /// @return        for each void, true if that is undecided.
   [[nodiscard]] std::vector<bool> add(std::size_t choice, std::uint32_t first_column, std::vector<SparseRow>& rows,
                                       const Context& context) const {
     std::vector<bool> is_doubtful(complement_.voids().size(), false);
@@ -229,7 +230,7 @@ class VoidLines {
 
 constexpr std::size_t most_steps = 300'000'000;
 
-/// What the cycles of the sheets of a body wind around.
+/// Returns the winding numbers of the cycles of a body's sheets; nullopt if the elimination is incomplete.
 std::optional<std::vector<SparseRow>> wound(Elimination::Over over, const std::vector<SparseRow>& rows,
                                             const std::vector<bool>& is_taken, std::uint32_t columns) {
   Elimination seams(over, columns, most_steps);
@@ -240,7 +241,7 @@ std::optional<std::vector<SparseRow>> wound(Elimination::Over over, const std::v
   return seams.left();
 }
 
-/// What surfaces of one body wind around, by the rows of the sheets.
+/// Winding numbers of the surfaces of one body, from the rows of its sheets.
 struct Wound {
   std::size_t rank = 0;
   bool over_integers = false;
@@ -286,10 +287,10 @@ Windings windings(const ComplexView& axis, const Incidence& incidence, const std
   const Core core(axis, incidence, is_wanted);
   const Sheets sheets(core);
   const Borders borders(core, sheets);
-  std::vector<std::unique_ptr<VoidLines>> lines;  // to some far points
+  std::vector<std::unique_ptr<VoidLines>> lines;  // to several far points
   const auto void_count = static_cast<std::uint32_t>(complement.voids().size());
   std::vector<bool> is_told(body_count, false);
-  std::vector<bool> is_told_by_rows(body_count, false);  // those of the choice before
+  std::vector<bool> is_told_by_rows(body_count, false);  // for the previous choice
   std::vector<SparseRow> rows;
   for (std::size_t choice = 0; choice < choices; ++choice) {
     const std::vector<SparseRow> rows_before = std::exchange(rows, {});

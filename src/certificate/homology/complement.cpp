@@ -11,7 +11,7 @@
 namespace blum::verifier {
 namespace {
 
-/// The triangles of shells with handles, and where none of them is.
+/// Returns the triangles of shells with handles.
 std::vector<std::array<std::uint32_t, 3>> triangles_with_handles(const MeshView& mesh, const ClosedShells& shells) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -22,7 +22,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_with_handles(const MeshView&
   return triangles;
 }
 
-/// The body of the shell at each vertex.
+/// Returns the body of the shell at each vertex.
 std::vector<std::uint32_t> bodies_of_vertices(const MeshView& mesh, const ClosedShells& shells) {
   std::vector<std::uint32_t> body_of_vertex(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

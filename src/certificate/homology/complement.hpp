@@ -15,27 +15,28 @@
 
 namespace blum::verifier {
 
-/// For each body of a solid closed paths that generate the first homology of what is not in it, and points in each of
-/// its voids. By Alexander duality, linking numbers with the paths tell every class of the body's first homology apart,
-/// and winding numbers around the points every class of the second one. Paths and points may lie on the boundary.
+/// For each body of a solid: closed paths that generate the first homology of its complement, and points in each of its
+/// voids. By Alexander duality, linking numbers with the paths distinguish all classes of the body's first homology.
+/// Winding numbers around the points distinguish all classes of the second one. Paths and points may lie on the
+/// boundary.
 class Complement {
  public:
-  /// A straight part of paths, named once however many run along it.
+  /// A straight part of paths, listed once however many paths run along it.
   struct Segment {
-    std::array<std::uint32_t, 2> ends;  ///< among points()
+    std::array<std::uint32_t, 2> ends;  ///< indices for point()
     std::uint32_t body = 0;
   };
   /// A path that runs along a segment.
   struct Use {
     std::uint32_t path = 0;
-    std::int32_t times = 0;  ///< below 0 where it runs the other way
+    std::int32_t times = 0;  ///< below 0 if it runs the other way
   };
   struct Void {
-    std::vector<Vec3d> points;  ///< in it, the deepest one first; at least one
+    std::vector<Vec3d> points;  ///< in it, deepest first; at least one
     std::uint32_t body = 0;
   };
 
-  /// Part of a path, as it is found.
+  /// Part of a path, during construction.
   struct Step {
     std::array<std::uint32_t, 2> ends;
     std::uint32_t path = 0;
@@ -64,9 +65,10 @@ class Complement {
   std::vector<Void> voids_;
 };
 
-/// Paths along the edges of the shells, which generate their homology and so that of the complement; points in each
-/// void. @throws Cancelled. Cost: nothing for shells without handles.
-/// @param points_of_void  by its shell: points in the void, or one on its boundary.
+/// Returns paths along the edges of the shells, and points in each void. The paths generate the homology of the shells,
+/// and so that of the complement. Cost: nothing for shells without handles.
+/// @param points_of_void  returns, for a shell, points in its void, or one on its boundary.
+/// @throws Cancelled.
 [[nodiscard]] Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells,
                                             const std::function<std::vector<Vec3d>(std::uint32_t)>& points_of_void,
                                             const Context& context);

@@ -32,7 +32,7 @@ void Elimination::reduce(SparseRow& row) {
   constexpr std::int64_t largest = std::int64_t{1} << 30;
   SparseRow sum;
   while (true) {
-    // The first of the pivots: later ones have nothing in its column, so that it does not come back.
+    // Takes the first pivot. Later ones have no entry in its column, so that the column stays 0.
     std::uint32_t first = none;
     std::int64_t value = 0;
     for (const auto& [column, entry] : row) {

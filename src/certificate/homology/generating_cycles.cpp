@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t often = 65536;
 
-/// The rows of a table turned around: for each item the rows that name it.
+/// Transposes a table: returns for each item the rows that name it.
 IndexRows turned(std::size_t items, std::span<const std::uint32_t> named, std::size_t per_row) {
   std::vector<std::size_t> first(items + 1, 0);
   for (const std::uint32_t item : named) ++first[item + std::size_t{1}];
@@ -34,7 +34,7 @@ GeneratingCycles::GeneratingCycles(const CellGraph& graph, const Context& contex
 
 void GeneratingCycles::collapse(const CellGraph& graph, const IndexRows& cells_of_edge, const Context& context) {
   std::vector<std::uint32_t> count(edges_.size());
-  std::vector<std::uint32_t> line;  // of free edges, those found first before others: what is left has few detours
+  std::vector<std::uint32_t> line;  // of free edges, first found first: the rest then has few detours
   for (std::uint32_t e = 0; e < count.size(); ++e) {
     count[e] = static_cast<std::uint32_t>(cells_of_edge[e].size());
     if (count[e] == 1) line.push_back(e);

@@ -12,7 +12,7 @@
 
 namespace blum::verifier {
 
-/// A graph with cells of dimension 2: each row of `sides` names the edges around a cell, `per_cell` of them.
+/// A graph with cells of dimension 2. Each row of `sides` lists the `per_cell` edges around a cell.
 struct CellGraph {
   std::size_t vertex_count = 0;
   std::span<const std::array<std::uint32_t, 2>> edges;
@@ -20,10 +20,10 @@ struct CellGraph {
   std::size_t per_cell = 3;
 };
 
-/// Edges that close cycles which generate the fundamental group of each component. First cells are taken away at free
-/// edges, over and over; then a shortest-path tree of what is left is grown, and an edge closes a cycle unless a cell
-/// leads it back to the tree and those before. As many as there are tunnels where all collapses to a graph or to
-/// spheres; else a few more.
+/// Edges that close cycles which generate the fundamental group of each component. First, cells with free edges are
+/// removed repeatedly. Then a shortest-path tree of the rest is grown. An edge closes a cycle unless a cell leads it
+/// back to the tree and earlier edges. There are as many as tunnels if all collapses to a graph or to spheres, else a
+/// few more.
 class GeneratingCycles {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
@@ -31,11 +31,11 @@ class GeneratingCycles {
   /// @throws Cancelled. Cost: linear.
   GeneratingCycles(const CellGraph& graph, const Context& context);
 
-  /// The edges that close the cycles, rising.
+  /// Returns the edges that close the cycles, in rising order.
   [[nodiscard]] const std::vector<std::uint32_t>& closing() const { return closing_; }
 
-  /// Calls use(edge, sign) along the cycle that an edge closes: 1 where an edge is passed from its first vertex to its
-  /// second one, else -1.
+  /// Calls use(edge, sign) along the cycle that an edge closes. The sign is 1 if an edge is passed from its first
+  /// vertex to its second one, else -1.
   template <class Use>
   void walk(std::uint32_t closing, const Use& use) const {
     auto [a, b] = edges_[closing];

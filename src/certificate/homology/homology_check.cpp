@@ -15,21 +15,21 @@ namespace {
 
 constexpr std::size_t most_steps = 300'000'000;
 
-/// What is known of one body.
+/// Facts about one body.
 struct BodyProof {
-  bool is_compared = false;         ///< whether its Betti numbers agree
+  bool is_compared = false;         ///< true if its Betti numbers agree and edges lie in the solid
   std::size_t generators = 0;       ///< of the fundamental group of the axis in it
-  bool loops_over_integers = true;  ///< whether loops of the axis span all of its first homology
+  bool loops_over_integers = true;  ///< true if loops of the axis span all of its first homology
   std::size_t across = 0;           ///< triangles that span its tunnels
-  std::size_t doubtful = 0;         ///< edges that touch the surface so that linking cannot be told
-  bool are_triangles_told = true;   ///< whether none of these is the side of a triangle
+  std::size_t doubtful = 0;         ///< edges that touch the surface, so that linking is undecided
+  bool are_triangles_told = true;   ///< true if none of these is the side of a triangle
 };
 
 std::string counted(std::size_t count, const char* one, const char* many) {
   return count_text(count) + " " + (count == 1 ? one : many);
 }
 
-/// Looks at loops: fills the ranks of bodies and of proofs.
+/// Checks loops, and fills the ranks of bodies and of proofs.
 class Loops {
  public:
   Loops(const AxisInSolid& given, const GeneratingCycles& cycles, const Complement& complement)
@@ -83,7 +83,7 @@ class Loops {
     }
   }
 
-  /// Whether a doubtful edge is on the cycle that an edge closes.
+  /// Returns true if a doubtful edge is on the cycle that an edge closes.
   [[nodiscard]] bool is_doubtful(const AxisLabels& labels, std::uint32_t closing) const {
     if (labels.doubtful().empty()) return false;
     bool is_on = false;
@@ -91,7 +91,7 @@ class Loops {
     return is_on;
   }
 
-  /// How often each path is linked with the cycle that an edge closes.
+  /// Returns how often each path is linked with the cycle that an edge closes.
   [[nodiscard]] SparseRow linked(const AxisLabels& labels, std::uint32_t closing) const {
     std::vector<std::pair<std::uint32_t, std::int64_t>> crossed;
     cycles_.walk(closing, [&](std::uint32_t e, int sign) {
@@ -125,14 +125,14 @@ class Loops {
   const Complement& complement_;
 };
 
-/// What was found of loops and closed surfaces.
+/// Findings about loops and closed surfaces.
 struct Found {
-  bool is_looked_at = false;  ///< not where a solid is made of voxels
+  bool is_looked_at = false;  ///< false if a solid is made of voxels
   std::vector<BodyProof> proofs;
   Windings surfaces;
 };
 
-/// What follows for a body.
+/// Returns what is proven for a body.
 Proven proven_of(const BodyCheck& body, const Found& found, std::size_t b) {
   const BodyProof& proof = found.proofs[b];
   if (!proof.is_compared) return Proven::nothing;
@@ -165,7 +165,7 @@ std::string sentence(Proven proven) {
   }
 }
 
-/// What speaks against the loops of a body, if anything.
+/// Returns the mismatch of the loops of a body; empty if none.
 std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std::string& name) {
   const bool is_short = body.tunnels_met < body.solid[1];
   if (proof.doubtful > 0 && (is_short || !proof.are_triangles_told)) {
@@ -180,7 +180,7 @@ std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std
          ": others run around nothing, or around the same";
 }
 
-/// The same for its closed surfaces.
+/// Returns the mismatch of its closed surfaces; empty if none.
 std::string wrong_surfaces(const BodyCheck& body, const std::optional<Vec3d>& untold, double factor,
                            const std::string& name) {
   if (untold) {
@@ -192,7 +192,7 @@ std::string wrong_surfaces(const BodyCheck& body, const std::optional<Vec3d>& un
          " of the " + counted(static_cast<std::size_t>(body.solid[2]), "void", "voids") + " of " + name;
 }
 
-/// What was shown, and what speaks against it.
+/// Records what is proven, and adds mismatches.
 void conclude(HomologyCheck& check, const Found& found, const AxisInSolid& given, std::vector<BodyCheck>& bodies,
               const std::function<std::string(std::size_t)>& name, std::vector<std::string>& mismatches) {
   check.proven = Proven::homotopy_type;

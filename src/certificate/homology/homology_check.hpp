@@ -1,4 +1,4 @@
-// Blum: whether an axis's way into its solid is an isomorphism of homology. SPDX-License-Identifier: Apache-2.0
+// Blum: the homology check of an axis in its solid, for the verifier. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace blum::verifier {
 
-/// What homology is looked at with.
+/// The input of the homology check.
 struct AxisInSolid {
   const MedialView& axis;
   const Incidence& incidence;  ///< of the axis
@@ -20,13 +20,15 @@ struct AxisInSolid {
   const std::vector<Location>& locations;
   const AxisParts& parts;
   const EdgeWays& ways;
-  double factor = 1;             ///< lengths are this many times what the caller knows
-  std::size_t untold_edges = 0;  ///< that may cross gaps of the solid
+  double factor = 1;             ///< lengths are this many times the caller's
+  std::size_t untold_edges = 0;  ///< edges that may cross gaps of the solid
 };
 
-/// Fills what bodies are missing, and adds what is wrong. Bodies whose Betti numbers differ are left out.
-/// @param edges_hold  whether edges lie in the solid: else nothing is looked at.
-/// @param name  of a body, by its number.  @throws Cancelled.
+/// Checks that the inclusion of an axis in its solid is an isomorphism of homology. Fills the missing members of
+/// `bodies`, and adds mismatches. Bodies whose Betti numbers differ are left out.
+/// @param edges_hold  true if edges lie in the solid. Otherwise nothing is checked.
+/// @param name        returns the name of a body, by its number.
+/// @throws Cancelled.
 [[nodiscard]] HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vector<BodyCheck>& bodies,
                                            const std::function<std::string(std::size_t)>& name,
                                            std::vector<std::string>& mismatches, const Context& context);
