@@ -1,4 +1,4 @@
-// Blum: powers of two that bring boxes to about 1, and boxes grown. SPDX-License-Identifier: Apache-2.0
+// Blum: powers of two that scale boxes to about 1, and enlarged boxes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -10,18 +10,19 @@
 
 namespace blum {
 
-/// A power of two that brings the box's longest side to about 1, so that products neither overflow nor underflow.
+/// Returns a power of two that scales the box's longest side to about 1, so that products neither overflow nor
+/// underflow.
 [[nodiscard]] inline double unit_scale(const Box3& box) {
   const Vec3d size = box.size();
   return scale_to_one(std::max({size.x, size.y, size.z}));
 }
 
-/// The same for its largest coordinate.
+/// Returns a power of two that scales the box's largest coordinate to about 1.
 [[nodiscard]] inline double coordinate_scale(const Box3& box) {
   return scale_to_one(box.largest_coordinate());
 }
 
-/// Larger by a margin on all sides; an empty box stays empty.
+/// Returns the box enlarged by a margin on all sides; an empty box stays empty.
 [[nodiscard]] inline Box3 grown(const Box3& box, double margin) {
   if (box.is_empty()) return box;
   const Vec3d by{margin, margin, margin};

@@ -15,7 +15,7 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-/// The corners that may be in the way of an ear, as a balanced tree of boxes over them; corners can be taken out.
+/// Balanced tree of boxes over the corners that may block an ear. Corners can be removed.
 class PointTree {
  public:
   PointTree() = default;
@@ -28,16 +28,16 @@ class PointTree {
     build(1, 0, members_.size());
   }
 
-  /// Does nothing for a corner that is not in the tree.
+  /// Removes a corner. Does nothing if it is not in the tree.
   void remove(std::uint32_t corner) {
     const std::uint32_t leaf = std::exchange(leaf_of_[corner], none);
     if (leaf == none) return;
     for (std::uint32_t node = leaf; node > 0; node /= 2) --nodes_[node].count;
   }
 
-  /// Whether a corner lies in the triangle, edges included. Corners at exactly the place of one of its own do not
-  /// count: the ends of bridges to holes meet so.
-  /// @param work_left  is lowered by the number of boxes and corners looked at.
+  /// Returns true if a corner lies in the triangle or on its edges. Ignores corners at exactly the place of one of the
+  /// triangle's own, because the ends of bridges to holes coincide.
+  /// @param work_left  is lowered by the number of boxes and corners visited.
   [[nodiscard]] bool any_inside(const std::array<Point, 3>& t, std::int64_t& work_left) {
     stack_.assign(1, 1);
     while (!stack_.empty()) {
@@ -63,8 +63,8 @@ class PointTree {
   static constexpr std::size_t leaf_size = 4;
   struct Node {
     Point lower{HUGE_VAL, HUGE_VAL}, upper{-HUGE_VAL, -HUGE_VAL};
-    std::uint32_t count = 0;           ///< members that have not been taken out
-    std::uint32_t begin = 0, end = 0;  ///< of a leaf, in members_
+    std::uint32_t count = 0;           ///< members that were not removed
+    std::uint32_t begin = 0, end = 0;  ///< range of a leaf in members_
   };
 
   void build(std::uint32_t index, std::size_t begin, std::size_t end) {
@@ -92,8 +92,8 @@ class PointTree {
     build(2 * index + 1, middle, end);
   }
 
-  /// Whether the box holds no point of the triangle: it lies beside its box, or the corner of it that is farthest to
-  /// the left of an edge is right of that edge.
+  /// Returns true if the box contains no point of the triangle. Either it lies beside the triangle's box, or its corner
+  /// farthest to the left of an edge is right of that edge.
   static bool is_apart(const Node& box, const std::array<Point, 3>& t) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (box.upper[axis] < std::min({t[0][axis], t[1][axis], t[2][axis]})) return true;
@@ -115,7 +115,7 @@ class PointTree {
 
   const Point* points_ = nullptr;
   std::vector<std::uint32_t> members_;
-  std::vector<std::uint32_t> leaf_of_;  ///< of every corner of the polygon; none for those that are not in the tree
+  std::vector<std::uint32_t> leaf_of_;  ///< of every corner of the polygon; none if not in the tree
   std::vector<Node> nodes_;             ///< the root is 1; the children of i are 2i and 2i + 1
   std::vector<std::uint32_t> stack_;
   std::size_t leaves_ = 0;
@@ -151,7 +151,7 @@ class EarClipper {
 
   static constexpr std::uint32_t gone = 0xffffffffU;
 
-  /// Corners at one place form a ring.
+  /// Links corners at one place to a ring.
   void link_twins() {
     std::vector<std::uint32_t> sorted(points_.size());
     std::iota(sorted.begin(), sorted.end(), 0U);
@@ -169,8 +169,8 @@ class EarClipper {
     std::uint32_t corner = 0;
     bool flat_allowed = false;
     while (left > 3) {
-      // One pass over all that is left. Corners beside a new ear get another turn at the end of the queue, not at once:
-      // that would make a fan of needles.
+      // One pass over all remaining corners. Corners beside a new ear are queued at the end, not cut at once, which
+      // would make a fan of needles.
       queue_.clear();
       for (std::size_t i = 0; i < left; ++i, corner = links_[corner].next) enter(corner);
       const std::size_t before = left;
@@ -193,7 +193,7 @@ class EarClipper {
       if (left < before) {
         flat_allowed = false;
       } else if (!std::exchange(flat_allowed, true)) {
-        continue;  // nothing turns left: corners that turn nowhere may go, too
+        continue;  // no corner turns left, so straight corners may be cut, too
       } else {
         return false;
       }
@@ -242,8 +242,8 @@ class EarClipper {
     for (std::uint32_t twin = twin_[corner]; twin != corner; twin = twin_[twin]) {
       if (--work_left_ < 0) return false;
       if (links_[twin].next == gone) continue;
-      // The polygon comes through the ear's tip once more: beside the ear, through it, or along both of its edges,
-      // where no one can tell by looking at the tip on which side of them the inside is.
+      // The polygon passes through the ear's tip once more: beside the ear, through it, or along both of its edges. In
+      // the last case the tip alone does not show on which side of them the inside is.
       const Side before = side_of(points_[links_[twin].previous], a, b, c);
       const Side after = side_of(points_[links_[twin].next], a, b, c);
       if (before == Side::between || after == Side::between) return false;
@@ -252,7 +252,7 @@ class EarClipper {
     return !blockers_.any_inside({a, b, c}, work_left_) && (!is_doubtful || is_wound_around(corner));
   }
 
-  /// Where a point lies that the tip b of an ear a, b, c is joined to.
+  /// Position of a neighbour of the tip b, relative to the ear a, b, c.
   enum class Side : std::uint8_t { between, along, outside };
   static Side side_of(const Point& q, const Point& a, const Point& b, const Point& c) {
     const int left_of_first = orient2d(a, b, q);
@@ -261,12 +261,12 @@ class EarClipper {
     return left_of_first > 0 && left_of_second > 0 ? Side::between : Side::along;
   }
 
-  /// Whether what is left of the polygon winds around what lies between the edges of a corner, right at its tip: around
-  /// the point tip + e (previous - tip) + e^2 (next - tip), for an e as small as need be.
+  /// Returns true if the remaining polygon winds around the area between the edges of a corner, right at its tip. The
+  /// test point is tip + e (previous - tip) + e^2 (next - tip), for a sufficiently small e.
   [[nodiscard]] bool is_wound_around(std::uint32_t corner) {
     const Link link = links_[corner];
     const std::array<const Point*, 3> terms = {&points_[corner], &points_[link.previous], &points_[link.next]};
-    // Of a term where those before it are 0, only the sign counts.
+    // Only the sign of a term counts, and only if the terms before it are 0.
     const auto is_above = [&](const Point& p) {
       const auto term = std::find_if(terms.begin(), terms.end(), [&](const Point* q) { return (*q)[1] != p[1]; });
       return term != terms.end() && p[1] > (**term)[1];
@@ -276,7 +276,7 @@ class EarClipper {
       for (std::size_t k = 0; k < terms.size() && side == 0; ++k) side = orient2d(from, to, *terms[k]);
       return side;
     };
-    std::int64_t turns = 0;  // by the edges that a ray from the point to the right meets
+    std::int64_t turns = 0;  // counted at the edges that a ray from the point to the right crosses
     std::uint32_t at = corner;
     do {
       if (--work_left_ < 0) return false;
@@ -307,8 +307,8 @@ class EarClipper {
   std::span<const Point> points_;
   std::span<Triangle> triangles_;
   std::vector<Link> links_;
-  std::vector<std::uint32_t> twin_;  ///< of each corner: the next one at the same place
-  PointTree blockers_;               ///< corners that are left and did not turn left when last looked at
+  std::vector<std::uint32_t> twin_;  ///< for each corner: the next one at the same place
+  PointTree blockers_;               ///< remaining corners that did not turn left at the last check
   std::vector<char> is_queued_;
   std::vector<std::uint32_t> queue_;
   std::size_t emitted_ = 0;

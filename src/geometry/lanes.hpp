@@ -1,11 +1,11 @@
-// Blum: how many boxes, triangles or clusters a block holds. SPDX-License-Identifier: Apache-2.0
+// Blum: number of boxes, triangles or clusters per block. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 
 namespace blum {
 
-/// Width of the blocks that trees are made of: one cache line of doubles. Loops over them are in lane_kernels.cpp.
+/// Width of the blocks of search trees: one cache line of doubles. Loops over blocks are in lane_kernels.cpp.
 inline constexpr std::size_t lanes = 8;
 
 }  // namespace blum

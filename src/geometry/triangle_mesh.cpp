@@ -25,7 +25,8 @@ bool is_usable(const Vec3d& p) {
   throw InvalidMesh(where + ", which lies further than 1e150 from the origin");
 }
 
-/// Calls visit(vertex, kind of the thing that names it, its index) for every naming, in order.
+/// Calls visit(vertex, kind of the element that names it, index of the element) for every reference to a vertex, in
+/// order.
 template <class Visit>
 void for_each_named(const MeshView& mesh, Visit visit) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -66,7 +67,7 @@ void validate(const MeshView& mesh) {
       mesh.segments.size() > max_id_count) {
     throw InvalidMesh("the mesh has more than 2^31 - 1 vertices, triangles or segments");
   }
-  // Vertices are named several times each: only where one is unusable does it matter who names it.
+  // Vertices are named several times each. The element that names one matters only if a vertex is unusable.
   std::uint32_t largest = 0;
   for_each_named_vertex(mesh, [&](std::uint32_t v) { largest = std::max(largest, v); });
   if (largest < mesh.vertices.size() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_usable)) return;

@@ -83,10 +83,11 @@ class Collapse {
   std::vector<std::uint32_t> cofaces_;
 };
 
-/// Removes pairs of a cell and a face that only this cell has, from outside, until there are none. What is left has the
-/// homotopy type of all; of cells with a homology of dimension 3, such as none that a solid in space gives, polyhedra
-/// would be left, which are dropped. Edges and polygons are subdivided at a point of their own, so that corners name
-/// them. @throws Cancelled. Cost: near-linear in the cells.
+/// Removes pairs of a cell and a face that only this cell has, from outside, until none exist. The rest has the same
+/// homotopy type. Cells with homology of dimension 3 would leave polyhedra, which are dropped; no solid in space gives
+/// such cells. Edges and polygons are subdivided at a point of their own, so that corners identify them. Cost:
+/// near-linear in the cells.
+/// @throws Cancelled.
 Complex collapse_cells(const ModelCells& cells, const Context& context) {
   Collapse collapse(cells, context);
   collapse.run();
@@ -146,7 +147,7 @@ double longest_side(const Box3& box) {
   return std::max({box.size().x, box.size().y, box.size().z});
 }
 
-/// The planes of a grid that lie around a box, with a cube or more to spare.
+/// Returns the planes of a grid around a box, with a margin of at least a cube.
 GridPlanes planes_around(const Box3& box, const Vec3d& origin, double spacing) {
   Place first{};
   Place last{};
@@ -193,7 +194,7 @@ struct GroupModel {
 
 struct CellularModel::Data {
   CellularModelReport report;
-  int exponent = 0;  ///< of the power of two that coordinates were scaled by
+  int exponent = 0;  ///< power of two by which coordinates were scaled
   std::vector<std::unique_ptr<const GroupModel>> groups;
 };
 

@@ -35,7 +35,7 @@ void check_tolerance(const MeshView& mesh, double tolerance) {
 }
 
 void check_coordinates(const MeshView& mesh) {
-  // Fourth powers of lengths are numbers, too, also of edges that are as short as can be.
+  // Fourth powers of lengths neither overflow nor underflow, even for the shortest possible edges.
   constexpr double least = 1e-45;
   constexpr double most = 1e45;
   for (const Triangle& triangle : mesh.triangles) {
@@ -54,7 +54,7 @@ bool has_area(const ShrinkingSurface& mesh, std::uint32_t t) {
   return !detail::has_no_area(mesh.corners(t));
 }
 
-/// The corner of a triangle without area that lies between the others, exactly.
+/// Returns the corner of a triangle without area that lies between the others. Exact.
 std::size_t middle_corner(const std::array<Vec3d, 3>& p) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& a = p[(k + 1) % 3];
@@ -75,8 +75,8 @@ bool has_flat_triangles(const MeshView& mesh) {
   return false;
 }
 
-/// Turns the longest sides of triangles without area. As a set of points the surface stays the same.
-/// @return  the triangles; how many sides were turned is added to `flips`.
+/// Flips the longest sides of triangles without area. As a set of points, the surface stays the same.
+/// @return  the triangles. The number of flips is added to `flips`.
 std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& flips) {
   std::vector<Triangle> given(mesh.triangles.begin(), mesh.triangles.end());
   std::vector<std::uint32_t> flat;
@@ -85,7 +85,7 @@ std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& 
   }
   if (flat.empty()) return given;
   ShrinkingSurface surface(mesh);
-  // A flip may leave the next triangle without area, where there are many in a row; each ends with one less.
+  // In a row of such triangles, a flip may leave the next one without area. Each row ends with one fewer.
   for (std::size_t turn = 0; turn < flat.size() && turn < 4 * given.size(); ++turn) {
     const std::uint32_t t = flat[turn];
     if (has_area(surface, t)) continue;
@@ -110,7 +110,7 @@ double smallest_height(const MeshView& mesh) {
   return least;
 }
 
-/// The triangles that are left, and the vertices that they name, in their order.
+/// Copies the remaining triangles, and the vertices that they name, in their order.
 void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, TriangleMesh& mesh,
                  std::vector<std::uint32_t>& vertex_of) {
   std::vector<std::uint32_t> number(vertices.size(), 0);
@@ -134,7 +134,8 @@ void check_corners(const MeshView& mesh) {
   }
 }
 
-/// @throws Error where the result is not what it must be.
+/// Checks the result.
+/// @throws Error if the result is not a sound polyhedron with the same Betti numbers, within the tolerance.
 void check_result(const Solid& before, const Solid& after, double deviation, double tolerance) {
   const bool is_sound = after.rule() == SolidRule::polyhedron && !after.resolved() && after.problem().empty() &&
                         problem_of_places(after.surface().mesh).empty();
@@ -190,7 +191,7 @@ CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& cont
 
 namespace {
 
-/// Sides of flat triangles are turned before anything crosses there.
+/// Cleans a mesh after flipping sides of flat triangles, before anything can cross there.
 CleanedMesh clean_without_flat(const MeshView& all, double tolerance, const Context& context) {
   const OrientedMesh oriented = oriented_mesh(all, context);
   std::size_t flips = 0;

@@ -14,7 +14,7 @@ bool names_a_vertex_twice(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// Reverses triangles of a closed manifold such that neighbours agree, by walking over its edges.
+/// Reverses triangles of a closed manifold so that neighbours agree, by walking over its edges.
 class Reverser {
  public:
   Reverser(const MeshView& mesh, const SiteTable& sites)
@@ -58,7 +58,7 @@ class Reverser {
     return true;
   }
 
-  /// Tells the neighbours of a triangle how they face; false where one was told otherwise.
+  /// Sets the orientation of a triangle's neighbours. Returns false if a neighbour already has the opposite one.
   bool tell_neighbours(std::uint32_t t, std::vector<std::uint32_t>& shell) {
     for (const EdgeId edge : sites_.triangle_edges()[t]) {
       const auto& pair = of_edge_[edge.value];
@@ -72,7 +72,7 @@ class Reverser {
     return true;
   }
 
-  /// Whether a triangle traverses an edge towards the larger vertex.
+  /// Returns true if a triangle traverses an edge towards the larger vertex.
   [[nodiscard]] bool rises(std::uint32_t t, EdgeId edge) const {
     for (std::size_t k = 0; k < 3; ++k) {
       if (sites_.triangle_edges()[t][k] == edge) return mesh_.triangles[t][k] < mesh_.triangles[t][(k + 1) % 3];
@@ -83,9 +83,9 @@ class Reverser {
   const MeshView& mesh_;
   const SiteTable& sites_;
   std::vector<std::array<std::uint32_t, 2>> of_edge_;
-  std::vector<int> facing_;  ///< 1 or -1; 0 where it is not known
+  std::vector<int> facing_;  ///< 1 or -1; 0 if unknown
   std::vector<Triangle> triangles_;
-  std::size_t count_ = 0;  ///< of those that were reversed
+  std::size_t count_ = 0;  ///< number of reversed triangles
 };
 
 }  // namespace

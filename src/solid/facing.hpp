@@ -1,4 +1,4 @@
-// Blum: which way triangles of closed meshes face. SPDX-License-Identifier: Apache-2.0
+// Blum: orientations of triangles of closed meshes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,20 @@
 
 namespace blum::detail {
 
-/// Of shell_of_triangles(): of triangles that name a vertex twice.
+/// Entry of shell_of_triangles() for triangles that name a vertex twice.
 constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 
-/// Closed shells, numbered as Topology::shells is: by their smallest triangle.
+/// Returns the closed shell of each triangle. Shells are numbered as in Topology::shells: by their smallest triangle.
 [[nodiscard]] std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites);
 
-/// The triangles of a closed manifold, some of them reversed such that neighbours agree. Shells keep the way that most
-/// of their triangles face. nullopt where a surface has only one side.
-/// @param count  of the triangles that were reversed.
+/// Returns the triangles of a closed manifold, some of them reversed so that neighbours agree. Each shell keeps the
+/// orientation of most of its triangles. Returns nullopt if a surface has only one side.
+/// @param count  gets the number of reversed triangles.
 [[nodiscard]] std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
                                                                       std::size_t& count);
 
-/// Six times the volume between the triangles of a mesh and the middle of its box: from there, so that it is not lost
-/// where the mesh lies far from the origin. Negative where it faces inwards.
+/// Returns six times the volume between the triangles of a mesh and the middle of its box. From the middle, rounding
+/// does not lose it if the mesh lies far from the origin. Negative if the mesh faces inwards.
 [[nodiscard]] double volume_around_middle(const MeshView& mesh);
 
 }  // namespace blum::detail

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
 
-/// The body of each shell: outer shells by number, voids that of the shell around them. nullopt where a void's parent
-/// bounds no body, as depths and parents may say of shells that cross or coincide.
+/// Returns the body of each shell. Outer shells are numbered in order; voids get the body of the shell around them.
+/// Returns nullopt if a void's parent bounds no body. This may happen for shells that cross or coincide.
 std::optional<std::vector<std::uint32_t>> body_of_shells(const std::vector<Shell>& shells) {
   std::vector<std::uint32_t> body(shells.size(), nobody);
   std::uint32_t count = 0;
@@ -62,10 +62,10 @@ std::string counted(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-/// What is found of how triangles meet.
+/// Result of checking how triangles meet.
 struct Meeting {
-  std::string why;      ///< that the mesh bounds no polyhedron, for its reason; empty where it does
-  std::string problem;  ///< the same as a sentence of its own; there also where bodies touch each other
+  std::string why;      ///< why the mesh bounds no polyhedron; empty if it bounds one
+  std::string problem;  ///< the same as a full sentence; also set if bodies touch each other
   std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies
 };
 
@@ -88,7 +88,8 @@ Meeting meeting(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_
   return out;
 }
 
-/// The mesh as it is, whatever it bounds. @param why  and `problem` say why it bounds no polyhedron.
+/// Returns the mesh as it is, whatever it bounds.
+/// @param why  why it bounds no polyhedron, like `problem`.
 MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::string& why, std::string problem) {
   MeshSolid out;
   out.problem = std::move(problem);
@@ -102,7 +103,7 @@ MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::strin
   return out;
 }
 
-/// Adds the shells of a polyhedron and the numbers of its bodies.
+/// Adds the shells of a polyhedron, and its bodies' Betti numbers.
 void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_t>& body, MeshSolid& solid) {
   for (std::uint32_t s = 0; s < shells.size(); ++s) {
     const Shell& one = shells[s];
@@ -119,10 +120,11 @@ void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_
 /// Why a mesh bounds no polyhedron.
 struct Obstacle {
   std::string why;      ///< for the reason of the solid: "the mesh bounds no polyhedron: ..."
-  std::string problem;  ///< for an error: with what to do
+  std::string problem;  ///< for an error, with advice
 };
 
-/// The polyhedron that a mesh bounds as it is. @param obstacle  is set where it bounds none.
+/// Returns the polyhedron that a mesh bounds as it is.
+/// @param obstacle  is set if it bounds none.
 std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites, const Topology& topology,
                                     Obstacle& obstacle, const Context& context) {
   obstacle = {mesh_problem::obstacles(topology), problem_as_solid(topology)};
@@ -178,8 +180,8 @@ std::string resolved_text(const CrossingCounts& counts) {
   return text + ": resolved exactly, the solid is where the winding number is 1 or more";
 }
 
-/// The polyhedron where a closed mesh that crosses itself winds once or more. @param obstacle  why it bounds none as it
-/// is; gets why its crossings are not resolved, where that is so.
+/// Returns the polyhedron of the points around which a closed, self-crossing mesh winds once or more.
+/// @param obstacle  why the mesh bounds none as it is. Also gets why its crossings are not resolved, if so.
 std::optional<MeshSolid> resolved_polyhedron(const MeshView& mesh, Obstacle& obstacle, const Context& context) {
   ResolvedMesh resolved = resolve_crossings(mesh, {}, context);
   Obstacle left{resolved.obstacle, {}};
@@ -248,7 +250,7 @@ MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const 
 }
 
 std::vector<std::uint32_t> groups_apart(std::size_t bodies, std::span<const std::array<std::uint32_t, 2>> touching) {
-  std::vector<std::vector<std::uint32_t>> before(bodies);  // lesser bodies that each touches
+  std::vector<std::vector<std::uint32_t>> before(bodies);  // for each body: lesser bodies that it touches
   for (const auto& [one, other] : touching) before[other].push_back(one);
   std::vector<std::uint32_t> group(bodies, 0);
   for (std::size_t body = 0; body < bodies; ++body) {

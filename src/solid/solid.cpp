@@ -27,7 +27,7 @@
 namespace blum::detail {
 namespace {
 
-/// Tells whether points lie in what a mesh bounds; see Solid::inside().
+/// Decides whether points lie in the solid that a mesh bounds; see Solid::inside().
 class PointLocation {
  public:
   explicit PointLocation(const MeshSolid& solid);
@@ -35,17 +35,17 @@ class PointLocation {
   [[nodiscard]] bool contains(const Vec3d& p) const;
 
  private:
-  /// Whether the winding number counted along a ray is above 0, or the point lies on the surface of a polyhedron;
-  /// nullopt where the ray meets an edge, so that this one does not tell.
+  /// Returns true if the winding number counted along a ray is above 0, or the point lies on the surface of a
+  /// polyhedron. Returns nullopt if the ray does not decide, because it meets an edge or starts on another surface.
   [[nodiscard]] std::optional<bool> contains_along(const Vec3d& p, const Vec3d& direction) const;
 
   bool is_polyhedron_;
   TriangleMesh mesh_;  ///< all bodies
   std::optional<Bvh> bvh_;
-  std::optional<WindingNumber> winding_;  ///< of meshes that are not closed
+  std::optional<WindingNumber> winding_;  ///< for meshes that are not closed
 };
 
-/// A ray in one of a fixed sequence of directions meets an edge of a surface with a chance of nearly 0.
+/// A ray in one of a fixed sequence of directions meets an edge of a surface with a probability of nearly 0.
 constexpr std::uint32_t most_rays = 64;
 
 TriangleMesh joined(const std::vector<SolidBody>& bodies) {
@@ -78,7 +78,7 @@ bool PointLocation::contains(const Vec3d& p) const {
     const Vec3d direction{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1)};
     if (const std::optional<bool> found = contains_along(p, direction)) return *found;
   }
-  return true;  // on an edge of the surface, from where every ray begins with one
+  return true;  // on the surface, where every ray starts
 }
 
 std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& direction) const {
@@ -88,7 +88,7 @@ std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& d
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   bvh_->for_each_crossing({p, direction}, no_limit, [&](const RayCrossing& crossing) {
     const Triangle& t = mesh_.triangles[crossing.triangle.value];
-    // A ray crosses a plane once: a point in the plane is where.
+    // A ray crosses a plane once. If its origin lies in the plane, it is the crossing.
     is_on_surface = is_on_surface || orient3d(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], p) == 0;
     tells = tells && !crossing.on_border;
     winding += crossing.side;
@@ -105,10 +105,10 @@ std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& d
 namespace blum {
 namespace {
 
-/// Whether a point lies in a closed voxel of a set.
+/// Returns true if a point lies in a closed voxel of a set.
 bool is_in_voxels(const VoxelSet& voxels, const GridSpec& grid, const Vec3d& p) {
   const Vec3d q = grid.direction.transposed_times(p - grid.origin);
-  std::array<std::array<std::int64_t, 2>, 3> candidates{};  // two along an axis where the point lies between voxels
+  std::array<std::array<std::int64_t, 2>, 3> candidates{};  // two along an axis if the point lies between voxels
   for (std::size_t a = 0; a < 3; ++a) {
     const double at = q[a] / grid.spacing[a] + 0.5;
     const double voxel = std::floor(at);
@@ -129,7 +129,7 @@ bool is_in_voxels(const VoxelSet& voxels, const GridSpec& grid, const Vec3d& p) 
 }  // namespace
 
 struct Solid::Data {
-  detail::MeshSolid mesh;  ///< of an image: its rule and reason
+  detail::MeshSolid mesh;  ///< for images: only rule and reason
   std::optional<BettiNumbers> betti;
   std::size_t reversed_shells = 0;
   bool faces_inwards = false;
@@ -138,7 +138,7 @@ struct Solid::Data {
   VoxelSet voxels;
   GridSpec grid;
 
-  /// Built by the first who asks.
+  /// Built on first use.
   mutable std::once_flag locates;
   mutable std::optional<detail::PointLocation> location;
 };

@@ -17,8 +17,8 @@
 namespace blum {
 namespace {
 
-/// Whether a surface winds once around all points of its solid, and not around others: nothing crosses or touches, and
-/// shells in each other face in turns.
+/// Returns true if a surface winds once around all points of its solid, and around no others. Then nothing crosses or
+/// touches, and nested shells face alternate ways.
 bool winds_once(const MeshView& surface, const Context& context) {
   return orientation(surface, SiteTable(surface)).outward && !SelfIntersectionSearch().finds_any(surface, context);
 }

@@ -24,7 +24,7 @@ Vec3d center_of(const Box3& box) {
 struct BoxBvh::Data {
   Box3 bounds;
   std::vector<std::uint32_t> order;  ///< the box at each rank
-  BoxTree tree;                      ///< its leaves are the boxes by rank
+  BoxTree tree;                      ///< leaf k is the box of rank k
 
   [[nodiscard]] Box3 box(std::size_t rank) const { return box_at(tree.levels.front()[rank / lanes], rank % lanes); }
 
@@ -106,7 +106,7 @@ namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-/// What find(rank, pairs) adds for all ranks, sorted.
+/// Returns the pairs that find(rank, pairs) adds for all ranks, sorted.
 template <class Find>
 Pairs all_pairs(std::size_t ranks, const Context& context, const Find& find) {
   std::vector<Pairs> parts((ranks + pair_grain - 1) / pair_grain);

@@ -18,7 +18,7 @@
 
 namespace blum {
 
-/// Eight boxes, axis by axis. An empty box (+inf, -inf) is infinitely far from everything.
+/// Eight boxes, stored axis by axis. An empty box (+inf, -inf) is infinitely far from everything.
 struct alignas(64) BoxBlock {
   double lower[3][lanes];
   double upper[3][lanes];
@@ -29,14 +29,14 @@ struct alignas(64) BoxBlock {
           {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]}};
 }
 
-/// Squared distances from a point to eight boxes; 0 inside.
+/// Computes the squared distances from a point to eight boxes; 0 inside.
 void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]);
 
-/// A bit for each box of a block that touches this box.
+/// Returns a bit for each box of a block that touches `box`.
 [[nodiscard]] unsigned touching(const BoxBlock& block, const Box3& box);
 
-/// A complete tree over consecutive leaves: block i of level k holds the boxes of blocks (or leaves, for k = 0)
-/// 8 i ... 8 i + 7 of the level below. The last level has one block.
+/// Complete tree over consecutive leaves. Block i of level k holds the boxes of blocks 8 i ... 8 i + 7 of the level
+/// below (of leaves for k = 0). The last level has one block.
 template <class Block>
 struct BlockTree {
   std::vector<std::vector<Block>> levels;
@@ -47,11 +47,12 @@ struct BlockTree {
 
 using BoxTree = BlockTree<BoxBlock>;
 
+/// Builds a tree of boxes.
 /// @param leaves  one box per leaf.
 [[nodiscard]] BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context);
 
-/// Calls visit(leaf) for the leaves whose boxes touch this one, until it returns false. Allocates nothing.
-/// @param first_leaf  leaves before this one are left out, as far as whole blocks of them are.
+/// Calls visit(leaf) for each leaf whose box touches `box`, until it returns false. Allocates nothing.
+/// @param first_leaf  leaves before this one are skipped.
 template <class Block, class Box, class Visit>
 void for_each_touching(const BlockTree<Block>& tree, const Box& box, std::size_t first_leaf, const Visit& visit) {
   if (tree.is_empty()) return;
@@ -78,21 +79,22 @@ void for_each_touching(const BlockTree<Block>& tree, const Box& box, std::size_t
   }
 }
 
-/// A node or leaf that a search has still to look at, and how far it is.
+/// Node or leaf that a search has yet to visit, keyed by its distance.
 struct PendingBox {
   double key = 0;
   std::uint32_t block = 0;
   std::int32_t level = 0;  ///< -1 for a leaf
 };
 
-/// Depth-first work list: at most seven siblings wait on each of at most eleven levels.
+/// Depth-first work list. At most seven siblings wait on each of at most eleven levels.
 struct PendingBoxes {
   InlineList<PendingBox, 128> items;
 
-  /// Children of a node whose keys are at most `limit`, so that the one with the smallest is popped first.
+  /// Pushes the children of a node whose keys are at most `limit`, so that the child with the smallest key is popped
+  /// first.
   void push_children(const PendingBox& parent, const double (&keys)[lanes], double limit) {
     const std::size_t bottom = items.size();
-    unsigned within = 0;  // without branches, which could not be predicted
+    unsigned within = 0;  // branch-free, because branches would be mispredicted
     for (std::size_t lane = 0; lane < lanes; ++lane) within |= static_cast<unsigned>(keys[lane] <= limit) << lane;
     for (; within != 0; within &= within - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(within));
@@ -105,11 +107,12 @@ struct PendingBoxes {
   }
 };
 
-/// Calls limit = visit(leaf) for the leaves whose boxes are at most `limit` from a point, the nearer child first.
-/// Allocates nothing.
+/// Calls limit = visit(leaf) for the leaves whose boxes are within `limit` of a point, nearer children first. Allocates
+/// nothing.
 template <class Visit>
 void visit_near(const BoxTree& tree, const Vec3d& point, double limit, const Visit& visit) {
-  // Not less than the square of the limit for rounding; and empty boxes, infinitely far away, are beyond it.
+  // Rounding must not put this below the square of the limit. The cap excludes empty boxes, which are infinitely far
+  // away.
   const auto squared_limit = [&] {
     return limit < 0 ? -1 : std::min(limit * limit * (1 + 1e-14), std::numeric_limits<double>::max());
   };
@@ -129,11 +132,12 @@ void visit_near(const BoxTree& tree, const Vec3d& point, double limit, const Vis
   }
 }
 
-/// Where a ray enters each of eight boxes, t >= 0, or NaN where it misses one; not later than exactly. @param inverse
-/// of the direction, 0 where that is 0.
+/// Computes t >= 0 at which a ray enters each of eight boxes; NaN if it misses the box. Never later than the exact
+/// value.
+/// @param inverse  reciprocals of the direction's components; 0 for components that are 0.
 void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double (&out)[lanes]);
 
-/// Calls limit = visit(leaf) for the leaves whose boxes a ray meets between t = 0 and `limit`, the nearer child first.
+/// Calls limit = visit(leaf) for the leaves whose boxes a ray meets between t = 0 and `limit`, nearer children first.
 /// Allocates nothing.
 template <class Visit>
 void visit_along(const BoxTree& tree, const Ray& ray, double limit, const Visit& visit) {
@@ -155,7 +159,7 @@ void visit_along(const BoxTree& tree, const Ray& ray, double limit, const Visit&
   }
 }
 
-/// Whether a box touches the box of a leaf. Allocates nothing.
+/// Returns true if `box` touches the box of a leaf. Allocates nothing.
 [[nodiscard]] bool may_touch(const BoxTree& tree, const Box3& box);
 
 }  // namespace blum

@@ -18,17 +18,17 @@ namespace {
 
 constexpr std::size_t leaf_grain = 512;
 constexpr std::size_t query_grain = 512;
-/// Candidates within this much of the best distance, relative to the lengths involved, are looked at exactly.
+/// Candidates within this slack of the best distance, relative to the lengths involved, are evaluated exactly.
 constexpr double candidate_slack = 2e-12;
-/// Closest points are rounded as coordinates are: what that does to distances, relative to the largest coordinate.
+/// Error of distances because closest points are rounded as coordinates, relative to the largest coordinate.
 constexpr double coordinate_slack = 4e-15;
 
-/// A primitive in the form that PrimitiveBlock holds.
+/// A primitive in the form that PrimitiveBlock stores.
 struct Primitive {
   std::array<std::uint32_t, 3> vertices{};
   std::array<SiteId, 3> edges{SiteId::none(), SiteId::none(), SiteId::none()};
   SiteId face = SiteId::none();
-  /// Which of these vertices the first, second and third corner of the mesh's triangle is: two bits each.
+  /// The index in `vertices` of the mesh triangle's first, second and third corner, two bits each.
   std::uint8_t corners = 0b10'01'00;
 };
 
@@ -91,7 +91,7 @@ class PrimitiveReader {
 
 }  // namespace
 
-/// The box of a ray from its origin to t = end, a little larger for rounding.
+/// Returns the box around a ray from its origin to t = end, slightly enlarged for rounding.
 Box3 box_around(const Ray& ray, double end) {
   constexpr double rounding = 1e-14;
   const Vec3d way = ray.direction * (end * (1 + 1e-9));
@@ -108,21 +108,21 @@ Box3 box_around(const Ray& ray, double end) {
 
 struct Bvh::Data {
   Box3 bounds;
-  double scale = 1;  ///< coordinates in blocks are those of the mesh times this
+  double scale = 1;  ///< factor from mesh coordinates to block coordinates
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  std::vector<std::uint32_t> order;  ///< primitives in the order of the leaves
-  std::vector<std::uint8_t> turns;   ///< beside `order`: Primitive::corners
+  std::vector<std::uint32_t> order;  ///< primitives in leaf order
+  std::vector<std::uint8_t> turns;   ///< Primitive::corners, parallel to `order`
   std::vector<PrimitiveBlock> leaves;
   BoxTree tree;
 
-  /// How far an approximate distance may be off, and a query in the units of blocks.
+  /// A query in block units, and the error bound of approximate distances.
   struct Query {
     Vec3d point;
     double slack = 0;
   };
 
-  /// nullopt where a query is out of its range, or there is nothing to find.
+  /// Returns nullopt if the query is out of range or the tree is empty.
   [[nodiscard]] std::optional<Query> prepare(const Vec3d& query) const {
     const Vec3d q = query * scale;
     const double coordinate = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)});
@@ -133,23 +133,23 @@ struct Bvh::Data {
 
   [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
 
-  /// The last leaf repeats its last primitive, which is not told twice.
+  /// The last leaf repeats its last primitive; the copies are not reported.
   [[nodiscard]] bool is_triangle(std::size_t leaf, std::size_t lane) const {
     return lane < lanes_of(leaf) && order[leaf * lanes + lane] < triangles;
   }
 
-  /// Calls limit = offer(leaf, lane, limit) for the primitives that may lie within `limit`, in units of blocks.
+  /// Calls limit = offer(leaf, lane, limit) for the primitives that may lie within `limit`, in block units.
   template <class Offer>
   void for_each_candidate(const Query& query, double limit, const Offer& offer) const {
     visit_near(tree, query.point, limit, [&](std::size_t leaf) {
       double distances[lanes];
       approximate_distances(leaves[leaf], query.point, distances);
-      unsigned within = 0;  // without branches, which could not be predicted
+      unsigned within = 0;  // branch-free, because branches would be mispredicted
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         within |= static_cast<unsigned>(distances[lane] <= limit) << lane;
       }
       if (within == 0) return limit;
-      // The most promising one first: it mostly rules the others out.
+      // The most promising candidate first: it usually rules out the others.
       std::size_t first = 0;
       for (std::size_t lane = 1; lane < lanes; ++lane) first = distances[lane] < distances[first] ? lane : first;
       for (limit = offer(leaf, first, limit), within &= ~(1U << first); within != 0; within &= within - 1) {
@@ -160,14 +160,14 @@ struct Bvh::Data {
     });
   }
 
-  /// The closest point of one primitive.
+  /// Returns the closest point of one primitive.
   [[nodiscard]] NearestPrimitive closest(std::size_t leaf, std::size_t lane, const Vec3d& q) const {
     SiteCandidate best;
     offer_closest(leaves[leaf], lane, q, best);
     return {best.point / scale, best.distance / scale, best.site, order[leaf * lanes + lane]};
   }
 
-  /// A crossing of a primitive's corners as they stand in blocks, told of the triangle as it stands in the mesh.
+  /// Converts a crossing from the corner order of blocks to that of the mesh triangle.
   [[nodiscard]] RayCrossing as_given(const detail::TriangleCrossing& found, std::size_t leaf, std::size_t lane,
                                      double t) const {
     const std::size_t rank = leaf * lanes + lane;
@@ -198,7 +198,7 @@ struct Bvh::Data {
     tree = make_box_tree(boxes, context);
   }
 
-  /// The box of the primitives with vertices elsewhere.
+  /// Returns the bounds of the primitives for moved vertices.
   [[nodiscard]] Box3 bounds_of(std::span<const Vec3d> moved, const Context& context) const;
 };
 
@@ -341,7 +341,7 @@ std::optional<NearestPrimitive> Bvh::nearest_wanted(const Vec3d& query, Function
   if (!q) return best;
   const double furthest = max_distance * data.scale + q->slack;
   data.for_each_candidate(*q, furthest, [&](std::size_t leaf, std::size_t lane, double limit) {
-    // Asking is quicker than looking.
+    // The predicate is cheaper than the exact distance.
     if (lane >= data.lanes_of(leaf) || !is_wanted(data.order[leaf * lanes + lane])) return limit;
     const NearestPrimitive found = data.closest(leaf, lane, q->point);
     if (found.distance > max_distance || (best && !is_nearer(found, *best))) return limit;
@@ -353,7 +353,7 @@ std::optional<NearestPrimitive> Bvh::nearest_wanted(const Vec3d& query, Function
 
 std::vector<NearestPrimitive> Bvh::nearest_primitives(const Vec3d& query, std::size_t k, double max_distance) const {
   const Data& data = *data_;
-  std::vector<NearestPrimitive> best;  // a heap, the furthest first
+  std::vector<NearestPrimitive> best;  // a heap with the furthest on top
   const std::optional<Data::Query> q = data.prepare(query);
   if (!q || k == 0) return best;
   data.for_each_candidate(
@@ -406,19 +406,20 @@ void Bvh::Data::for_each_leaf(const BvhPart& part, const Box3& box, const Visit&
   }
 }
 
-/// @param go  calls its last argument for leaves that may be crossed, as visit_along() does.
+/// Calls limit = visit(crossing) for the triangles that a ray crosses at t <= limit.
+/// @param go  calls its last argument for leaves that the ray may cross, as visit_along() does.
 template <class Go, class Visit>
 void Bvh::Data::cross(const Ray& ray, double limit, const Go& go, const Visit& visit) const {
   if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return;
   const auto [scaled_ray, factor] = detail::scaled_direction({ray.origin * scale, ray.direction});
   const Ray& scaled = scaled_ray;
   if (!prepare(ray.origin)) return;
-  // t in the units of blocks: lengths are `scale` times, directions 1 / factor times those of the caller.
+  // Converts t to block units: lengths are `scale` times, directions 1 / factor times those of the caller.
   const double t_factor = factor * scale;
   double furthest = limit;
   go(scaled, furthest * t_factor, [&](std::size_t leaf) {
     const PrimitiveBlock& block = leaves[leaf];
-    // A little further, as what is crossed at the limit itself is found as far as rounding allows.
+    // Slightly beyond the limit, so that crossings at the limit itself are found as far as rounding allows.
     const double end = std::min(furthest * t_factor * (1 + 1e-9), 1e300);
     for (unsigned bits = may_cross(block, scaled, end); bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
@@ -498,7 +499,8 @@ std::vector<std::optional<RayCrossing>> Bvh::first_crossings(std::span<const Ray
   return out;
 }
 
-/// @return  false where `visit` did.
+/// Calls visit(triangle) for the triangles of a leaf that may meet `probe`, until it returns false.
+/// @return  false if `visit` returned false.
 template <class Visit>
 bool Bvh::Data::visit_near_in(std::size_t leaf, const ProbeTriangle& probe, const Visit& visit) const {
   for (unsigned bits = may_meet(leaves[leaf], probe); bits != 0; bits &= bits - 1) {

@@ -1,7 +1,7 @@
-// Blum: kernels for the best instruction set of the machine. SPDX-License-Identifier: Apache-2.0
+// Blum: kernels for the machine's best instruction set. SPDX-License-Identifier: Apache-2.0
 //
-// For files that are compiled once for each instruction set, behind their kernels, within HWY_ONCE and an unnamed
-// namespace. Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
+// For files that are compiled once per instruction set. Include it after their kernels, within HWY_ONCE and an unnamed
+// namespace. Each kernel is chosen once: loops take tens of nanoseconds, so a look-up per call would be noticeable.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #if defined(BLUM_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1))
 namespace blum {
 
-/// Where the tables of functions have those of the best instruction set.
+/// Returns the index of the best instruction set in the tables of functions.
 inline std::size_t best_target() {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   return hwy::GetChosenTarget().GetIndex();

@@ -1,6 +1,6 @@
-// Loops over the lanes of a block, which the compiler vectorises: with Highway once for each of a few instruction sets,
-// of which the best that the machine has is chosen when the program starts; without it (BLUM_SIMD=OFF, or where Highway
-// is not installed) once, for the instructions that every machine has.
+// Loops over the lanes of a block, vectorised by the compiler. With Highway they are compiled once per instruction set;
+// the machine's best one is chosen at program start. Without it (BLUM_SIMD=OFF, or Highway is not installed) they are
+// compiled once, for instructions that every machine has.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 #ifdef BLUM_HIGHWAY
 #undef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // these do nothing for loops of doubles
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // no gain for loops of doubles
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/bvh/lane_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -42,7 +42,7 @@ void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[
 }
 
 void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double (&out)[lanes]) {
-  // Each end of a slab is rounded three times (Ize 2013: 1 + 2 gamma(3) makes up for it at one end).
+  // Each end of a slab is rounded three times (Ize 2013: a factor of 1 + 2 gamma(3) at one end compensates for it).
   constexpr double widened = 1 + 2e-15;
   alignas(64) double enter[lanes] = {};
   alignas(64) double leave[lanes];
@@ -67,7 +67,7 @@ void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double
   for (std::size_t i = 0; i < lanes; ++i) out[i] = enter[i] <= leave[i] ? enter[i] : NAN;
 }
 
-/// A bit for each lane with a 1; the others must hold 0.
+/// Returns a bit for each lane that holds 1. The other lanes must hold 0.
 inline unsigned bits_of(const double (&flags)[lanes]) {
   static_assert(lanes == 8);
   alignas(64) constexpr double weights[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -76,7 +76,8 @@ inline unsigned bits_of(const double (&flags)[lanes]) {
   return static_cast<unsigned>((sum[0] + sum[1]) + (sum[2] + sum[3]));
 }
 
-/// 1 where two boxes touch, else 0. One comparison per factor: with `&&` the compiler branches instead of vectorising.
+/// Returns 1 if two boxes touch, else 0. One comparison per factor: with `&&` the compiler branches instead of
+/// vectorising.
 inline double touch(const BoxBlock& block, std::size_t i, const Box3& box) {
   double all = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -93,7 +94,7 @@ unsigned touching(const BoxBlock& block, const Box3& box) {
 }
 
 unsigned touching_moving(const MovingBlock& block, const MovingBoxF& box) {
-  alignas(64) float gap[lanes];  // the widest that stays open from start to end
+  alignas(64) float gap[lanes];  // the widest gap that stays open from start to end
   std::fill_n(gap, lanes, -1.0F);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -110,9 +111,9 @@ unsigned touching_moving(const MovingBlock& block, const MovingBoxF& box) {
   return static_cast<unsigned>(sum);
 }
 
-/// 1 where all corners of a triangle but those in common with another one lie on one side of the other's plane, by the
-/// filter of orient3d: then the two have nothing in common but these corners. Else 0. Sums of flags instead of maxima,
-/// which the compiler takes apart again.
+/// Returns 1 if all corners of a triangle except common ones lie on one side of the other's plane, by the filter of
+/// orient3d. The two triangles then share only these corners. Returns 0 otherwise. Uses sums of flags, because the
+/// compiler splits maxima into scalar code.
 inline double is_beside(const TriangleGroup& group, std::size_t i, const GroupTriangle& other) {
   double above = 1;
   double below = 1;
@@ -126,7 +127,7 @@ inline double is_beside(const TriangleGroup& group, std::size_t i, const GroupTr
         detail::orient3d_rounding *
         (other.magnitude.x * std::abs(x) + other.magnitude.y * std::abs(y) + other.magnitude.z * std::abs(z));
     const double number = group.corner[k][i];
-    double is_common = 0;  // at most one of these is 1, and then the height is 0 but for rounding
+    double is_common = 0;  // at most one term is 1, and then the height is 0 up to rounding
     for (std::size_t j = 0; j < 3; ++j) is_common += number == other.corners[j] ? 1.0 : 0.0;
     above *= is_common + (height > bound ? 1.0 : 0.0);
     below *= is_common + (height < -bound ? 1.0 : 0.0);
@@ -143,23 +144,23 @@ unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle) {
   return bits_of(meet);
 }
 
-/// Of sums of products of three factors that were rounded before, like orient3d's; with room, also for products so
-/// small that they lose digits.
+/// Error bounds for sums of products of three rounded factors, like orient3d's, with a margin. The second one covers
+/// products so small that they lose digits.
 constexpr double triple_rounding = 1e-14;
 constexpr double least_product = 1e-300;
 
-/// Whether a value is for certain above 0: 1 or 0.
+/// Returns 1 if a value is certainly above 0, else 0.
 inline double is_above(double value, double magnitude) {
   return value > triple_rounding * magnitude + least_product ? 1.0 : 0.0;
 }
 
-/// A sum of products, and of their magnitudes.
+/// A sum of products, and the sum of their magnitudes.
 struct Rounded {
   double value;
   double magnitude;
 };
 
-/// d . (u x v)
+/// Returns d . (u x v).
 inline Rounded triple(const Vec3d& d, const Vec3d& u, const Vec3d& v) {
   const double xy = u.x * v.y, yx = u.y * v.x, yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z;
   return {d.x * (yz - zy) + d.y * (zx - xz) + d.z * (xy - yx), std::abs(d.x) * (std::abs(yz) + std::abs(zy)) +
@@ -176,7 +177,7 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   const Vec3d d = ray.direction;
   alignas(64) double meet[lanes];
   for (std::size_t i = 0; i < lanes; ++i) {
-    // Heights above the plane of the triangle, times twice its area, at the origin and at the end.
+    // Heights of the ray's origin and end above the triangle's plane, times twice the triangle's area.
     const Vec3d u = corner_at(block, 0, i) - o;
     const Vec3d ab = (corner_at(block, 1, i) - o) - u;
     const Vec3d ac = (corner_at(block, 2, i) - o) - u;
@@ -188,7 +189,7 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
     const double below = is_above(start.value, start.magnitude) * is_above(-last, bound);
     meet[i] = above + below > 0 ? 0.0 : 1.0;
   }
-  // Short rays mostly come through no plane.
+  // Short rays rarely pass through any of the planes.
   if (bits_of(meet) == 0) return 0;
   for (std::size_t i = 0; i < lanes; ++i) {
     const Vec3d u = corner_at(block, 0, i) - o;
@@ -204,7 +205,7 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   return bits_of(meet);
 }
 
-/// 1 where the box around a triangle touches a box, else 0.
+/// Returns 1 if the box around a triangle touches a box, else 0.
 inline double touch_around(const Vec3d& u, const Vec3d& v, const Vec3d& w, const Box3& box) {
   double all = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -223,7 +224,8 @@ unsigned may_reach(const PrimitiveBlock& block, const Box3& box) {
     const Vec3d v = corner_at(block, 1, i);
     const Vec3d w = corner_at(block, 2, i);
     const double touch = touch_around(u, v, w, box);
-    // No corner of the box is further from its centre, along the normal of the triangle, than this.
+    // No corner of the box is further than `reach` from its centre along the triangle's normal, which is not of length
+    // 1.
     const Vec3d ab = v - u;
     const Vec3d ac = w - u;
     const double x = std::abs(ab.y * ac.z) + std::abs(ab.z * ac.y);
@@ -312,7 +314,7 @@ void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, doub
   }
 }
 
-/// The first three terms of the multipole series, in steradians; d points from the query to the centre.
+/// Returns the first three terms of the multipole series, in steradians. (x, y, z) points from the query to the centre.
 inline double series(const MultipoleBlock& b, std::size_t i, double x, double y, double z, double inverse_squared,
                      double inverse) {
   const double xx = x * x, yy = y * y, zz = z * z;
@@ -327,12 +329,12 @@ inline double series(const MultipoleBlock& b, std::size_t i, double x, double y,
   return inverse_cubed * (first + inverse_squared * (second + inverse_squared * third));
 }
 
-// The kernel of the solid angle, n . (x - q) / |x - q|^3, is the normal derivative of the harmonic series of
-// 1 / |x - q| about the centre. Its term of degree l is at most l |s|^(l-1) / R^(l+1) (Laplace's integral for Legendre
-// polynomials), R the distance of the query from the centre. With t = radius / R, the terms from l = 4 on add up to at
-// most (integral of |s|^3) / R^5 (4 - 3 t) / (1 - t)^2.
+// The kernel of the solid angle, n . (x - q) / |x - q|^3, is the normal derivative of the harmonic series of 1 / |x -
+// q| about the centre. R is the distance of the query from the centre. The term of degree l is at most l |s|^(l-1) /
+// R^(l+1) (Laplace's integral for Legendre polynomials). With t = radius / R, the terms from l = 4 on sum to at most
+// (integral of |s|^3) / R^5 (4 - 3 t) / (1 - t)^2.
 void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolerance, FarSum& sum, OpenLanes& others) {
-  // Local arrays, which cannot overlap the block, so that the loop vectorises without checks.
+  // Local arrays cannot alias the block, so the loop vectorises without overlap checks.
   alignas(64) double taken_angle[lanes];
   alignas(64) double taken_error[lanes];
   alignas(64) double open[lanes];
@@ -347,7 +349,7 @@ void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolera
     const double safe_rest = std::max(rest, 1e-3);
     const double bound =
         block.cubed[i] * inverse_squared * inverse_squared * inverse * (1 + 3 * safe_rest) / (safe_rest * safe_rest);
-    // Too close, the series does not converge. Factors instead of branches, again for the vectoriser.
+    // The series does not converge if the query is too close. Factors replace branches for the vectoriser.
     const double penalty = std::max(1e-3 - rest, 0.0) * 1e300;
     const double taken = bound + penalty <= tolerance ? 1.0 : 0.0;
     taken_angle[i] = taken * value;
@@ -368,17 +370,17 @@ void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double
     const double z = block.center[2][i] - query.z;
     const double inverse = 1 / std::sqrt(std::max(x * x + y * y + z * z, 1e-60));
     const double value = series(block, i, x, y, z, inverse * inverse, inverse);
-    // Lanes without a cluster have no radius, and are taken whatever beta is.
+    // Lanes without a cluster have radius 0, and are taken for every beta.
     const double taken = block.radius[i] * beta * inverse >= 1 ? 0.0 : 1.0;
     sum.solid_angle[i] += taken * value;
     others.open[i] = 1 - taken;
   }
 }
 
-/// Where sine and cosine together are smaller than this part of their terms, rounding may take half of their digits.
+/// If sine and cosine together are below this fraction of their terms, rounding may lose half of their digits.
 constexpr double near_edges = 1e-5;
 
-/// Computes the angles of such triangles anew.
+/// Recomputes the angles of the lanes that `is_near` marks.
 inline void look_closely(const TriangleBlock& block, const Vec3d& query, const double (&is_near)[lanes],
                          double (&cosine)[lanes], double (&sine)[lanes]) {
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -396,10 +398,10 @@ template <bool is_watched>
 inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
                        [[maybe_unused]] double* watched) {
   const auto& p = block.corner;
-  alignas(64) double cosine[lanes];  // of half the angle, and the sine, but for a factor
+  alignas(64) double cosine[lanes];  // of half the angle, up to a factor that `sine` shares
   alignas(64) double sine[lanes];
-  alignas(64) double largest[lanes];  // what they are made of
-  alignas(64) double is_near[lanes];  // 1 where both are a small rest of that
+  alignas(64) double largest[lanes];  // the magnitude of their terms
+  alignas(64) double is_near[lanes];  // 1 if both are small against their terms
   for (std::size_t i = 0; i < lanes; ++i) {
     const double ax = p[0][0][i] - query.x, ay = p[0][1][i] - query.y, az = p[0][2][i] - query.z;
     const double bx = p[1][0][i] - query.x, by = p[1][1][i] - query.y, bz = p[1][2][i] - query.z;
@@ -409,14 +411,14 @@ inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngl
     const double la = std::sqrt(ax * ax + ay * ay + az * az);
     const double lb = std::sqrt(bx * bx + by * by + bz * bz);
     const double lc = std::sqrt(cx * cx + cy * cy + cz * cz);
-    // a . (b x c) = a . (u x v): with edges it loses nothing to the distance.
+    // a . (b x c) = a . (u x v): the form with edges keeps its accuracy if the query is far away.
     const double y = ax * (uy * vz - uz * vy) + ay * (uz * vx - ux * vz) + az * (ux * vy - uy * vx);
     const double x = la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la +
                      (cx * ax + cy * ay + cz * az) * lb;
     cosine[i] = x;
     sine[i] = y;
     largest[i] = la * lb * lc;
-    // What the sine is made of, which two corners that are both close make no smaller.
+    // Magnitude of the sine's terms. Unlike `largest`, it stays large if two corners are both close.
     const double edges =
         (std::abs(ux) + std::abs(uy) + std::abs(uz)) * (std::abs(vx) + std::abs(vy) + std::abs(vz)) * la;
     is_near[i] = std::abs(x) + std::abs(y) < near_edges * std::max(largest[i], edges) ? 1.0 : 0.0;
@@ -432,9 +434,9 @@ inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngl
     const double up = sum.im[i] >= 0 ? 1.0 : 0.0;
     const double also_up = zy >= 0 ? 1.0 : 0.0;
     const double now_up = py >= 0 ? 1.0 : 0.0;
-    // +1 where both were in the upper half and the product is not; -1 where both were below and it is above.
+    // +1 if both factors are in the upper half plane and the product is not; -1 if both are below and it is above.
     sum.turns[i] += up * also_up * (1 - now_up) - (1 - up) * (1 - also_up) * now_up;
-    // Keep the size of the product near 1: each factor is between 1/sqrt(2) and 1.
+    // Keep the magnitude of the product near 1: each factor is between 1/sqrt(2) and 1.
     const double magnitude = 1 / (std::abs(px) + std::abs(py));
     sum.re[i] = px * magnitude;
     sum.im[i] = py * magnitude;
@@ -448,7 +450,7 @@ void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum
 
 void add_watched_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
                            double (&inverse)[lanes]) {
-  // A local array, which cannot overlap the block, so that the loop vectorises without checks.
+  // A local array cannot alias the block, so the loop vectorises without overlap checks.
   alignas(64) double watched[lanes] = {};
   add_angles<true>(block, query, sum, watched);
   for (std::size_t i = 0; i < lanes; ++i) inverse[i] += watched[i];

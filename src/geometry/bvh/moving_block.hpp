@@ -5,20 +5,20 @@
 
 namespace blum {
 
-/// A moving box in single precision: rounding keeps the order of numbers, so boxes that are apart were so before.
+/// A moving box in single precision. Rounding is monotonic, so boxes that are apart here are apart exactly.
 struct MovingBoxF {
-  float lower[2][3];  ///< at the start, at the end
+  float lower[2][3];  ///< [start or end][axis]
   float upper[2][3];
 };
 
-/// Eight of them. An empty box (+inf, -inf) is apart from everything that is finite.
+/// Eight moving boxes. An empty box (+inf, -inf) is apart from every finite box.
 struct alignas(64) MovingBlock {
   float lower[2][3][lanes];
   float upper[2][3][lanes];
 };
 
-/// A bit for each box of a block that may touch this one at some time: not where along some axis it is on the same side
-/// of it at both ends, and so all the time.
+/// Returns a bit for each box of a block that may touch `box` at some time. A bit is 0 if, along some axis, the box
+/// lies on the same side of `box` at both ends, and hence always.
 [[nodiscard]] unsigned touching(const MovingBlock& block, const MovingBoxF& box);
 
 }  // namespace blum

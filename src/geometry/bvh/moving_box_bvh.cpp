@@ -55,8 +55,8 @@ MovingBoxF around(const MovingBlock& block) {
   return box;
 }
 
-/// Maps coordinates to at most 1, in single precision and in their order. Those of boxes elsewhere may be as large as
-/// you like: they must not become infinite, as then they would be where empty boxes are.
+/// Maps coordinates to at most 1, monotonically and in single precision. Boxes of other trees may have coordinates of
+/// any size. These are clamped to finite values, because infinite ones mark empty boxes.
 struct Frame {
   Vec3d middle;
   double scale = 1;
@@ -81,10 +81,10 @@ struct Frame {
 
 struct MovingBoxBvh::Data {
   std::vector<MovingBox> boxes;      ///< by rank
-  std::vector<std::uint32_t> order;  ///< the index of each rank
+  std::vector<std::uint32_t> order;  ///< index of the box at each rank
   Frame frame;
-  std::vector<MovingBlock> blocks;  ///< of the boxes by rank
-  BlockTree<MovingBlock> tree;      ///< its leaves are the blocks
+  std::vector<MovingBlock> blocks;  ///< boxes by rank
+  BlockTree<MovingBlock> tree;      ///< its leaves are `blocks`
 
   void build(const Context& context) {
     blocks.assign((boxes.size() + lanes - 1) / lanes, empty_block());

@@ -1,4 +1,5 @@
-// Blum: eight oriented boxes, and eight triangles to compare with another one. SPDX-License-Identifier: Apache-2.0
+// Blum: blocks of eight oriented boxes, and of eight triangles to compare with another one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -10,16 +11,16 @@
 
 namespace blum {
 
-/// A box along three axes at right angles.
+/// Box along three orthogonal axes.
 struct OrientedBox {
   Vec3d center;
-  std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< of length 1
-  std::array<double, 3> half{};                                               ///< its size along each
+  std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< unit vectors
+  std::array<double, 3> half{};                                               ///< half its size along each axis
 
   [[nodiscard]] double half_sum() const { return half[0] + half[1] + half[2]; }
 };
 
-/// The box where a transform takes it.
+/// Returns the transformed box.
 [[nodiscard]] inline OrientedBox placed(const OrientedBox& box, const RigidTransform& place) {
   return {place(box.center),
           {place.rotation * box.axes[0], place.rotation * box.axes[1], place.rotation * box.axes[2]},
@@ -28,7 +29,7 @@ struct OrientedBox {
 
 struct alignas(64) OrientedBlock {
   double center[3][lanes];
-  double axes[3][3][lanes];  ///< axis, component
+  double axes[3][3][lanes];  ///< [axis][component][lane]
   double half[3][lanes];
 
   void set(std::size_t lane, const OrientedBox& box) {
@@ -49,18 +50,18 @@ struct alignas(64) OrientedBlock {
   }
 };
 
-/// Squares of how far eight boxes are from another one, or of something less.
+/// Computes lower bounds of the squared distances of eight boxes from another box.
 void squared_gaps(const OrientedBlock& block, const OrientedBox& box, double (&out)[lanes]);
 
-/// A triangle, and a unit vector at right angles to it; 0 where it has no area.
+/// A triangle and its unit normal; the normal is 0 for triangles that are too flat.
 struct FlatTriangle {
   std::array<Vec3d, 3> corners;
   Vec3d normal;
 };
 
-/// Eight of them.
+/// Eight triangles with their normals.
 struct alignas(64) FlatTriangleBlock {
-  double corner[3][3][lanes];  ///< corner, component
+  double corner[3][3][lanes];  ///< [corner][component][lane]
   double normal[3][lanes];
 
   void set(std::size_t lane, const std::array<Vec3d, 3>& corners) {
@@ -80,23 +81,23 @@ struct alignas(64) FlatTriangleBlock {
   }
 };
 
-/// What tells how a block of triangles lies.
+/// Orientation of a block of triangles.
 struct BlockShape {
-  Vec3d normal;  ///< the sum of normals of twice the area in length, each turned to the side of the first one
+  Vec3d normal;  ///< sum of normals of length twice the area, all flipped to the side of the first
   Vec3d along;   ///< from the middle of the first half to that of the second, times 12
 };
 
-/// Sets the normals from the corners; slivers get none.
+/// Sets the normals from the corners; slivers get a normal of 0.
 void set_normals(FlatTriangleBlock& block, BlockShape& out);
 
-/// The box around the corners.
+/// Computes the axis-aligned box around the corners.
 void extent_along_axes(const FlatTriangleBlock& block, Box3& out);
 
-/// The interval that the corners take along an axis.
+/// Computes the interval that the corners cover along an axis.
 void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high);
 
-/// Squares of how far eight triangles are from another one, or of something less: along axes, along either normal, and
-/// along the line through both middles.
+/// Computes lower bounds of the squared distances of eight triangles from another one. Gaps are measured along the
+/// coordinate axes, along either normal, and along the line through both middles.
 void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]);
 
 }  // namespace blum

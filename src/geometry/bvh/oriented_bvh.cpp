@@ -20,13 +20,13 @@
 namespace blum {
 namespace {
 
-/// The same around boxes whose last axes are at right angles to the surface in them.
-/// @param bounds  the box along the coordinate axes around what is in them.
+/// Returns a box around boxes whose last axes are orthogonal to the surface in them.
+/// @param bounds  the axis-aligned box around their contents.
 [[nodiscard]] OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds);
 
 using Axes = std::array<Vec3d, 3>;
 
-/// What lies along three axes: intervals.
+/// Intervals along three axes.
 class Extent {
  public:
   explicit Extent(const Axes& axes) : axes_(axes) {}
@@ -59,16 +59,16 @@ class Extent {
   std::array<double, 3> high_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 };
 
-/// Shorter sums of normals have lost digits, as squares of theirs are too small.
+/// Shorter sums of normals have lost digits, because their squares underflow.
 constexpr double least_normal = 1e-140;
 
-/// Two directions at right angles to a third one and to each other, the first one as close as can be to another one.
+/// Returns two directions orthogonal to `normal` and to each other. The first one is as close to `along` as possible.
 std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   const Vec3d flat = along - normal * dot(normal, along);
   const double size = squared_length(flat);
   if (size > 1e-12 * squared_length(along)) {
     Vec3d u = flat / std::sqrt(size);
-    u -= normal * dot(normal, u);  // once more: where little was left, so was what rounding left along the normal
+    u -= normal * dot(normal, u);  // again: a short remainder contains rounding along the normal
     u = u / length(u);
     return {u, cross(normal, u)};
   }
@@ -81,10 +81,10 @@ std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   return {unit, cross(normal, unit)};
 }
 
-/// The smaller one of two boxes: one along the coordinate axes, and the one along a plane.
+/// Returns the smaller of two boxes: the axis-aligned one, and one aligned to a plane.
 /// @param normal  of the plane, of any length.
-/// @param along   a direction in which what is to be in the box extends most.
-/// @param add_to  (extent) adds that.
+/// @param along   direction of the contents' largest extent.
+/// @param add_to  add_to(extent) adds the contents.
 template <class AddTo>
 OrientedBox smaller_box(const Box3& bounds, const Vec3d& normal, const Vec3d& along, const AddTo& add_to) {
   OrientedBox plain;
@@ -100,15 +100,15 @@ OrientedBox smaller_box(const Box3& bounds, const Vec3d& normal, const Vec3d& al
   return box.half_sum() <= plain.half_sum() ? box : plain;
 }
 
-/// A box around eight triangles that lies along their common plane as far as they have one: its last axis is at right
-/// angles to it. Of these boxes and those along the coordinate axes the smaller one.
+/// Returns a box around eight triangles. Its last axis is orthogonal to their common plane, as far as one exists. If
+/// the axis-aligned box is smaller, it is returned instead.
 /// @param block   gets its normals.
-/// @param bounds  gets the box along the coordinate axes.
+/// @param bounds  gets the axis-aligned box.
 OrientedBox box_around(FlatTriangleBlock& block, Box3& bounds) {
   BlockShape shape;
   set_normals(block, shape);
   extent_along_axes(block, bounds);
-  // Triangles of a block are cut across their longest side into halves first.
+  // `along` is the longest extent, because blocks are first halved across their longest side.
   return smaller_box(bounds, shape.normal, shape.along, [&](Extent& extent) { extent.add(block); });
 }
 
@@ -121,16 +121,16 @@ OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds) {
     normal += dot(normal, own) < 0 ? -own : own;
     along += 2 * k < boxes.size() ? -box.center : box.center;
   }
-  if (boxes.size() % 2 != 0) along += boxes.front().center;  // as many on either side
+  if (boxes.size() % 2 != 0) along += boxes.front().center;  // equal numbers on both sides
   return smaller_box(bounds, normal, along, [&](Extent& extent) {
     for (const OrientedBox& box : boxes) extent.add(box);
   });
 }
 
-/// Parts of a tree that threads fill on their own: what is below one block of this level.
+/// Threads fill separate parts of a tree: the part below each block of this level.
 constexpr std::size_t level_of_parts = 2;
 constexpr std::size_t leaves_per_part = lanes * lanes * lanes;
-/// How much closer pairs may be than their boxes seem, relative to the largest coordinate.
+/// Pairs may be this much closer than their boxes appear, relative to the largest coordinate.
 constexpr double rounding = 1e-13;
 
 using NodeRef = OrientedBvh::Node;
@@ -142,23 +142,24 @@ struct IndexRange {
   std::size_t end = 0;
 };
 
-/// At most seven siblings wait for each of at most eleven levels of either tree.
+/// At most seven siblings wait on each of at most eleven levels of either tree.
 using PendingPairs = InlineList<NodePair, 256>;
 
-/// The closest pair comes first; of equally close ones, as of overlapping ones, that which is further down.
+/// Returns true if `b` is to be taken before `a`. The closest pair comes first; among equal gaps, for example of
+/// overlapping boxes, the pair that is further down.
 bool comes_later(const NodePair& a, const NodePair& b) {
   if (a.squared_gap != b.squared_gap) return a.squared_gap > b.squared_gap;
   return a.here.level + a.there.level > b.here.level + b.there.level;
 }
 
-/// The squared limit that squares of gaps are compared with.
+/// Returns the limit for squared gaps, widened for rounding.
 double squared_limit(double limit, double slack) {
   if (!(limit >= 0)) return -1;
   const double wide = limit + slack;
   return std::min(wide * wide * (1 + 1e-14), std::numeric_limits<double>::max());
 }
 
-/// Puts the pair with the smallest gap on top of those pushed since `bottom`.
+/// Inserts a pair so that the smallest gap stays on top of those pushed since `bottom`.
 void push_sorted(PendingPairs& pending, std::size_t bottom, const NodePair& pair) {
   std::size_t place = pending.size();
   pending.push_back(pair);
@@ -168,7 +169,7 @@ void push_sorted(PendingPairs& pending, std::size_t bottom, const NodePair& pair
   pending[place] = pair;
 }
 
-/// Boxes of nodes, along the surface and along the axes.
+/// Boxes of nodes: oriented and axis-aligned.
 struct NodeBoxes {
   std::vector<OrientedBox> boxes;
   std::vector<Box3> around;
@@ -180,7 +181,7 @@ struct NodeBoxes {
   [[nodiscard]] std::size_t size() const { return boxes.size(); }
 };
 
-/// Blocks of a level, and the boxes around them.
+/// Fills blocks of a level, and computes the boxes around them.
 void fill_level(std::vector<OrientedBlock>& level, const NodeBoxes& below, const IndexRange& range, NodeBoxes& above) {
   for (std::size_t k = range.begin; k < range.end; ++k) {
     const std::size_t first = k * lanes;
@@ -199,9 +200,9 @@ void fill_level(std::vector<OrientedBlock>& level, const NodeBoxes& below, const
 struct OrientedBvh::Data {
   Box3 bounds;
   std::size_t vertices = 0;
-  std::vector<std::uint32_t> order;                   ///< the primitive of each rank
-  std::vector<std::array<std::uint32_t, 3>> corners;  ///< of primitives by rank
-  std::vector<FlatTriangleBlock> leaves;              ///< of primitives by rank
+  std::vector<std::uint32_t> order;                   ///< primitive of each rank
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< vertices of primitives by rank
+  std::vector<FlatTriangleBlock> leaves;              ///< primitives by rank
   BlockTree<OrientedBlock> tree;                      ///< its leaves are the blocks of primitives
   std::vector<std::vector<std::uint32_t>> first;      ///< smallest primitive of each block, and of each block of `tree`
   OrientedBox root;
@@ -212,13 +213,13 @@ struct OrientedBvh::Data {
     return level == 0 ? leaves.size() : tree.levels[static_cast<std::size_t>(level) - 1].size();
   }
   [[nodiscard]] NodeRef top() const { return {0, tree.top()}; }
-  /// The box of a node. Blocks of level k hold the boxes of nodes of level k - 1.
+  /// Returns the box of a node. Blocks of level k hold the boxes of nodes of level k - 1.
   [[nodiscard]] OrientedBox box(const NodeRef& node) const {
     if (node.level == tree.top()) return root;
     return tree.levels[static_cast<std::size_t>(node.level) + 1][node.index / lanes].box(node.index % lanes);
   }
 
-  /// The smallest primitive below a node.
+  /// Returns the smallest primitive below a node.
   [[nodiscard]] std::uint32_t first_of(const NodeRef& node) const {
     return first[static_cast<std::size_t>(node.level) + 1][node.index];
   }
@@ -229,7 +230,7 @@ struct OrientedBvh::Data {
   void fill_leaves(std::span<const Vec3d> positions, const IndexRange& range);
 };
 
-/// What does not change with positions.
+/// Fills `first`, which does not depend on positions.
 void OrientedBvh::Data::fill_first() {
   std::vector<std::uint32_t> own = order;
   while (own.size() > 1 || first.size() < 2) {
@@ -262,8 +263,8 @@ void OrientedBvh::Data::fill_leaves(std::span<const Vec3d> positions, const Inde
   }
 }
 
-/// Positions of all primitives, and all boxes: threads fill parts of the tree up to the level of parts, while these are
-/// in their caches; little is left above.
+/// Sets the positions of all primitives, and all boxes. Threads fill parts of the tree up to `level_of_parts` while
+/// these are in their caches. The few blocks above follow on one thread.
 void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& context) {
   const std::size_t parts = (leaves.size() + leaves_per_part - 1) / leaves_per_part;
   parallel_for(context, parts, 1, "", [&](const WorkRange& range) {
@@ -330,7 +331,7 @@ std::span<const std::uint32_t> OrientedBvh::block(std::size_t block) const {
 
 namespace {
 
-/// A traversal of two trees at once: of the nodes of a pair the larger one is replaced by its children.
+/// Traversal of two trees at once. In each pair, the larger node is replaced by its children.
 template <class Data>
 class PairSearch {
  public:
@@ -346,7 +347,8 @@ class PairSearch {
         limit_(limit),
         visit_(visit) {}
 
-  /// Both trees are one, and only blocks from this one on are looked at: each pair of primitives once.
+  /// Restricts the search to blocks from this one on, for two trees that are the same. Each pair of primitives then
+  /// occurs once.
   void only_from(std::size_t block) {
     first_there_ = block;
     is_self_ = true;
@@ -367,8 +369,8 @@ class PairSearch {
     }
   }
 
-  /// Goes from the closest pair of nodes left down to primitives, always to the closest children, some times over.
-  /// @return  what is left, closest first.
+  /// Descends from the closest remaining pair of nodes to primitives, always to the closest children, `times` times.
+  /// @return  the remaining pairs, closest first.
   [[nodiscard]] std::vector<NodePair> dive(std::size_t times) {
     std::vector<NodePair> heap{{0, here_.top(), there_.top()}};
     const auto push = [&](const NodePair& pair) {

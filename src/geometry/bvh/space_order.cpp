@@ -11,12 +11,12 @@ namespace blum {
 namespace {
 
 constexpr std::size_t grain = 8192;
-/// Runs of this many points are not cut any further.
+/// Ranges of this many points are not cut further.
 constexpr std::size_t leaf_size = 8;
 /// Ranges of at most this many points are cut to the end by one worker.
 constexpr std::size_t local_size = 4096;
 
-/// A point, in float32: rounding may put it on the wrong side of a cut, which does no harm.
+/// A point in float32. Rounding may put it on the wrong side of a cut, which is harmless.
 struct Entry {
   std::array<float, 3> at{};
   std::uint32_t index = 0;
@@ -24,7 +24,7 @@ struct Entry {
 
 using Range = std::array<std::size_t, 2>;
 
-/// The smaller half of a range is on the right: the left one has a power of two.
+/// Returns where to cut a range. The left part's size is a power of two; the right part is not larger.
 std::size_t cut_of(const Range& range) {
   return range[0] + std::bit_ceil(range[1] - range[0]) / 2;
 }
@@ -45,7 +45,7 @@ std::size_t longest_axis(const Entry* begin, const Entry* end) {
   return best;
 }
 
-/// Entries in the order of a coordinate, which is not negative, and of their indices where that is equal.
+/// Sort key of entries: the coordinate, which is not negative, then the index.
 struct KeyAlong {
   std::size_t axis;
 
@@ -54,7 +54,7 @@ struct KeyAlong {
   }
 };
 
-/// Moves entries with smaller keys than `pivot` to the front, without branches, and returns where the others begin.
+/// Moves entries with keys below `pivot` to the front, without branches, and returns the first of the others.
 Entry* partition_below(Entry* begin, Entry* end, std::uint64_t pivot, const KeyAlong& key) {
   Entry* out = begin;
   for (Entry* entry = begin; entry != end; ++entry) {
@@ -66,7 +66,7 @@ Entry* partition_below(Entry* begin, Entry* end, std::uint64_t pivot, const KeyA
   return out;
 }
 
-/// Guesses a key that is a little above or below the entry of a rank, from a sample of a few.
+/// Estimates a key slightly above or below that of the entry at a rank, from a small sample.
 std::uint64_t key_beside(const Entry* begin, const Entry* end, double part, bool is_above, const KeyAlong& key) {
   constexpr std::size_t most = 64;
   std::array<std::uint64_t, most> sample{};
@@ -80,7 +80,7 @@ std::uint64_t key_beside(const Entry* begin, const Entry* end, double part, bool
   return sample[static_cast<std::size_t>(std::clamp(rank, 0.0, samples - 1))];
 }
 
-/// What std::nth_element does, mostly in one and a half passes whose branches are predicted.
+/// Equivalent of std::nth_element, mostly in one and a half passes with predictable branches.
 void select(Entry* begin, Entry* nth, Entry* end, const KeyAlong& key) {
   constexpr std::ptrdiff_t few = 48;
   for (int round = 0; round < 8 && end - begin > few; ++round) {
@@ -126,14 +126,14 @@ std::vector<std::uint32_t> space_order(std::size_t count, const std::function<Ve
   std::vector<Entry> entries(count);
   parallel_for(context, count, grain, "", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      // Adding 0 makes -0 the same as 0.
+      // Adding 0 turns -0 into 0.
       const Vec3d offset = longest > 0 ? (position(i) - bounds.lower) / longest + Vec3d{} : Vec3d{};
       entries[i] = {{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)},
                     static_cast<std::uint32_t>(i)};
     }
   });
 
-  // Level by level while the ranges are long, then each range on its own.
+  // Level by level while the ranges are long, then each range by itself.
   std::vector<Range> ranges{{0, count}};
   std::vector<Range> local;
   while (!ranges.empty()) {

@@ -1,4 +1,4 @@
-// Blum: triangles in groups of eight, of which most pairs are ruled out in lanes. SPDX-License-Identifier: Apache-2.0
+// Blum: triangles in groups of eight; most pairs are excluded lane by lane. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace blum {
 
-/// Eight triangles a, b, c with their planes. Lanes that are not set have an empty box.
+/// Eight triangles a, b, c with their planes. Unset lanes have an empty box.
 struct alignas(64) TriangleGroup {
   BoxBlock box;
-  double point[3][3][lanes] = {};  ///< of each corner, axis by axis
-  double corner[3][lanes] = {};    ///< numbers of the corners, which two triangles have in common where these are equal
-  double normal[3][lanes] = {};    ///< (b - a) x (c - a)
-  double magnitude[3][lanes] = {};  ///< of the products that are summed up to the normal
+  double point[3][3][lanes] = {};   ///< [corner][axis][lane]
+  double corner[3][lanes] = {};     ///< numbers of the corners; equal numbers mean a common corner
+  double normal[3][lanes] = {};     ///< (b - a) x (c - a)
+  double magnitude[3][lanes] = {};  ///< sums of the magnitudes of the normal's products
 
   TriangleGroup();
 
-  /// Sets a lane; one without area is left as it is.
+  /// Sets a lane. A triangle without area leaves it unchanged.
   void set(std::size_t lane, const detail::ContactTriangle& triangle);
 };
 
@@ -39,16 +39,16 @@ struct GroupTriangle {
   [[nodiscard]] detail::ContactTriangle for_contact() const;
 };
 
-/// Whether all corners of a triangle that another one does not have lie for certain on one side of the other's plane:
-/// then the two have nothing in common but common corners. False where the rounding leaves it open.
+/// Returns true if all corners of `triangle` that `other` lacks certainly lie on one side of the other's plane. The two
+/// then share only common corners. False if rounding leaves it open.
 [[nodiscard]] bool is_beside(const GroupTriangle& triangle, const GroupTriangle& other);
 
-/// The same for a plane through an edge of the other one, along the axis that its normal is closest to, and the side
-/// where the rest of the other is not: this tells apart triangles in one plane.
+/// Same test with a plane through an edge of `other`, parallel to the axis closest to its normal. The side tested is
+/// the one without the rest of `other`. This separates coplanar triangles.
 [[nodiscard]] bool is_beyond_an_edge(const GroupTriangle& triangle, const GroupTriangle& other);
 
-/// A bit for each triangle of a group that may have more in common with this one than corners: not those whose boxes do
-/// not touch, nor those that lie for certain on one side of this one's plane but for common corners.
+/// Returns a bit for each triangle of a group that may share more than corners with `triangle`. Excludes triangles
+/// whose boxes do not touch, and those that certainly lie on one side of its plane except for common corners.
 [[nodiscard]] unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle);
 
 }  // namespace blum

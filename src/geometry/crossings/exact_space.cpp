@@ -20,7 +20,7 @@ std::array<std::uint64_t, 3> key_of(const Vec3d& p) {
   return {bits(p.x), bits(p.y), bits(p.z)};
 }
 
-/// Without the coordinate along an axis, such that turns are seen against it.
+/// Drops the coordinate along an axis, so that orientations are seen against it.
 std::array<double, 2> flat(const Vec3d& p, std::size_t axis) {
   return {p[(axis + 1) % 3], p[(axis + 2) % 3]};
 }
@@ -79,7 +79,7 @@ const ExactSpace::Exact& ExactSpace::exact(PointId p) const {
 }
 
 int ExactSpace::compare(PointId a, PointId b, std::size_t axis) const {
-  // Rounding keeps the order.
+  // Rounding preserves order.
   const double x = rounded(a)[axis];
   const double y = rounded(b)[axis];
   if (x != y) return x < y ? -1 : 1;
@@ -127,7 +127,7 @@ std::optional<int> ExactSpace::filtered_turn(std::size_t axis, PointId a, PointI
   const std::array<double, 2> p = flat(rounded(a), axis);
   const std::array<double, 2> q = flat(rounded(b), axis);
   const std::array<double, 2> r = flat(rounded(c), axis);
-  std::array<double, 2> off{};  // what a difference of coordinates is off by at most
+  std::array<double, 2> off{};  // bound on the error of a difference of coordinates
   for (std::size_t k = 0; k < 2; ++k) {
     off[k] = 8 * half_ulp * std::max({std::abs(p[k]), std::abs(q[k]), std::abs(r[k])});
   }
@@ -211,7 +211,7 @@ PointId ExactSpace::add(Exact exact) {
          at = is_vertex(*at) ? std::nullopt : made_[*at - vertices_.size()].next) {
       if (is_equal(this->exact(*at))) return *at;
     }
-    // A vertex, which has no next one, stays last.
+    // A vertex has no next point, so it stays last.
     next = place->second;
     place->second = id;
   }

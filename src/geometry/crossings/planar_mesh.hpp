@@ -1,4 +1,4 @@
-// Blum: triangles between points of a plane, along given segments. SPDX-License-Identifier: Apache-2.0
+// Blum: triangulation of points in a plane, with given segments. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -13,23 +13,24 @@
 
 namespace blum::detail {
 
-/// Triangles that cover a large triangle, with all points that were inserted as corners, and given segments as edges.
-/// Seen against an axis they turn counter-clockwise. Which turns points make is exact; that angles are large is tried.
-/// Method: points one by one, segments by flips of what crosses them (Sloan 1993).
+/// Triangulation of a large triangle, with all inserted points as corners and given segments as edges. Its triangles
+/// turn counter-clockwise, seen against an axis. Orientations of points are exact; large angles are best effort.
+/// Method: points are inserted one by one, segments by flips of the edges that cross them (Sloan 1993).
 class PlanarMesh {
  public:
   /// @param outer  three points around all others.
   PlanarMesh(const ExactSpace& space, std::size_t axis, const std::array<PointId, 3>& outer);
 
-  /// @return  false where the point coincides with another one.
+  /// Inserts a point.
+  /// @return  false if the point coincides with another one.
   [[nodiscard]] bool insert(PointId point);
-  /// Makes a segment an edge that stays. No point may lie on it, and no such edge may cross it.
-  /// @return  false where this is not so.
+  /// Makes a segment a fixed edge. No point may lie on it, and no fixed edge may cross it.
+  /// @return  false if one of these conditions is violated.
   [[nodiscard]] bool insert_segment(PointId from_point, PointId to_point);
-  /// Flips edges until angles are large, as far as rounding tells.
+  /// Flips edges to enlarge angles, as far as rounding allows.
   void improve();
 
-  /// The triangles without those at the outer points.
+  /// Returns the triangles without those at the outer points.
   [[nodiscard]] std::vector<std::array<PointId, 3>> triangles() const;
 
  private:
@@ -38,7 +39,7 @@ class PlanarMesh {
 
   struct Corners {
     std::array<Index, 3> at{};
-    std::array<Index, 3> beyond{none, none, none};  ///< triangle over the edge from corner k to the next one
+    std::array<Index, 3> beyond{none, none, none};  ///< triangle across the edge from corner k to the next one
     std::array<bool, 3> stays{};
   };
   struct Edge {
@@ -60,14 +61,14 @@ class PlanarMesh {
   void flip(const Edge& edge);
   [[nodiscard]] bool wants_flip(const Edge& edge) const;
   [[nodiscard]] std::optional<std::deque<std::array<Index, 2>>> crossed_by(Index from, Index to) const;
-  /// Calls visit(triangle, k of the corner) around a corner until it returns true; whether it did.
+  /// Calls visit(triangle, k of the corner) around a corner until it returns true. Returns true if it did.
   template <class Visit>
   bool around(Index corner, const Visit& visit) const;
 
   const ExactSpace& space_;
   std::size_t axis_;
   std::vector<PointId> points_;
-  std::vector<Index> triangle_at_;  ///< of each point
+  std::vector<Index> triangle_at_;  ///< a triangle at each point
   std::vector<Corners> triangles_;
   std::unordered_map<PointId, Index> index_;
   Index last_ = 0;

@@ -30,26 +30,25 @@
 namespace blum::detail {
 namespace {
 
-/// The facets with at least some winding number behind them and less in front, as a mesh.
+/// Facets with at least a given winding number behind them and less in front, as a mesh.
 struct Boundary {
-  std::vector<Triangle> triangles;  ///< names entries of `points`
-  /// Several may be one point: where parts only touch, each has its own. Both are one but in the middle of edges
-  /// between them that had to be cut for this.
+  std::vector<Triangle> triangles;  ///< Indices into `points`.
+  /// Ends of the edge in whose middle a point lies; equal for points that are not middles of edges that had to be cut.
+  /// Parts that only touch have separate points at one place.
   std::vector<std::array<PointId, 2>> points;
-  std::vector<std::uint32_t> source_of;  ///< of each triangle, in the input
+  std::vector<std::uint32_t> source_of;  ///< input triangle of each triangle
   std::size_t touching_edges = 0;        ///< edges along which parts only touch
 };
 
 constexpr std::uint32_t nobody = 0xffffffffU;
-/// Thousands of times what the place of a crossing is off by, of a ray that is not along the triangle, in a mesh of
-/// size 1.
+/// Thousands of times the error of a crossing's place, in a mesh of size 1, for rays that are not along the triangle.
 constexpr double margin = 1e-12;
 
-/// A facet at an edge.
+/// A facet's side at an edge.
 struct Side {
   PointId low = 0, high = 0;
-  std::uint32_t corner = 0;  ///< 3 * facet + where the side begins
-  bool rises = false;        ///< from `low` to `high`
+  std::uint32_t corner = 0;  ///< 3 * facet + corner where the side begins
+  bool rises = false;        ///< runs from `low` to `high`
 
   [[nodiscard]] std::uint32_t facet() const { return corner / 3; }
 };
@@ -116,8 +115,8 @@ class Windings {
     });
   }
 
-  /// Where the corner across an edge lies to another facet at it: 1 on the side where facets come next, counter-
-  /// clockwise seen from the edge's higher end.
+  /// Returns the side of `of` on which the far corner of `other` lies. Both are facets at one edge. 1 is the side where
+  /// facets come next, counter-clockwise seen from the edge's higher end.
   [[nodiscard]] int turns_to(const Side& of, const Side& other) const {
     const Facet& facet = facets_[of.facet()];
     const PointId tip = facets_[other.facet()].corners[(other.corner % 3 + 2) % 3];
@@ -146,10 +145,10 @@ class Windings {
 
   [[nodiscard]] std::uint32_t patch(const Side& side) { return patches_.find(side.facet()); }
 
-  /// Finds the winding number in front of every patch: of one in each connected part by a ray, of the others around
-  /// edges.
+  /// Finds the winding number in front of every patch. In each connected part a ray decides for one patch; the others
+  /// follow around edges.
   void spread() {
-    std::vector<std::vector<std::uint32_t>> edges_of(facets_.size());  // of each patch
+    std::vector<std::vector<std::uint32_t>> edges_of(facets_.size());  // crowded edges of each patch
     UnionFind parts(facets_.size());
     for (std::uint32_t f = 0; f < facets_.size(); ++f) parts.join(patches_.find(f), f);
     for (std::uint32_t e = 0; e < crowded_.size(); ++e) {
@@ -179,7 +178,8 @@ class Windings {
     const auto [first, count] = crowded_[edge];
     std::size_t start = 0;
     while (patch(sides_[first + start]) != from) ++start;
-    // Front and back are where facets come next and came before, or the other way round.
+    // A rising facet has its front towards the next facet and its back towards the previous one; a falling one the
+    // reverse.
     const Side& known = sides_[first + start];
     std::int64_t winding = *front_[from] + (known.rises ? 0 : facets_[known.facet()].times);
     for (std::size_t k = 1; k <= count; ++k) {
@@ -200,7 +200,7 @@ class Windings {
     return length(cross(space_.rounded(b) - space_.rounded(a), space_.rounded(c) - space_.rounded(a)));
   }
 
-  /// Keeps a few facets of a part, the largest first.
+  /// Keeps a part's few largest facets, the largest first.
   void keep_largest(std::vector<std::uint32_t>& list, std::uint32_t f) const {
     constexpr std::size_t most = 8;
     const double own = area(f);
@@ -210,7 +210,7 @@ class Windings {
     if (list.size() > most) list.pop_back();
   }
 
-  /// A facet of a part, and the winding number in front of it.
+  /// Returns a facet of a part, and the winding number in front of it.
   /// @param candidates  the part's largest facets.
   std::pair<std::uint32_t, std::int64_t> winding_by_ray(const std::vector<std::uint32_t>& candidates) {
     constexpr int attempts = 32;
@@ -223,8 +223,8 @@ class Windings {
     throw Unresolved("a part of it is too small to tell whether it lies inside of others");
   }
 
-  /// The winding number in front of a facet from what a ray crosses that passes through it; nullopt where rounding
-  /// could change it.
+  /// Returns the winding number in front of a facet, from the crossings of a ray through it. Returns nullopt if
+  /// rounding could change it.
   std::optional<std::int64_t> front_along_ray(std::uint32_t f, Random& random) {
     if (!bvh_) bvh_.emplace(MeshView{mesh_.vertices, mesh_.triangles}, SiteTable({mesh_.vertices, mesh_.triangles}));
     const auto& [i, j, k] = facets_[f].corners;
@@ -265,8 +265,8 @@ class Windings {
     return winding;
   }
 
-  /// Whether a ray that passes through the inside of a facet crosses a triangle behind it, exactly; nullopt where the
-  /// facet has corners on both sides of the triangle's plane, or all in it.
+  /// Returns true if a ray through the inside of a facet crosses a triangle beyond the facet; exact. Returns nullopt if
+  /// the facet has corners on both sides of the triangle's plane, or all in it.
   [[nodiscard]] std::optional<bool> lies_ahead(std::uint32_t f, const RayCrossing& other) {
     const Cut plane{mesh_.triangles[other.triangle.value], -1};
     const auto& corners = facets_[f].corners;
@@ -296,10 +296,10 @@ class Windings {
     return front < least_ && front + facets_[f].times >= least_;
   }
 
-  /// Two facets that are neighbours around the solid: one that falls to the lower end of their edge, one that rises.
+  /// Two facets that are neighbours around the solid. The first falls to the lower end of their edge; the second rises.
   using Neighbours = std::array<Side, 2>;
 
-  /// The kept facets at an edge, those beside each other that are neighbours.
+  /// Returns the kept facets at an edge, as pairs of neighbours.
   std::vector<Neighbours> neighbours_at(std::span<const Side> sides) {
     std::vector<Side> own;
     for (const Side& side : sides) {
@@ -307,7 +307,7 @@ class Windings {
     }
     if (own.size() % 2 != 0) throw Unresolved("its boundary is not closed after it was cut");
     std::vector<Neighbours> out;
-    // Counter-clockwise around the edge, the solid begins at a facet that falls and ends at one that rises.
+    // Counter-clockwise around the edge, the solid begins at a falling facet and ends at a rising one.
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (own[k].rises) continue;
       const Side& next = own[(k + 1) % own.size()];
@@ -318,7 +318,7 @@ class Windings {
   }
 
   Boundary kept() {
-    // Corners of kept facets, those at one point joined where facets are neighbours around the solid.
+    // Corners of kept facets. Corners at one point are joined if their facets are neighbours around the solid.
     UnionFind corners(3 * facets_.size());
     std::vector<std::vector<Neighbours>> touching;
     for_each_edge(sides_, [&](std::size_t first, std::size_t count) {
@@ -355,7 +355,7 @@ class Windings {
     return out;
   }
 
-  /// Where parts touch along an edge and are joined at both its ends, gives each a middle of its own.
+  /// If parts touch along an edge and are joined at both its ends, gives each its own middle of the edge.
   void cut_where_ends_are_shared(const std::vector<Neighbours>& edge, const std::vector<std::uint32_t>& name,
                                  Boundary& out) {
     const auto ends = [&](const Neighbours& pair) {
@@ -372,7 +372,7 @@ class Windings {
     }
   }
 
-  /// Cuts the part of a facet that has an edge.
+  /// Cuts the part of a facet that has the edge.
   void cut_edge(std::uint32_t f, const std::array<std::uint32_t, 2>& edge, std::uint32_t middle, Boundary& out) {
     for (const std::uint32_t part : std::vector<std::uint32_t>(parts_of_[f])) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -398,17 +398,18 @@ class Windings {
   std::int64_t least_;
   const Context& context_;
   std::vector<Side> sides_;
-  UnionFind patches_;                                         ///< facets that are joined over edges of two
-  std::vector<std::pair<std::size_t, std::size_t>> crowded_;  ///< edges of more facets: where in sides_, and how many
-  std::vector<std::optional<std::int64_t>> front_;            ///< of patches
+  UnionFind patches_;                                         ///< facets joined over edges with two facets
+  std::vector<std::pair<std::size_t, std::size_t>> crowded_;  ///< edges with more facets: first in sides_, and count
+  std::vector<std::optional<std::int64_t>> front_;            ///< winding number in front of each patch
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>
-      parts_of_;  ///< triangles of facets at edges where parts touch
+      parts_of_;  ///< triangles of facets at edges along which parts touch
   std::optional<Bvh> bvh_;
-  std::vector<bool> is_in_pair_;  ///< of triangles; filled when it is asked for
+  std::vector<bool> is_in_pair_;  ///< for each triangle; filled on first use
 };
 
-/// @param least_winding  number of what is inside.
-/// @throws Unresolved where facets do not fit together, Cancelled.
+/// Returns the boundary of the region with winding number `least_winding` or more.
+/// @param least_winding  smallest winding number inside.
+/// @throws Unresolved if facets do not fit together, Cancelled.
 Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context) {
   return Windings(mesh, cut, least_winding, context).boundary();
 }
@@ -425,19 +426,19 @@ std::string number(std::size_t n, const char* what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-/// Without progress, which would begin anew with each part of the work.
+/// Returns the context without progress, which would restart with each part of the work.
 Context quiet(const Context& context) {
   Context out = context;
   out.progress = nullptr;
   return out;
 }
 
-/// A mesh with one vertex at each place, of size 1.
+/// A mesh of size 1 with one vertex at each place.
 struct Welded {
   double scale = 1;
   std::vector<Vec3d> vertices;
   std::vector<Triangle> triangles;
-  std::vector<std::uint8_t> is_flat;  ///< 1: corners on one line, 2: in two places at most
+  std::vector<std::uint8_t> is_flat;  ///< 1: collinear corners, 2: at most two distinct corners, else 0
 
   explicit Welded(const MeshView& mesh) : scale(coordinate_scale(bounds(mesh))) {
     const std::vector<std::uint32_t> cluster = weld_clusters(mesh.vertices);
@@ -452,7 +453,8 @@ struct Welded {
   }
 };
 
-/// Counts edges with more than two triangles. @throws Unresolved where triangles do not cancel at an edge.
+/// Returns the number of edges with more than two triangles.
+/// @throws Unresolved if triangles do not cancel at an edge.
 std::size_t crowded_edges(const MeshView& mesh) {
   struct Side {
     std::uint32_t low, high;
@@ -485,7 +487,7 @@ std::size_t crowded_edges(const MeshView& mesh) {
   return crowded;
 }
 
-/// The genera of a closed surface's shells, rising.
+/// Returns the genera of a closed surface's shells, in rising order.
 std::vector<std::int64_t> genera(const Topology& topology) {
   std::vector<std::int64_t> out;
   for (const Shell& shell : topology.shells) out.push_back(shell.genus);
@@ -493,7 +495,7 @@ std::vector<std::int64_t> genera(const Topology& topology) {
   return out;
 }
 
-/// The body that each triangle of a closed manifold belongs to.
+/// Returns the body of each triangle of a closed manifold.
 std::vector<std::uint32_t> body_of_triangles(const TriangleMesh& mesh, const Topology& topology) {
   detail::UnionFind joined(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
@@ -513,7 +515,7 @@ std::vector<std::uint32_t> body_of_triangles(const TriangleMesh& mesh, const Top
   return body;
 }
 
-/// How often a body meets itself in a vertex: the same place under two numbers.
+/// Returns how often a body meets itself in a vertex: one place with two vertex numbers.
 std::size_t pinches(const TriangleMesh& mesh, const Topology& topology) {
   const std::vector<std::uint32_t> body_of = body_of_triangles(mesh, topology);
   const std::vector<std::uint32_t> cluster = weld_clusters(mesh.vertices);
@@ -530,7 +532,7 @@ std::size_t pinches(const TriangleMesh& mesh, const Topology& topology) {
   return count;
 }
 
-/// What keeps a mesh from being the boundary of a solid; empty where it is one.
+/// Returns the reason why a mesh is not the boundary of a solid; empty if it is one.
 std::string obstacle_of(const TriangleMesh& mesh, const Topology& topology, const Context& context) {
   if (topology.nonmanifold_edges > 0) {
     return "the solid touches itself along " + number(topology.nonmanifold_edges, "edge");
@@ -551,7 +553,7 @@ std::string obstacle_of(const TriangleMesh& mesh, const Topology& topology, cons
          " touch, after rounding";
 }
 
-/// A mesh resolved once, not yet checked.
+/// Returns a mesh resolved once, not yet checked.
 ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, const Context& context) {
   ResolvedMesh out;
   out.counts.crowded_edges = crowded_edges(mesh);
@@ -588,7 +590,7 @@ ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, 
   return out;
 }
 
-/// What a second round made of the result of a first one, in terms of the first one's input.
+/// Expresses the result of a second round in terms of the first round's input.
 ResolvedMesh chained(const ResolvedMesh& first, ResolvedMesh second) {
   for (std::uint32_t& v : second.vertex_of) v = v == ResolvedMesh::no_vertex ? v : first.vertex_of[v];
   for (std::uint32_t& t : second.triangle_of) t = first.triangle_of[t];
@@ -617,7 +619,7 @@ ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& optio
     }
     const std::vector<std::int64_t> exact = genera(facts);
     ResolveOptions rest = options;
-    rest.least_winding = 1;  // what was found is wound around once
+    rest.least_winding = 1;  // the result of the first round is wound around once
     for (out.counts.rounds = 1;; ++out.counts.rounds) {
       out.obstacle = obstacle_of(out.mesh, facts, own);
       if (out.obstacle.empty() && genera(facts) != exact) out.obstacle = "rounding changed how its parts hang together";

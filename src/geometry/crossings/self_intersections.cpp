@@ -23,14 +23,14 @@
 namespace blum {
 namespace {
 
-/// Groups between two looks at the number of pairs: few enough that a search without end in sight stops soon.
+/// Groups between two checks of the number of pairs: few enough that a search with very many pairs stops soon.
 constexpr std::size_t smallest_batch = 512;
-/// More where few pairs are found, so that threads seldom wait for each other.
+/// Larger batches if few pairs are found, so that threads rarely wait for each other.
 constexpr std::size_t largest_batch = 4096;
 constexpr std::size_t grain = 8;
 constexpr std::size_t build_grain = 64;
 
-/// Groups this much looser than they were when they were made are made anew.
+/// Groups are rebuilt once they are this much looser than when they were made.
 constexpr double most_loosening = 1.25;
 
 double extent(const Box3& box) {
@@ -38,7 +38,7 @@ double extent(const Box3& box) {
   return size.x + size.y + size.z;
 }
 
-/// The triangles in the order of their middles in space.
+/// Returns the triangles in the spatial order of their middles.
 std::vector<std::uint32_t> order_in_space(const MeshView& mesh, double scale, const Context& context) {
   const auto middle = [&](std::size_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> order_in_space(const MeshView& mesh, double scale, co
   return space_order(mesh.triangles.size(), middle, context);
 }
 
-/// Groups of triangles, each made where it is filled, and so on all threads: they take 200 bytes a triangle.
+/// Groups of triangles. Each is constructed by the thread that fills it, because groups take 200 bytes per triangle.
 class GroupArray {
  public:
   explicit GroupArray(std::size_t count) : count_(count), groups_(std::allocator<TriangleGroup>().allocate(count)) {}
@@ -63,7 +63,7 @@ class GroupArray {
   [[nodiscard]] const TriangleGroup& operator[](std::size_t k) const { return groups_[k]; }
 
  private:
-  static_assert(std::is_trivially_destructible_v<TriangleGroup>);  // those that were not made have nothing to end
+  static_assert(std::is_trivially_destructible_v<TriangleGroup>);  // groups that were not made need no destructor
   std::size_t count_;
   TriangleGroup* groups_;
 };
@@ -71,7 +71,7 @@ class GroupArray {
 /// Triangles in groups of eight, and a tree of the groups' boxes.
 class Search {
  public:
-  /// @param corners  a number for each vertex: triangles have corners in common where these are equal.
+  /// @param corners  a number for each vertex; equal numbers mean a common corner. If empty, vertex indices are used.
   Search(const MeshView& mesh, double scale, std::span<const std::uint32_t> order,
          std::span<const std::uint32_t> corners, const Context& context)
       : order_(order), groups_((order.size() + lanes - 1) / lanes), boxes_(groups_.size()) {
@@ -91,10 +91,10 @@ class Search {
 
   [[nodiscard]] std::size_t group_count() const { return groups_.size(); }
 
-  /// The extent of the groups' boxes for that of the triangles' boxes.
+  /// Returns the sum of the groups' box extents, relative to that of the triangles' boxes.
   [[nodiscard]] double looseness() const { return looseness_; }
 
-  /// Adds the pairs of a group's triangles with each other and with those of later groups; at most about `limit`.
+  /// Adds the pairs within a group, and those with triangles of later groups. Stops at about `limit` pairs.
   void find(std::size_t group, std::size_t limit, std::vector<TrianglePair>& out) const {
     for_each_touching(tree_, boxes_[group], group, [&](std::size_t other) {
       if (other >= group) find_between(group, other, limit, out);
@@ -149,12 +149,12 @@ class Search {
 
   std::span<const std::uint32_t> order_;
   GroupArray groups_;
-  std::vector<Box3> boxes_;  ///< around each group
+  std::vector<Box3> boxes_;  ///< box of each group
   BoxTree tree_;
   double looseness_ = 1;
 };
 
-/// The pairs of some groups, in the order of the groups.
+/// Returns the pairs of groups `begin` to `end`, in the order of the groups.
 std::vector<TrianglePair> find_in(const Search& search, std::size_t begin, std::size_t end, std::size_t limit,
                                   const Context& context) {
   std::vector<std::vector<TrianglePair>> found((end - begin + grain - 1) / grain);
@@ -229,8 +229,8 @@ bool SelfIntersectionSearch::finds_any(const MeshView& mesh, const Context& cont
     order_ = order_in_space(mesh, scale, context);
     looseness_ = -1;
   }
-  // Where corners at one place have several numbers, a pair is found that only has these in common: then the question
-  // is put again. Where none is found, there are no such corners.
+  // If corners at one place have several numbers, this search may find pairs that share only such corners. So the
+  // search is repeated with welded corners if it finds any.
   const Search search(mesh, scale, order_, {}, context);
   if (looseness_ < 0) looseness_ = search.looseness();
   bool found = !find_all(search, 0, context).empty();

@@ -21,7 +21,7 @@ Signs sides(const ExactSpace& space, const FlatTriangle& plane, const FlatTriang
           space.side(plane.plane(), of.corners[2])};
 }
 
-/// Collects what edges of one triangle have in common with the other one.
+/// Collects the points that edges of one triangle share with the other triangle.
 class Collector {
  public:
   Collector(ExactSpace& space, EdgePoints& edge_points, Contact3& out)
@@ -43,7 +43,7 @@ class Collector {
     if (out_.count < 2) out_.points[out_.count++] = p;
   }
 
-  /// A corner in the plane of b.
+  /// Handles a corner in the plane of b.
   void take_corner(PointId p, const FlatTriangle& b) {
     Signs turns{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -57,7 +57,7 @@ class Collector {
     }
   }
 
-  /// An edge from one side of b's plane to the other.
+  /// Handles an edge from one side of b's plane to the other.
   void take_crossing(PointId from, PointId to, const FlatTriangle& b) {
     Signs passes{};
     bool left = false;
@@ -93,24 +93,25 @@ class Collector {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
 
-/// Looks at pairs of segments in one sheet, of all sheets together.
+/// Limit on tested pairs of segments within a sheet, for all sheets together.
 constexpr std::size_t most_looks = 400'000'000;
 
-/// A segment in the plane of a sheet: an edge of one of its triangles, or where a triangle of another plane meets one.
+/// A segment in the plane of a sheet: an edge of one of its triangles, or the intersection with a triangle of another
+/// plane.
 struct SheetSegment {
   std::array<PointId, 2> ends{};
   Cut cut;
   bool is_edge = false;
-  std::vector<PointId> points;  ///< on it, between its ends
+  std::vector<PointId> points;  ///< on the segment, between its ends
 };
 
-/// Triangles that overlap in one plane; mostly a single one.
+/// Triangles that overlap in one plane; usually a single one.
 struct Sheet {
   std::vector<std::uint32_t> members;
   FlatTriangle first;  ///< the first member
   std::vector<SheetSegment> segments;
   std::vector<PointId> points;
-  bool is_crossed = false;  ///< its segments with each other
+  bool is_crossed = false;  ///< crossings of its segments have been found
 };
 
 class Cutter {
@@ -120,7 +121,8 @@ class Cutter {
     sheet_of_.assign(mesh.triangles.size(), nobody);
   }
 
-  /// @returns how many triangles were cut.
+  /// Cuts the triangles into facets.
+  /// @returns the number of triangles that were cut.
   std::size_t cut() {
     std::vector<std::uint32_t> involved;
     for (const TrianglePair& pair : mesh_.pairs) {
@@ -202,7 +204,7 @@ class Cutter {
     }
   }
 
-  /// Between two points of a line, in order, at the ends included.
+  /// Returns true if a point of a line lies between two ends, or at one of them.
   [[nodiscard]] bool is_between(const std::array<PointId, 2>& ends, PointId p) const {
     return space_.compare(ends[0], p) * space_.compare(p, ends[1]) >= 0;
   }
@@ -220,7 +222,7 @@ class Cutter {
     return true;
   }
 
-  /// Finds the points in which segments of a sheet cross, and the points that lie on its triangles' edges.
+  /// Finds the points where segments of a sheet cross, and the points on edges of its triangles.
   void cross_segments(Sheet& sheet) {
     if (std::exchange(sheet.is_crossed, true)) return;
     std::vector<Box3> boxes;
@@ -250,7 +252,7 @@ class Cutter {
     }
   }
 
-  /// Whether a point of the sheet lies inside of a segment.
+  /// Returns true if a point of the sheet lies inside a segment.
   [[nodiscard]] bool lies_on(const SheetSegment& segment, const Box3& box, PointId p) const {
     if (p == segment.ends[0] || p == segment.ends[1]) return false;
     const Vec3d& at = space_.rounded(p);
@@ -264,7 +266,7 @@ class Cutter {
     const SheetSegment& a = sheet.segments[i];
     const SheetSegment& b = sheet.segments[j];
     for (const PointId p : a.ends) {
-      if (p == b.ends[0] || p == b.ends[1]) return;  // they meet in an end, or lie on one line
+      if (p == b.ends[0] || p == b.ends[1]) return;  // a common end, or segments on one line
     }
     if (space_.side(a.cut, b.ends[0]) * space_.side(a.cut, b.ends[1]) >= 0) return;
     if (space_.side(b.cut, a.ends[0]) * space_.side(b.cut, a.ends[1]) >= 0) return;
@@ -272,7 +274,7 @@ class Cutter {
     sheet.points.push_back(p);
   }
 
-  /// A flat triangle's middle corner cuts the edge between the others.
+  /// The middle corner of a flat triangle cuts the edge between the other two.
   void add_flat_triangles() {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (mesh_.is_flat[t] != 1) continue;
@@ -283,7 +285,7 @@ class Cutter {
     }
   }
 
-  /// What cuts one of the edges of a flat triangle cuts another one; whether that was new.
+  /// Points that cut an edge of a flat triangle cut another edge, too. Returns true if a cut was new.
   bool pass_over_flat_triangles() {
     bool is_new = false;
     for (const auto& [a, b, c] : flat_) {
@@ -303,7 +305,7 @@ class Cutter {
     return is_new;
   }
 
-  /// Triangles with a cut edge are cut, too; whether there were any that are not.
+  /// Adds triangles with a cut edge, which are cut, too. Returns true if any was added.
   bool add_triangles_at_cut_edges() {
     if (edge_points_.empty()) return false;
     bool is_new = false;
@@ -333,7 +335,7 @@ class Cutter {
     for (const std::uint32_t t : sheet.members)
       members.push_back(seen_along(space_, mesh_.triangles[t], sheet.first.axis));
     const bool is_single = members.size() == 1;
-    // For each member, which points lie in it.
+    // For each member: which points of the sheet lie in it.
     std::vector<std::vector<bool>> holds(members.size(), std::vector<bool>(sheet.points.size(), is_single));
     for (std::size_t m = 0; m < members.size() && !is_single; ++m) {
       for (std::size_t k = 0; k < sheet.points.size(); ++k) {
@@ -342,7 +344,7 @@ class Cutter {
     }
     for (const std::array<PointId, 3>& corners : triangles) {
       Facet facet{corners, 0, nobody, s};
-      // The first members that face up, and down.
+      // The first member that faces up, and the first that faces down.
       std::uint32_t up = nobody;
       std::uint32_t down = nobody;
       for (std::size_t m = 0; m < members.size(); ++m) {
@@ -363,8 +365,8 @@ class Cutter {
     }
   }
 
-  /// Triangles between the points of a sheet, counter-clockwise seen against its axis. Those of a single member fill
-  /// it: as no point lies outside, neither does a triangle. Those of several may also fill gaps between them.
+  /// Returns triangles between the points of a sheet, counter-clockwise seen against its axis. Those of a single member
+  /// fill it exactly, because no point lies outside. Those of several members may also fill gaps between them.
   std::vector<std::array<PointId, 3>> triangulated(const Sheet& sheet) {
     if (sheet.points.size() == 3 && sheet.members.size() == 1) {
       std::array<PointId, 3> corners = sheet.first.corners;
@@ -412,7 +414,7 @@ class Cutter {
   std::size_t looks_ = 0;
 };
 
-/// Those of triangles that cross, touch or are flat, and of triangles that have an edge between them.
+/// Returns the corners of triangles that cross, touch or are flat, and of triangles with two such corners.
 std::vector<PointId> corners_near_crossings(const CrossedMesh& mesh) {
   std::vector<bool> is_near(mesh.vertices.size(), false);
   const auto mark = [&](std::uint32_t t) {

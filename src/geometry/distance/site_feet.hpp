@@ -1,5 +1,4 @@
-// Blum: where the perpendicular from a point meets an edge's line or a triangle's plane. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: feet of perpendiculars on edges and triangles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "blum/core/vec3.hpp"
@@ -7,10 +6,11 @@
 
 namespace blum {
 
-/// Everyone who evaluates a site does so with these functions, and with its vertices in rising order: the same bits.
+/// Foot of a perpendicular on an edge's line. Every evaluation of a site uses these functions, with the site's vertices
+/// in rising order, to get the same bits.
 struct EdgeFoot {
   double t = 0;  ///< the foot is a + t (b - a)
-  Vec3d point;   ///< of use where 0 < t < 1
+  Vec3d point;   ///< valid if 0 < t < 1
 };
 
 [[nodiscard]] inline EdgeFoot foot_on_edge(const Vec3d& query, const Vec3d& a, const Vec3d& b) {
@@ -21,7 +21,7 @@ struct EdgeFoot {
   return {t, t <= 0.5 ? a + direction * t : b - direction * (1 - t)};
 }
 
-/// The foot on the plane of a triangle that is not flat.
+/// Foot of a perpendicular on the plane of a triangle that is not flat.
 struct FaceFoot {
   double s = 0;  ///< along the longest side
   double t = 0;  ///< along the altitude
@@ -33,11 +33,11 @@ struct FaceFoot {
     t = dot(w, f.v);
     rest = w - f.u * s - f.v * t;
   }
-  /// Whether the foot lies in the open triangle.
+  /// Returns true if the foot lies in the open triangle.
   [[nodiscard]] bool is_inside(const TriangleFrame& f) const {
     return t > 0 && s * f.altitude > t * f.apex && (f.length - s) * f.altitude > t * (f.length - f.apex);
   }
-  /// Whether it does, and further than a margin from the border for certain.
+  /// Returns true if the foot certainly lies in it, further than `margin` from the border.
   [[nodiscard]] bool is_inside(const TriangleFrame& f, double margin) const {
     const double rest_of_side = f.length - f.apex;
     return t > margin && s * f.altitude - t * f.apex > margin * (f.altitude + std::abs(f.apex)) &&

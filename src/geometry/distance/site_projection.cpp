@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t grain = std::size_t{1} << 14;
 
-/// Whether a vector goes against a direction by more than a margin for certain.
+/// Returns true if a vector certainly points against a direction by more than a margin.
 bool goes_against(const Vec3d& vector, const Vec3d& direction, double margin) {
   const double along = dot(vector, direction);
   return along < 0 && along * along > margin * margin * squared_length(direction);
@@ -23,7 +23,7 @@ bool goes_against(const Vec3d& vector, const Vec3d& direction, double margin) {
 
 struct Edge {
   std::array<std::uint32_t, 2> ends{};
-  /// The further vertices of up to two triangles; an end stands for none.
+  /// The opposite vertices of up to two triangles; an end of the edge stands for a missing one.
   std::array<std::uint32_t, 2> apex{};
   std::uint32_t triangles = 0;
 };
@@ -36,18 +36,18 @@ struct Foot {
 }  // namespace
 
 struct SiteProjection::Data {
-  double scale = 1;              ///< coordinates here are those of the mesh times this, a power of two
+  double scale = 1;              ///< factor from mesh coordinates to those here, a power of two
   double unscale = 1;            ///< 1 / scale
   std::vector<Vec3d> positions;  ///< of all vertices
   std::vector<Edge> edges;
-  std::vector<TriangleFrame> faces;  ///< seen with their vertices in rising order
+  std::vector<TriangleFrame> faces;  ///< with their vertices in rising order
   /// Other ends of the edges at vertex v: neighbours[first[v] .. first[v + 1]).
   std::vector<std::uint32_t> first, neighbours;
 
   Data(const MeshView& mesh, const SiteTable& sites, const Context& context);
   void add_edges(const MeshView& mesh, const SiteTable& sites);
 
-  /// These say whether the query is in the site's domain, and if so, put down its foot.
+  /// Return true if the query lies in the site's domain, and then set its foot.
   [[nodiscard]] bool find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const;

@@ -8,7 +8,7 @@
 namespace blum {
 namespace {
 
-/// One use of an edge: the larger vertex, and where the use comes from (3 * triangle + corner, or 3 * F + segment).
+/// One use of an edge: its larger vertex, and its source (3 * triangle + corner, or 3 * F + segment, with F triangles).
 struct EdgeUse {
   std::uint32_t larger = 0;
   std::uint32_t source = 0;
@@ -22,7 +22,7 @@ SiteTable::SiteTable(const MeshView& mesh, const Context& context)
   if (3 * face_count + mesh.segments.size() > std::size_t{0xffffffff}) {
     throw InvalidMesh("the mesh has " + std::to_string(face_count) + " triangles, more than edge ids can count");
   }
-  // Bucket the uses by their smaller vertex, then sort each short bucket: linear time for meshes of bounded degree.
+  // Buckets the uses by smaller vertex, then sorts each short bucket: linear time for meshes of bounded degree.
   std::vector<std::uint32_t> start(vertex_count_ + 1, 0);
   const auto for_each_use = [&](auto visit) {
     for (std::size_t t = 0; t < face_count; ++t) {

@@ -21,7 +21,7 @@
 namespace blum::detail {
 namespace {
 
-/// Points of a line are in order along it where their coordinates are in the order of words.
+/// Lexicographic order of coordinates, which is the order of points along their common line.
 bool is_before(const Vec3d& a, const Vec3d& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
@@ -36,10 +36,11 @@ bool on_one_line(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return turn(0, a, b, c) == 0 && turn(1, a, b, c) == 0 && turn(2, a, b, c) == 0;
 }
 
-/// A triangle without an area is the segment between the first and the last of its corners.
+/// The points that span a triangle. A triangle without area is the segment between the first and the last of its
+/// corners.
 struct Hull {
   std::array<Vec3d, 3> points;
-  int size = 3;  ///< how many points it is spanned by
+  int size = 3;  ///< number of distinct points that span it
 
   explicit Hull(const std::array<Vec3d, 3>& triangle) : points(triangle) {
     if (!has_no_area(triangle)) return;
@@ -53,7 +54,7 @@ bool on_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   return on_one_line(a, b, p) && !is_before(p, std::min(a, b, is_before)) && !is_before(std::max(a, b, is_before), p);
 }
 
-/// For a point in the plane of a triangle: whether it lies in it, the border included.
+/// Returns true if a point in a triangle's plane lies in the triangle or on its border.
 bool in_triangle(const Vec3d& p, const std::array<Vec3d, 3>& t) {
   std::size_t dropped = 0;
   while (dropped < 2 && turn(dropped, t[0], t[1], t[2]) == 0) ++dropped;
@@ -67,7 +68,8 @@ bool in_triangle(const Vec3d& p, const std::array<Vec3d, 3>& t) {
 bool segments_meet(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   if (on_segment(c, a, b) || on_segment(d, a, b) || on_segment(a, c, d) || on_segment(b, c, d)) return true;
   if (orient3d(a, b, c, d) != 0) return false;
-  // No end lies on the other one, so they meet just where they cross, seen along an axis that leaves the plane an area.
+  // No end lies on the other segment, so they meet only if they cross. Seen along an axis in which the plane has an
+  // area.
   for (std::size_t dropped = 0; dropped < 3; ++dropped) {
     const int first = turn(dropped, a, b, c) * turn(dropped, a, b, d);
     const int second = turn(dropped, c, d, a) * turn(dropped, c, d, b);
@@ -94,8 +96,8 @@ bool have_a_corner_in_common(const std::array<Vec3d, 3>& a, const std::array<Vec
   return std::any_of(a.begin(), a.end(), [&](const Vec3d& p) { return std::find(b.begin(), b.end(), p) != b.end(); });
 }
 
-/// Whether two triangles, which may be segments or points, have a point in common. Exact for coordinates of magnitude
-/// 1e-80 to 1e100, or 0.
+/// Returns true if two triangles, which may be segments or points, share a point. Exact for coordinates that are 0 or
+/// of magnitude 1e-80 to 1e100.
 bool meet(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   if (have_a_corner_in_common(a, b)) return true;
   Hull small(a);
@@ -118,14 +120,14 @@ namespace {
 
 using Points = std::array<Vec3d, 3>;
 
-/// What roundings of a distance and of heights along a direction may be, as a part of the largest coordinate.
+/// Bound on the rounding of a distance and of heights along a direction, relative to the largest coordinate.
 constexpr double rounding = 1e-14;
 
-/// A triangle, and what its distances from others need of it.
+/// A triangle with precomputed edges, for its distances from others.
 struct Sides {
   Points corner;
-  Points edge;                    ///< from corner k to the next
-  std::array<double, 3> inverse;  ///< of the squared length of edge k; 0 where it has none
+  Points edge;                    ///< from corner k to the next one
+  std::array<double, 3> inverse;  ///< reciprocal of the squared length of edge k; 0 if the edge has no length
 
   explicit Sides(const Points& p) : corner(p) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -142,7 +144,7 @@ TriangleFeature on_edge(std::size_t k, double t) {
   return {SiteKind::edge, static_cast<std::uint8_t>(k)};
 }
 
-/// Points of both triangles, and the square of how far they are apart.
+/// A point of each triangle, and their squared distance.
 struct Pair {
   double squared = std::numeric_limits<double>::infinity();
   Vec3d p, q;
@@ -151,7 +153,7 @@ struct Pair {
   [[nodiscard]] Pair exchanged() const { return {squared, q, p, of_q, of_p}; }
 };
 
-/// The corners of one triangle and the edges of another.
+/// Offers pairs of a corner of one triangle and a point on an edge of the other.
 void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
   double least = best.squared;
   std::size_t corner = 3;
@@ -162,7 +164,7 @@ void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
       const Vec3d w = a.corner[i] - b.corner[k];
       const double t = std::min(std::max(dot(w, b.edge[k]) * b.inverse[k], 0.0), 1.0);
       const double squared = squared_length(w - b.edge[k] * t);
-      // Without branches, which would be guessed wrong as often as not.
+      // Branch-free, because branches would be mispredicted about half of the time.
       const bool is_less = squared < least;
       least = is_less ? squared : least;
       at = is_less ? t : at;
@@ -175,7 +177,7 @@ void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
   best = {least, a.corner[corner], q, {SiteKind::vertex, static_cast<std::uint8_t>(corner)}, on_edge(edge, at)};
 }
 
-/// The insides of edges, where both hold the feet of the line that is at right angles to them.
+/// Offers pairs of inner points of edges, if both edges contain the feet of their common perpendicular.
 void offer_edges(const Sides& a, const Sides& b, Pair& best) {
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t l = 0; l < 3; ++l) {
@@ -184,7 +186,7 @@ void offer_edges(const Sides& a, const Sides& b, Pair& best) {
       const Vec3d w = b.corner[l] - a.corner[k];
       const Vec3d n = cross(u, v);
       const double square = squared_length(n);
-      // By way of cross products: for edges that are nearly parallel dot products would lose twice as many digits.
+      // Uses cross products: for nearly parallel edges, dot products would lose twice as many digits.
       const double s = dot(cross(w, v), n);
       const double t = dot(cross(w, u), n);
       if (!(s > 0 && s < square && t > 0 && t < square)) continue;
@@ -198,12 +200,12 @@ void offer_edges(const Sides& a, const Sides& b, Pair& best) {
   }
 }
 
-/// Which corners of a triangle may lie over the inside of another one; none is left out that does.
+/// Returns the corners of a triangle that may lie over the inside of another one. Misses none that does.
 std::array<bool, 3> may_be_over(const Sides& a, const Sides& b) {
   const Vec3d normal = cross(b.edge[0], b.edge[1]);
   const double longest =
       std::sqrt(std::max({squared_length(b.edge[0]), squared_length(b.edge[1]), squared_length(b.edge[2])}));
-  // Coordinates are at most 2, so this is more than roundings of the normal and of what follows add up to.
+  // Coordinates are at most 2, so this exceeds the rounding of the normal and of the products below.
   const double margin = 1e-13 * longest * longest * longest;
   std::array<bool, 3> out{true, true, true};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -215,7 +217,7 @@ std::array<bool, 3> may_be_over(const Sides& a, const Sides& b) {
   return out;
 }
 
-/// The corners of one triangle and the inside of another.
+/// Offers pairs of a corner of one triangle and an inner point of the other.
 void offer_corners_and_face(const Sides& a, const Sides& b, Pair& best) {
   const std::array<bool, 3> may_be = may_be_over(a, b);
   if (!may_be[0] && !may_be[1] && !may_be[2]) return;
@@ -241,7 +243,8 @@ void offer_corners_and_face(const Sides& a, const Sides& b, Pair& best) {
   }
 }
 
-/// The closest points of the borders, and of corners and insides: of the triangles, unless they cross.
+/// Returns the closest points of the borders, and of corners and insides. Unless the triangles cross, these are their
+/// closest points.
 Pair closest(const Points& a, const Points& b) {
   const Sides of_a(a);
   const Sides of_b(b);
@@ -255,14 +258,14 @@ Pair closest(const Points& a, const Points& b) {
   return other.exchanged();
 }
 
-/// How far triangles are apart along a direction, at least: times its length.
+/// Returns a lower bound of the distance of two triangles along a direction, times the direction's length.
 double gap_along(const Vec3d& direction, const Points& a, const Points& b) {
   const double here = std::max({dot(direction, a[0]), dot(direction, a[1]), dot(direction, a[2])});
   const double there = std::min({dot(direction, b[0]), dot(direction, b[1]), dot(direction, b[2])});
   return there - here;
 }
 
-/// Where an edge of one triangle passes through the plane of the other, closest to that one.
+/// Offers the point closest to `b` at which an edge of `a` passes through the plane of `b`.
 void offer_crossings(const Points& a, const Points& b, Pair& best) {
   const TriangleFrame frame = make_triangle_frame(b);
   const Vec3d normal = frame.normal();
@@ -279,12 +282,12 @@ void offer_crossings(const Points& a, const Points& b, Pair& best) {
   }
 }
 
-/// A pair of triangles moved so that a corner is in the origin, and scaled so that products neither overflow nor
-/// vanish.
+/// A pair of triangles, moved so that a corner is the origin, and scaled so that products neither overflow nor
+/// underflow.
 struct Placed {
   Points a, b;
   double scale;
-  double largest = 0;  ///< coordinate, after that
+  double largest = 0;  ///< largest coordinate after that
 
   Placed(const Points& first, const Points& second) {
     Box3 box;
@@ -299,12 +302,12 @@ struct Placed {
       a[k] *= scale;
       b[k] *= scale;
     }
-    // At most 2 then, but for coordinates at the ends of the range.
+    // At most 2, except for coordinates at the ends of the range.
     largest = box.largest_coordinate() * scale;
   }
 };
 
-/// Whether the closest points tell that there is a gap for certain.
+/// Returns true if the closest points prove that the triangles are apart.
 bool are_apart(const Placed& placed, const Pair& pair) {
   const Vec3d way = pair.q - pair.p;
   return gap_along(way, placed.a, placed.b) > rounding * placed.largest * length(way);
@@ -341,7 +344,7 @@ TriangleDistance triangle_distance(const Points& a, const Points& b) {
     crossing = crossing.exchanged();
     offer_crossings(placed.b, placed.a, crossing);
     crossing = crossing.exchanged();
-    // None is found where the triangles only just touch.
+    // No crossing is found if the triangles only touch.
     if (crossing.squared < best.squared) best = crossing;
   }
   const auto as_given = [&](const Vec3d& p) { return p / placed.scale + a[0]; };

@@ -1,4 +1,4 @@
-// Blum: orthonormal frames of triangles, whatever their shape. SPDX-License-Identifier: Apache-2.0
+// Blum: orthonormal frames of triangles of any shape. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -8,21 +8,22 @@
 
 namespace blum {
 
-/// Below this ratio of altitude to longest side a triangle is nothing but its border: its plane is lost in rounding.
+/// Below this ratio of altitude to longest side, a triangle counts as its border only, because rounding loses its
+/// plane.
 inline constexpr double flat_ratio = 1e-14;
 
-/// A triangle seen from its longest side: corner `base`, unit vector u along that side, unit vector v along the
-/// altitude over it. What is left of a vector after both are removed is its part along the normal; unlike a product
-/// with a computed normal, its length keeps its precision on needles and slivers.
+/// Frame of a triangle along its longest side: corner `base`, unit vector u along that side, unit vector v along the
+/// altitude over it. A vector without its parts along u and v is its part along the normal. The length of this part is
+/// accurate on needles and slivers, unlike a product with a computed normal.
 struct TriangleFrame {
   Vec3d base, u, v;
-  double length = 0;    ///< of the longest side
-  double altitude = 0;  ///< over it
-  double apex = 0;      ///< where the altitude's foot lies along the longest side, from base
+  double length = 0;    ///< longest side
+  double altitude = 0;  ///< over the longest side
+  double apex = 0;      ///< position of the altitude's foot along the longest side, from base
 
-  /// Whether the triangle has no usable plane.
+  /// Returns true if the triangle has no usable plane.
   [[nodiscard]] bool is_flat() const { return !(altitude > flat_ratio * length); }
-  /// Unit normal, counter-clockwise as the corners were given; zero where flat.
+  /// Returns the unit normal, counter-clockwise in the given order of corners; zero if the triangle is flat.
   [[nodiscard]] Vec3d normal() const { return is_flat() ? Vec3d{} : cross(u, v); }
 };
 
@@ -37,7 +38,7 @@ struct TriangleFrame {
   const Vec3d side = p[(k + 2) % 3] - p[k];
   frame.apex = dot(side, frame.u);
   Vec3d v = side - frame.u * frame.apex;
-  v -= frame.u * dot(v, frame.u);  // once more: what the first step left along u is rounding
+  v -= frame.u * dot(v, frame.u);  // again: the first step leaves rounding along u
   frame.altitude = length(v);
   if (frame.altitude > 0) frame.v = v / frame.altitude;
   return frame;

@@ -8,7 +8,7 @@
 
 namespace blum::detail {
 
-/// A number as the sum of a double and what it was rounded by.
+/// A number as the sum of a double and its rounding error.
 struct Double2 {
   double high = 0;
   double low = 0;
@@ -19,20 +19,20 @@ inline Double2 quick_sum(double large, double small) {
   return {sum, small - (sum - large)};
 }
 
-/// Exact.
+/// Returns x - y exactly.
 inline Double2 difference(double x, double y) {
   const double high = x - y;
   const double from_y = x - high;
   return {high, (x - (high + from_y)) + (from_y - y)};
 }
 
-/// Within 2^-103 of the exact product, relatively.
+/// Returns the product, with a relative error of at most 2^-103.
 inline Double2 product(const Double2& x, const Double2& y) {
   const double high = x.high * y.high;
   return quick_sum(high, std::fma(x.high, y.high, -high) + (x.high * y.low + x.low * y.high));
 }
 
-/// Within 2^-103 of the sum of magnitudes.
+/// Returns the sum, with an error of at most 2^-103 of the sum of magnitudes.
 inline Double2 sum(const Double2& x, const Double2& y) {
   const double high = x.high + y.high;
   const double from_y = high - x.high;
@@ -40,7 +40,7 @@ inline Double2 sum(const Double2& x, const Double2& y) {
   return quick_sum(high, error + (x.low + y.low));
 }
 
-/// a d - b c.
+/// Returns a d - b c.
 inline Double2 minor(const Double2& a, const Double2& b, const Double2& c, const Double2& d) {
   const Double2 left = product(b, c);
   return sum(product(a, d), {-left.high, -left.low});
@@ -48,12 +48,12 @@ inline Double2 minor(const Double2& a, const Double2& b, const Double2& c, const
 
 using Row = std::array<Double2, 3>;
 
-/// p - q, exactly.
+/// Returns p - q exactly.
 inline Row row(const Vec3d& p, const Vec3d& q) {
   return {difference(p.x, q.x), difference(p.y, q.y), difference(p.z, q.z)};
 }
 
-/// u . (v x w).
+/// Returns u . (v x w).
 inline double determinant(const Row& u, const Row& v, const Row& w) {
   const Double2 x = product(u[0], minor(v[1], v[2], w[1], w[2]));
   const Double2 y = product(u[1], minor(v[2], v[0], w[2], w[0]));

@@ -1,4 +1,4 @@
-// Blum: sums of doubles without rounding. SPDX-License-Identifier: Apache-2.0
+// Blum: exact sums of doubles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace blum::detail {
 
-/// The capacity of expansions that grow.
+/// Capacity of expansions that grow.
 inline constexpr std::size_t unbounded = 0;
 
-/// A number held as a sum of doubles that do not overlap, by rising magnitude (Shewchuk 1997). Exact as long as nothing
-/// overflows or falls below the normal range. `capacity`: of the numbers that are added, products counting twice and
-/// products of three four times; or `unbounded`.
+/// A number stored as a sum of doubles that do not overlap, by rising magnitude (Shewchuk 1997). Exact unless something
+/// overflows or falls below the normal range. `capacity` is the number of values that can be added, or `unbounded`.
+/// Products count twice, products of three values four times.
 template <std::size_t capacity>
 class Expansion {
  public:
@@ -49,7 +49,8 @@ class Expansion {
     add_product(std::fma(x, y, -product), z);
     add_product(product, z);
   }
-  /// Adds sign * det(u, v, w). @param sign  1 or -1.
+  /// Adds sign * det(u, v, w).
+  /// @param sign  1 or -1.
   void add_determinant(double sign, const Vec3d& u, const Vec3d& v, const Vec3d& w) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
@@ -58,9 +59,9 @@ class Expansion {
       add_product(-sign * u[i], v[k], w[j]);
     }
   }
-  /// The number, rounded to within a few units of the last place.
+  /// Returns the number, rounded to within a few units in the last place.
   [[nodiscard]] double value() const { return size_ == 0 ? 0 : parts_[size_ - 1]; }
-  /// What the number is the sum of, by rising magnitude.
+  /// Returns the summands, by rising magnitude.
   [[nodiscard]] std::span<const double> parts() const { return {parts_.data(), size_}; }
   [[nodiscard]] int sign() const { return size_ == 0 ? 0 : parts_[size_ - 1] > 0 ? 1 : -1; }
 

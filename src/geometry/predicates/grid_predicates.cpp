@@ -17,7 +17,7 @@ int sign(T value) {
   return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
 }
 
-/// A point seen against an axis.
+/// Returns a point seen against an axis.
 Point2 seen(const Vec3d& p, std::size_t axis) {
   return {p[next_axis(axis)], p[next_axis(next_axis(axis))]};
 }
@@ -30,7 +30,7 @@ Exact times(const Exact& x, const Exact& y) {
   return product;
 }
 
-/// The sign of a b - c d.
+/// Returns the sign of a b - c d.
 int sign_of_difference(const Exact& a, const Exact& b, const Exact& c, const Exact& d) {
   Exact difference = times(a, b);
   const Exact less = times(c, d);
@@ -38,13 +38,13 @@ int sign_of_difference(const Exact& a, const Exact& b, const Exact& c, const Exa
   return difference.sign();
 }
 
-/// A number in double, and how far it may be off.
+/// A double and a bound on its error.
 struct Rounded {
   double value = 0;
   double error = 0;
 };
 
-constexpr double unit = 1.2e-16;  // a rounding, rounded up
+constexpr double unit = 1.2e-16;  // unit roundoff, rounded up
 
 Rounded operator*(const Rounded& x, const Rounded& y) {
   const double value = x.value * y.value;
@@ -52,19 +52,19 @@ Rounded operator*(const Rounded& x, const Rounded& y) {
                      unit * std::abs(value)};
 }
 
-/// The sign of x - y where it is certain, else 0.
+/// Returns the sign of x - y if it is certain, else 0.
 int certain_order(const Rounded& x, const Rounded& y) {
   const double difference = x.value - y.value;
   return std::abs(difference) > (1 + 8 * unit) * (x.error + y.error) + unit * std::abs(difference) ? sign(difference)
                                                                                                    : 0;
 }
 
-/// Of a triangle and the line u, v along an axis: the height of its plane above a base is -volume / area.
+/// A triangle crossed by the line u, v along an axis. The height of its plane above a base is -volume / area.
 class Crossing {
  public:
   Crossing(const TriangleCorners& triangle, std::size_t axis) : corners_(triangle), axis_(axis) {}
 
-  /// Six times the volume between the triangle and a point.
+  /// Returns six times the volume between the triangle and a point.
   [[nodiscard]] Rounded volume(const Vec3d& p) const {
     const Vec3d u = corners_[1] - corners_[0];
     const Vec3d v = corners_[2] - corners_[0];
@@ -91,7 +91,7 @@ class Crossing {
     sum.add_determinant(-1, a, b, c);
     return sum;
   }
-  /// Twice the area seen against an axis: a component of the normal.
+  /// Returns twice the area seen against an axis: a component of the normal.
   [[nodiscard]] Rounded area() const {
     const Point2 a = seen(corners_[0], axis_);
     const Point2 b = seen(corners_[1], axis_);
@@ -110,7 +110,7 @@ class Crossing {
     }
     return sum;
   }
-  /// The sign of the area.
+  /// Returns the sign of the area.
   [[nodiscard]] int facing() const { return normal_sign(corners_, axis_); }
 
  private:
@@ -124,7 +124,7 @@ int side_of_line(const EdgeEnds& edge, std::size_t axis, double u, double v) {
   const Point2 a = seen(edge[0], axis);
   const Point2 b = seen(edge[1], axis);
   if (const int side = orient2d(a, b, {u, v}); side != 0) return side;
-  // The line moves down along u and v, and the side with it by these terms; that of the earlier axis decides.
+  // The line is moved down along u and v, which changes the side by these terms. The term of the earlier axis decides.
   const int along_u = sign(b[1] - a[1]);
   const int along_v = sign(a[0] - b[0]);
   const bool is_u_first = next_axis(axis) < next_axis(next_axis(axis));
@@ -149,17 +149,18 @@ bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& seco
   const Crossing x(first, axis);
   const Crossing y(second, axis);
   Vec3d base;
-  base[axis] = first[0][axis];  // near both, so that the volumes are small
+  base[axis] = first[0][axis];  // near both triangles, so that the volumes are small
   base[next_axis(axis)] = u;
   base[next_axis(next_axis(axis))] = v;
-  // Heights -Vx / Ax < -Vy / Ay: Vy Ax < Vx Ay, turned around where one area is negative.
+  // Heights -Vx / Ax < -Vy / Ay if Vy Ax < Vx Ay, reversed if one area is negative.
   const int turned = x.facing() * y.facing();
   int order = certain_order(y.volume(base) * x.area(), x.volume(base) * y.area());
   if (order == 0) {
     const Exact area_x = x.exact_area(axis);
     const Exact area_y = y.exact_area(axis);
     order = sign_of_difference(y.exact_volume(base), area_x, x.exact_volume(base), area_y);
-    // They meet on the line itself: as it moves down along an axis, a height rises with that component of the normal.
+    // The planes meet on the line. If the line moves down along an axis, a height rises with that component of the
+    // normal.
     for (std::size_t other = 0; order == 0 && other < 3; ++other) {
       if (other != axis) order = sign_of_difference(x.exact_area(other), area_y, y.exact_area(other), area_x);
     }
@@ -169,7 +170,7 @@ bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& seco
 
 namespace {
 
-/// What passes_before() divides, and by what, in double.
+/// Returns dividend and divisor of passes_before(), in double.
 std::array<Rounded, 2> rounded_place(const EdgeEnds& edge, std::size_t across, double plane, std::size_t along) {
   const auto& [a, b] = edge;
   const double below = a[along] * (b[across] - plane);
@@ -182,7 +183,7 @@ std::array<Rounded, 2> rounded_place(const EdgeEnds& edge, std::size_t across, d
 }  // namespace
 
 bool passes_before(const EdgeEnds& first, const EdgeEnds& second, std::size_t across, double plane, std::size_t along) {
-  // An edge passes at (a' (b - plane) + b' (plane - a)) / (b - a), with a', b' the coordinates along the other axis.
+  // An edge passes at (a' (b - plane) + b' (plane - a)) / (b - a); a' and b' are the coordinates along the other axis.
   const auto [x, x_under] = rounded_place(first, across, plane, along);
   const auto [y, y_under] = rounded_place(second, across, plane, along);
   if (const int certain = certain_order(x * y_under, y * x_under); certain != 0) {
@@ -204,7 +205,7 @@ bool passes_before(const EdgeEnds& first, const EdgeEnds& second, std::size_t ac
   parts(second, over_y, under_y, slope_y);
   const int turned = under_x.sign() * under_y.sign();
   int order = sign_of_difference(over_x, under_y, over_y, under_x);
-  if (order == 0) order = -sign_of_difference(slope_x, under_y, slope_y, under_x);  // the plane moves down
+  if (order == 0) order = -sign_of_difference(slope_x, under_y, slope_y, under_x);  // the plane counts as moved down
   return order * turned < 0;
 }
 

@@ -20,34 +20,34 @@
 namespace blum::detail {
 namespace {
 
-/// A shell that touches others is looked at from many of its points, of which one lies on none of them.
+/// Points tested per shell that touches others, to find one that lies on no other shell.
 constexpr std::size_t most_probes_per_shell = 8192;
-/// A shell whose points all lie on others is looked at from this many points a little within it, at this part of the
-/// size of a triangle.
+/// A shell whose points all lie on others is tested at this many points slightly inside it. Their depth is relative to
+/// the size of a triangle.
 constexpr std::size_t most_inner_points = 64;
 constexpr double inner_depth = 1e-7;
-/// Looking from many points ends when triangles and points have met this often, and 16 times for each of them besides:
-/// heaps of shells that lie upon each other would take the square of their number, and say no more in the end.
+/// Tests of many points end after this many comparisons of triangles with points, plus 16 per triangle and point. Heaps
+/// of coincident shells would need the square of their number, without a better answer.
 constexpr std::size_t most_meetings = std::size_t{1} << 22;
 
-/// The middle of a triangle, computed, is this close to it, along each axis, where coordinates are below 2.
+/// Error of the computed middle of a triangle, along each axis, for coordinates below 2.
 constexpr double middle_rounding = 2e-15;
 
 Vec3d middle_of(const std::array<Vec3d, 3>& corners) {
   return corners[0] + ((corners[1] - corners[0]) + (corners[2] - corners[0])) * (1.0 / 3);
 }
 
-/// A point of a shell that we look outwards from.
+/// A point of a shell from which a ray goes outwards.
 struct Query {
   Vec3d point;  ///< in the frame: the ray goes along z
   std::uint32_t shell = 0;
-  double rounding = 0;  ///< how far the shell may be from the point, along each axis
+  double rounding = 0;  ///< bound on the distance of the shell from the point, along each axis
 };
 
 constexpr std::uint32_t no_shell = no_component;
 constexpr std::uint32_t several_shells = no_component - 1;
 
-/// Joins what is known of a set of shells with one more: none, one, or several.
+/// Adds a shell to a set that is known as none, one or several.
 void include_shell(std::uint32_t shell, std::uint32_t& set) {
   set = set == no_shell || set == shell ? shell : several_shells;
 }
@@ -55,23 +55,23 @@ bool has_other_shell(std::uint32_t set, std::uint32_t than) {
   return set != no_shell && set != than;
 }
 
-/// Queries at one point. Shells that lie upon each other ask the same, and are answered once.
+/// Queries at one point. Coincident shells ask at the same points, which are answered once.
 struct QueryPoint {
   Vec3d point;
   std::uint32_t number = 0;
-  std::uint32_t shells = no_shell;  ///< that ask
-  double rounding = 0;              ///< the largest of the queries'
+  std::uint32_t shells = no_shell;  ///< set of shells that ask
+  double rounding = 0;              ///< largest of the queries' roundings
 };
 
 /// A triangle of a shell above a place.
 struct Crossing {
   std::uint32_t place = 0;
   std::uint32_t outer = 0;
-  std::int32_t direction = 0;  ///< 1 where the ray leaves through the triangle, -1 where it enters
+  std::int32_t direction = 0;  ///< 1 if the ray leaves through the triangle, -1 if it enters
 };
 
-/// Puts the axis of shortest extent last, keeping the handedness: rays along it meet the fewest shells. Scales by a
-/// power of two so that the largest coordinate is 1 to 2, and products neither overflow nor underflow.
+/// Puts the axis of shortest extent last, because rays along it meet the fewest shells. Keeps the handedness. Scales by
+/// a power of two so that the largest coordinate is 1 to 2, and products neither overflow nor underflow.
 struct Frame {
   std::size_t first = 0;
   double scale = 1;
@@ -90,7 +90,7 @@ struct Frame {
   [[nodiscard]] Box3 operator()(const Box3& b) const { return {(*this)(b.lower), (*this)(b.upper)}; }
 };
 
-/// The places of queries, binned by x and y; within a bin sorted by z.
+/// Places of queries, binned by x and y, and sorted by z within a bin.
 class QueryPointGrid {
  public:
   /// @param place_of  receives the place of each query.
@@ -109,8 +109,8 @@ class QueryPointGrid {
   [[nodiscard]] std::size_t size() const { return places_.size(); }
   [[nodiscard]] double most_rounding() const { return most_rounding_; }
 
-  /// Calls visit(place) for those in bins that the x and y range of the first box touches, with z in the range of the
-  /// second; stops when it returns true.
+  /// Calls visit(place) for the places in bins that overlap the x and y range of `columns`, with z in the range of
+  /// `heights`. Stops when it returns true, and then returns true.
   template <class Visit>
   bool visit_in(const Box3& columns, const Box3& heights, Visit visit) const {
     const std::int64_t x1 = cell(columns.upper.x, 0);
@@ -167,8 +167,9 @@ class QueryPointGrid {
   std::vector<std::uint32_t> start_;
 };
 
-/// Winding number of a triangle's projection around a point's. The point counts as moved by infinitely little along +x
-/// and by infinitely less along +y: no point is on an edge then, and neighbouring triangles agree about every edge.
+/// Returns the winding number of a triangle's projection around that of a point. The point counts as moved
+/// infinitesimally along +x, and by infinitely less along +y. So no point lies on an edge, and neighbouring triangles
+/// agree about every edge.
 int projected_winding(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
   int winding = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -183,8 +184,8 @@ int projected_winding(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
   return winding;
 }
 
-/// Whether a vertical line through a point misses a triangle for certain, as do lines that differ from it by no more
-/// than the point's rounding: the point lies beyond an edge, seen from above. Of upright triangles, beside their line.
+/// Returns true if a vertical line through a point certainly misses a triangle, for all points within the rounding.
+/// Seen from above, the point lies beyond an edge. For upright triangles, it lies beside their line.
 bool passes_beside(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& a = corners[k];
@@ -207,8 +208,8 @@ struct Height {
   bool is_certain = true;
 };
 
-/// Whether a triangle that turns counter-clockwise (winding 1) or clockwise (-1) from above lies above a point, and all
-/// others that differ from it by no more than its rounding.
+/// Returns whether a triangle lies above a point, and whether this holds for all points within the rounding. Seen from
+/// above, the triangle turns counter-clockwise (winding 1) or clockwise (-1).
 Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding, int winding) {
   const Vec3d a = corners[0] - p;
   const Vec3d b = corners[1] - p;
@@ -220,7 +221,7 @@ Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, doubl
   const double determinant = dot(a, cross(b, c));
   const double permanent =
       ma.x * (mb.y * mc.z + mb.z * mc.y) + ma.y * (mb.z * mc.x + mb.x * mc.z) + ma.z * (mb.x * mc.y + mb.y * mc.x);
-  // The determinant's gradient is the normal of the triangle, twice its area long.
+  // The determinant's gradient is the triangle's normal, of length twice the area.
   const Vec3d slope = magnitude(cross(corners[1] - corners[0], corners[2] - corners[0]));
   const double unknown = 1e-15 * permanent + rounding * (slope.x + slope.y + slope.z);
   return {determinant * winding > 0, std::abs(determinant) > unknown};
@@ -233,7 +234,8 @@ class Nesting {
     bounds_ = frame_(bounds_);
   }
 
-  /// @return  how often a triangle met a place.
+  /// Nests the shells.
+  /// @return  number of comparisons of a triangle with a place.
   std::size_t run() {
     choices_.resize(set_.shells.size());
     const std::size_t without_end = std::numeric_limits<std::size_t>::max();
@@ -261,7 +263,7 @@ class Nesting {
     return box;
   }
 
-  /// One vertex of each shell.
+  /// Returns one vertex of each shell.
   [[nodiscard]] std::vector<Query> first_vertices() const {
     std::vector<Query> queries;
     std::vector<bool> is_seen(set_.shells.size(), false);
@@ -274,7 +276,7 @@ class Nesting {
     return queries;
   }
 
-  /// Calls visit(shell, corners in the frame) for triangles of these shells, spread evenly, about `most` of each.
+  /// Calls visit(shell, corners in the frame) for about `most` evenly spread triangles of each of these shells.
   template <class Visit>
   void for_each_of_many(const std::vector<std::uint32_t>& shells, std::size_t most, Visit visit) const {
     std::vector<std::size_t> step(set_.shells.size(), 0);
@@ -292,7 +294,7 @@ class Nesting {
     return {frame_(mesh_.vertices[a]), frame_(mesh_.vertices[b]), frame_(mesh_.vertices[c])};
   }
 
-  /// A corner and the middle of many triangles of these shells.
+  /// Returns a corner and the middle of many triangles of these shells.
   [[nodiscard]] std::vector<Query> many_points(const std::vector<std::uint32_t>& shells) const {
     std::vector<Query> queries;
     for_each_of_many(shells, most_probes_per_shell / 2, [&](std::uint32_t shell, const std::array<Vec3d, 3>& corners) {
@@ -302,8 +304,8 @@ class Nesting {
     return queries;
   }
 
-  /// Points a little within the shells, under the middles of some of their triangles: for shells all of whose points
-  /// lie on others. Far from the surface as roundings go, and near it as features do.
+  /// Returns points slightly inside the shells, under the middles of some triangles, for shells whose points all lie on
+  /// others. The depth is large against rounding, and small against features.
   [[nodiscard]] std::vector<Query> inner_points(const std::vector<std::uint32_t>& shells) const {
     std::vector<Query> queries;
     for_each_of_many(shells, most_inner_points, [&](std::uint32_t shell, const std::array<Vec3d, 3>& corners) {
@@ -316,13 +318,13 @@ class Nesting {
     return queries;
   }
 
-  /// What was found above the places of a round.
+  /// Shells found above the places of a round.
   struct Answers {
     std::vector<std::uint32_t> shell;       ///< of each query
     std::vector<std::uint32_t> place;       ///< of each query
-    std::vector<std::uint32_t> touched_by;  ///< of each place: the shells that it may lie on
-    std::vector<Crossing> containers;  ///< by place and outer shell: winding numbers around the place that are not 0
-    std::vector<std::size_t> start;    ///< in containers, of each place, and the end
+    std::vector<std::uint32_t> touched_by;  ///< of each place: set of shells that it may lie on
+    std::vector<Crossing> containers;       ///< nonzero winding numbers around places, by place and outer shell
+    std::vector<std::size_t> start;         ///< first container of each place, and the end
     bool is_complete = true;
 
     [[nodiscard]] std::span<const Crossing> around(std::uint32_t place) const {
@@ -337,7 +339,7 @@ class Nesting {
   Answers ask(const std::vector<Query>& queries) {
     return ask(queries, meetings_ + most_meetings + 16 * (queries.size() + mesh_.triangles.size()));
   }
-  /// @param most  meetings at the end, with those of earlier rounds.
+  /// @param most  limit on the number of meetings, including those of earlier rounds.
   Answers ask(const std::vector<Query>& queries, std::size_t most) {
     Answers out;
     for (const Query& query : queries) out.shell.push_back(query.shell);
@@ -354,7 +356,8 @@ class Nesting {
     return out;
   }
 
-  /// Compares a triangle with the places below and beside it. @return  false when there were too many meetings.
+  /// Compares a triangle with the places below and beside it.
+  /// @return  false if there were too many meetings.
   bool meet(std::size_t triangle, const QueryPointGrid& grid, std::size_t most, Answers& out) {
     const std::uint32_t outer = set_.of_triangle[triangle];
     const Box3 shell = frame_(set_.shells[outer].bounds);
@@ -373,14 +376,14 @@ class Nesting {
       const bool is_beside = is_within(near, place.point) && place.point.z >= near.lower.z;
       if (winding == 0 && (!is_beside || passes_beside(corners, place.point, place.rounding))) return false;
       const Height height = compare_height(corners, place.point, place.rounding, winding);
-      // A place on an upright wall has no winding number in the projection, but must not count as beyond the wall.
+      // A place on an upright wall has no winding number in the projection, but must not count as off the wall.
       if (!height.is_certain) include_shell(outer, out.touched_by[place.number]);
       if (winding != 0 && height.is_above) out.containers.push_back({place.number, outer, winding});
       return false;
     });
   }
 
-  /// Sums crossings up to winding numbers, place by place and shell by shell.
+  /// Sums crossings to winding numbers, place by place and shell by shell.
   static void sum_up(std::size_t places, Answers& answers) {
     std::vector<Crossing>& all = answers.containers;
     std::sort(all.begin(), all.end(), [](const Crossing& a, const Crossing& b) {
@@ -412,7 +415,7 @@ class Nesting {
     return rounds_[*choice.round].around(choice.place);
   }
 
-  /// The shells about which no round has decided, rising.
+  /// Returns the shells that no round has decided, in rising order.
   [[nodiscard]] std::vector<std::uint32_t> without_choice() const {
     std::vector<std::uint32_t> shells;
     for (std::uint32_t s = 0; s < choices_.size(); ++s) {
@@ -421,7 +424,7 @@ class Nesting {
     return shells;
   }
 
-  /// Chooses each shell's first point of which there is no doubt that it lies on no other shell.
+  /// Chooses each shell's first point that certainly lies on no other shell.
   void choose_certain(std::size_t round) {
     const Answers& answers = rounds_[round];
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
@@ -430,15 +433,15 @@ class Nesting {
     }
   }
 
-  /// Chooses what is around all points of each shell that lie on no other one: what a shell lies in is around all
-  /// points within it, and what lies in it is not.
+  /// Chooses the shells that surround all points of a shell that lie on no other shell. A shell's containers surround
+  /// all points inside it; shells that it contains do not.
   void choose_common(std::size_t round) {
     Answers& answers = rounds_[round];
     std::vector<std::vector<std::uint32_t>> places(set_.shells.size());
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
       if (!answers.is_doubtful(query)) places[answers.shell[query]].push_back(answers.place[query]);
     }
-    std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // equal shells ask at equal points
+    std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // equal shells have equal points
     for (std::uint32_t s = 0; s < places.size(); ++s) {
       if (places[s].empty()) continue;
       std::sort(places[s].begin(), places[s].end());
@@ -448,7 +451,8 @@ class Nesting {
     }
   }
 
-  /// Adds a place that has around it what is around all of these. @return  its number.
+  /// Adds a place whose containers are those common to all of these places.
+  /// @return  its number.
   static std::uint32_t add_common(const std::vector<std::uint32_t>& places, Answers& answers) {
     const std::span<const Crossing> first = answers.around(places.front());
     std::vector<Crossing> common(first.begin(), first.end());
@@ -464,7 +468,7 @@ class Nesting {
     return static_cast<std::uint32_t>(answers.start.size() - 2);
   }
 
-  /// Chooses the first point of each shell that has no choice, doubtful as it is.
+  /// Chooses the first point of each undecided shell, although it is doubtful.
   void choose_first(std::size_t round) {
     const Answers& answers = rounds_[round];
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
@@ -477,7 +481,7 @@ class Nesting {
     return box.lower.x <= p.x && p.x <= box.upper.x && box.lower.y <= p.y && p.y <= box.upper.y;
   }
 
-  /// The shells whose box holds a query of another shell.
+  /// Returns a flag per shell: true if its box contains a query of another shell.
   [[nodiscard]] std::vector<bool> find_candidates(const QueryPointGrid& grid) const {
     std::vector<bool> result(set_.shells.size(), false);
     for (std::uint32_t s = 0; s < result.size(); ++s) {
@@ -489,7 +493,7 @@ class Nesting {
     return result;
   }
 
-  /// How many other shells each one lies in.
+  /// Sets the number of other shells that contain each shell.
   void set_depths() {
     for (std::uint32_t s = 0; s < choices_.size(); ++s) {
       if (!choices_[s].round) continue;
@@ -501,14 +505,14 @@ class Nesting {
     }
   }
 
-  /// The deepest of the shells around each one; of several, that with the smallest number.
+  /// Sets the parent of each shell: the deepest shell around it. Among several, that with the smallest number.
   void set_parents() {
     std::vector<std::uint32_t> order;
     for (std::uint32_t s = 0; s < choices_.size(); ++s) {
       if (choices_[s].round) order.push_back(s);
     }
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return choices_[a] < choices_[b]; });
-    std::array<std::int64_t, 2> deepest{-1, -1};  // around the place of the last shell looked at
+    std::array<std::int64_t, 2> deepest{-1, -1};  // around the place of the previous shell
     for (std::size_t k = 0; k < order.size(); ++k) {
       const std::uint32_t s = order[k];
       if (k == 0 || choices_[order[k - 1]] != choices_[s]) deepest = two_deepest(around(choices_[s]));
@@ -516,7 +520,7 @@ class Nesting {
     }
   }
 
-  /// -1 where there are fewer.
+  /// Returns the two deepest shells; -1 for missing ones.
   [[nodiscard]] std::array<std::int64_t, 2> two_deepest(std::span<const Crossing> outers) const {
     std::array<std::int64_t, 2> best{-1, -1};
     const auto depth = [&](std::int64_t s) { return set_.shells[static_cast<std::size_t>(s)].depth; };

@@ -1,4 +1,4 @@
-// Blum: components of a surface and how its closed ones lie in each other. SPDX-License-Identifier: Apache-2.0
+// Blum: components of a surface, and the nesting of its closed ones. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,48 +15,48 @@ namespace blum::detail {
 
 inline constexpr std::uint32_t no_component = 0xffffffff;
 
-/// Whether a triangle names a vertex twice: such triangles bound nothing and are left out of all topology.
+/// Returns true if a triangle names a vertex twice. Such triangles bound nothing and are left out of all topology.
 [[nodiscard]] inline bool names_vertex_twice(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
 /// The triangles that use one edge.
 struct EdgeTally {
-  std::uint32_t count = 0;     ///< uses
+  std::uint32_t count = 0;     ///< number of uses
   std::int32_t balance = 0;    ///< uses from the smaller to the larger vertex, minus the others
-  std::uint32_t triangle = 0;  ///< one that uses it
+  std::uint32_t triangle = 0;  ///< one that uses the edge
 
   [[nodiscard]] bool is_consistent() const { return count == 2 && balance == 0; }
 };
 [[nodiscard]] std::vector<EdgeTally> tally_edges(const MeshView& mesh, const SiteTable& sites);
 
-/// Sets of triangles connected through edges, by their smallest triangle.
+/// Sets of triangles connected through edges, in the order of their smallest triangles.
 struct SurfaceComponents {
   std::uint32_t count = 0;
   std::vector<std::uint32_t> of_triangle;  ///< no_component for triangles that name a vertex twice
   std::vector<std::uint8_t> is_closed;     ///< every edge has exactly two triangles
-  std::vector<std::uint8_t> is_shell;      ///< closed, and consistently oriented
+  std::vector<std::uint8_t> is_shell;      ///< closed and consistently oriented
 };
 [[nodiscard]] SurfaceComponents find_components(const MeshView& mesh, const SiteTable& sites,
                                                 std::span<const EdgeTally> edges);
 
-/// The closed, consistently oriented components, and which triangles form them.
+/// The closed, consistently oriented components, and the triangles that form them.
 struct ShellSet {
   std::vector<Shell> shells;
   std::vector<std::uint32_t> of_triangle;  ///< shell of each triangle, or no_component
 };
 
-/// All but the Euler characteristic and genus of each shell.
-/// Cost: linear, plus for each shell the triangles above one of its vertices that belong to shells around that vertex.
+/// Finds the shells, without the Euler characteristic and genus of each. Cost: linear, plus, for each shell, the
+/// triangles above one of its vertices that belong to shells around that vertex.
 [[nodiscard]] ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, const Context& context);
 
-/// Sets depth and parent: for a point of each shell, the winding numbers of the others around it, by counting the
-/// triangles that a ray from it crosses. The point is a vertex that lies on no other shell; else the middle of such a
-/// triangle; where all of these lie on others, many points a little within the shell: it lies in what is around all of
-/// them. Where shells lie upon each other so often that none is found in bounded work, a vertex that lies on them
-/// decides.
-/// @param set  with signed volumes; their signs tell the inner side.
-/// @return  how often a triangle was compared with a point.
+/// Sets depth and parent of each shell: from the winding numbers of the other shells around one of its points. These
+/// come from the triangles that a ray from the point crosses. The point is a vertex that lies on no other shell, else
+/// the middle of a triangle with that property. If all of these lie on other shells, many points slightly inside the
+/// shell are used. The shell then lies in the shells around all of them. If shells coincide so often that bounded work
+/// finds no such point, a vertex that lies on other shells decides.
+/// @param set  with signed volumes, whose signs identify the inner side.
+/// @return  number of comparisons of a triangle with a point.
 std::size_t nest_shells(const MeshView& mesh, ShellSet& set, const Context& context);
 
 }  // namespace blum::detail

@@ -38,7 +38,7 @@ bool all_face_outwards(const ShellSet& set) {
   return std::all_of(set.shells.begin(), set.shells.end(), [](const Shell& s) { return s.faces_outwards; });
 }
 
-/// Corners exactly on one line.
+/// Returns true if the corners are exactly collinear.
 bool is_flat(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d ab = b - a;
   const Vec3d ac = c - a;
@@ -48,7 +48,7 @@ bool is_flat(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
          detail::orient2d({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) == 0;
 }
 
-/// The uses of every edge, as 3 * triangle + corner.
+/// Uses of every edge, as 3 * triangle + corner.
 struct EdgeUses {
   std::vector<std::uint32_t> start;
   std::vector<std::uint32_t> uses;
@@ -72,7 +72,7 @@ std::uint32_t next_corner(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
 
-/// Fans: corners at one vertex that are connected through edges with two triangles.
+/// Fans: sets of corners at one vertex that are connected through edges with two triangles.
 class Fans {
  public:
   Fans(const MeshView& mesh, const EdgeUses& edges) : mesh_(mesh), sets_(3 * mesh.triangles.size()) {
@@ -83,7 +83,7 @@ class Fans {
   }
   [[nodiscard]] bool is_first(std::uint32_t corner) { return sets_.find(corner) == corner; }
 
-  /// Chains of boundary edges, followed around fans. The fans are lost by it.
+  /// Returns the number of chains of boundary edges, followed around fans. Destroys the fans.
   [[nodiscard]] std::size_t count_boundary_loops(const EdgeUses& edges) {
     std::vector<std::uint32_t> ends;
     for (std::size_t e = 0; e + 1 < edges.start.size(); ++e) {
@@ -101,7 +101,7 @@ class Fans {
   void join_across(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t a_next = next_corner(a);
     const std::uint32_t b_next = next_corner(b);
-    if (vertex(a) == vertex(b)) {  // the same direction
+    if (vertex(a) == vertex(b)) {  // same direction
       sets_.join(a, b);
       sets_.join(a_next, b_next);
     } else {
@@ -115,8 +115,8 @@ class Fans {
   UnionFind sets_;
 };
 
-/// Triangles with the vertices of an earlier one. They share all three edges, so each edge looks for copies among the
-/// triangles for which it is the smallest of the three.
+/// Counts triangles with the vertices of an earlier one. They share all three edges. So each edge searches for copies
+/// only among the triangles of which it is the smallest edge.
 std::size_t count_duplicates(const MeshView& mesh, const SiteTable& sites, const EdgeUses& edges) {
   std::size_t duplicates = 0;
   std::vector<std::uint32_t> opposite;
@@ -153,7 +153,7 @@ void count_pieces(const MeshView& mesh, Topology& result) {
   }
 }
 
-/// Degenerate triangles, and the area of all.
+/// Counts degenerate triangles, and sums the area of all.
 void measure_triangles(const MeshView& mesh, Topology& result) {
   for (const Triangle& t : mesh.triangles) {
     const Vec3d& a = mesh.vertices[t[0]];
@@ -164,7 +164,7 @@ void measure_triangles(const MeshView& mesh, Topology& result) {
   }
 }
 
-/// Vertices with more than one fan; the Euler characteristics of the mesh and of its shells.
+/// Counts vertices with more than one fan. Computes the Euler characteristics of the mesh and of its shells.
 void count_fans(const MeshView& mesh, const EdgeCounts& edges, Fans& fans, const ShellSet& set, Topology& result) {
   std::vector<std::uint32_t> fans_of(mesh.vertices.size(), 0);
   std::vector<std::int64_t> fans_in(set.shells.size(), 0);

@@ -39,14 +39,14 @@ class DisjointSets {
 };
 
 double distance(const Vec3d& a, const Vec3d& b) {
-  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);  // neither overflows nor underflows, unlike the sum of squares
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);  // unlike the sum of squares, neither overflows nor underflows
 }
 
-/// The cells of an irregular grid, each no wider than tolerance / sqrt(3): all vertices of a cell belong together.
+/// Cells of an irregular grid, each at most tolerance / sqrt(3) wide. All vertices of a cell belong together.
 ///
-/// The slabs of each axis begin at a coordinate that occurs, so they are as right far from the origin, where a
-/// coordinate divided by the width would no longer tell neighbours apart. Two slabs on, a coordinate is more than one
-/// width away, three slabs on more than two: vertices within tolerance are at most two slabs apart on each axis.
+/// Slabs along each axis begin at coordinates that occur. So they stay accurate far from the origin, where quotients of
+/// coordinates and width would not distinguish neighbours. A coordinate two slabs on is more than one width away, three
+/// slabs on more than two. Vertices within tolerance are thus at most two slabs apart on each axis.
 class CloseVertices {
  public:
   CloseVertices(std::span<const Vec3d> vertices, double tolerance, std::span<std::uint32_t> cluster)
@@ -70,7 +70,7 @@ class CloseVertices {
   using Key = std::array<std::uint32_t, 3>;
   struct Cell {
     Key key;
-    std::size_t begin, end;  ///< in order_
+    std::size_t begin, end;  ///< range in order_
   };
 
   void make_cells() {
@@ -92,7 +92,7 @@ class CloseVertices {
     order_.swap(sorted);
   }
 
-  /// Entry `axis` of each key: the number of the slab of that axis.
+  /// Sets entry `axis` of each key to the number of the slab along that axis.
   void number_slabs(std::size_t axis, double width, std::vector<std::uint32_t>& by_coordinate, std::vector<Key>& keys) {
     std::vector<double> coordinates(order_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) coordinates[i] = vertices_[order_[i]][axis];
@@ -110,8 +110,8 @@ class CloseVertices {
     }
   }
 
-  /// Joins every cell with those (dx, dy, -2 .. 2) slabs away, later cells only. Cells are sorted, and so are the
-  /// places where their neighbours begin: one sweep finds them all.
+  /// Joins every cell with the later cells that are (dx, dy, -2 .. 2) slabs away. Cells are sorted, and so are the
+  /// starts of their neighbours, so one sweep finds them all.
   void join_neighbours(std::int64_t dx, std::int64_t dy) {
     std::size_t first = 0;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -143,8 +143,8 @@ class CloseVertices {
     return box;
   }
 
-  /// Whether some vertex of a is within tolerance of some vertex of b. Halves crowded groups, so that two crowds do not
-  /// have all their pairs compared; reorders within the groups.
+  /// Returns true if some vertex of a is within tolerance of some vertex of b. Halves crowded groups, to avoid
+  /// comparing all pairs of two crowds. Reorders within the groups.
   bool touch(std::span<std::uint32_t> a, std::span<std::uint32_t> b) {
     constexpr std::size_t few_pairs = 64;
     if (a.size() * b.size() <= few_pairs) {
@@ -179,10 +179,10 @@ class CloseVertices {
 };
 
 /// Joins the clusters of vertices whose distance is at most `tolerance`.
-/// @param cluster  for each vertex the smallest vertex at exactly its place; becomes the smallest of its cluster.
+/// @param cluster  in: the smallest vertex at exactly each vertex's place. Out: the smallest vertex of its cluster.
 void join_close_vertices(std::span<const Vec3d> vertices, double tolerance, std::span<std::uint32_t> cluster) {
   CloseVertices(vertices, tolerance, cluster).run();
-  // Roots are the smallest of their sets, and parents are smaller than their children.
+  // One pass suffices: roots are the smallest of their sets, and parents are smaller than their children.
   for (std::uint32_t& representative : cluster) representative = cluster[representative];
 }
 
@@ -205,13 +205,13 @@ bool same_place(const Vec3d& a, const Vec3d& b) {
   return bits(a.x) == bits(b.x) && bits(a.y) == bits(b.y) && bits(a.z) == bits(b.z);
 }
 
-/// A hash table of vertices with open addressing, at most half full. A slot holds a vertex and some bits of its hash,
-/// which spare most looks at vertices that differ.
+/// Hash table of vertices with open addressing, at most half full. A slot holds a vertex and some bits of its hash,
+/// which avoid most comparisons of different vertices.
 class VertexTable {
  public:
   explicit VertexTable(std::span<const Vec3d> vertices) : vertices_(vertices), slots_(1024) {}
 
-  /// The first vertex that was ever entered at the place of this one: itself, when it is new there.
+  /// Returns the first vertex entered at this vertex's place: the vertex itself if the place is new.
   std::uint32_t enter(std::uint32_t vertex) {
     if (2 * used_ >= slots_.size()) grow();
     const std::uint64_t h = hash(vertices_[vertex]);
@@ -310,8 +310,8 @@ class Welder {
     }
   }
 
-  /// Adds the edges of collapsed triangles that nothing else has. Only edges that begin at a vertex where one was lost
-  /// are looked at, which are few.
+  /// Adds the edges of collapsed triangles that nothing else has. Only edges that begin at the first vertex of a lost
+  /// edge are checked, which are few.
   void keep_lost_edges() {
     std::vector<bool> begins(result_.vertices.size(), false);
     for (const Segment& edge : lost_edges_) begins[edge[0]] = true;
@@ -379,7 +379,7 @@ TriangleMesh weld(const MeshView& mesh, double tolerance) {
   TriangleMesh result;
   std::vector<std::uint32_t> new_index(cluster.size());
   for (std::uint32_t i = 0; i < cluster.size(); ++i) {
-    // The representative is the smallest of its cluster, so its own new index is known by now.
+    // The representative is the smallest of its cluster, so its new index is already known.
     if (cluster[i] == i) {
       new_index[i] = static_cast<std::uint32_t>(result.vertices.size());
       result.vertices.push_back(mesh.vertices[i]);

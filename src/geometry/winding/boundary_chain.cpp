@@ -15,7 +15,7 @@
 namespace blum {
 namespace {
 
-/// Edges are cut into pieces of at most this length (the mesh is about 1 long), so that their boxes are tight.
+/// Edges are cut into pieces of at most this length, so that their boxes are tight. The mesh is about 1 long.
 constexpr double piece_length = 1.0 / 32;
 
 /// A directed edge from the smaller to the larger vertex, times its multiplicity.
@@ -24,7 +24,7 @@ struct ChainEdge {
   std::int64_t multiplicity = 0;
 };
 
-/// Adds up the directed edges of all triangles, told apart by vertex index.
+/// Returns the sum of the directed edges of all triangles, identified by vertex index.
 std::vector<ChainEdge> net_edges(const MeshView& mesh, const SiteTable& sites) {
   std::vector<std::int32_t> net(sites.edge_count(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -41,7 +41,7 @@ std::vector<ChainEdge> net_edges(const MeshView& mesh, const SiteTable& sites) {
   return chain;
 }
 
-/// Lets vertices at the same position cancel each other's edges.
+/// Identifies vertices at the same position, so that their edges cancel.
 void weld_chain(const MeshView& mesh, std::vector<ChainEdge>& chain) {
   std::vector<std::uint32_t> vertices;
   for (const ChainEdge& edge : chain) vertices.insert(vertices.end(), {edge.from, edge.to});
@@ -112,7 +112,7 @@ std::vector<Piece> cut_into_pieces(const std::vector<BoundaryChain::Edge>& edges
   return pieces;
 }
 
-/// Distance between two boxes.
+/// Returns the distance between two boxes.
 double box_distance(const Box3& a, const Box3& b) {
   return length(max(max(a.lower - b.upper, b.lower - a.upper), Vec3d{}));
 }
@@ -184,17 +184,17 @@ double BoundaryChain::gradient_bound(const Box3& box, double enough) const {
   std::size_t size = 0;
   stack[size++] = {0, static_cast<std::uint32_t>(levels_.size() - 1)};
   Vec3d field;      // at the box's centre
-  double rest = 0;  // bound on what is missing from it
+  double rest = 0;  // bound on the part missing from `field`
   const auto bound_of = [](double sum) { return sum * (1 + 1e-9) / (4 * std::numbers::pi); };
   while (size > 0) {
     const Item item = stack[--size];
     const Cluster& cluster = levels_[item.level][item.index];
     const Vec3d offset = cluster.center - center;
     const double distance = length(offset);
-    const double least = distance - cluster.radius - half;  // between any point of the box and any of the cluster
+    const double least = distance - cluster.radius - half;  // lower bound of the distance from box to cluster
     const double missing = cluster.moment + half * cluster.weight;
     const bool is_piece = item.level == 0;
-    // Opening a cluster reduces its own extent's part only, not that of the box.
+    // Opening a cluster reduces only the part due to its own extent, not that due to the box.
     const bool is_compact =
         least > 0 && (cluster.moment <= 0.2 * cluster.weight * least || cluster.moment <= 0.25 * half * cluster.weight);
     if (!is_piece && !is_compact) {
@@ -215,7 +215,7 @@ double BoundaryChain::gradient_bound(const Box3& box, double enough) const {
     } else {
       rest += plain;
     }
-    // With room, so that callers may compare multiples of both.
+    // With a margin, so that callers may compare multiples of both.
     if (bound_of(rest) > 1.001 * enough) return bound_of(rest);
   }
   return bound_of(length(field) + rest);

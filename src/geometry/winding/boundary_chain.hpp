@@ -1,4 +1,4 @@
-// Blum: the boundary of a triangle soup, and how strongly it is felt at a distance. SPDX-License-Identifier: Apache-2.0
+// Blum: the boundary of a triangle soup, and bounds on its effect at a distance. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -14,34 +14,35 @@
 
 namespace blum {
 
-/// The edges that are left when all directed edges of all triangles are added up, with multiplicities: nothing for a
-/// closed surface, the rims of holes for an open one. Ends are compared by position.
+/// The sum of the directed edges of all triangles, with multiplicities. It is empty for a closed surface, and consists
+/// of the rims of holes for an open one. Ends are compared by position.
 ///
-/// The winding number changes, where no triangle lies between, only by the solid angles of this chain: its gradient is
-/// the chain's Biot-Savart field over 4 pi, the sum of dl x R / R^3, R from the query to the edge. That is summed as a
-/// vector, so that the two banks of a crack, or the two sides of a small hole far away, cancel; what the sum leaves out
-/// (the extent of clusters and of the query's box) is bounded by the kernel's derivative, at most 2 / R^3.
+/// If no triangle lies between two points, their winding numbers differ only by the solid angles of this chain. The
+/// winding number's gradient is the chain's Biot-Savart field over 4 pi: the sum of dl x R / R^3, R from the query to
+/// the edge. It is summed as a vector, so that the two banks of a crack cancel, and the two sides of a small hole far
+/// away. The sum leaves out the extent of clusters and of the query's box. The error is bounded by the kernel's
+/// derivative, at most 2 / R^3.
 class BoundaryChain {
  public:
   BoundaryChain() = default;
-  /// @param scale  coordinates are multiplied by it, and those of queries must have been. A power of two.
+  /// @param scale  factor applied to coordinates, a power of two. Queries must be scaled by it beforehand.
   BoundaryChain(const MeshView& mesh, const SiteTable& sites, double scale, const Context& context);
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
-  /// An edge as the surface runs along it, scaled.
+  /// A scaled edge, in the direction in which the surface traverses it.
   struct Edge {
     Vec3d from, to;
     std::int64_t multiplicity = 0;  ///< > 0
   };
-  /// Empty where there are more than most_edges, counted as often as they occur.
+  /// Returns the edges; empty if there are more than most_edges, counted with multiplicity.
   [[nodiscard]] std::span<const Edge> edges() const { return edges_; }
   static constexpr std::int64_t most_edges = 2048;
-  /// A bound on |grad w| over a box, in scaled coordinates; where it is above `enough`, any number above that.
-  /// Allocates nothing.
+  /// Returns a bound on |grad w| over a box, in scaled coordinates. If it exceeds `enough`, returns any number above
+  /// `enough`. Allocates nothing.
   [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
 
  private:
-  /// Pieces of edges, or clusters of them.
+  /// A piece of an edge, or a cluster of pieces.
   struct Cluster {
     Vec3d center;
     Vec3d vector;             ///< sum of directed lengths times multiplicities
@@ -54,7 +55,8 @@ class BoundaryChain {
   [[nodiscard]] static Cluster merge(const Cluster* children, std::size_t count);
 
   std::vector<Edge> edges_;
-  /// Level 0: pieces. Entry i of a level is made of entries 8 i ... 8 i + 7 of the level below; the last has one entry.
+  /// Level 0 holds pieces. Entry i of a level is made of entries 8 i ... 8 i + 7 of the level below. The last level has
+  /// one entry.
   std::vector<std::vector<Cluster>> levels_;
 };
 

@@ -17,16 +17,16 @@
 namespace blum {
 namespace {
 
-/// Triangles from the boundary of a surface to a common point. With them the surface is closed: the winding numbers of
-/// both add up to a whole number, so that the surface's is known exactly once it is known roughly.
+/// Triangles from the boundary of a surface to a common point, which close the surface. The winding numbers of surface
+/// and cone add up to an integer. So the surface's winding number is known exactly once it is known roughly.
 class BoundaryCone {
  public:
   BoundaryCone() = default;
-  /// @param edges  of the boundary, as the surface runs along it.
+  /// @param edges  of the boundary, in the direction in which the surface traverses them.
   explicit BoundaryCone(std::span<const BoundaryChain::Edge> edges);
 
-  /// The cone's winding number, good to `error`; nullopt where it may not be: next to the edges of the cone's
-  /// triangles.
+  /// Returns the cone's winding number, accurate to `error`. Returns nullopt if this accuracy is not certain: next to
+  /// edges of the cone's triangles.
   [[nodiscard]] std::optional<double> winding_number(const Vec3d& scaled_query) const;
   static constexpr double error = 1e-9;
 
@@ -34,10 +34,11 @@ class BoundaryCone {
   std::vector<TriangleBlock> blocks_;
 };
 
-/// What rounding does to the terms of an angle, generously.
+/// Generous bound on the rounding of an angle's terms.
 constexpr double rounding_of_cone = 1e-14;
 
-/// In the middle of the boundary, but not where a mesh may have anything that is aligned with it.
+/// Returns a point near the middle of the boundary. It is offset so that nothing in a mesh is likely to be aligned with
+/// it.
 Vec3d apex_of(std::span<const BoundaryChain::Edge> edges) {
   Box3 box;
   for (const BoundaryChain::Edge& edge : edges) {
@@ -60,7 +61,7 @@ BoundaryCone::BoundaryCone(std::span<const BoundaryChain::Edge> edges) {
         }
         lane = 0;
       }
-      // Against the surface's direction.
+      // Opposite to the surface's direction.
       const std::array<Vec3d, 3> corners{edge.to, edge.from, apex};
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t axis = 0; axis < 3; ++axis) blocks_.back().corner[c][axis][lane] = corners[c][axis];
@@ -75,29 +76,29 @@ std::optional<double> BoundaryCone::winding_number(const Vec3d& scaled_query) co
   alignas(64) double inverse[lanes] = {};
   for (const TriangleBlock& block : blocks_) add_watched_triangles(block, scaled_query, sum, inverse);
   const double badly = std::accumulate(inverse, inverse + lanes, 0.0);
-  if (!(rounding_of_cone * badly < error)) return std::nullopt;  // also where a corner was met, which is not a number
+  if (!(rounding_of_cone * badly < error)) return std::nullopt;  // also if a corner was hit, which gives NaN
   return sum.winding_number();
 }
 
 constexpr double full_angle = 4 * std::numbers::pi;
-/// What rounding may do to a hierarchical sum, generously.
+/// Generous bound on the rounding of a hierarchical sum.
 constexpr double rounding = 1e-11;
-/// What it may do next to a triangle, times the largest coordinate over the distance: angles there are quotients of
-/// what is left of products that cancel. Next to edges errors of a tenth of this were seen.
+/// Bound on the rounding next to a triangle, times the largest coordinate over the distance. Angles there are quotients
+/// of small rests of products that cancel. Next to edges, errors of a tenth of this were observed.
 constexpr double rounding_nearby = 4e-15;
-/// Beyond this many sizes of the mesh its winding number is 0 for every purpose (below 1e-60).
+/// Beyond this many sizes of the mesh, its winding number counts as 0 (it is below 1e-60).
 constexpr double far_away = 1e30;
-/// Clusters are accepted in is_inside() while each may be wrong by this much, as a winding number; then by less.
+/// is_inside() first accepts clusters with errors up to this, as winding numbers; later only smaller errors.
 constexpr double first_tolerance = 1.5e-2;
-/// The next one: what the first does not settle mostly wants little more.
+/// Returns the next tolerance. Queries that the first one does not decide mostly need little more.
 constexpr double lower(double tolerance) {
   return tolerance * (tolerance > 1e-3 ? 1.0 / 8 : 1.0 / 64);
 }
 
-/// Triangles per digit after the second one: with fewer the full sum is quicker than estimates.
+/// Triangles per digit after the second one. With fewer triangles the full sum is faster than estimates.
 constexpr double full_sum_is_quicker = 10000;
 
-/// |w - 1/2| hardly ever reaches this: larger changes are not worth a look.
+/// |w - 1/2| hardly ever reaches this, so larger changes are not examined.
 constexpr double side_limit = 1e3;
 
 struct Item {
@@ -105,7 +106,7 @@ struct Item {
   std::int32_t level;  ///< -1 for a leaf
 };
 
-/// Walks the tree: add(block, far, others) takes the clusters that it finds far enough away, the others are opened.
+/// Traverses the tree. add(block, far, others) adds the clusters that are far enough away; the others are opened.
 template <class AddClusters>
 WindingNumber::Estimate walk(const WindingTree& tree, const Vec3d& query, const AddClusters& add) {
   std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
@@ -125,7 +126,7 @@ WindingNumber::Estimate walk(const WindingTree& tree, const Vec3d& query, const 
     add(tree.levels[static_cast<std::size_t>(item.level)][item.block], far, others);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       stack[size] = {static_cast<std::uint32_t>(item.block * lanes + lane), item.level - 1};
-      size += static_cast<std::size_t>(others.open[lane]);  // without a branch, which could not be predicted
+      size += static_cast<std::size_t>(others.open[lane]);  // branch-free, because branches would be mispredicted
     }
   }
   const double solid_angle = std::accumulate(far.solid_angle, far.solid_angle + lanes, 0.0);
@@ -140,11 +141,11 @@ struct WindingNumber::Data {
   double largest_coordinate = 0;  ///< mesh units
   WindingTree tree;
   BoundaryChain boundary;
-  BoundaryCone cone;  ///< of a short boundary
+  BoundaryCone cone;  ///< for short boundaries
 
   [[nodiscard]] bool is_short() const { return boundary.is_empty() || !boundary.edges().empty(); }
 
-  /// The query in the tree's coordinates; nullopt where the winding number is 0 anyway.
+  /// Returns the query in the tree's coordinates; nullopt if the winding number counts as 0.
   [[nodiscard]] std::optional<Vec3d> scaled(const Vec3d& query) const {
     const Vec3d q = query * tree.scale;
     const BoxBlock* root = tree.levels.empty() ? nullptr : tree.boxes.levels.back().data();
@@ -162,6 +163,7 @@ struct WindingNumber::Data {
     return sum.winding_number();
   }
 
+  /// Returns an estimate with a bound on its error.
   /// @param tolerance  per cluster, as a winding number.
   [[nodiscard]] Estimate bounded(const Vec3d& scaled_query, double tolerance) const {
     Estimate out = walk(tree, scaled_query, [&](const MultipoleBlock& block, FarSum& far, OpenLanes& others) {
@@ -221,7 +223,7 @@ WindingNumber::Decision WindingNumber::decide(const Vec3d& query, double distanc
     const Estimate w = data_->bounded(*q, tolerance);
     const double margin = std::abs(w.value - 0.5) - w.error - nearby;
     if (margin > 0) return {w.value > 0.5, margin};
-    if (w.error < nearby) break;  // more terms tell no more
+    if (w.error < nearby) break;  // more terms do not help
   }
   return {data_->full_sum(*q) > 0.5, 0};
 }

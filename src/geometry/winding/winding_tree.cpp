@@ -58,7 +58,7 @@ struct Cluster {
   Box3 box;
 };
 
-/// The box's corner that is furthest from a point inside.
+/// Returns the distance from a point inside to the box's furthest corner.
 double furthest_in(const Box3& box, const Vec3d& p) {
   return length(max(box.upper - p, p - box.lower));
 }
@@ -81,12 +81,12 @@ Cluster cluster_of(const std::array<std::array<Vec3d, 3>, lanes>& triangles, std
     const Vec3d& normal = area_vectors[i];
     const double area = length(normal);
     Vec3d sum;
-    Symmetric2 second;  // the mean of s s^T is (sum of corners' s s^T + 9 c c^T) / 12, c their mean
+    Symmetric2 second;  // the mean of s s^T is (sum of corners' s s^T + 9 c c^T) / 12, with c the mean of the corners
     for (const Vec3d& p : triangles[i]) {
       const Vec3d s = p - out.center;
       const double r = length(s);
       out.radius = std::max(out.radius, r);
-      out.cubed += area / 3 * r * r * r;  // |s|^3 is convex: its mean is at most that of the corners
+      out.cubed += area / 3 * r * r * r;  // |s|^3 is convex, so its mean is at most that of the corners
       sum += s;
       add_product(second, s, s, 1.0 / 12);
     }
@@ -135,8 +135,8 @@ Cluster merge(const Cluster* children, std::size_t count) {
   return out;
 }
 
-/// Stores a cluster in the form that evaluate() wants: tensors without trace (their traces act on harmonic functions
-/// only), constant factors multiplied in.
+/// Stores a cluster in the form that series() in lane_kernels.cpp needs, with constant factors multiplied in. Tensors
+/// have no traces: the kernel is harmonic, so traces contribute nothing.
 void store(const Cluster& cluster, MultipoleBlock& block, std::size_t lane) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     block.center[axis][lane] = cluster.center[axis];

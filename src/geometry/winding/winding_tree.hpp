@@ -1,4 +1,4 @@
-// Blum: clusters of triangles with the moments that winding numbers need. SPDX-License-Identifier: Apache-2.0
+// Blum: clusters of triangles with the moments for winding numbers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -13,64 +13,65 @@
 
 namespace blum {
 
-/// Eight triangles; those that fill up the last block are points.
+/// Eight triangles. Those that fill up the last block are points.
 struct alignas(64) TriangleBlock {
   double corner[3][3][lanes];  ///< [corner][axis][lane]
 };
 
-/// Eight clusters of triangles, each as a multipole at its centre. Empty lanes hold nothing, further away than any
-/// query, so that they are always taken. With s = x - centre and n the unit normal at x:
+/// Eight clusters of triangles, each as a multipole at its centre. Empty lanes hold nothing and lie further away than
+/// any query, so they are always taken. With s = x - centre and n the unit normal at x:
 struct alignas(64) MultipoleBlock {
   double center[3][lanes];
   double dipole[3][lanes];      ///< integral of n
-  double quadrupole[5][lanes];  ///< of n s, symmetric, without trace: xx, yy, xy, xz, yz; off-diagonals twice; times -3
-  double octupole[7][lanes];    ///< of n s s, symmetric, traceless: xxx, yyy, xyy, xxy, xxz, yyz, xyz; see evaluate()
-  double cubed[lanes];          ///< a bound on the integral of |s|^3
-  double radius[lanes];         ///< a bound on |s|
+  double quadrupole[5][lanes];  ///< of n s, symmetric, traceless: xx, yy, xy, xz, yz; off-diagonals twice; times -3
+  double octupole[7][lanes];    ///< of n s s, symmetric, traceless: xxx, yyy, xyy, xxy, xxz, yyz, xyz; see series()
+  double cubed[lanes];          ///< bound on the integral of |s|^3
+  double radius[lanes];         ///< bound on |s|
 };
 
-/// Sums over the clusters that a traversal has taken as a whole, lane by lane: solid angles and the bounds on their
-/// errors, in steradians.
+/// Sums over the clusters that a traversal took as a whole, lane by lane: solid angles and bounds on their errors, in
+/// steradians.
 struct alignas(64) FarSum {
   double solid_angle[lanes] = {};
   double error[lanes] = {};
 };
 
-/// Which of eight clusters have to be opened: 1 or 0.
+/// Flags of eight clusters: 1 if the cluster has to be opened, else 0.
 struct alignas(64) OpenLanes {
   double open[lanes];
 };
 
-/// Adds those of eight clusters whose error is at most `tolerance` (steradians); the others are to be opened.
+/// Adds those of eight clusters whose error is at most `tolerance` (steradians). The others are to be opened.
 void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolerance, FarSum& sum, OpenLanes& others);
 
-/// Adds those of eight clusters that are seen from beyond beta times their radius, without error bounds.
+/// Adds those of eight clusters whose distance exceeds beta times their radius, without error bounds. The others are to
+/// be opened.
 void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double beta, FarSum& sum, OpenLanes& others);
 
-/// Adds half solid angles up without calling atan2 for each: in every lane the product of complex numbers whose
-/// arguments are half the solid angles, and how often the sum of the arguments has left (-pi, pi].
+/// Sums half solid angles without an atan2 for each. Every lane holds the product of complex numbers whose arguments
+/// are half the solid angles. It also counts how often the sum of arguments left (-pi, pi].
 struct alignas(64) SolidAngleSum {
   double re[lanes];
   double im[lanes];
   double turns[lanes];
 
   SolidAngleSum();
-  /// The sum so far as a winding number.
+  /// Returns the sum so far as a winding number.
   [[nodiscard]] double winding_number() const;
 };
 
 /// Adds eight triangles (van Oosterom and Strackee 1983).
 void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum);
 
-/// The same, and adds up how badly the angles are conditioned: to `inverse`, lane by lane, the inverse of what an angle
-/// is computed from, relative to its terms. An angle is off by rounding times that.
+/// Adds eight triangles, and also how ill-conditioned their angles are. Each lane of `inverse` gets the size of an
+/// angle's terms divided by the size of their sum. The error of the angle is rounding times this.
 void add_watched_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
                            double (&inverse)[lanes]);
 
-/// A complete tree with eight children per node: leaf i holds triangles 8 i ... 8 i + 7 of a spatial order; block i of
+/// Complete tree with eight children per node. Leaf i holds triangles 8 i ... 8 i + 7 of a spatial order. Block i of
 /// level 0 holds the clusters of leaves 8 i ... 8 i + 7, and so on up to one block.
 struct WindingTree {
-  double scale = 1;  ///< coordinates are those of the mesh times this power of two, so that it is about 1 long
+  double scale = 1;  ///< factor of mesh coordinates, a power of two, so that the mesh is about 1 long
   std::vector<TriangleBlock> leaves;
   std::vector<std::vector<MultipoleBlock>> levels;
   BoxTree boxes;  ///< of the same shape: level 0 holds boxes of leaves

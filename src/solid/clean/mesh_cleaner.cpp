@@ -27,10 +27,10 @@ ContactTriangle for_contact(const ShrinkingSurface& mesh, const Triangle& t) {
   return {{mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])}, t};
 }
 
-/// Whether all of `b` but corners of an edge of `a` lies certainly beyond that edge, seen in a's plane. The function
-/// det(edge, n, x - corner) is 0 at both ends of the edge whatever n is, so that the rest of `a` on one side and the
-/// rest of `b` on the other leaves nothing in common but these ends. Answers nearly all pairs of neighbours in a plane,
-/// where signs of determinants take long.
+/// Returns true if all of `b` but corners of an edge of `a` certainly lies beyond that edge, seen in a's plane. The
+/// function det(edge, n, x - corner) is 0 at both ends of the edge for every n. If it separates the rest of `a` from
+/// the rest of `b`, the two share only these ends. This decides nearly all coplanar neighbours, for which signs of
+/// determinants take long.
 bool lies_beyond_an_edge(const ContactTriangle& a, const ContactTriangle& b) {
   constexpr double rounding = 1e-14;
   const Vec3d normal = cross(a.points[1] - a.points[0], a.points[2] - a.points[0]);
@@ -61,7 +61,7 @@ bool are_apart(const ContactTriangle& a, const ContactTriangle& b) {
   return lies_beyond_an_edge(a, b) || lies_beyond_an_edge(b, a) || contact(a, b) == Contact::none;
 }
 
-/// Whether a point lies in a closed tetrahedron that has a volume.
+/// Returns true if a point lies in a closed tetrahedron that has a volume.
 bool holds(const std::array<Vec3d, 4>& corners, const Vec3d& p) {
   const int way = orient3d(corners[0], corners[1], corners[2], corners[3]);
   if (way == 0) return false;
@@ -82,7 +82,7 @@ std::vector<Box3> boxes_of(const ShrinkingSurface& mesh) {
   return out;
 }
 
-/// The shell of each vertex; empty where there is but one.
+/// Returns the shell of each vertex; empty if only one shell exists.
 std::vector<std::uint32_t> shells_of(const ShrinkingSurface& mesh) {
   std::uint32_t vertices = 0;
   for (const Triangle& t : mesh.triangles()) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1});
@@ -100,21 +100,22 @@ std::vector<std::uint32_t> shells_of(const ShrinkingSurface& mesh) {
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// More corners are not compared pair by pair.
+/// Rings with more corners are not compared pair by pair.
 constexpr std::size_t most_pairwise = 40;
-// Parts of the square of the extent. Areas in the plane are wrong by 2e-15 of it at most.
-constexpr double clear_area = 1e-12;  ///< of triangles that certainly turn to the left
+// Fractions of the squared extent. Areas in the plane have errors of at most 2e-15 of it.
+constexpr double clear_area = 1e-12;  ///< of triangles that certainly turn left
 constexpr double clear_side = 1e-14;  ///< of points that certainly lie beside a line
-constexpr double steep_area = 1e-9;   ///< above, quotients of areas are right to 4e-6
+constexpr double steep_area = 1e-9;   ///< above it, quotients of areas are accurate to 4e-6
 constexpr double quotient_error = 1e-5;
-constexpr double height_error = 1e-14;  ///< part of the extent
+constexpr double height_error = 1e-14;  ///< fraction of the extent
 
-/// Twice the area of the triangle from the origin, in the plane: points have their heights over it in z.
+/// Returns twice the area of the triangle with a corner in the origin, in the plane. Points have their heights over the
+/// plane in z.
 double area(const Vec3d& a, const Vec3d& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// Both fans over a plane that suits the one from the apex, which is the origin.
+/// Both fans over the mean plane of the fan from the apex, which is the origin.
 class Fans {
  public:
   Fans(std::span<const Vec3d> ring, const Vec3d& apex, bool closed) : closed_(closed), points_(ring.size()) {
@@ -138,7 +139,7 @@ class Fans {
     square_ = extent_ * extent_;
   }
 
-  /// Whether both fans are graphs of functions over the inside of the polygon in the plane.
+  /// Returns true if both fans are graphs of functions over the inside of the polygon in the plane.
   [[nodiscard]] bool are_graphs() const {
     if (!(square_ > 0)) return false;
     const std::size_t last = points_.size() - 1;
@@ -152,16 +153,17 @@ class Fans {
     }
     for (std::size_t k = 1; k + 1 <= last; ++k) {
       if (!(area(points_[k] - points_[0], points_[k + 1] - points_[0]) > least)) return false;
-      // Seen from a side, all corners lie within half a turn.
+      // If the apex lies on a side, all corners lie within half a turn around it.
       if (!closed_ && !(area(points_[0], points_[k]) > least)) return false;
     }
     return !closed_ || turns == 1;
   }
 
-  /// What no two points over one place can be further apart.
+  /// Returns an upper bound on the distance of two points over one place.
   [[nodiscard]] double slab() const { return (highest_ - lowest_) + height_error * extent_; }
 
-  /// The largest distance of the two over one place: both are linear between the places looked at here.
+  /// Returns a bound on the largest distance of the fans over one place. Both are linear between the places evaluated
+  /// here.
   [[nodiscard]] double gap() const {
     double most = closed_ ? gap_at_apex() : 0;
     const std::size_t last = points_.size() - 1;
@@ -193,7 +195,8 @@ class Fans {
     return most;
   }
 
-  /// Of the edge from the apex to p and the one from the first corner to q; 0 where they do not cross.
+  /// Returns the gap of two edges: from the apex to p, and from the first corner to q. Returns 0 if they do not cross,
+  /// infinity if they are nearly parallel.
   [[nodiscard]] double gap_at_crossing(const Vec3d& p, const Vec3d& q) const {
     const Vec3d& w = points_[0];
     const double clear = clear_side * square_;
@@ -219,23 +222,24 @@ class Fans {
   double highest_ = 0;
 };
 
-/// Of a vertex with more neighbours only the closest ones are tried.
+/// A vertex with more neighbours tries only the closest ones.
 constexpr std::size_t many_neighbours = 24;
 constexpr std::size_t targets_of_many = 12;
-/// Steps that move the surface less than this part of the tolerance are as good as each other.
+/// Steps that move the surface by less than this fraction of the tolerance count as equally good.
 constexpr double negligible = 0.002;
-/// What the worst shape of new triangles costs, where 1 is all of the tolerance.
+/// Cost of the worst shape of new triangles; 1 is the whole tolerance.
 constexpr double cost_of_shape = 0.1;
-/// New triangles may be flatter than those before by this, where they are no needles.
+/// New triangles may be lower than the old ones by this factor, if they are not needles.
 constexpr double flattening = 0.25;
-/// Triangles below the tolerance are needles where they are also this much longer than high.
+/// Triangles lower than the tolerance are needles if they are also longer than high by this factor.
 constexpr double slenderness = 10;
-/// The cosine of the angle that triangles turn by at most. Needles turn freely, but are not to lie on their neighbours.
+/// Cosine of the largest angle by which triangles may turn. Needles turn freely, but must not fold onto their
+/// neighbours.
 constexpr double least_cosine = 0.2;
 constexpr double least_cosine_of_needle = -0.5;
-/// Edges are turned where that makes triangles this much higher, so that it ends.
+/// Edges are flipped only if this makes triangles higher by this factor, so that flipping ends.
 constexpr double least_gain = 1.5;
-/// Flips come after collapses that are as good.
+/// Flips come after collapses that are equally good.
 constexpr double cost_of_flip = 0.1;
 constexpr double rounding = 1e-14;
 
@@ -246,8 +250,8 @@ double cosine(const Vec3d& a, const Vec3d& b) {
 
 constexpr std::size_t looks_between_reports = 256;
 constexpr std::size_t vertices_per_range = 256;
-/// Vertices with more triangles are looked at again only when this part of them has changed: one look at the middle of
-/// a disc takes as long as its triangles are many, and each of these changes in turn.
+/// Vertices with more triangles are visited again only if one in `part_to_change` of these changed. One visit of the
+/// middle of a disc takes time linear in its triangles, and each of these changes in turn.
 constexpr std::size_t many_triangles = 64;
 constexpr std::size_t part_to_change = 8;
 
@@ -311,7 +315,7 @@ Box3 StepCheck::box_of(std::uint32_t t) const {
 
 void StepCheck::update(std::span<const std::uint32_t> triangles) {
   for (const std::uint32_t t : triangles) boxes_.replace(t, box_of(t));
-  // Triangles grow while others go: an order of those that are left keeps questions short.
+  // Triangles grow while others are removed. A new order of the remaining ones keeps queries short.
   if (2 * mesh_.triangles_left() > triangles_at_build_) return;
   boxes_ = TriangleBoxes(boxes_of(mesh_), context_);
   triangles_at_build_ = mesh_.triangles_left();
@@ -326,7 +330,8 @@ bool StepCheck::is_clear(const Triangle& triangle) const {
   });
 }
 
-/// Whether a triangle turns about an edge past the one on its other side: then the solid would be where it is not now.
+/// Returns true if a triangle turns about an edge past the triangle on its other side. The solid would then cover what
+/// was outside, or the reverse.
 bool StepCheck::turns_over_a_neighbour(const BorderEdge& edge) const {
   const Vec3d& a = mesh_.point(edge.a);
   const Vec3d& b = mesh_.point(edge.b);
@@ -379,7 +384,7 @@ bool StepCheck::passes(const SurfaceStep& step) {
 }
 
 double fan_gap(std::span<const Vec3d> ring, const Vec3d& apex, bool closed, double enough) {
-  // A polygon of two corners, or of three with the apex on a side, is one triangle or none, whatever the apex.
+  // A polygon of two corners, or of three with the apex on a side, covers one triangle or none, for every apex.
   if (ring.size() < 3) return 0;
   const Fans fans(ring, apex, closed);
   if (!fans.are_graphs()) return infinity;
@@ -422,8 +427,9 @@ void CollapseSearch::choose_targets() {
   targets_.resize(targets_of_many);
 }
 
-/// The vertex moves onto the chord from the target to another neighbour at first; what is on either side of the chord
-/// is then a fan of its own. @return  infinity where that shows no bound below a limit.
+/// The vertex first moves onto the chord from the target to another neighbour. Each side of the chord is then a fan of
+/// its own.
+/// @return  infinity if this gives no bound below `limit`.
 double CollapseSearch::bound_along_crease(double limit) const {
   const std::size_t count = rotated_.size();
   const double enough = negligible * tolerance_;
@@ -444,7 +450,7 @@ double CollapseSearch::bound_along_crease(double limit) const {
   return best;
 }
 
-/// How far the surface moves at most; above the budget where no better bound is known.
+/// Returns a bound on how far the surface moves; above the budget if no better bound is known.
 double CollapseSearch::bound(std::size_t onto, double budget) {
   const std::size_t count = around_.size();
   rotated_.resize(count);
@@ -456,7 +462,8 @@ double CollapseSearch::bound(std::size_t onto, double budget) {
   return std::min(best, bound_along_crease(std::min(best, budget)));
 }
 
-/// @param side  of the ring: the triangle there turns to a normal.
+/// Returns true if a triangle turns too far.
+/// @param side  of the ring: the triangle there turns to `normal`.
 bool CollapseSearch::folds(std::uint32_t v, std::size_t side, const Vec3d& normal) const {
   if (!sides_[side].is_needle) return cosine(sides_[side].normal, normal) < least_cosine;
   const EdgePair edge = mesh_.opposite_edge(star_.triangles[side], v);
@@ -523,7 +530,7 @@ EdgeFlip CollapseSearch::find_flip(std::uint32_t t) const {
   const Vec3d a = mesh_.point(e.a) - origin;
   const Vec3d b = mesh_.point(e.b) - origin;
   const Vec3d d = mesh_.point(e.apex_right) - origin;
-  // Both old triangles are within this of the new ones: the apex moves onto the edge, which it cuts in two.
+  // Both old triangles are within this distance of the new ones: the apex moves onto the edge, which it cuts in two.
   const double height = length(closest_point_on_segment({}, a, b)) + rounding * (length(a) + length(b));
   out.deviation = (std::max(deviations_[e.left], deviations_[e.right]) + height) * (1 + rounding);
   out.cost = out.deviation / tolerance_ + cost_of_flip;
@@ -640,7 +647,7 @@ bool MeshCleaner::passes(std::uint32_t v, const Star& star, const VertexCollapse
     const std::size_t side = (way.onto + k) % count;
     const std::uint32_t a = star.ring[side];
     const std::uint32_t b = star.ring[(side + 1) % count];
-    // Next to the target there is the apex of a new triangle further on.
+    // Next to the target, the new apex is a corner of the adjacent new triangle.
     const std::uint32_t new_apex = k == 0           ? star.ring[(side + 2) % count]
                                    : k + 1 == count ? star.ring[(side + count - 1) % count]
                                                     : way.target;
@@ -692,7 +699,7 @@ void MeshCleaner::flip(const EdgeFlip& way) {
   refresh(changed, corners);
 }
 
-/// Looks again at what a step has changed the surroundings of.
+/// Updates what a step changed, and its surroundings.
 void MeshCleaner::refresh(std::span<const std::uint32_t> changed, std::span<const std::uint32_t> corners) {
   check_.update(changed);
   for (const std::uint32_t t : changed) {
@@ -709,14 +716,15 @@ bool MeshCleaner::has_many_triangles(std::uint32_t v) const {
   return mesh_.triangles_at(v).size() > many_triangles;
 }
 
-/// A vertex some of whose triangles have changed, and its triangles.
+/// Offers a vertex after a change of some of its triangles, and its triangles.
 void MeshCleaner::offer_changed(std::uint32_t v) {
   if (has_many_triangles(v) && ++changes_[v] * part_to_change < mesh_.triangles_at(v).size()) return;
   offer_vertex(v);
   for (const std::uint32_t t : mesh_.triangles_at(v)) offer_triangle(t);
 }
 
-/// @return  whether there were any.
+/// Offers the vertices that were postponed.
+/// @return  true if anything waits.
 bool MeshCleaner::offer_postponed() {
   for (std::uint32_t v = 0; v < changes_.size(); ++v) {
     if (changes_[v] > 0 && !mesh_.triangles_at(v).empty()) offer_vertex(v);
@@ -724,7 +732,7 @@ bool MeshCleaner::offer_postponed() {
   return !line_.empty();
 }
 
-/// With what it costs at least: how far its triangles have moved.
+/// Offers a vertex at its smallest possible cost: how far its triangles have moved.
 void MeshCleaner::offer_vertex(std::uint32_t v) {
   changes_[v] = 0;
   double most = 0;

@@ -1,4 +1,4 @@
-// Blum: takes needless vertices of a closed surface out, one by one. SPDX-License-Identifier: Apache-2.0
+// Blum: removes needless vertices of a closed surface, one by one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,16 +16,18 @@
 
 namespace blum::detail {
 
-/// A binary tree over boxes in an order that keeps neighbours together. Boxes may be replaced: those above follow.
-/// Cost of a change and of a question about a small place: the logarithm of their number.
+/// Binary tree over boxes, in an order that keeps neighbours together. Boxes may be replaced; the boxes above are
+/// updated. Cost of a change, and of a query in a small place: the logarithm of the number of boxes.
 class TriangleBoxes {
  public:
-  /// @param boxes  an empty one for what is not there, and will not be. @throws Cancelled.
+  /// @param boxes  empty for elements that do not exist and never will.
+  /// @throws Cancelled.
   TriangleBoxes(std::span<const Box3> boxes, const Context& context);
 
   void replace(std::uint32_t index, const Box3& box);
 
-  /// Calls visit(index) for the boxes that touch a box, until it returns false. @return whether it never did.
+  /// Calls visit(index) for the boxes that touch a box, until it returns false.
+  /// @return  true if it never returned false.
   template <class Visit>
   bool for_each_touching(const Box3& box, const Visit& visit) const {
     std::size_t stack[most_depth];
@@ -53,20 +55,20 @@ class TriangleBoxes {
   }
 
   std::size_t leaves_ = 1;   ///< a power of two; node k has the children 2 k and 2 k + 1, leaves come last
-  std::vector<Box3> nodes_;  ///< the first one is not used
+  std::vector<Box3> nodes_;  ///< entry 0 is unused
   std::vector<std::uint32_t> at_leaf_;
   std::vector<std::uint32_t> leaf_of_;
 };
 
-/// An edge at the border of what changes: a triangle there gets another apex, and that on the other side stays.
+/// An edge at the border of a change. The triangle inside gets another apex; the one on the other side stays.
 struct BorderEdge {
   std::uint32_t a = 0, b = 0;
   std::uint32_t old_apex = 0, new_apex = 0;
   std::uint32_t outer_apex = 0;
 };
 
-/// A change of a surface: triangles that go, those that come, and tetrahedra between both: the volume that the surface
-/// sweeps is in these.
+/// A change of a surface: removed triangles, new triangles, and tetrahedra between them. The volume that the surface
+/// sweeps lies in these.
 struct SurfaceStep {
   std::vector<std::uint32_t> old_triangles;
   std::vector<Triangle> new_triangles;
@@ -76,15 +78,16 @@ struct SurfaceStep {
 
 class StepCheck {
  public:
-  /// @param mesh  must stay, and say what changes. @throws Cancelled.
+  /// @param mesh  must outlive this object. Its changes must be reported to update().
+  /// @throws Cancelled.
   StepCheck(const ShrinkingSurface& mesh, const Context& context);
 
-  /// Whether the new triangles have areas, neither cross nor touch each other or those that stay, beside the corners
-  /// and edges that they share, and neither another shell nor what is next to them lies between old and new ones, so
-  /// that inside and outside stay what they are. Exact.
+  /// Returns true if a step preserves inside and outside. Exact. New triangles must have areas. They must not cross or
+  /// touch each other or remaining triangles, except at common corners and edges. Neither another shell nor the
+  /// neighbours may lie between old and new triangles.
   [[nodiscard]] bool passes(const SurfaceStep& step);
 
-  /// Triangles of the mesh have changed, or gone.
+  /// Updates the tree after triangles of the mesh changed or were removed.
   void update(std::span<const std::uint32_t> triangles);
 
  private:
@@ -97,30 +100,30 @@ class StepCheck {
   Context context_;
   TriangleBoxes boxes_;
   std::size_t triangles_at_build_;
-  std::vector<std::uint32_t> shell_of_;  ///< of each vertex; empty where there is but one
-  std::vector<std::uint32_t> mark_;      ///< of triangles that go
+  std::vector<std::uint32_t> shell_of_;  ///< of each vertex; empty if only one shell exists
+  std::vector<std::uint32_t> mark_;      ///< of triangles that a step removes
   std::uint32_t current_ = 0;
 };
 
-/// A bound on the Hausdorff distance of two fans of triangles over one polygon, rounding included: one from `apex` to
-/// the sides of the polygon, one from its first corner. Infinity where no bound is known, as the fans do not both lie
-/// like graphs of functions over one plane, or not clearly.
+/// Returns a bound on the Hausdorff distance of two fans of triangles over one polygon, including rounding. One fan
+/// leads from `apex` to the sides of the polygon, the other from its first corner. Returns infinity if no bound is
+/// known: if the fans are not both clearly graphs of functions over one plane. Method: docs/theory/solid.md. Cost: the
+/// square of the number of corners, for up to 40; else linear.
 ///
-/// @param ring    corners of the polygon in order, two or more, relative to a point near by.
-/// @param closed  whether the apex lies inside of the polygon; else on its side from the last corner to the first.
-/// @param enough  where a quick bound is at most this, it is good enough.
-/// Method: docs/theory/solid.md. Cost: the square of the number of corners, for up to 40; else their number.
+/// @param ring    corners of the polygon in order, two or more, relative to a nearby point.
+/// @param closed  true if the apex lies inside the polygon; else it lies on the side from the last corner to the first.
+/// @param enough  a quick bound that is at most this is good enough.
 [[nodiscard]] double fan_gap(std::span<const Vec3d> ring, const Vec3d& apex, bool closed, double enough);
 
-/// A way for a vertex to go.
+/// A way to remove a vertex.
 struct VertexCollapse {
-  double cost = 0;       ///< of two the one with the lower one is taken
-  double deviation = 0;  ///< bound on how far the new triangles are from the mesh at first, and it from them
+  double cost = 0;       ///< the way with the lower cost is taken
+  double deviation = 0;  ///< bound on the distance of the new triangles from the input mesh, both ways
   std::uint32_t target = 0;
-  std::size_t onto = 0;  ///< the target's place in the ring
+  std::size_t onto = 0;  ///< the target's index in the ring
 };
 
-/// A way for a flat triangle to go: turning its longest side.
+/// A way to remove a flat triangle: flipping its longest side.
 struct EdgeFlip {
   EdgePair edge;
   double cost = 0;
@@ -130,20 +133,20 @@ struct EdgeFlip {
 
 class CollapseSearch {
  public:
-  /// @param deviations  of each triangle: how far it is from the mesh at first, at most, and that from it.
+  /// @param deviations  of each triangle: bound on its distance from the input mesh, both ways.
   CollapseSearch(const ShrinkingSurface& mesh, std::span<const double> deviations, double tolerance)
       : mesh_(mesh), deviations_(deviations), tolerance_(tolerance) {}
 
-  /// The ways that keep the bounds within the tolerance and make no worse triangles, by rising cost, then target.
-  /// Neither the link condition nor contacts are looked at. The list and the star last until the next call.
+  /// Returns the collapses that keep the bounds within the tolerance and make no worse triangles, by rising cost, then
+  /// target. Checks neither the link condition nor contacts. The list and the star are valid until the next call.
   [[nodiscard]] std::span<const VertexCollapse> find(std::uint32_t v);
   [[nodiscard]] const Star& star() const { return star_; }
 
-  /// The same of turning the longest side of a triangle.
+  /// Returns the flip of a triangle's longest side, under the same conditions.
   [[nodiscard]] EdgeFlip find_flip(std::uint32_t t) const;
 
  private:
-  /// What there is to know of a triangle at the vertex before it goes.
+  /// Data of a triangle at the vertex, before the vertex is removed.
   struct Side {
     Vec3d normal;
     double height = 0;
@@ -151,7 +154,7 @@ class CollapseSearch {
   };
   struct Shape {
     bool is_allowed = false;
-    double quality = 0;  ///< 1 where all triangles are equilateral
+    double quality = 0;  ///< 1 if all triangles are equilateral
   };
 
   [[nodiscard]] bool is_needle(const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
@@ -167,33 +170,35 @@ class CollapseSearch {
   double tolerance_;
   Star star_;
   std::vector<Vec3d> around_;   ///< the ring, relative to the vertex
-  std::vector<Vec3d> rotated_;  ///< the same from a target on
+  std::vector<Vec3d> rotated_;  ///< the ring, starting at a target
   std::vector<Side> sides_;
   std::vector<std::size_t> targets_;
   std::vector<VertexCollapse> found_;
-  double deviation_ = 0;     ///< the largest one of the star's triangles
-  double least_height_ = 0;  ///< of these
+  double deviation_ = 0;     ///< largest of the star's triangles
+  double least_height_ = 0;  ///< smallest of the star's triangles
 };
 
 class MeshCleaner {
  public:
-  /// @param mesh  the boundary of a solid, without crossings; its vertices must stay. @throws Cancelled.
+  /// @param mesh  the boundary of a solid, without crossings; its vertices must stay in place.
+  /// @throws Cancelled.
   MeshCleaner(const MeshView& mesh, double tolerance, const Context& context);
 
+  /// Cleans the mesh.
   /// @throws Cancelled.
   void run();
 
   [[nodiscard]] const ShrinkingSurface& mesh() const { return mesh_; }
   [[nodiscard]] std::size_t collapses() const { return collapses_; }
   [[nodiscard]] std::size_t flips() const { return flips_; }
-  /// A bound on the Hausdorff distance between the mesh as it is and as it was given.
+  /// Returns a bound on the Hausdorff distance between the current and the given mesh.
   [[nodiscard]] double deviation() const;
 
  private:
   enum class Kind : std::uint8_t { collapse, flip };
-  /// What waits: a vertex that may go or a triangle whose longest side may be turned.
+  /// A queued step: a vertex that may be removed, or a triangle whose longest side may be flipped.
   struct Waiting {
-    double cost = 0;  ///< at least, where it was not looked at since its surroundings changed
+    double cost = 0;  ///< lower bound, if not evaluated since its surroundings changed
     Kind kind = Kind::collapse;
     std::uint32_t index = 0;
     std::uint32_t version = 0;
@@ -222,7 +227,7 @@ class MeshCleaner {
   double tolerance_;
   Context context_;
   StepCheck check_;
-  std::vector<double> deviations_;  ///< of each triangle: see CollapseSearch
+  std::vector<double> deviations_;  ///< of each triangle; see CollapseSearch
   std::vector<double> heights_;     ///< of each triangle
   CollapseSearch search_;
   std::vector<std::uint32_t> vertex_versions_;

@@ -12,23 +12,24 @@
 
 namespace blum::detail {
 
-/// The triangles around a vertex, in order: triangle k has the vertex, ring[k] and ring[k + 1], the last one ring[0].
+/// The triangles around a vertex, in order. Triangle k has the vertex, ring[k] and ring[k + 1]; the last one has
+/// ring[0].
 struct Star {
   std::vector<std::uint32_t> ring;
   std::vector<std::uint32_t> triangles;
 };
 
-/// An edge and the triangles at it: `left` has a, b, apex_left and `right` b, a, apex_right, in this order.
+/// An edge and its two triangles: `left` has a, b, apex_left and `right` has b, a, apex_right, in this order.
 struct EdgePair {
   std::uint32_t a = 0, b = 0;
   std::uint32_t left = 0, right = 0;
   std::uint32_t apex_left = 0, apex_right = 0;
 };
 
-/// A closed, oriented, manifold surface whose triangles keep their numbers while vertices go and edges turn.
+/// A closed, oriented, manifold surface. Its triangles keep their numbers while vertices are removed and edges flipped.
 class ShrinkingSurface {
  public:
-  /// @param mesh  closed, oriented and manifold; its vertices must stay where they are.
+  /// @param mesh  closed, oriented and manifold; its vertices must stay in place.
   explicit ShrinkingSurface(const MeshView& mesh);
 
   [[nodiscard]] const Vec3d& point(std::uint32_t v) const { return points_[v]; }
@@ -41,19 +42,21 @@ class ShrinkingSurface {
     return {points_[triangles_[t][0]], points_[triangles_[t][1]], points_[triangles_[t][2]]};
   }
 
-  /// @param out  is overwritten: its memory is used again.
+  /// Finds the star of a vertex.
+  /// @param out  is overwritten; its memory is reused.
   void find_star(std::uint32_t v, Star& out) const;
   [[nodiscard]] bool has_edge(std::uint32_t a, std::uint32_t b) const;
-  /// The side of a triangle that is opposite to a corner of it.
+  /// Returns the side of a triangle that is opposite to one of its corners.
   [[nodiscard]] EdgePair opposite_edge(std::uint32_t t, std::uint32_t corner) const;
 
-  /// Whether moving the middle of a star onto a corner of its ring leaves a surface that is homeomorphic to this one:
-  /// the link condition.
+  /// Returns true if moving the middle of a star onto a corner of its ring gives a homeomorphic surface: the link
+  /// condition.
   [[nodiscard]] bool may_collapse(const Star& star, std::size_t onto) const;
-  /// Does so. @param v  the middle.
+  /// Performs this collapse.
+  /// @param v  the middle of the star.
   void collapse(std::uint32_t v, const Star& star, std::size_t onto);
-  /// Turns an edge: it then joins the two apexes, which no edge may join before. `left` becomes apex_left, a,
-  /// apex_right and `right` apex_right, b, apex_left.
+  /// Flips an edge, which then joins the two apexes. No edge may join these before. `left` becomes apex_left, a,
+  /// apex_right and `right` becomes apex_right, b, apex_left.
   void flip(const EdgePair& edge);
 
  private:
@@ -66,7 +69,7 @@ class ShrinkingSurface {
 };
 
 [[nodiscard]] double longest_side(const Vec3d& a, const Vec3d& b, const Vec3d& c);
-/// The height of a triangle above its longest side; 0 where that is a point.
+/// Returns the height of a triangle above its longest side; 0 if that side is a point.
 [[nodiscard]] double least_height(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 }  // namespace blum::detail

@@ -14,8 +14,8 @@
 namespace blum::detail {
 namespace {
 
-/// How many of the boxes, sorted by where they begin along an axis, lie below a plane that cuts none; the plane nearest
-/// to the middle of the list.
+/// Returns how many boxes lie below a plane that cuts none. The boxes are sorted by their lower ends along an axis.
+/// Among several planes, the one nearest to the middle of the list is taken.
 std::optional<std::size_t> cut_of(std::span<const BoxCell> boxes, std::span<const std::uint32_t> sorted,
                                   std::size_t axis) {
   std::optional<std::size_t> best;
@@ -103,12 +103,12 @@ void BoxCells::find_corners(const Context& context) {
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
-/// Edges of boxes below and above a plane may cross within it.
+/// Returns the points inside a plane where edges of boxes below and above it cross.
 std::vector<Vec3d> BoxCells::crossings(std::size_t across) const {
   std::vector<Vec3d> found;
   const std::size_t u = next_axis(across);
   const std::size_t v = next_axis(u);
-  // Edges along u: plane, v, and where they begin and end. Edges along v: plane, u, begin, end.
+  // Edges along u: plane, v, begin, end. Edges along v: plane, u, begin, end.
   using Edge = std::array<double, 4>;
   std::vector<Edge> along_u;
   std::vector<Edge> along_v;
@@ -148,7 +148,7 @@ void BoxCells::find_segments(const Context& context) {
     for (std::size_t axis = 0; axis < 3; ++axis) lines.push_back(on_line(axis, p));
   }
   std::sort(lines.begin(), lines.end());
-  std::vector<std::pair<OnLine, double>> pieces;  // where they begin, and their ends
+  std::vector<std::pair<OnLine, double>> pieces;  // begin of each, and coordinate of its end
   for (const BoxCell& box : boxes_) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < 8; ++k) {
@@ -226,7 +226,7 @@ void BoxCells::find_rectangles() {
     }
   }
   std::sort(pieces.begin(), pieces.end());
-  std::vector<std::size_t> order;  // the first of each pair, soon by place
+  std::vector<std::size_t> order;  // the first piece of each pair; sorted by place below
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     if (k == 0 || pieces[k].key != pieces[k - 1].key) order.push_back(k);
   }
@@ -240,7 +240,7 @@ void BoxCells::find_rectangles() {
     BoxRectangle& rectangle = rectangles_.emplace_back();
     rectangle.axis = (segment.axis + 1 + one.side) % 3;
     rectangle.boxes = {segment.around[one.quarter], segment.around[one.quarter | 1U << one.side]};
-    // Sides are told apart later: first all segments are listed.
+    // order_sides() separates the sides later. Here the first one lists all segments.
     for (std::size_t k = begin; k < pieces.size() && pieces[k].key == one.key; ++k) {
       rectangle.sides[0].push_back(pieces[k].segment);
     }

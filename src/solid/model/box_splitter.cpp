@@ -11,15 +11,16 @@
 namespace blum::detail {
 namespace {
 
-/// Boxes are not cut to less than this part of the spacing.
+/// Boxes are not cut below this fraction of the spacing.
 constexpr double least_part = 1e-12;
 
-/// The side of a box along an axis from a corner that is low along it: 4 axis + 2 bits for the other axes.
+/// Returns the index of a box's side along an axis: 4 axis + 2 bits for the other axes. The corner is low along the
+/// axis.
 constexpr std::size_t side_index(std::size_t axis, std::size_t corner) {
   return 4 * axis + (corner >> next_axis(axis) & 1U) + 2 * (corner >> next_axis(next_axis(axis)) & 1U);
 }
 
-/// The sides around a face (2 axis, + 1 above): along one axis, low and high, then along the other.
+/// Returns the sides around a face (2 axis, + 1 above): along one axis, low and high, then along the other.
 std::array<std::size_t, 4> sides_of(std::size_t face) {
   const std::size_t u = next_axis(face / 2);
   const std::size_t v = next_axis(u);
@@ -32,7 +33,7 @@ bool is_inside(const SplitBox& box, std::size_t corner) {
   return (box.inside >> corner & 1U) != 0;
 }
 
-/// Whether two boxes share points inside of both.
+/// Returns true if two boxes share interior points.
 bool overlap(const BoxCell& box, const Box3& other) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(box.low[a] < other.upper[a] && other.lower[a] < box.high[a])) return false;
@@ -93,7 +94,7 @@ std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {
 }
 
 std::optional<BoxSplitter::Cut> BoxSplitter::further_cut(const SplitBox& box) const {
-  constexpr double part = 0.3;  // a quarter, with room for rounding
+  constexpr double part = 0.3;  // a quarter, with a margin for rounding
   if (box.triangles.empty()) return std::nullopt;
   const Vec3d size = box.box.high - box.box.low;
   const std::size_t axis = longest(size);
@@ -228,7 +229,7 @@ BoxSplitter::Hole BoxSplitter::hole_between(const SplitBox& box, std::size_t fac
                                             std::span<const std::uint32_t> edges) const {
   const std::size_t axis = face / 2;
   const double plane = face % 2 == 0 ? box.box.low[axis] : box.box.high[axis];
-  Vec3d slant{};  // of the edges, for each unit along the axis
+  Vec3d slant{};  // of the edges, per unit along the axis
   Box3 around;
   Vec3d sum{};
   for (const std::uint32_t edge : edges) {
@@ -254,7 +255,7 @@ void BoxSplitter::connect_edges(const SplitBox& box) {
     const Side& side = sides_[index];
     const std::size_t u = next_axis(side.axis);
     const std::size_t v = next_axis(u);
-    // The two faces at a side, and where its intervals begin in each.
+    // The two faces at a side, and the first of its intervals in each.
     std::array<std::size_t, 2> faces{2 * u + (side.corner >> u & 1U), 2 * v + (side.corner >> v & 1U)};
     std::array<std::uint32_t, 2> first{};
     for (std::size_t f = 0; f < 2; ++f) {
@@ -273,7 +274,8 @@ void BoxSplitter::connect_edges(const SplitBox& box) {
   }
 }
 
-/// A cut through a hole of a face opens it; across the longer side, so that boxes stay compact.
+/// Returns a cut through a hole of a face, which opens the hole. It is across the longer side, so that boxes stay
+/// compact.
 BoxSplitter::Cut BoxSplitter::cut_beside(const SplitBox& box, std::size_t face, const Hole& hole) const {
   const Vec3d size = box.box.high - box.box.low;
   const std::size_t u = next_axis(face / 2);
@@ -295,7 +297,7 @@ BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, ModelObsta
       }
     }
   }
-  // Small things are cut themselves, so that they need not be come near to in halves; but never through a vertex alone,
+  // Small structures are cut themselves, instead of approached by halving. A cut never goes through a vertex alone,
   // around which all scales look the same.
   const Vec3d size = box.box.high - box.box.low;
   const Vec3d inner = high - low;
@@ -325,7 +327,7 @@ std::array<SplitBox, 2> BoxSplitter::halves(SplitBox&& box, const Cut& cut) cons
       if (may_meet(mesh_.corners(t), out[upper].box.low, out[upper].box.high)) out[upper].triangles.push_back(t);
     }
   }
-  // New corners lie on the sides that are cut: each crossing on the way there changes sides.
+  // New corners lie on the sides that are cut. Each crossing on the way there switches between inside and outside.
   for (std::size_t corner = 0; corner < 8; ++corner) {
     const auto bit = static_cast<std::uint8_t>(1U << corner);
     const std::size_t other = corner ^ 1U << cut.axis;

@@ -13,8 +13,8 @@
 
 namespace blum::detail {
 
-/// Finds the components of a solid in a rectangle, from what bounds them: the parts of the rectangle's border in the
-/// solid, called intervals, and arcs of the surface. To be used again and again.
+/// Finds the components of a solid in a rectangle from their boundaries. These are the parts of the rectangle's border
+/// in the solid, called intervals, and arcs of the surface. Reusable.
 class SquareComponents {
  public:
   void start(std::size_t intervals) {
@@ -22,26 +22,26 @@ class SquareComponents {
     corners_.clear();
     arcs_.clear();
   }
-  /// Two intervals meet in a corner.
+  /// Joins two intervals that meet in a corner.
   void join(std::size_t one, std::size_t other) {
     corners_.push_back({static_cast<std::uint32_t>(one), static_cast<std::uint32_t>(other)});
   }
-  /// An end of an arc: the interval that ends there, or where it is not on the border, what it has in common with the
-  /// end of the next arc.
+  /// An end of an arc. On the border, the id is the interval that ends there. Else it is an id that the end shares with
+  /// the end of the next arc.
   struct End {
     bool on_border = false;
     std::uint32_t id = 0;
   };
   void add_arc(const End& one, const End& other) { arcs_.push_back({one, other}); }
 
-  /// Numbers the components by their first interval, then those without any by their first arc.
-  /// @param is_hole  told the arcs of a closed curve that no interval is joined to: whether the solid is outside of it.
-  /// @return  whether no component has a hole.
+  /// Numbers the components by their first interval, then those without intervals by their first arc.
+  /// @param is_hole  called with the arcs of a closed curve without intervals; returns true if the solid is outside it.
+  /// @return  true if no component has a hole.
   bool finish(FunctionRef<bool(std::span<const std::uint32_t>)> is_hole);
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] std::uint32_t of_interval(std::size_t interval) const { return component_[interval]; }
-  /// Of the arc that was added as that one.
+  /// Returns the component of an arc, numbered in the order of add_arc().
   [[nodiscard]] std::uint32_t of_arc(std::size_t arc) const { return component_[intervals_ + arc]; }
 
  private:
@@ -53,15 +53,15 @@ class SquareComponents {
   std::vector<Pair> corners_;
   std::vector<std::array<End, 2>> arcs_;
   UnionFind joined_;
-  std::vector<Pair> inner_ends_;  ///< ids and arcs
+  std::vector<Pair> inner_ends_;  ///< (id, arc)
   std::vector<std::uint32_t> component_;
-  std::vector<Pair> loops_;  ///< first and next arcs of closed curves
+  std::vector<Pair> loops_;  ///< (first arc, arc) of closed curves
   std::vector<std::uint32_t> loop_;
   std::uint32_t count_ = 0;
 };
 
-/// Finds the components of a solid in a cube, or in a box, from what bounds them: the components in its sides, called
-/// parts, and pieces of the surface inside. To be used again and again.
+/// Finds the components of a solid in a cube, or in a box, from their boundaries. These are the components in its
+/// sides, called parts, and pieces of the surface inside. Reusable.
 class CubeComponents {
  public:
   /// @param parts  number of components in the sides.
@@ -70,19 +70,19 @@ class CubeComponents {
     euler_.assign(parts, 1);
     pieces_.clear();
   }
-  /// Two parts have an interval in common.
+  /// Joins two parts that share an interval.
   void join_at_interval(std::size_t one, std::size_t other) {
     joined_.join(static_cast<std::uint32_t>(one), static_cast<std::uint32_t>(other));
     --euler_[one];
   }
-  /// A corner of the cube is inside, and belongs to this part and others.
+  /// Adds a corner of the cube that is inside, and belongs to this part and others.
   void add_corner(std::size_t part) { ++euler_[part]; }
-  /// A part has an arc on a piece of the surface.
+  /// Adds an arc that a part has on a piece of the surface.
   void add_arc(std::uint32_t piece, std::size_t part) { pieces_.emplace_back(piece, static_cast<std::uint32_t>(part)); }
 
   /// Numbers the boundaries of the components by their first part.
-  /// @param euler_of  tells the Euler number of an open piece.
-  /// @return  whether each of them is a sphere, so that each component is a ball.
+  /// @param euler_of  returns the Euler number of an open piece.
+  /// @return  true if each of them is a sphere, so that each component is a ball.
   bool finish(FunctionRef<std::int64_t(std::uint32_t)> euler_of);
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
@@ -91,7 +91,7 @@ class CubeComponents {
  private:
   UnionFind joined_;
   std::vector<std::int64_t> euler_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pieces_;  ///< and parts
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pieces_;  ///< (piece, part)
   std::vector<std::uint32_t> component_;
   std::uint32_t count_ = 0;
 };

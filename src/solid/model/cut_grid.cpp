@@ -18,11 +18,11 @@ namespace blum::detail {
 namespace {
 
 constexpr std::size_t surface_grain = 4096;
-constexpr std::uint32_t own_number = 0x80000000U;  ///< of pieces that a chunk of triangles makes, until it is appended
+constexpr std::uint32_t own_number = 0x80000000U;  ///< marks pieces made by a chunk, until it is appended
 constexpr std::uint64_t most_passes = std::uint64_t{1} << 29U;
 constexpr std::uint32_t no_piece = 0xffffffffU;
 
-/// Where the edges of a surface pass from cube to cube.
+/// The squares that edges of a surface pass from cube to cube.
 class TracedEdges {
  public:
   TracedEdges(const SurfaceMesh& mesh, const GridPlanes& planes, const CellLattice& lattice,
@@ -36,7 +36,7 @@ class TracedEdges {
       for (std::size_t a = 0; a < 3; ++a) {
         sum += static_cast<std::uint64_t>(std::abs(cubes[edges[e][1]][a] - cubes[edges[e][0]][a]));
       }
-      // All pieces together must be counted below own_number.
+      // Numbers of all pieces must stay below own_number.
       if (sum > most_passes) throw InvalidGrid("the surface crosses the grid too often: use a coarser grid");
     }
     first_.back() = static_cast<std::uint32_t>(sum);
@@ -46,12 +46,12 @@ class TracedEdges {
     });
   }
 
-  /// The squares that an edge passes, from its smaller vertex.
+  /// Returns the squares that an edge passes, from its smaller vertex.
   [[nodiscard]] std::span<const Cell> squares(std::uint32_t edge) const {
     return std::span(squares_).subspan(first_[edge], first_[edge + 1] - first_[edge]);
   }
   [[nodiscard]] std::size_t passes() const { return squares_.size(); }
-  /// The number of the part of an edge after `passed` squares.
+  /// Returns the number of the part of an edge after `passed` squares.
   [[nodiscard]] std::uint32_t part(std::uint32_t edge, std::size_t passed) const {
     if (passed == 0) return mesh_.edges()[edge][0];
     if (passed == first_[edge + 1] - first_[edge]) return mesh_.edges()[edge][1];
@@ -78,10 +78,10 @@ class TracedEdges {
     }
   }
 
-  /// Whether an edge passes the next plane across `one` before that across `other`.
+  /// Returns true if an edge passes the next plane across `one` before that across `other`.
   [[nodiscard]] bool is_first(const EdgeEnds& ends, std::size_t one, std::size_t other, const Place& at,
                               const Place& end) const {
-    // The line in which both planes meet lies on one side of the edge.
+    // The common line of both planes lies on one side of the edge.
     const bool is_cyclic = next_axis(one) == other;
     const std::size_t u = is_cyclic ? one : other;
     const std::size_t v = is_cyclic ? other : one;
@@ -101,21 +101,21 @@ class TracedEdges {
   std::vector<Cell> squares_;
 };
 
-/// What some triangles in a row meet.
+/// Intersections of some consecutive triangles with the grid.
 struct Chunk {
   std::vector<GridCrossing> crossings;
   std::vector<Arc> arcs;
-  std::vector<std::uint32_t> parts;  ///< one for each triangle and cube: a piece that it belongs to
+  std::vector<std::uint32_t> parts;  ///< for each triangle and cube: a piece that it belongs to
   std::vector<std::array<std::uint32_t, 2>> joins;
-  std::uint32_t own = 0;  ///< pieces that no vertex or edge has a part in
+  std::uint32_t own = 0;  ///< number of pieces without a part of a vertex or edge
 };
 
-/// Where an edge of a triangle passes a plane.
+/// A pass of a triangle's edge through a plane.
 struct Pass {
   std::size_t axis;
   std::int32_t plane;
   std::size_t side;     ///< of the triangle: 0, 1, 2
-  std::uint32_t index;  ///< among the squares of the edge
+  std::uint32_t index;  ///< index among the squares of the edge
 };
 
 class TriangleTracer {
@@ -155,14 +155,15 @@ class TriangleTracer {
     });
   }
 
-  /// Follows the triangle through a plane from side to side.
+  /// Follows the triangle in a plane from one side to the other.
   void walk(const Pass& one, const Pass& two) {
     const Triangle& t = mesh_.triangles()[triangle_];
     const std::size_t w = one.axis;
     const std::size_t u = next_axis(w);
     const std::size_t v = next_axis(u);
-    // The corner that both sides have in common lies alone on its side of the plane. Seen against the axis, the
-    // triangle's normal points to the right of the walk, which starts on the side after that corner, or to the left.
+    // The common corner of both sides is alone on its side of the plane. The walk starts on the side after that corner.
+    // Seen against the axis, the triangle's normal points right of the walk if the corner is above the plane, else
+    // left.
     const std::size_t alone = two.side == one.side + 1 ? two.side : one.side;
     const bool is_above = cubes_[t[alone]][w] >= one.plane;
     const bool normal_is_left = !is_above;
@@ -193,7 +194,7 @@ class TriangleTracer {
       }
       const std::size_t along = is_along_u ? v : u;
       const Cell edge = cell_at(lattice_.node(crossed[0], crossed[1], crossed[2]), 1U << along);
-      // Each crossing is met in two planes, and noted in one.
+      // Each crossing is met in two planes, and recorded in one.
       if (is_along_u) out_.crossings.push_back({edge, triangle_, (u_step > 0) == normal_is_left});
       add_arc(square, from, {edge, true});
       from = {edge, true};
@@ -217,7 +218,7 @@ class TriangleTracer {
     out_.arcs.push_back({square, triangle_, {from, to}, {no_piece, no_piece}});
   }
 
-  /// Gives an arc the pieces that the parts of an edge below and above its end belong to.
+  /// Gives an arc the pieces of the edge's parts below and above its end.
   void take_pieces(const Pass& pass, Arc& arc) {
     const std::uint32_t edge = edge_of(pass);
     const auto [a, b] = mesh_.edges()[edge];
@@ -273,10 +274,10 @@ class TriangleTracer {
   TriangleCorners corners_;
   std::vector<Pass> passes_;
   std::size_t first_arc_ = 0;
-  std::vector<std::pair<Cell, std::size_t>> beside_;  ///< cubes, and twice the arcs on their sides
+  std::vector<std::pair<Cell, std::size_t>> beside_;  ///< cubes, and twice the arcs on their sides (+ 1: above)
 };
 
-/// Adds what a chunk of triangles meets.
+/// Adds the intersections of a chunk of triangles.
 void append(Chunk&& chunk, std::uint32_t& count, TracedSurface& out) {
   const auto number = [&](std::uint32_t piece) {
     return (piece & own_number) != 0 ? count + (piece & ~own_number) : piece;
@@ -294,7 +295,7 @@ void append(Chunk&& chunk, std::uint32_t& count, TracedSurface& out) {
 
 constexpr std::size_t grain = 2048;
 
-/// The lower and the upper axis of a square, as bits.
+/// Returns the lower and the upper axis of a square, as bits.
 constexpr std::array<CellAxes, 2> span_of(Cell square) {
   const CellAxes axes = axes_of(square);
   const CellAxes lower = axes & (~axes + 1U);
@@ -307,7 +308,7 @@ constexpr std::array<CellAxes, 2> span_of(Cell square) {
                     std::to_string(p.z) + "): its surface is open, or crosses itself");
 }
 
-/// Items in the order of their keys.
+/// Returns the items in the order of their keys.
 template <class Item, class Key>
 std::vector<KeyedIndex> sorted_by(const std::vector<Item>& items, const Key& key) {
   std::vector<KeyedIndex> order(items.size());
@@ -440,7 +441,7 @@ CutGrid::CutGrid(const SurfaceMesh& mesh, GridPlanes planes, const Context& cont
   failing_.erase(std::unique(failing_.begin(), failing_.end()), failing_.end());
 }
 
-/// Notes shells that no plane cuts. A void fails its cube; an outer shell is a whole body.
+/// Records shells that no plane cuts. A void fails its cube; an outer shell is a whole body.
 void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface) {
   std::vector<bool> is_cut(surface.euler.size(), false);
   for (const Arc& arc : surface.arcs) {
@@ -449,7 +450,7 @@ void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface
   const auto vertices = mesh.vertices();
   std::vector<std::uint32_t> closed;
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
-    // The smallest index of a piece stands for it; pieces that are no vertex are cut.
+    // The smallest index of a piece represents it. Pieces not represented by a vertex are cut.
     if (surface.pieces.find(v) == v && !is_cut[v]) closed.push_back(v);
   }
   if (closed.empty()) return;
@@ -507,7 +508,7 @@ void CutGrid::sort_crossings(const SurfaceMesh& mesh, const TracedSurface& surfa
       if ((row[k].leaves == row.front().leaves) != (k % 2 == 0)) throw_crossing(planes_, lattice_, edge);
       crossings_[i + k] = row[k].triangle;
     }
-    // For now, whether the edge along z to a node has its ends on different sides.
+    // Temporarily: 1 if the ends of the edge along z to a node are on different sides.
     if (axis == 2 && row.size() % 2 == 1) inside_[node_of(edge) + lattice_.stride(2)] = 1;
     i = j;
   }
@@ -579,7 +580,7 @@ bool CutGrid::connect_square(const SurfaceMesh& mesh, Cell square, Scratch& scra
   for (std::size_t s = 0; s < 4; ++s) first[s + 1] = first[s] + components(sides[s]);
   SquareComponents& components_here = scratch.square;
   components_here.start(first[4]);
-  // Corners, each the begin of a side or its end.
+  // Each corner joins intervals of two sides, the first or the last of each.
   const auto [lower, upper] = span_of(square);
   const std::size_t node = node_of(square);
   const std::size_t along_lower = lattice_.stride(axis_of(lower));

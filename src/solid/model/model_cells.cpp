@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_cells = 0xfffffff0U;
 
-/// The cells of a grid that belong to a cube that is part of a region, rising.
+/// Returns the cells of a grid that belong to a cube of a region, rising.
 std::vector<Cell> cells_of(const CutGrid& grid, std::span<const RefinedRegion> regions) {
   std::vector<Cell> cells;
   for (const RefinedRegion& region : regions) {
@@ -31,7 +31,7 @@ std::vector<Cell> cells_of(const CutGrid& grid, std::span<const RefinedRegion> r
   return cells;
 }
 
-/// Where a line along an axis crosses the plane of a triangle.
+/// Returns the coordinate at which a line along an axis crosses the plane of a triangle.
 double crossing_height(const TriangleCorners& t, std::size_t axis, const Vec3d& on_line) {
   const Vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
   return on_line[axis] - dot(normal, on_line - t[0]) / normal[axis];
@@ -42,7 +42,7 @@ class Assembly {
   Assembly(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const RefinedRegion> regions, const Context& context)
       : mesh_(mesh), grid_(grid), lattice_(grid.lattice()), regions_(regions), context_(context) {}
 
-  /// Of all cells.
+  /// Assembles all cells.
   ModelCells assemble() {
     refined_ = cells_of(grid_, regions_);
     std::vector<Cell> all;
@@ -55,7 +55,7 @@ class Assembly {
     return assemble(all);
   }
 
-  /// Of those that differ from the voxels on a lattice.
+  /// Assembles the cells that differ from the voxels on a lattice.
   ExtraModelCells assemble_extra(const CellLattice& voxels) {
     refined_ = cells_of(grid_, regions_);
     voxels_ = &voxels;
@@ -86,7 +86,7 @@ class Assembly {
   }
 
  private:
-  /// @param named  cells of the grid, rising, that no region has.
+  /// @param named  cells of the grid that no region has, rising.
   ModelCells assemble(const std::vector<Cell>& named) {
     name_cells(named);
     out_.first_face.reserve(out_.size() + 1);
@@ -107,27 +107,27 @@ class Assembly {
     }
     return false;
   }
-  /// A step along each axis of some.
+  /// Returns a node moved by one step along each of some axes.
   [[nodiscard]] std::size_t moved(std::size_t node, CellAxes axes) const {
     for (std::size_t a = 0; a < 3; ++a) node += (axes >> a & 1U) * lattice_.stride(a);
     return node;
   }
-  /// The cell of the lattice of voxels that stands for a cell of the grid.
+  /// Returns the cell of the lattice of voxels that stands for a cell of the grid.
   [[nodiscard]] Cell dual(Cell cell) const {
     std::array<std::int64_t, 3> at = lattice_.place(node_of(cell));
     for (std::size_t a = 0; a < 3; ++a) at[a] += axes_of(cell) >> a & 1U;
     return cell_at(voxels_->node(at[0], at[1], at[2]), 7U ^ axes_of(cell));
   }
-  /// The id of a component of a cell of the grid that no region has.
+  /// Returns the id of a component of a cell of the grid that no region has.
   [[nodiscard]] std::uint32_t id_of(Cell cell, std::uint32_t component) const {
     return first_.contains(cell) ? base_ + first_.of(cell) + component : dual(cell);
   }
-  /// Whether a cell of the grid is one of the model as it is one of the voxels.
+  /// Returns true if a cell of the grid is the same cell in the model and among the voxels.
   [[nodiscard]] bool is_plain(Cell cell) const {
     return !first_.contains(cell) && grid_.components(cell) > 0 && !is_refined(cell);
   }
 
-  /// Pairs each component of a cell with the plain cells that it is a face of.
+  /// Pairs each component of a cell with the plain cells of which it is a face.
   void add_cofaces(Cell cell, std::vector<std::array<std::uint32_t, 2>>& pairs) const {
     const auto add = [&](Cell side, std::uint32_t component) {
       pairs.push_back({first_.of(cell) + component, dual(side)});
@@ -148,7 +148,8 @@ class Assembly {
     }
   }
 
-  /// Extra cells without a witness lie around a corner inside of a plain cell that they are a face of.
+  /// Extra cells without a witness lie around a corner that is inside. It is a corner of a plain cell of which they are
+  /// faces.
   void witness_by_cofaces(ExtraModelCells& out) const {
     for (const auto& [extra, plain] : out.cofaces) {
       if (has_witness_[extra]) continue;
@@ -156,7 +157,7 @@ class Assembly {
       out.cells.witness[extra] = grid_.planes().node(voxel);
     }
   }
-  /// A node inside that is a corner of the cell of the grid that a cell of the voxels stands for.
+  /// Returns an inside node that is a corner of the grid's cell for which a cell of the voxels stands.
   [[nodiscard]] std::array<std::int64_t, 3> voxel_at(Cell plain) const {
     std::array<std::int64_t, 3> found = voxels_->place(node_of(plain));
     voxels_->for_each_cube_around(plain, [&](const std::array<std::int64_t, 3>& at) {
@@ -165,7 +166,7 @@ class Assembly {
     return found;
   }
 
-  /// The first id of each cell of the grid that has any.
+  /// First id of each cell of the grid that has any.
   class FirstIds {
    public:
     void reset(const CellLattice& lattice) { ranked_ = RankedCells(lattice); }
@@ -229,7 +230,7 @@ class Assembly {
   }
 
   void begin_cell() { out_.first_face.push_back(static_cast<std::uint32_t>(out_.faces.size())); }
-  /// Of the cell that was begun last.
+  /// Sets the witness of the cell begun last.
   void set_witness(const Vec3d& p) {
     out_.witness[out_.first_face.size() - 1] = p;
     has_witness_[out_.first_face.size() - 1] = true;
@@ -249,7 +250,8 @@ class Assembly {
     }
   }
 
-  /// Sets the ends of an interval of a part of a line that these triangles cross, and its middle as the witness.
+  /// Sets the ends of an interval of a part of a line that these triangles cross. The interval's middle becomes the
+  /// witness.
   void set_interval(std::size_t axis, const Vec3d& low, double high, bool begins_inside,
                     std::span<const std::uint32_t> crossings, std::uint32_t interval) {
     const auto end_at = [&](std::size_t k) {
@@ -266,14 +268,14 @@ class Assembly {
     if (voxels_ != nullptr) out_.ends[out_.first_face.size() - 1] = ends;
   }
   [[nodiscard]] Vec3d node_position(std::size_t node) const { return grid_.planes().node(lattice_.place(node)); }
-  /// Makes the middle of what is around a component of a square its witness, if there is anything.
+  /// Sets the witness to the middle of the edges around a component of a square, if any exist.
   void set_middle(const std::vector<ArcEnd>& ends, std::size_t across, double plane) {
     if (ends.empty()) return;
     Vec3d sum;
     for (const ArcEnd& end : ends) sum += point_on(end, across, plane);
     set_witness(sum / static_cast<double>(ends.size()));
   }
-  /// Where an edge of the mesh meets a plane.
+  /// Returns the point where an edge of the mesh meets a plane.
   [[nodiscard]] Vec3d point_on(const ArcEnd& end, std::size_t across, double plane) const {
     const auto [a, b] = mesh_.ends(end.id);
     const double t = (plane - a[across]) / (b[across] - a[across]);
@@ -302,7 +304,7 @@ class Assembly {
     if (component >= others) set_witness(mesh_.vertices()[shells[component - others].second]);
   }
 
-  /// Of an edge of the model.
+  /// Adds the faces of an edge of the model.
   void add_ends(Cell square, std::uint32_t component) {
     const std::size_t across = normal_axis(square);
     set_middle(grid_.loose_ends(square, component), across, node_position(node_of(square))[across]);
@@ -311,7 +313,7 @@ class Assembly {
     add_face(id_of(above, grid_.component_of_part(above, 2 * across, component)));
   }
 
-  /// Of a polygon.
+  /// Adds the faces of a polygon.
   void add_border(Cell edge, std::uint32_t interval) {
     const std::size_t axis = axis_of(axes_of(edge));
     set_interval(axis, node_position(node_of(edge)), node_position(node_of(edge) + lattice_.stride(axis))[axis],
@@ -326,7 +328,7 @@ class Assembly {
     }
   }
 
-  /// Of a polyhedron.
+  /// Adds the faces of a polyhedron.
   void add_sides(Cell node) {
     set_witness(node_position(node_of(node)));
     for (std::size_t a = 0; a < 3; ++a) {
@@ -401,7 +403,7 @@ class Assembly {
     }
   }
 
-  /// The edge of the grid that a segment is all of.
+  /// Returns the edge of the grid that a segment covers wholly.
   [[nodiscard]] Cell edge_of(const RefinedRegion& region, const BoxSegment& segment) const {
     const Place at = grid_.planes().cube(region.cells().corners()[segment.ends[0]]);
     return cell_at(lattice_.node(at[0], at[1], at[2]), 1U << segment.axis);
@@ -440,7 +442,7 @@ class Assembly {
   const CellLattice& lattice_;
   std::span<const RefinedRegion> regions_;
   const Context& context_;
-  const CellLattice* voxels_ = nullptr;  ///< where only extra cells are named
+  const CellLattice* voxels_ = nullptr;  ///< set if only extra cells are named
   std::uint32_t base_ = 0;               ///< added to numbers of cells
   std::vector<Cell> refined_;            ///< cells of the grid that belong to a region
   FirstIds first_;
@@ -469,7 +471,7 @@ std::array<std::int64_t, 4> count_model_cells(const CutGrid& grid, std::span<con
     count[static_cast<std::size_t>(3 - dimension_of(cell))] += components;
   };
   for (CellAxes axes = 0; axes < 8; ++axes) add(axes, inside);
-  // Where the surface cuts a cell, it has other components than its first corner says.
+  // Corrects cells that the surface cuts: their components differ from the state of their first corner.
   for (const Cell cell : grid.cut_cells()) {
     add(cell, std::int64_t{grid.components(cell)} - (grid.is_inside(node_of(cell)) ? 1 : 0));
   }

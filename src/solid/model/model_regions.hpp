@@ -12,14 +12,15 @@
 
 namespace blum::detail {
 
-/// Splits the cubes of a grid that fail, in regions of neighbouring ones that do not touch each other.
-/// @param most_splits  of a cube. @param finer  where boxes are split though they pass: see body_cells(). @throws
-/// Cancelled.
+/// Splits the cubes of a grid that fail. Returns regions of neighbouring cubes, which do not touch each other.
+/// @param most_splits  limit for each cube.
+/// @param finer  boxes in which boxes are split even if they pass: see body_cells().
+/// @throws Cancelled.
 [[nodiscard]] std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid& grid, int most_splits,
                                                         std::span<const Box3> finer, const Context& context);
 
-/// The boxes in which splitting ended. @param exponent  coordinates were multiplied by two to its power: see
-/// scale_of().
+/// Returns the boxes in which splitting ended without success.
+/// @param exponent  coordinates were multiplied by two to its power: see scale_of().
 [[nodiscard]] std::vector<ModelFailure> failures_of(std::span<const RefinedRegion> regions, int exponent);
 
 }  // namespace blum::detail

@@ -14,11 +14,11 @@ namespace blum::detail {
 
 namespace {
 
-/// Cubes beside each other are not split into more boxes: a tunnel at a slant takes about as many as it is longer than
-/// wide.
+/// Limit on the number of boxes of neighbouring cubes. A slanted tunnel takes about as many boxes as its length is a
+/// multiple of its width.
 constexpr std::size_t most_boxes = std::size_t{1} << 17U;
 constexpr std::size_t cubes_in_batch = 32;
-/// Of one cube, while others are split beside it.
+/// Limit for one cube, while others are split at the same time.
 constexpr std::size_t most_at_first = most_boxes / cubes_in_batch;
 
 /// Calls visit(k, worker) for each k below a count, from all threads.
@@ -43,11 +43,11 @@ RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::
                              std::span<const Box3> finer, const Context& context)
     : mesh_(mesh), grid_(grid), cubes_(cubes.begin(), cubes.end()) {
   const Vec3d& spacing = grid.planes().spacing();
-  std::vector<BoxSplitter> splitters;  // of each thread
+  std::vector<BoxSplitter> splitters;  // one for each thread
   for (int k = 0; k < thread_count(context); ++k) {
     splitters.emplace_back(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits, finer);
   }
-  // As if one cube were split after the other, each into as many boxes as those before leave room for.
+  // Same result as splitting one cube after the other, each into as many boxes as those before leave room for.
   std::vector<std::vector<SplitBox>> parts(cubes_in_batch);
   for (std::size_t first = 0; first < cubes.size(); first += cubes_in_batch) {
     const std::size_t count = std::min(cubes_in_batch, cubes.size() - first);
@@ -130,7 +130,7 @@ const std::vector<std::uint32_t>& RefinedRegion::candidates(std::span<const BoxR
     const auto& own = triangles_[box.id];
     if (fewest == nullptr || own.size() < fewest->size()) fewest = &own;
   }
-  static const std::vector<std::uint32_t> nothing;  // of no box, which segments and rectangles do not lie beside
+  static const std::vector<std::uint32_t> nothing;  // for no box; segments and rectangles always lie beside one
   return fewest != nullptr ? *fewest : nothing;
 }
 
@@ -145,7 +145,7 @@ void RefinedRegion::find_crossings(std::uint32_t segment) {
   sort_along(mesh_, s.axis, low, found);
 }
 
-/// Corners of the grid are known; from there along segments.
+/// Corners of the grid are known. The state of others follows along segments.
 void RefinedRegion::find_inside() {
   constexpr std::uint8_t unknown = 2;
   const auto corners = cells_->corners();
@@ -156,7 +156,7 @@ void RefinedRegion::find_inside() {
       inside_[c] = grid_.is_inside(grid_.lattice().node(at[0], at[1], at[2])) ? 1 : 0;
     }
   }
-  std::vector<std::vector<std::uint32_t>> around(corners.size());  // segments
+  std::vector<std::vector<std::uint32_t>> around(corners.size());  // segments at each corner
   for (std::uint32_t s = 0; s < segments_.size(); ++s) {
     for (const std::uint32_t end : cells_->segments()[s].ends) around[end].push_back(s);
   }
@@ -185,14 +185,14 @@ void RefinedRegion::find_arcs(std::uint32_t rectangle) {
   const auto corners = cells_->corners();
   const Vec3d& low = corners[cells_->segments()[own.sides[0].front()].ends[0]];
   const Vec3d& high = corners[cells_->segments()[own.sides[1].back()].ends[1]];
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> on_border;  // triangles and segments
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> on_border;  // (triangle, segment)
   for (const auto& side : own.sides) {
     for (const std::uint32_t s : side) {
       for (const std::uint32_t t : segments_[s].crossings) on_border.emplace_back(t, s);
     }
   }
   std::sort(on_border.begin(), on_border.end());
-  std::map<std::uint32_t, bool> passes;  // of edges of the mesh
+  std::map<std::uint32_t, bool> passes;  // for each edge of the mesh
   for (const std::uint32_t t : candidates(own.boxes)) {
     if (!may_meet(mesh_.corners(t), low, high)) continue;
     std::array<ArcEnd, 4> ends{};
@@ -238,7 +238,7 @@ void RefinedRegion::connect_rectangle(std::uint32_t rectangle, Scratch& scratch)
   for (const BoxArc& arc : own.arcs) {
     components.add_arc(end_of(arc.ends[0], arc.triangle), end_of(arc.ends[1], arc.triangle));
   }
-  // Boxes beside it have passed, or their obstacle is known: whether it has a hole is of no interest any more.
+  // The boxes beside it passed, or their obstacle is known. A hole no longer matters.
   static_cast<void>(components.finish([](std::span<const std::uint32_t>) { return false; }));
   own.components = components.count();
   for (std::uint32_t k = 0; k < count; ++k) own.interval_component.push_back(components.of_interval(k));
@@ -302,7 +302,7 @@ void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {
     offset += rectangles_[r].components;
   }
   scratch.pieces.find(mesh_, boxes_[box], triangles_[box], arcs, passing, components);
-  // Boxes pass, or their obstacle is known: sides that are cut into rectangles change nothing of that.
+  // The box passes, or its obstacle is known. Sides cut into rectangles do not change this.
   static_cast<void>(components.finish([&](std::uint32_t piece) { return scratch.pieces.euler(piece); }));
   for (std::size_t k = 0; k < parts; ++k) part_component_[box].push_back(components.of_part(k));
   const auto bodies = scratch.pieces.bodies();

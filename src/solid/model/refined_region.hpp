@@ -19,21 +19,22 @@
 
 namespace blum::detail {
 
-/// A box that could not be split until it passes.
+/// A box that fails and could not be split further.
 struct StuckBox {
   BoxCell box;
   ModelObstacle obstacle;
   double cuts_left = 0;
 };
 
-/// Some cubes of a grid, split into boxes, and what the solid's components in their cells are. Conventions are those of
-/// CutGrid, with boxes for cubes, rectangles for squares and segments for edges; the components of rectangles and
-/// segments that are whole cells of the grid have the same numbers as there.
+/// Some cubes of a grid, split into boxes, with the solid's components in their cells. Conventions are those of
+/// CutGrid, with boxes for cubes, rectangles for squares and segments for edges. Components of rectangles and segments
+/// that are whole cells of the grid have the same numbers as there.
 class RefinedRegion {
  public:
   /// @param cubes  those that fail, and all around them, rising.
   /// @param triangles  for each of the cubes, all that may meet it.
-  /// @param most_splits  of a cube.  @param finer  see BoxSplitter.
+  /// @param most_splits  limit for each cube.
+  /// @param finer  see BoxSplitter.
   /// @throws Cancelled.
   RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
                 std::vector<std::vector<std::uint32_t>> triangles, int most_splits, std::span<const Box3> finer,
@@ -50,26 +51,27 @@ class RefinedRegion {
     return rectangles_[rectangle].components;
   }
   [[nodiscard]] std::uint32_t components_of_box(std::uint32_t box) const { return box_components_[box]; }
-  /// The component of a rectangle that an interval of a segment at its border belongs to.
+  /// Returns the component of a rectangle to which an interval of a segment at its border belongs.
   [[nodiscard]] std::uint32_t component_of_interval(std::uint32_t rectangle, std::uint32_t segment,
                                                     std::uint32_t interval) const;
-  /// The component of a box that a component of a rectangle at its border belongs to.
+  /// Returns the component of a box to which a component of a rectangle at its border belongs.
   [[nodiscard]] std::uint32_t component_of_part(std::uint32_t box, std::uint32_t rectangle, std::uint32_t part) const;
-  /// The triangles that cross a segment, from below.
+  /// Returns the triangles that cross a segment, from below.
   [[nodiscard]] std::span<const std::uint32_t> crossings(std::uint32_t segment) const {
     return segments_[segment].crossings;
   }
 
-  /// The edges of the mesh around a component of a rectangle that no interval belongs to, each twice; else none.
+  /// Returns the edges of the mesh around a component of a rectangle without intervals, each twice. Empty if the
+  /// component has intervals.
   [[nodiscard]] std::vector<ArcEnd> loose_ends(std::uint32_t rectangle, std::uint32_t component) const;
-  /// For each body that lies wholly in a box a vertex of it: these are the last components of the box.
+  /// Returns a vertex of each body that lies wholly in a box. These bodies are the last components of the box.
   [[nodiscard]] std::span<const std::uint32_t> bodies_in(std::uint32_t box) const { return bodies_of_box_[box]; }
 
-  /// Empty where all cells pass.
+  /// Returns the boxes that fail; empty if all cells pass.
   [[nodiscard]] std::span<const StuckBox> stuck() const { return stuck_; }
-  /// The number of boxes that come from splits.
+  /// Returns the number of boxes that come from splits.
   [[nodiscard]] std::size_t split_boxes() const { return split_boxes_; }
-  /// The largest number of splits that a box comes from.
+  /// Returns the largest number of splits that led to a box.
   [[nodiscard]] int depth() const { return depth_; }
 
  private:
@@ -80,19 +82,19 @@ class RefinedRegion {
   };
   struct BoxArc {
     std::uint32_t triangle = 0;
-    std::array<ArcEnd, 2> ends;  ///< on the border: the segment
+    std::array<ArcEnd, 2> ends;  ///< ids on the border: segments
     std::uint32_t component = 0;
   };
   struct RectangleSurface {
     std::vector<BoxArc> arcs;
-    std::vector<std::uint32_t> interval_component;  ///< of the intervals of all sides, one after the other
-    /// Where the intervals of each segment begin among these; by segment.
+    std::vector<std::uint32_t> interval_component;  ///< for the intervals of all sides, one side after the other
+    /// First entry of each segment among these; by segment.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> first_interval;
     std::uint32_t components = 0;
   };
   struct Scratch;
 
-  /// Of a segment at the border of a rectangle.
+  /// Returns the first entry of a segment at the border of a rectangle.
   [[nodiscard]] static std::uint32_t first_interval(const RectangleSurface& rectangle, std::uint32_t segment);
   [[nodiscard]] SplitBox whole_box(Cell cube, std::vector<std::uint32_t> triangles) const;
   void take(SplitBox part);
@@ -119,7 +121,7 @@ class RefinedRegion {
   std::vector<std::vector<std::uint32_t>> segments_of_box_;    ///< rising
   std::vector<std::vector<std::uint32_t>> part_component_;     ///< by box
   std::vector<std::uint32_t> box_components_;
-  std::vector<std::vector<std::uint32_t>> bodies_of_box_;  ///< a vertex of each that lies wholly in it
+  std::vector<std::vector<std::uint32_t>> bodies_of_box_;  ///< a vertex of each body that lies wholly in the box
   std::vector<StuckBox> stuck_;
   std::size_t split_boxes_ = 0;
   int depth_ = 0;

@@ -5,7 +5,7 @@
 namespace blum::detail {
 namespace {
 
-/// The corner of a triangle that is no end of an edge.
+/// Returns the corner of a triangle that is not an end of an edge.
 Vec3d apex(const SurfaceMesh& mesh, std::uint32_t triangle, std::uint32_t edge) {
   const Triangle& t = mesh.triangles()[triangle];
   const Segment& ends = mesh.edges()[edge];
@@ -24,7 +24,8 @@ bool is_around_hole(const SurfaceMesh& mesh, std::span<const std::uint32_t> edge
   for (const std::uint32_t edge : edges.subspan(1)) {
     if (passes_before(mesh.ends(edge), mesh.ends(lowest), across, plane, along)) lowest = edge;
   }
-  // Downwards from the lowest point is outside of the curve; a little to the side, so that no triangle runs along.
+  // Below the lowest point is outside the curve. The ray is tilted slightly to the side, so that no triangle is
+  // parallel to it.
   const auto& [one, two] = mesh.triangles_of(lowest);
   const auto is_behind = [&](const TriangleCorners& corners) {
     const int component = normal_sign(corners, along);

@@ -9,8 +9,9 @@
 
 namespace blum::detail {
 
-/// Whether the solid lies outside of a closed curve in which the plane across an axis cuts its surface, near the curve.
-/// Exact. @param edges  of the mesh, that the curve passes; at least one.
+/// Returns true if the solid lies outside a closed curve, near the curve. In this curve, the plane across an axis cuts
+/// the solid's surface. Exact.
+/// @param edges  of the mesh, that the curve passes; at least one.
 [[nodiscard]] bool is_around_hole(const SurfaceMesh& mesh, std::span<const std::uint32_t> edges, std::size_t across,
                                   double plane);
 

@@ -8,7 +8,7 @@
 namespace blum::detail {
 namespace {
 
-/// Coordinates of a mesh that was scaled to about 1 for which predicates are exact, unless they are 0.
+/// In a mesh scaled to about 1, predicates are exact for coordinates of at least this magnitude, and for 0.
 constexpr double least_coordinate = 1e-45;
 
 }  // namespace

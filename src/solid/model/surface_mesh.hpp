@@ -18,25 +18,27 @@
 
 namespace blum::detail {
 
-/// The power of two that brings the largest coordinate of a box to between 1/2 and 1.
+/// Returns the exponent of the power of two that scales the largest coordinate of a box to between 1/2 and 1.
 [[nodiscard]] int scale_of(const Box3& box);
 
-/// @param exponent  of the power of two to multiply by.
+/// Returns a point multiplied by a power of two.
+/// @param exponent  of the power of two.
 [[nodiscard]] inline Vec3d scaled(const Vec3d& p, int exponent) {
   return {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
 }
 
-/// @throws InvalidMesh where a coordinate becomes too small for exact predicates.
+/// Returns a mesh multiplied by a power of two.
+/// @throws InvalidMesh if a coordinate becomes too small for exact predicates.
 [[nodiscard]] TriangleMesh scaled(TriangleMesh mesh, int exponent);
 
-/// A closed, manifold mesh that faces outwards and does not touch itself: of one body or several. The mesh must outlive
-/// it.
+/// A closed, manifold mesh of one body or several, which faces outwards and does not touch itself. The given mesh must
+/// outlive it.
 class SurfaceMesh {
  public:
-  /// Of one body.
+  /// For one body.
   SurfaceMesh(const MeshView& mesh, const Context& context)
       : SurfaceMesh(mesh, {outermost_vertex(mesh.vertices)}, context) {}
-  /// @param outermost  for each body a vertex of its outer shell, rising.
+  /// @param outermost  a vertex of each body's outer shell, rising.
   SurfaceMesh(const MeshView& mesh, std::vector<std::uint32_t> outermost, const Context& context)
       : mesh_(mesh), sites_(mesh, context), outermost_(std::move(outermost)) {
     constexpr std::uint32_t nobody = 0xffffffffU;
@@ -49,24 +51,24 @@ class SurfaceMesh {
     }
   }
 
-  /// The vertex of largest x, which is one of the outer shell of a body.
+  /// Returns the vertex of largest x, which is a vertex of a body's outer shell.
   [[nodiscard]] static std::uint32_t outermost_vertex(std::span<const Vec3d> vertices) {
     const auto at =
         std::max_element(vertices.begin(), vertices.end(), [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; });
     return static_cast<std::uint32_t>(at - vertices.begin());
   }
-  /// For each body a vertex of its outer shell, rising.
+  /// Returns a vertex of each body's outer shell, rising.
   [[nodiscard]] std::span<const std::uint32_t> outermost() const { return outermost_; }
 
   [[nodiscard]] std::span<const Vec3d> vertices() const { return mesh_.vertices; }
   [[nodiscard]] std::span<const Triangle> triangles() const { return mesh_.triangles; }
-  /// Vertex pairs, smaller vertex first.
+  /// Returns vertex pairs, smaller vertex first.
   [[nodiscard]] std::span<const Segment> edges() const { return sites_.edges(); }
-  /// Edge k lies between corners k and k + 1.
+  /// Returns the edges of a triangle. Edge k lies between corners k and k + 1.
   [[nodiscard]] const std::array<EdgeId, 3>& edges_of(std::uint32_t triangle) const {
     return sites_.triangle_edges()[triangle];
   }
-  /// The two triangles at an edge.
+  /// Returns the two triangles at an edge.
   [[nodiscard]] const std::array<std::uint32_t, 2>& triangles_of(std::uint32_t edge) const {
     return triangles_of_edge_[edge];
   }
