@@ -19,10 +19,10 @@
 namespace blum {
 
 struct AxisGraphOptions {
-  /// With the mesh: faces are of one patch where they are joined through edges that bend by at most this.
+  /// With the mesh: faces form one patch if they are joined through edges that bend by at most this angle, degrees.
   double patch_angle = 30;
-  /// What carries at most this angle is there for homotopy alone: theta of the axis, degrees. Without it nothing counts
-  /// as such, as where angles are not known.
+  /// Theta of the axis, degrees. Cells with at most this angle exist for homotopy alone. If unset, no cell counts as
+  /// such, for example because angles are not known.
   std::optional<double> homotopy_angle = {};
 };
 
@@ -39,8 +39,8 @@ struct Description<AxisGraphOptions> {
   };
 };
 
-/// How a number is spread. Low value and median are those of shares of area or length, not of vertices: 5 % and half of
-/// the sheet (or of the line) have at most this. The low value leaves out single vertices, which the minimum does not.
+/// Distribution of a number over a part of an axis. By area or length, 5 % of the part has at most the low value, and
+/// half has at most the median. Single vertices affect the minimum and the maximum, but not these two.
 struct AxisSpread {
   double minimum = 0, low = 0, median = 0, maximum = 0;
 };
@@ -58,14 +58,14 @@ struct Description<AxisSpread> {
   };
 };
 
-/// What a vertex is where lines of an axis begin, end or meet.
+/// Kind of a vertex at which lines of an axis begin, end or meet.
 enum class JunctionKind : std::uint8_t {
-  junction,    ///< where seams and curves meet
-  seam_end,    ///< one seam ends here, and nothing else
-  curve_end,   ///< a free end of a curve
-  curve_foot,  ///< one curve ends on a sheet
-  contact,     ///< no seam, no curve: sheets touch only here, or along an edge that is no seam
-  point,       ///< a vertex alone: all of the axis of a body
+  junction,    ///< Seams or curves meet here.
+  seam_end,    ///< One seam ends here, and nothing else.
+  curve_end,   ///< Free end of a curve.
+  curve_foot,  ///< One curve ends on a sheet.
+  contact,     ///< No seam or curve: sheets touch only here, or along an edge that is not a seam.
+  point,       ///< Single vertex: the whole axis of a body.
 };
 
 template <>
@@ -78,15 +78,15 @@ struct Description<JunctionKind> {
   };
 };
 
-/// A vertex that seams and curves end at, or at which the axis is more than the middle of a sheet or a line.
+/// Vertex at which seams or curves end, or whose surroundings are not just the middle of one sheet, rim, seam or curve.
 struct AxisJunction {
-  std::uint32_t vertex = 0;  ///< of the axis
+  std::uint32_t vertex = 0;  ///< Number in the axis.
   JunctionKind kind = JunctionKind::junction;
   Vec3d position;
   double radius = 0;
-  std::vector<std::uint32_t> seams;   ///< that begin or end here, rising; one that does both is there twice
-  std::vector<std::uint32_t> curves;  ///< likewise
-  std::vector<std::uint32_t> sheets;  ///< AxisSheet::sheet of those that it lies on, rising
+  std::vector<std::uint32_t> seams;   ///< Seams that begin or end here, ascending; twice if they do both.
+  std::vector<std::uint32_t> curves;  ///< Curves that begin or end here, likewise.
+  std::vector<std::uint32_t> sheets;  ///< AxisSheet::sheet of the sheets that contain the vertex, ascending.
 };
 
 template <>
@@ -104,18 +104,18 @@ struct Description<AxisJunction> {
   };
 };
 
-/// A seam or a curve: a longest chain of edges between junctions, or a closed loop without any.
+/// Seam or curve: a longest chain of edges between junctions, or a closed loop without junctions.
 struct AxisLine {
   double length = 0;
-  double homotopy_length = 0;  ///< of its edges that are there for homotopy alone
-  bool closed = false;         ///< a loop without a junction; one with a junction begins and ends there
-  std::optional<std::array<std::uint32_t, 2>> junctions;  ///< where it begins and ends; none for closed ones
+  double homotopy_length = 0;  ///< Length of its edges that exist for homotopy alone.
+  bool closed = false;         ///< True for a loop without a junction. A loop with one begins and ends there.
+  std::optional<std::array<std::uint32_t, 2>> junctions;  ///< Its first and last junction; none for closed lines.
   AxisSpread radius;
-  std::vector<std::uint32_t> sheets;    ///< AxisSheet::sheet, rising: seams: that meet along it; curves: at its ends
-  std::vector<std::uint32_t> vertices;  ///< of the axis, in order; of closed ones the first again at the end
-  std::vector<Vec3d> points;            ///< their positions
-  std::vector<double> radii;            ///< their radii
-  std::vector<double> arc_length;       ///< from the first vertex to each
+  std::vector<std::uint32_t> sheets;    ///< AxisSheet::sheet, ascending. Seams: along it. Curves: at its ends.
+  std::vector<std::uint32_t> vertices;  ///< Vertices of the axis, in order. Closed lines end with the first one.
+  std::vector<Vec3d> points;            ///< Positions of the vertices.
+  std::vector<double> radii;            ///< Radii at the vertices.
+  std::vector<double> arc_length;       ///< Length from the first vertex to each.
 };
 
 template <>
@@ -137,13 +137,13 @@ struct Description<AxisLine> {
   };
 };
 
-/// A smooth part of the input mesh's surface: faces joined through edges of two faces that bend by at most
-/// AxisGraphOptions::patch_angle. Faces without area are of no patch.
+/// Smooth part of the input mesh's surface: faces joined through edges of two faces that bend by at most
+/// AxisGraphOptions::patch_angle. Faces without area belong to no patch.
 struct AxisPatch {
   std::size_t faces = 0;
   double area = 0;
-  Vec3d centroid;  ///< of the area
-  Vec3d normal;    ///< of unit length, the mean over the area; 0 where it has none, as of a closed surface
+  Vec3d centroid;  ///< Centroid of the area.
+  Vec3d normal;    ///< Mean over the area, of unit length; 0 if undefined, for example for a closed surface.
 };
 
 template <>
@@ -159,11 +159,11 @@ struct Description<AxisPatch> {
   };
 };
 
-/// Two parts of the surface that a sheet lies between. A side is one patch, or several where the footprints lie on an
-/// edge or a corner where these meet: a reflex edge governs as itself.
+/// Two parts of the surface on either side of a sheet. A side is one patch, or several if the footprints lie on an edge
+/// or corner between them, for example on a reflex edge.
 struct AxisPatchPair {
-  std::vector<std::uint32_t> first, second;  ///< patches, rising
-  double share = 0;                          ///< of the sheet's area, 0 to 1
+  std::vector<std::uint32_t> first, second;  ///< Patches, ascending.
+  double share = 0;                          ///< Share of the sheet's area, 0 to 1.
 };
 
 template <>
@@ -178,26 +178,26 @@ struct Description<AxisPatchPair> {
   };
 };
 
-/// A sheet. Its border is that of the surface cut open along seams, so that the two sides of a seam which both are this
-/// sheet's count twice.
+/// Sheet of an axis. Its border is that of the surface cut open along seams. If both sides of a seam belong to this
+/// sheet, the seam counts twice.
 struct AxisSheet {
-  std::uint32_t sheet = 0;  ///< its number in medial_columns::sheet
+  std::uint32_t sheet = 0;  ///< Its number in `medial_columns::sheet`.
   std::size_t triangles = 0;
   double area = 0;
-  double homotopy_area = 0;     ///< of its triangles that are there for homotopy alone: angles of theta or less
-  bool for_homotopy = false;    ///< all of them are
-  AxisSpread thickness;         ///< twice the radius
-  AxisSpread separation_angle;  ///< degrees, of vertices: near 180 between parallel walls
-  double wall_area = 0;         ///< of its triangles whose corners all see their footprints at 150 degrees or more
-  AxisSpread wall_thickness;    ///< of these: twice the radius; zeros where there are none
-  Vec3d centroid;               ///< of the area
-  double rim_length = 0;        ///< where it ends freely
-  double seam_length = 0;       ///< of the border along seams
-  double crease_length = 0;     ///< of the border along edges where it meets one other sheet
+  double homotopy_area = 0;     ///< Area of its triangles that exist for homotopy alone: angles of at most theta.
+  bool for_homotopy = false;    ///< True if all its triangles exist for homotopy alone.
+  AxisSpread thickness;         ///< Twice the radius.
+  AxisSpread separation_angle;  ///< Degrees, of its vertices. Near 180 between parallel walls.
+  double wall_area = 0;         ///< Area of its triangles whose corners all have an angle of 150 degrees or more.
+  AxisSpread wall_thickness;    ///< Twice the radius over these triangles; zeros if none exist.
+  Vec3d centroid;               ///< Centroid of the area.
+  double rim_length = 0;        ///< Length of its free border.
+  double seam_length = 0;       ///< Length of its border along seams.
+  double crease_length = 0;     ///< Length of its border along edges where it meets one other sheet.
   std::size_t boundary_loops = 0;
-  std::int64_t euler_characteristic = 0;   ///< of the surface cut open: 1 for a disc, 0 for a ring, 2 for a sphere
-  std::vector<std::uint32_t> seams;        ///< that it meets others (or itself) along, rising
-  std::vector<AxisPatchPair> patch_pairs;  ///< that it lies between, by falling share; none without the mesh
+  std::int64_t euler_characteristic = 0;   ///< For the surface cut open. A disc has 1, a ring 0, a sphere 2.
+  std::vector<std::uint32_t> seams;        ///< Seams along which it meets other sheets or itself, ascending.
+  std::vector<AxisPatchPair> patch_pairs;  ///< Patches on its two sides, by descending share; none without the mesh.
 };
 
 template <>
@@ -232,18 +232,18 @@ struct Description<AxisSheet> {
   };
 };
 
-/// A medial axis as parts that meet. Numbers of seams, curves, junctions and patches are places in these lists; sheets
-/// have the numbers of the axis.
+/// Medial axis as a graph of parts that meet. Numbers of seams, curves, junctions and patches are indices into these
+/// lists. Sheets have the numbers of the axis.
 struct AxisGraph {
-  std::vector<AxisSheet> sheets;        ///< that have triangles, by rising number
-  std::vector<AxisLine> seams;          ///< edges of three or more triangles
-  std::vector<AxisLine> curves;         ///< edges of no triangle
-  std::vector<AxisJunction> junctions;  ///< by rising vertex
-  std::vector<AxisPatch> patches;       ///< of the mesh, by their first face; none without it
-  double area = 0;                      ///< of all triangles
-  double homotopy_area = 0;             ///< of those that are there for homotopy alone
+  std::vector<AxisSheet> sheets;        ///< Sheets with triangles, by ascending number.
+  std::vector<AxisLine> seams;          ///< Lines along edges of three or more triangles.
+  std::vector<AxisLine> curves;         ///< Lines along edges of no triangle.
+  std::vector<AxisJunction> junctions;  ///< By ascending vertex.
+  std::vector<AxisPatch> patches;       ///< Patches of the mesh, by their first face; none without the mesh.
+  double area = 0;                      ///< Area of all triangles.
+  double homotopy_area = 0;             ///< Area of the triangles that exist for homotopy alone.
   double seam_length = 0, curve_length = 0, rim_length = 0;
-  double homotopy_curve_length = 0;  ///< of curves, what is there for homotopy alone
+  double homotopy_curve_length = 0;  ///< Length of curves that exist for homotopy alone.
 };
 
 template <>
@@ -267,30 +267,31 @@ struct Description<AxisGraph> {
   };
 };
 
-/// The sheets, seams, curves and junctions of a medial axis.
+/// Returns the sheets, seams, curves and junctions of a medial axis.
 ///
-/// What is a rim (an edge of one triangle), a seam (three or more) and a curve (none) is told by the triangles, as in
-/// the column `role`; sheets by their column. Every edge of a seam or a curve is in exactly one line, every vertex of
-/// the role junction is one of the junctions, which hold ends of lines besides. Lines run from the junction of the
-/// smaller number, are in the order of where they begin, and closed ones come last.
+/// The triangles decide the kind of an edge, as in the column `role`. A rim has one triangle, a seam three or more, a
+/// curve none. The column `sheet` decides the sheets. Every edge of a seam or a curve belongs to exactly one line. The
+/// junctions are all vertices with the role junction, and the ends of lines. Lines begin at the junction with the
+/// smaller number and are listed in the order of their beginnings; closed lines come last.
 ///
-/// Triangles and edges carry the angle for which they are there, whatever theta is, and 0 where only homotopy keeps
-/// them. So what carries theta or less is there for homotopy alone, as MedialCheck::homotopy_share counts it; or since
-/// something else kept it from being taken away.
+/// The angle of a triangle or an edge does not depend on theta; it is 0 if only homotopy keeps the cell. Cells with
+/// theta or less exist for homotopy alone, as MedialCheck::homotopy_share counts them. Some of them exist because
+/// another cell prevented their removal.
 ///
-/// @param axis  with radii and sheets: MedialAxis::simplify(), prune_sheets(), a file. Angles may be missing, and are
-/// 0.
-/// @return      sums are taken in double, in the order of triangles and edges; the same bytes every time.
-/// @throws InvalidOption for an angle, where radii or sheets are missing, or saying problem_of_medial() of what there
-/// is; Cancelled. Cost: linear but for sorting; about 0.5 s for a million triangles, and 200 bytes for each.
+/// @param axis  with radii and sheets, for example from MedialAxis::simplify(), prune_sheets() or a file. Missing
+///              angles count as 0.
+/// @return      the same bytes every time. Sums are computed in double, in the order of triangles and edges.
+/// @throws InvalidOption if an angle is out of range, radii or sheets are missing, or problem_of_medial() reports a
+/// problem in the columns that exist; Cancelled.
+/// Cost: linear except for sorting; about 0.5 s for a million triangles, and 200 bytes per triangle.
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options = {},
                                    const Context& context = {});
 
-/// The same with the patches of the mesh, and for every sheet those that it lies between: where the footprints of its
-/// vertices lie. Vertices whose two footprints are one point, or of which no sites are known, say nothing of it, so
-/// that shares may sum to less than 1.
-/// @param mesh  that the axis was made of: sites are those of SiteTable(mesh).
-/// @throws InvalidOption also for a site that the mesh does not have; InvalidMesh.
+/// Also returns the patches of the mesh, and for every sheet the patches that contain the footprints of its vertices.
+/// Vertices whose two footprints coincide, or whose sites are not known, are left out. So shares may sum to less than
+/// 1.
+/// @param mesh  mesh that the axis was made from; sites are those of SiteTable(mesh).
+/// @throws InvalidOption also if the mesh does not have a site of the axis; InvalidMesh.
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const MeshView& mesh, const AxisGraphOptions& options = {},
                                    const Context& context = {});
 

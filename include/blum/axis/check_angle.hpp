@@ -1,4 +1,4 @@
-// Blum: angles that are asked for. SPDX-License-Identifier: Apache-2.0
+// Blum: check of angles in options. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -9,7 +9,9 @@
 
 namespace blum::detail {
 
-/// @param angle  degrees.  @throws InvalidOption where it is not 0 to 180.
+/// Checks that an angle is 0 to 180 degrees.
+/// @param angle  degrees.
+/// @throws InvalidOption if it is not.
 inline void check_angle(std::string_view name, double angle) {
   if (angle >= 0 && angle <= 180) return;
   throw InvalidOption(std::string(name) + " is " + exact_text(angle) + " degrees, but must be 0 to 180");

@@ -7,20 +7,23 @@
 
 namespace blum {
 
-/// The part of a medial axis where two footprints are seen more than theta apart, and what homotopy needs to join it.
+/// Returns the part of a medial axis whose separation angle is above theta, and the cells that connect it up to
+/// homotopy.
 ///
-/// Triangles of at most theta go by elementary collapses from free edges of at most theta, the smallest angle first;
-/// then edges of no triangle from free ends, where neither they nor a triangle there had more. The angle of an edge is
-/// the smaller one of its ends': along seams more than that of the triangles beside them. So the homotopy type stays,
-/// and what a larger theta leaves is part of what a smaller one does. (The order of Liu, Chambers, Letscher, Ju 2010,
-/// for complexes of triangles; Sud 2006, 5.6.)
+/// Triangles of at most theta are removed by elementary collapses from free edges of at most theta, the smallest angle
+/// first. Then edges of no triangle are removed from free ends. Neither such an edge nor any triangle that was at it
+/// may have an angle above theta. The angle of an edge is the smaller one at its two ends. Along seams it is larger
+/// than that of the triangles beside them. The homotopy type is preserved, and the result for a larger theta is part of
+/// that for a smaller one. The order is that of Liu, Chambers, Letscher, Ju 2010, for complexes of triangles (see also
+/// Sud 2006, 5.6).
 ///
-/// @param walls  triangles with the columns of voronoi_complex() for its part medial_axis: of vertices `radius`,
-///               footprints, sites and `separation_angle`, of triangles `separation_angle`. Further ones stay. Edges
-///               that are listed are dropped.
-/// @param theta  degrees, 0 to 180. At 0 nothing goes but what has no angle at all.
+/// @param walls  triangles with the columns of voronoi_complex() for the part medial_axis: vertices `radius`,
+///               footprints, sites and `separation_angle`, triangles `separation_angle`. Other columns of vertices and
+///               triangles are kept. Listed edges are dropped.
+/// @param theta  degrees, 0 to 180. At 0, only cells with an angle of 0 are removed.
 /// @return       with the columns of MedialView; sheets are numbered by their first triangle.
-/// @throws InvalidOption where a column is missing; InvalidMesh saying problem_of(walls); Cancelled.
+/// @throws InvalidOption if theta is out of range or a column is missing; InvalidMesh with the text of
+/// problem_of(walls); Cancelled.
 /// Cost: O(n log n) in the triangles, about 1 us each.
 [[nodiscard]] Complex collapse_axis(const Complex& walls, double theta, const Context& context = {});
 

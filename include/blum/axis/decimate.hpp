@@ -14,29 +14,34 @@ namespace blum {
 
 struct DecimatedAxis {
   Complex axis;
-  /// Each point of either axis has one of the other that is no further away than this, mesh units; and radii that are
-  /// interpolated linearly over triangles and edges differ by no more there. At most the tolerance.
+  /// Bound on the change, at most the tolerance, mesh units. Each point of either axis has a point of the other one
+  /// within this distance. Radii, interpolated linearly over triangles and edges, also differ by at most this.
   double deviation = 0;
-  std::size_t vertices_before = 0;  ///< of the axis that vertices were taken out of
+  std::size_t vertices_before = 0;  ///< Vertices of the axis before decimation.
 };
 
-/// Takes vertices out of sheets, seams, rims and curves where what is left stays within a tolerance. Vertices that stay
-/// keep their places and columns, and so their exact radii and footprints. Sheets stay within 0.8 of the tolerance,
-/// rims, seams and curves within 0.4. Junctions, ends of curves, corners where seams meet rims, and the order of sheets
-/// stay, and no two sheets become one. The homotopy type is kept: vertices go by contracting edges under the link
-/// condition (see docs/theory/medial-axis.md).
+/// Removes vertices from sheets, seams, rims and curves as long as the axis stays within a tolerance.
 ///
-/// Sheets move by less than half of the least radius nearby, so that none leaves its solid where vertices tell how deep
-/// that is; certify() tells for sure.
-/// @param axis       with the columns of MedialView, as MedialAxis::simplify() and prune_sheets() give it. An axis of
-///                   all angles (MedialAxis::nested) is none: its edges overlap.
-/// @param tolerance  >= 0, mesh units; a quarter of a voxel leaves what a voxel grid can tell. 0 takes away nothing.
-/// @return           part of the vertices, in their order; edges and triangles in theirs.
-/// @throws InvalidOption, also saying problem_of_medial() of what it has; Cancelled.
-/// Cost: near-linear, about 3 us for each vertex; 120 bytes for each triangle. Threads do not change the result.
-/// Method: edge contraction within strata, with a bound for the distance of the two surfaces over their common
-/// refinement, summed over contractions (after Cohen, Manocha, Olano, "Simplifying polygonal models using successive
-/// mappings", 1997).
+/// Remaining vertices keep their positions and columns, and so their exact radii and footprints. Sheets move by at most
+/// 0.8 of the tolerance. Rims, seams and curves move by at most 0.4 of that, which is 0.32 of the tolerance. Junctions,
+/// ends of curves, corners where seams meet rims, and the order of sheets are kept. No two sheets become one. The
+/// homotopy type is preserved: vertices are removed by edge contractions under the link condition (see
+/// docs/theory/medial-axis.md).
+///
+/// In each step a sheet reaches beyond its former place by at most half of the least radius nearby, or a millionth of
+/// the tolerance. So it stays in the solid if radii at vertices bound the depth between them. certify() checks whether
+/// it does.
+/// @param axis       with the columns of MedialView, from MedialAxis::simplify() or prune_sheets(). Axes of all angles
+///                   (MedialAxis::nested) are not accepted, because their edges overlap.
+/// @param tolerance  >= 0, mesh units. A quarter of a voxel keeps the detail that a voxel grid can resolve. 0 removes
+///                   nothing.
+/// @return           part of the vertices, edges and triangles, in their order.
+/// @throws InvalidOption if the tolerance is out of range, or with the text of problem_of_medial(); Cancelled.
+/// Cost: near-linear, about 3 us per vertex and 120 bytes per triangle. The number of threads does not change the
+/// result.
+/// Method: edge contraction within strata. The distance of the two surfaces is bounded over their common refinement,
+/// and the bounds are summed. (After Cohen, Manocha, Olano, "Simplifying polygonal models using successive mappings",
+/// 1997.)
 [[nodiscard]] DecimatedAxis decimate(const Complex& axis, double tolerance, const Context& context = {});
 
 }  // namespace blum

@@ -17,13 +17,13 @@
 namespace blum {
 
 struct ExtendOptions {
-  /// A rim is extended by at most this many of its radii, > 0. In plates the border is 1 radius away, in corners of
-  /// plates 1.4.
+  /// A rim is extended by at most this many of its radii, > 0. The border of a plate is 1 radius away, a corner of a
+  /// plate 1.4.
   double max_length = 4;
-  /// Rims stay whose radius is at most this part of the largest one of their sheet, >= 0: they run along an edge of the
-  /// solid already.
+  /// A rim stays if its radius is at most this part of the largest radius of its sheet, >= 0. Such a rim already runs
+  /// along an edge of the solid.
   double border_radius = 0.05;
-  /// How far the new border may be off the surface between its vertices, as a part of the radius, > 0.
+  /// Distance of the new border from the surface between its vertices, at most, as a part of the radius, > 0.
   double tolerance = 0.01;
 };
 
@@ -42,21 +42,21 @@ struct Description<ExtendOptions> {
   };
 };
 
-/// What became of the rims. A rim vertex counts once for each group of sheets that hang together around it;
-/// rim_vertices is the sum of the four that follow.
+/// Counts and lengths of rims by outcome. A rim vertex counts once for each group of sheets that are connected around
+/// it. `rim_vertices` is the sum of the four members after it.
 struct ExtendReport {
-  double rim_length = 0;           ///< of the axis, mesh units
-  double open_length = 0;          ///< of the rims that got no triangle and are not at the border, mesh units
-  std::size_t rim_vertices = 0;    ///< of the axis
-  std::size_t reached_border = 0;  ///< that were joined to the surface
-  std::size_t reached_sheet = 0;   ///< that were joined to another sheet, which was met first
-  std::size_t at_border = 0;       ///< that were at the border (ExtendOptions::border_radius) or on a sheet already
-  std::size_t not_reached = 0;     ///< that stay: nothing was met within ExtendOptions::max_length
-  std::size_t left_out = 0;        ///< rim edges without triangles, as these would fold back or leave the solid
-  std::size_t vertices = 0;        ///< new ones
-  std::size_t triangles = 0;       ///< new ones
-  double axis_area = 0;            ///< of all triangles of the axis, square mesh units
-  double area = 0;                 ///< of all triangles of the extended surface, square mesh units
+  double rim_length = 0;           ///< Length of the rims of the axis, mesh units.
+  double open_length = 0;          ///< Length of the rims that got no triangle and are not at the border, mesh units.
+  std::size_t rim_vertices = 0;    ///< Rim vertices of the axis.
+  std::size_t reached_border = 0;  ///< Rim vertices that were joined to the surface.
+  std::size_t reached_sheet = 0;   ///< Rim vertices that were joined to another sheet, which was met first.
+  std::size_t at_border = 0;       ///< Rim vertices already at the border (`border_radius`) or on another sheet.
+  std::size_t not_reached = 0;     ///< Rim vertices that stay: nothing was met within ExtendOptions::max_length.
+  std::size_t left_out = 0;        ///< Rim edges without triangles, because these would fold back or leave the solid.
+  std::size_t vertices = 0;        ///< New vertices.
+  std::size_t triangles = 0;       ///< New triangles.
+  double axis_area = 0;            ///< Area of all triangles of the axis, square mesh units.
+  double area = 0;                 ///< Area of all triangles of the extended surface, square mesh units.
 };
 
 template <>
@@ -82,12 +82,12 @@ struct Description<ExtendReport> {
   };
 };
 
-/// The columns of extended axes.
+/// Names of the columns of extended axes.
 namespace extended_columns {
 
-/// Vertices, float64: twice the radius of the axis, mesh units; of new vertices, that of the rim that they extend.
+/// Vertices, float64, mesh units: twice the radius of the axis. A new vertex has the value of the rim that it extends.
 inline constexpr std::string_view thickness = "thickness";
-/// Triangles, int32: the sheet of the axis that they are of, or extend.
+/// Triangles, int32: the sheet of the axis that they belong to or extend.
 inline constexpr std::string_view sheet = "sheet";
 /// Vertices and triangles, int32: 1 for new ones, 0 for those of the axis.
 inline constexpr std::string_view extended = "extended";
@@ -95,36 +95,37 @@ inline constexpr std::string_view extended = "extended";
 }  // namespace extended_columns
 
 struct ExtendedAxis {
-  /// The vertices and triangles of the axis in their order, and the new ones behind them. Edges are the curves of the
-  /// axis: those of no triangle. Columns are those of extended_columns.
+  /// Vertices and triangles of the axis in their order, then the new ones. Edges are the curves of the axis, which have
+  /// no triangle. Columns are those of `extended_columns`.
   Complex surface;
   ExtendReport report;
-  std::vector<Warning> warnings;  ///< that rims are not extended (WarningCode::not_extended)
+  std::vector<Warning> warnings;  ///< Reports rims that are not extended (WarningCode::not_extended).
 };
 
-/// The sheets of a medial axis, continued from their rims to the surface of the solid: the middle surface of a part
-/// with thin walls, for meshes of shell elements. Take an axis of 100 to 120 degrees: less has sheets into edges, more
-/// has gaps where walls meet.
+/// Returns the sheets of a medial axis, extended from their rims to the surface of the solid. The result is the middle
+/// surface of a part with thin walls, for meshes of shell elements. Use an axis of 100 to 120 degrees. A smaller angle
+/// adds sheets that run into edges; a larger one leaves gaps where walls meet.
 ///
-/// Each rim vertex is joined to the closest point of the surface that the tangent plane of its sheet has within 65
-/// degrees of straight ahead; between these points the new border follows edges and corners of the surface. What meets
-/// another sheet first, or what continues it, ends there, without sharing vertices with it. Each new triangle lies in
-/// the solid at its middle and at the middles of its sides but those of the new border, and is turned by less than 80
-/// degrees from the rim's triangle. Triangles face the same way as those that they extend. The homotopy type is that of
-/// the axis: the new triangles can be pushed back into the rims. Whether new triangles of different rims overlap is not
-/// looked at where they meet at less than 15 degrees.
+/// Each rim vertex is joined to the closest point of the surface in the tangent plane of its sheet. The direction to
+/// that point is within 65 degrees of straight ahead. Between these points, the new border follows edges and corners of
+/// the surface. If a rim meets another sheet or its extension first, it ends there, without shared vertices. Each new
+/// triangle has its middle and the middles of its sides in the solid, except sides on the new border. It is turned by
+/// less than 80 degrees from the rim's triangle, and faces the same way as the triangles that it extends. The homotopy
+/// type is that of the axis, because the new triangles can be pushed back into the rims. New triangles of different
+/// rims that meet at less than 15 degrees may overlap; this is not checked.
 ///
-/// @param axis   with radii and sheets: MedialAxis::simplify(), fitted(), decimate(), a file.
-/// @param solid  that it is the axis of: of a mesh.
+/// @param axis   with radii and sheets, for example from MedialAxis::simplify(), fitted(), decimate() or a file.
+/// @param solid  solid of a mesh, whose axis this is.
 /// @return       the same bytes for any number of threads.
-/// @throws InvalidOption for options out of range, where radii or sheets are missing, for the solid of an image, or
-/// saying problem_of_medial() of what there is; Cancelled.
-/// Cost: that of Solid::inside() and of some ray casts for each rim vertex: about 0.1 ms for each, some ms in large
-/// bodies that are no thin walls.
+/// @throws InvalidOption if an option is out of range, radii or sheets are missing, or the solid is that of an image.
+/// Also if problem_of_medial() reports a problem in the columns that exist. Cancelled.
+/// Cost: Solid::inside() and some ray casts per rim vertex, about 0.1 ms each; some ms in large bodies without thin
+/// walls.
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const Solid& solid, const ExtendOptions& options = {},
                                        const Context& context = {});
 
-/// The same of Solid::of(mesh) in one call. @throws as both.
+/// Extends an axis to the surface of Solid::of(mesh).
+/// @throws as both.
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const MeshView& mesh, const ExtendOptions& options = {},
                                        const Context& context = {});
 

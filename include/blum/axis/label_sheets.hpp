@@ -6,10 +6,10 @@
 
 namespace blum::detail {
 
-/// Numbers the sheets of a medial axis whose vertices and triangles are there, adds its rims and seams to the edges,
-/// which hold its curves, and tells the role of each vertex. Sheets are numbered by their first triangle,
-/// until order_sheets() does better.
-/// @param incidence  of the axis as it is given.
+/// Computes sheets, rims, seams and roles of a medial axis whose edges are its curves. Numbers the sheets by their
+/// first triangle (order_sheets() may renumber them), adds rims and seams to the edges, and sets the role of each
+/// vertex.
+/// @param incidence  of the axis before the call.
 void label_sheets(Complex& axis, const Incidence& incidence);
 
 }  // namespace blum::detail

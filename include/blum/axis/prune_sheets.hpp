@@ -7,17 +7,18 @@
 
 namespace blum {
 
-/// Drops whole sheets whose separation angle, the largest of their triangles', is at most theta; the smallest first. A
-/// sheet goes only where elementary collapses from its rim consume it, so that the homotopy type stays; sheets that
-/// others kept from going are tried again when these are gone. Curves of at most theta go from their free ends. Where
-/// MedialAxis::simplify() cuts sheets apart at theta, this keeps each as it is or drops it.
-/// @param axis   as simplify() gives it, at a small theta: sheets are taken as they are labelled.
+/// Removes whole sheets whose separation angle is at most theta, the smallest angle first. The angle of a sheet is the
+/// largest one of its triangles. A sheet is removed only if elementary collapses from its rim consume it, so the
+/// homotopy type is preserved. Sheets that others block are tried again after these are removed. Curves of at most
+/// theta are removed from their free ends. MedialAxis::simplify() cuts sheets apart at theta; this function keeps or
+/// removes each as a whole.
+/// @param axis   result of simplify() at a small theta; its labels decide the sheets.
 /// @param theta  degrees, 0 to 180.
-/// @return       part of the axis with its columns (edges have those of medial_columns only), labelled anew with
-/// sheets in the order that they had; what a larger theta leaves of the result is part of it.
-/// @throws InvalidOption, also where it has no sheets or no angles of edges and triangles, or saying
-/// problem_of_medial() of what it has; Cancelled.
-/// Cost: O(n log n), more where many sheets are tried in vain. Method: Sud 2006, 5.6.
+/// @return       part of the axis with its columns (edges have only those of medial_columns), labelled anew. Sheets
+///               keep their order. The result for a larger theta is part of that for a smaller one.
+/// @throws InvalidOption if theta is out of range, or sheets or the angles of edges and triangles are missing. Also if
+/// problem_of_medial() reports a problem in the columns that exist. Cancelled.
+/// Cost: O(n log n), more if many sheets are tried in vain. Method: Sud 2006, 5.6.
 [[nodiscard]] Complex prune_sheets(const Complex& axis, double theta, const Context& context = {});
 
 }  // namespace blum

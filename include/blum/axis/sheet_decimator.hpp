@@ -1,4 +1,4 @@
-// Blum: vertices that are taken out of sheets and chains, one after the other. SPDX-License-Identifier: Apache-2.0
+// Blum: removal of vertices from sheets and chains, one after the other. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace blum::detail {
 
-/// A point of an axis with its radius.
+/// Point of an axis with its radius.
 struct AxisPoint {
   Vec3d position;
   double radius = 0;
@@ -23,53 +23,55 @@ struct AxisPoint {
 
 /// Triangles (centre, ring[k], ring[k + 1]) of one sheet around a vertex.
 struct Fan {
-  std::vector<std::uint32_t> ring;       ///< vertices; of a closed fan, the first one follows the last one
-  std::vector<std::uint32_t> triangles;  ///< between ring[k] and ring[k + 1]
+  std::vector<std::uint32_t> ring;       ///< Vertices. In a closed fan the first one follows the last one.
+  std::vector<std::uint32_t> triangles;  ///< Between ring[k] and ring[k + 1].
   bool is_closed = false;
 };
 
-/// How far a sheet or a chain moves, upper bounds.
+/// Upper bounds on how far a sheet or a chain moves.
 struct Deviation {
-  /// Between what was and what is, either way; and how far radii that are interpolated linearly change.
+  /// Distance between the old and the new shape, in both directions, and change of linearly interpolated radii.
   double by = 0;
-  /// From what is to what was: 0 where only a tip of a sheet goes.
+  /// Distance of the new shape from the old one; 0 if only a tip of a sheet is removed.
   double beyond = 0;
 };
 
-/// How far a sheet moves when the centre of a fan goes to its first ring vertex, so that the other ring vertices are
-/// joined to that one. nullopt where triangles would fold over, or turn by much.
-/// @param ring  as Fan has it, beginning with the vertex that the centre goes to.
+/// Returns how far a sheet moves when the centre of a fan moves to the first ring vertex. The other ring vertices are
+/// then joined to that one. Returns nullopt if triangles would fold over, or turn by much.
+/// @param ring  as in Fan, starting with the vertex to which the centre moves.
 [[nodiscard]] std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const AxisPoint> ring,
                                                  bool is_closed);
 
-/// The same of a point of a chain, which goes: the segment between its neighbours is left.
+/// Returns how far a chain moves when one of its points is replaced by the segment between its neighbours.
 [[nodiscard]] Deviation deviation(const AxisPoint& point, const AxisPoint& a, const AxisPoint& b);
 
-/// Sheets, and what bounds them, as SheetDecimator takes them.
+/// Sheets and their borders, as input of SheetDecimator.
 struct DecimatorInput {
-  std::vector<AxisPoint> points{};  ///< of the vertices
+  std::vector<AxisPoint> points{};  ///< Points of the vertices.
   std::span<const std::array<std::uint32_t, 3>> triangles{};
-  std::vector<float> triangle_angle{};                  ///< degrees
-  std::vector<std::array<std::uint32_t, 2>> borders{};  ///< edges that bound sheets, or lie on none
-  std::vector<int> border_kind{};                       ///< only chains of borders of one kind are shortened
-  std::vector<std::uint8_t> stays{};                    ///< vertices that are kept; empty for none
+  std::vector<float> triangle_angle{};                  ///< Degrees.
+  std::vector<std::array<std::uint32_t, 2>> borders{};  ///< Edges that bound sheets, or belong to none.
+  std::vector<int> border_kind{};                       ///< Only chains of borders of one kind are shortened.
+  std::vector<std::uint8_t> stays{};                    ///< Nonzero for vertices that are kept; empty if none are.
 };
 
-/// Takes vertices out where sheets and borders stay within a tolerance: see decimate().
+/// Removes vertices while sheets and borders stay within a tolerance; see decimate().
 class SheetDecimator {
  public:
   /// @param tolerance  mesh units.
   SheetDecimator(DecimatorInput input, double tolerance, const Context& context);
 
-  /// Takes out what moves sheets by less than these parts of the tolerance, one level after the other.
+  /// Removes vertices that move sheets by at most each level, one level after the other. Levels are parts of the
+  /// tolerance.
   /// @throws Cancelled.
   void run(std::span<const double> levels);
 
-  /// What is left.
+  /// Returns the remaining cells.
   [[nodiscard]] const ShrinkingComplex& cells() const { return cells_; }
-  /// Of each triangle at first: its angle, or a larger one of what went beside it.
+  /// Returns an angle for each triangle of the input: its own, or a larger one of a triangle that was removed beside
+  /// it.
   [[nodiscard]] std::span<const float> triangle_angle() const { return input_.triangle_angle; }
-  /// How far anything is from where it was at first, at most, mesh units.
+  /// Returns a bound on the distance of anything from its original place, mesh units.
   [[nodiscard]] double moved() const { return moved_; }
 
  private:
@@ -78,17 +80,17 @@ class SheetDecimator {
   struct Candidate {
     std::uint32_t to = none;
     double moved = 0;
-    double along = 0;  ///< how far the border through the vertex would be from where it was at first
+    double along = 0;  ///< Distance of the border through the vertex from its original place.
   };
   struct Side {
     std::uint32_t triangle;
     std::array<std::uint32_t, 2> ends;
     Side(std::uint32_t t, std::uint32_t p, std::uint32_t q) : triangle(t), ends{p, q} {}
   };
-  /// What is around a vertex that is looked at. Kept, so that no new memory is needed each time.
+  /// Surroundings of a vertex under examination. Kept, so that no new memory is needed each time.
   struct Look {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> chain;  ///< borders, and their other ends
-    std::vector<Side> sides;                                     ///< triangles that no fan has yet
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> chain;  ///< Borders, and their other ends.
+    std::vector<Side> sides;                                     ///< Triangles that are not in a fan yet.
     std::vector<Fan> fans;
     std::size_t fan_count = 0;
     std::vector<AxisPoint> ring;
@@ -118,13 +120,13 @@ class SheetDecimator {
   double tolerance_;
   const Context& context_;
   ShrinkingComplex cells_;
-  std::vector<double> of_triangle_, of_edge_;  ///< how far they may be from where they were at first
-  std::vector<std::uint8_t> is_waiting_;       ///< something around it changed since it was looked at
-  std::vector<std::size_t> touched_at_;        ///< taken_ when something around it went last
-  std::size_t taken_ = 0;                      ///< vertices
+  std::vector<double> of_triangle_, of_edge_;  ///< Bounds on the distance from their original places.
+  std::vector<std::uint8_t> is_waiting_;       ///< Nonzero if something around it changed since its examination.
+  std::vector<std::size_t> touched_at_;        ///< Value of `taken_` at the last removal next to the vertex.
+  std::size_t taken_ = 0;                      ///< Removed vertices.
   double moved_ = 0;
   std::vector<std::uint32_t> batch_;
-  std::vector<Look> looks_;  ///< of these
+  std::vector<Look> looks_;  ///< One for each vertex of the batch.
 };
 
 }  // namespace blum::detail

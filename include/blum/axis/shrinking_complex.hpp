@@ -11,14 +11,14 @@
 
 namespace blum::detail {
 
-/// What is linked to the ends of an edge that is looked at, kept so that no new memory is needed each time: one per
+/// Vertices linked to the ends of an edge under examination. Kept, so that no new memory is needed each time: one per
 /// thread.
 struct LinkScratch {
   std::vector<std::uint32_t> linked, linked_to_edge;
 };
 
-/// Edges and triangles of which some are gone, and which of those left are at each vertex. Sides of triangles need not
-/// be listed as edges.
+/// Edges and triangles from which cells are removed, with the remaining ones at each vertex. Sides of triangles need
+/// not be listed as edges.
 class ShrinkingComplex {
  public:
   explicit ShrinkingComplex(const ComplexView& complex);
@@ -29,7 +29,7 @@ class ShrinkingComplex {
   [[nodiscard]] const std::array<std::uint32_t, 3>& triangle(std::uint32_t t) const { return triangles_[t]; }
   [[nodiscard]] const std::array<std::uint32_t, 2>& edge(std::uint32_t e) const { return edges_[e]; }
 
-  /// Calls visit(triangle, next, last): its other two corners, in its order.
+  /// Calls visit(triangle, next, last) for each triangle at a vertex, with its other two corners in their order.
   template <class Visit>
   void for_each_triangle(std::uint32_t v, const Visit& visit) const {
     for (std::uint32_t c = first_corner_[v]; c != none; c = next_corner_[c]) {
@@ -37,32 +37,33 @@ class ShrinkingComplex {
       visit(c / 3, corners[(c + 1) % 3], corners[(c + 2) % 3]);
     }
   }
-  /// Calls visit(edge, other end) for listed edges.
+  /// Calls visit(edge, other end) for each listed edge at a vertex.
   template <class Visit>
   void for_each_edge(std::uint32_t v, const Visit& visit) const {
     for (std::uint32_t c = first_end_[v]; c != none; c = next_end_[c]) visit(c / 2, edges_[c / 2][(c + 1) % 2]);
   }
 
-  /// Whether contracting the edge between two vertices changes no homotopy type: what is linked to both ends is linked
-  /// to the edge (the link condition; Dey, Edelsbrunner, Guha, Nekhayev, "Topology preserving edge contraction", 1999;
-  /// Attali, Lieutier, Salinas, "Efficient data structure for representing and simplifying simplicial complexes in high
-  /// dimensions", 2012).
-  /// Cost: near-linear in the cells of both ends. Any number of threads may look while nothing is contracted.
+  /// Returns true if contracting the edge between two vertices preserves the homotopy type. The link condition decides:
+  /// everything linked to both ends must be linked to the edge. (Dey, Edelsbrunner, Guha, Nekhayev, "Topology
+  /// preserving edge contraction", 1999; Attali, Lieutier, Salinas, "Efficient data structure for representing and
+  /// simplifying simplicial complexes in high dimensions", 2012.)
+  /// Cost: near-linear in the cells of both ends. Any number of threads may call it while nothing is contracted.
   [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const;
 
-  /// A triangle that went, and its corner that was no end of the edge.
+  /// Removed triangle, and its corner that was not an end of the contracted edge.
   struct Gone {
     std::uint32_t triangle, third;
   };
-  /// Moves all of one vertex to another one that an edge joins it with; triangles and listed edges that have both go.
-  /// @return  the triangles, until the next call.
+  /// Contracts an edge: moves all cells of one end to the other. Triangles and listed edges that have both ends are
+  /// removed.
+  /// @return  the removed triangles, valid until the next call.
   std::span<const Gone> contract(std::uint32_t from, std::uint32_t to);
 
-  /// Lists another edge, after all others.
+  /// Adds an edge after all others.
   void add_edge(const std::array<std::uint32_t, 2>& ends);
 
-  /// What is left of a complex that this one was made of, with its columns. @param whole  may list fewer edges: the
-  /// first ones.
+  /// Returns the remaining part of a complex, with its columns.
+  /// @param whole  complex from which this one was made; it may list fewer edges, namely the first ones.
   [[nodiscard]] Complex rest_of(const Complex& whole) const;
 
  private:
@@ -75,8 +76,8 @@ class ShrinkingComplex {
   std::vector<std::array<std::uint32_t, 2>> edges_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<bool> is_edge_gone_, is_triangle_gone_, is_vertex_gone_;
-  std::vector<std::uint32_t> first_corner_, next_corner_;  ///< corners are 3 * triangle + 0, 1, 2
-  std::vector<std::uint32_t> first_end_, next_end_;        ///< ends are 2 * edge + 0, 1
+  std::vector<std::uint32_t> first_corner_, next_corner_;  ///< Corners are numbered 3 * triangle + 0, 1, 2.
+  std::vector<std::uint32_t> first_end_, next_end_;        ///< Ends are numbered 2 * edge + 0, 1.
   std::vector<Gone> gone_;
 };
 

@@ -1,4 +1,4 @@
-// Blum: whether a medial axis is what it claims to be. SPDX-License-Identifier: Apache-2.0
+// Blum: certificates of medial axes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -22,13 +22,13 @@
 
 namespace blum {
 
-/// What a certificate has shown of the topology of an axis, in rising order.
+/// Result that a certificate proves about the topology of an axis, in ascending order.
 enum class Proven : std::uint8_t {
-  nothing,            ///< numbers differ, or were not compared in places
-  betti_numbers,      ///< the axis has as many components, tunnels and voids as the solid, in each body
-  homology_modulo_2,  ///< its way into the solid is an isomorphism of homology with coefficients in Z/2
-  homology,           ///< the same over the integers
-  homotopy_type       ///< the axis and the solid are homotopy equivalent
+  nothing,            ///< Numbers differ, or positions were not checked.
+  betti_numbers,      ///< In each body, the axis has as many components, tunnels and voids as the solid.
+  homology_modulo_2,  ///< Its inclusion into the solid is an isomorphism of homology with coefficients in Z/2.
+  homology,           ///< Its inclusion into the solid is an isomorphism of integer homology.
+  homotopy_type       ///< The axis and the solid are homotopy equivalent.
 };
 
 template <>
@@ -40,12 +40,12 @@ struct Description<Proven> {
       NamedValue{Proven::homology, "isomorphic homology"}, NamedValue{Proven::homotopy_type, "homotopy equivalent"}};
 };
 
-/// Components, tunnels and voids of one body of the solid, and of the parts of the axis that lie in it.
+/// Components, tunnels and voids of one body of the solid, and of the parts of the axis in it.
 struct BodyCheck {
   BettiNumbers solid{};
   BettiNumbers axis{};
-  std::int64_t tunnels_met = 0;  ///< rank modulo 2 of what loops of the axis run around
-  std::int64_t voids_met = 0;    ///< rank modulo 2 of what closed surfaces of the axis are around
+  std::int64_t tunnels_met = 0;  ///< Rank modulo 2 of the linking of the axis's loops with the tunnels.
+  std::int64_t voids_met = 0;    ///< Rank modulo 2 of the winding of its closed surfaces around the voids.
   Proven proven = Proven::nothing;
 };
 
@@ -62,22 +62,24 @@ struct Description<BodyCheck> {
   };
 };
 
-/// How far the vertices of an axis are from what they claim. Distances are to the shells of the body that a vertex lies
-/// in (its outer shell and the voids in it), or of the closest one. Allowed is 1e-6 of the diagonal of that body's box,
-/// or twice the rounding of its coordinates where that is more. Against the voxels of a mesh (SolidRule::winding) a
-/// vertex is outside where it is further from them than the diagonal of a voxel.
+/// Errors of the vertices of an axis. Distances refer to the shells of the body that contains a vertex, or of the
+/// closest body. These are its outer shell and its voids. The tolerance is 1e-6 of the diagonal of that body's box, or
+/// twice the rounding of its coordinates if that is more. Against the voxels of a mesh (SolidRule::winding), a vertex
+/// up to the diagonal of a voxel away from them is not outside.
 struct GeometryCheck {
-  std::size_t vertices = 0;          ///< looked at
-  std::size_t not_finite = 0;        ///< of them, those with a coordinate or radius that is no finite number
-  std::size_t outside = 0;           ///< of them, those outside of the solid by more than is allowed
-  double outside_by = 0;             ///< largest distance of a vertex from the solid, mesh units
-  double radius_error = 0;           ///< largest |radius - exact distance to the surface|, mesh units
-  double footprint_off_surface = 0;  ///< largest distance of a footprint from the surface, mesh units
-  double footprint_error = 0;        ///< largest |distance to a footprint - radius|, mesh units
-  double site_error = 0;             ///< largest distance of a footprint from the site that is named for it, mesh units
-  double angle_error = 0;            ///< largest |separation angle - angle between the footprints|, degrees
-  double tolerance = 0;              ///< what is allowed in the largest body, mesh units
-  bool holds = false;                ///< no vertex is outside or not finite, and no error above what is allowed for it
+  std::size_t vertices = 0;          ///< Checked vertices.
+  std::size_t not_finite = 0;        ///< Vertices with a coordinate, radius, footprint or angle that is not finite.
+  std::size_t outside = 0;           ///< Vertices outside the solid by more than the tolerance.
+  double outside_by = 0;             ///< Largest distance of a vertex from the solid, mesh units (SolidRule::winding:
+                                     ///< less that diagonal).
+  double radius_error = 0;           ///< Largest |radius - exact distance to the surface|, mesh units.
+  double footprint_off_surface = 0;  ///< Largest distance of a footprint from the surface, mesh units.
+  double footprint_error = 0;        ///< Largest |distance to a footprint - radius|, mesh units.
+  double site_error = 0;             ///< Largest distance of a footprint from its named site, mesh units.
+  double angle_error = 0;            ///< Largest |separation angle - angle between the footprints|, degrees.
+  double tolerance = 0;              ///< Tolerance in the largest body, mesh units.
+  bool holds = false;                ///< True if all vertices are finite and inside, and no error exceeds its
+                                     ///< tolerance.
 };
 
 template <>
@@ -104,24 +106,26 @@ struct Description<GeometryCheck> {
   };
 };
 
-/// Whether the edges of an axis, those of its triangles too, lie in the solid between their ends: found from distances
-/// along each, so that nothing is left out. An edge may cut a corner, by 1/64 of the diagonal of the
-/// body at most, if it can be pushed into the solid: its point that is furthest out goes through the closest point of
-/// the surface, then those of both parts, until all lies in the solid. That fails for an edge across a gap, however
-/// narrow. Against the voxels of an image a corner may be cut by half the diagonal of a voxel where that is more, and
-/// 1/64 of it is not out. Against the voxels of a mesh the diagonal of a voxel is allowed, and nothing is pushed.
+/// Result of the check that the edges of an axis, and the sides of its triangles, lie in the solid between their ends.
+/// Depths along each edge decide, so no point is left out.
+///
+/// An edge may cut a corner by at most 1/64 of the diagonal of the body, if it can be pushed into the solid. In images
+/// the limit is half the diagonal of a voxel if that is more. To push an edge, its point furthest out is moved through
+/// the closest point of the surface. Both parts are then treated in the same way, until all lies in the solid, with at
+/// most 64 moves. This fails for an edge across a gap, however narrow. Against the voxels of a mesh, the tolerance
+/// includes the diagonal of a voxel, and no edge is pushed.
 struct EdgeCheck {
-  std::size_t edges = 0;    ///< looked at, each once
-  std::size_t pushed = 0;   ///< of them, those that cut a corner of the body that their ends lie in
-  double pushed_by = 0;     ///< how far the furthest of these is out, mesh units
-  std::size_t outside = 0;  ///< those that leave that body otherwise
-  double outside_by = 0;    ///< how far the furthest of these is out, at least, mesh units
-  Vec3d where;              ///< and there, mesh units
-  std::size_t across = 0;   ///< those that are out by no more than the tolerance, but cross a gap of the solid there
-  Vec3d across_at;          ///< the first of these, mesh units
-  std::size_t untold = 0;   ///< those of which that cannot be told: nothing more than Betti numbers is proven
-  double tolerance = 0;     ///< ten times GeometryCheck::tolerance; the diagonal of a voxel more for SolidRule::winding
-  bool holds = false;       ///< none is outside or crosses a gap
+  std::size_t edges = 0;    ///< Checked edges, each counted once.
+  std::size_t pushed = 0;   ///< Edges that cut a corner of the body of their ends, and can be pushed into it.
+  double pushed_by = 0;     ///< Largest distance of these from the solid, mesh units.
+  std::size_t outside = 0;  ///< Edges that leave that body otherwise.
+  double outside_by = 0;    ///< Largest distance of these from the body, at least, mesh units.
+  Vec3d where;              ///< Place of that distance, mesh units.
+  std::size_t across = 0;   ///< Edges that leave the body only within the tolerance, but cross a gap there.
+  Vec3d across_at;          ///< Place of the first of these, mesh units.
+  std::size_t untold = 0;   ///< Edges for which that cannot be decided. Then only Betti numbers are proven.
+  double tolerance = 0;     ///< Ten times GeometryCheck::tolerance (SolidRule::winding: plus a voxel's diagonal).
+  bool holds = false;       ///< True if no edge is outside or crosses a gap.
 };
 
 template <>
@@ -143,21 +147,23 @@ struct Description<EdgeCheck> {
   };
 };
 
-/// Whether the way of an axis into its solid is an isomorphism of homology, and not only the numbers agree: exact
-/// linking numbers of the axis's loops with closed paths along the surface that generate the homology of what is
-/// outside, and winding numbers of its closed surfaces around points of each void (Alexander duality). A loop that
-/// runs round nothing, or twice round one tunnel and never round another, is found out and refused. A triangle across a
-/// hole is found out, too, and refused. Looked at where Betti numbers agree and
-/// edges lie in the solid; not for tunnels and voids of voxels, of which numbers alone are compared.
+/// Result of the check that the inclusion of an axis into its solid is an isomorphism of homology, and not only that
+/// numbers agree. It uses Alexander duality. Closed paths along the surface generate the homology of the complement.
+/// Their linking numbers with loops of the axis are exact, as are the winding numbers of its closed surfaces around
+/// points of each void.
+///
+/// The check refuses a loop that runs around nothing, or twice around one tunnel and never around another. It also
+/// refuses a triangle across a hole. It runs only if all Betti numbers agree, all vertices are finite, and edges lie in
+/// the solid. For tunnels and voids of voxels, only the numbers are compared.
 struct HomologyCheck {
-  std::size_t paths = 0;      ///< closed ones along the surface that linking numbers were taken with
-  std::size_t triangles = 0;  ///< of the axis, in bodies with tunnels
-  std::size_t across = 0;     ///< of them, those whose border is linked with a path: they span a hole of the solid
-  Vec3d where;                ///< the first of these, mesh units
-  std::size_t doubtful = 0;   ///< edges of the axis that touch the surface, so that linking cannot be told
-  Proven proven = Proven::nothing;  ///< in every body
-  bool holds = false;               ///< whether nothing speaks against it, shown or not
-  std::string shown;                ///< what was, and why no more: one sentence
+  std::size_t paths = 0;            ///< Closed paths along the surface with which linking numbers were computed.
+  std::size_t triangles = 0;        ///< Triangles of the axis in bodies with tunnels.
+  std::size_t across = 0;           ///< Triangles whose border is linked with a path: they span a hole of the solid.
+  Vec3d where;                      ///< Place of the first of these, mesh units.
+  std::size_t doubtful = 0;         ///< Edges of the axis that touch the surface, so that linking cannot be decided.
+  Proven proven = Proven::nothing;  ///< Result that holds in every body.
+  bool holds = false;               ///< True if the check ran and refused nothing, proven or not.
+  std::string shown;                ///< One sentence: the proven result, and why it is not more.
 };
 
 template <>
@@ -176,23 +182,24 @@ struct Description<HomologyCheck> {
   };
 };
 
-/// How much of a solid the balls of an axis fill: those around its vertices, and where edges and triangles are longer
-/// than 1/200 of the diagonal, between these, with interpolated radii (see sample_axis()). Told, and not judged.
+/// Distances between a solid and the balls of its axis, reported and not judged. The balls are those around the
+/// vertices, and between these, with interpolated radii, along longer edges and over larger triangles (see
+/// sample_axis()). The step is 1/200 of the diagonal, or the root of a 50,000th of the axis's area if that is more.
 struct BallUnionCheck {
-  /// How far the surface of the solid is from the union of the balls at most, over samples of the surface, the corners
-  /// of a mesh among them; the diagonal of the solid where there are no balls.
+  /// Largest distance of the surface of the solid from the union of the balls, over samples of the surface. The corners
+  /// of a mesh are among these. The diagonal of the solid if no balls exist.
   double solid_to_balls = 0;
-  double mean_solid_to_balls = 0;  ///< the same, its mean over the area of the surface
-  /// How far the balls reach out of the solid at most: largest radius - exact distance, which is negative outside of
-  /// the solid; 0 for exact radii.
+  double mean_solid_to_balls = 0;  ///< Mean of that distance over the area of the surface.
+  /// Largest distance by which the balls reach out of the solid, that is, radius - exact distance. The distance is
+  /// negative outside the solid. 0 for exact radii.
   double balls_beyond_solid = 0;
-  /// How far points of the surface of the union are from the surface of the solid at most, over 32 points of each ball;
-  /// of more than 3,100 balls, over those of 1,500 to 3,100 of them.
+  /// Largest distance of the surface of the union from that of the solid, over 32 points of each ball. From 3,125 balls
+  /// on, only every second or further ball counts, in all 1,563 to 3,125 of them.
   double balls_to_surface = 0;
-  /// Each point of the surface is at most this far from a sample, mesh units: the median edge of the axis, or
-  /// 1/256 of the diagonal where that is less, or more where that would take over 50,000 samples. Samples of
-  /// voxels are one or four points of each face; above 250,000 faces, one for each direction of faces in 4 x 4 x 4
-  /// voxels.
+  /// Each point of the surface is at most this far from a sample, mesh units. The step is the median edge of the axis,
+  /// or 1/256 of the diagonal if that is less. It is larger if over 50,000 samples of a mesh would be needed. Each face
+  /// of a voxel has one or four samples. Above 250,000 faces, each direction of faces in 4 x 4 x 4 voxels has one
+  /// sample.
   double step = 0;
 };
 
@@ -213,67 +220,90 @@ struct Description<BallUnionCheck> {
   };
 };
 
-/// Whether an axis is in the middle of its solid, and whether it is all that is there: asked at bounded numbers of
-/// points (8,192 of sheets, 2,048 of curves, 4,096 vertices, 16,384 of the solid), the same in every run.
+/// Result of the check that an axis lies in the middle of its solid, and that no part of it is missing.
 ///
-/// At a point of the axis the ball that touches the closest wall there is grown until it touches another one; the point
-/// is off the middle by how far it is from the bisector of both. Walls that this ball sees at less than 10 degrees
-/// (images: 20) are one. Only what says of itself that two walls see it at more than theta is asked: the rest is there
-/// for homotopy alone, and may lie anywhere in the solid. 95 % must be within the allowance: 1.5 voxels, and the
-/// deviation. 90 % must be within a quarter of the radius of that ball, half within an eighth of it, and within a third
-/// of a voxel, or the deviation; or else within a tenth of the cell's longest side and a quarter of a voxel, by which
-/// flat cells cut off what is bent. Voxels are taken to be an eighth of the longest side of the solid at most; 1/32 of
-/// the diagonal where nothing is known; those of images are known. A deviation is taken to be 1/64 of the diagonal at
-/// most.
+/// Sample points are the same in every run. There are at most 8,192 of sheets, 2,048 of curves, 4,096 vertices and
+/// 16,384 of the solid. Small sheets get up to 4,096 points more, and all bodies together up to 32,768.
 ///
-/// The other way, balls are grown from random points of the solid, and of each body: beside its surface, or in its box
-/// where it is made of voxels. Where two walls are seen at well more than theta (30 degrees, or half of the way to
-/// 180), further apart than lambda, and than 4 voxels or at 80 degrees or more (voxels: and than 4 voxels), the axis
-/// must have a point within 2 voxels and the deviation, and within half of the ball's radius, or 2 voxels where that
-/// is more: for 95 % of the balls (voxels of a mesh: 90 %), for 90 % of those of the surfaces of all bodies that are
-/// seen at 80 degrees or more, and for half of those of each body, if there are 20. Without a theta, this is not looked
-/// at.
+/// Lengths are measured in voxels, whose side the axis reports. It counts as an eighth of the longest side of the solid
+/// at most. If it is unknown, it is 1/32 of the diagonal. If the solid consists of voxels, it is at least half and at
+/// most the whole of their diagonal. A deviation counts as 1/64 of the diagonal of the solid at most.
 ///
-/// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
-/// too, other than beside parts of less than two voxels (a radius below one); a tenth of those vertices, or 16, need
-/// not. But none may be off by more than 1.5 times `missing_allowance` where what is beside it surely sees two walls: a
-/// triangle or edge at it that says more than theta and than 20 degrees (images: 40), all of whose other corners see as
-/// much. Of those deeper than the allowance at most three in five may have one,
-/// where sheets are larger than 256 square voxels. Against the voxels of a mesh, what is in the middle is told only.
+/// Middle: at a point of the axis, the ball that touches the closest wall is grown until it touches another one. The
+/// point is off the middle by its distance from the bisector of both walls. Walls that the ball's centre sees at less
+/// than 10 degrees (images: 20) are one. Only cells that claim more than theta are judged. If the solid consists of
+/// voxels, theta counts as at least 40 degrees for an image and 20 degrees for a mesh. The other cells exist for
+/// homotopy alone, and may lie anywhere in the solid.
+///
+/// At least 95 % of the points must be within the allowance, which is 1.5 voxels plus the deviation. At least 90 % must
+/// also be within a quarter of the radius of their ball. Half must be within an eighth of it, and within a third of a
+/// voxel. The deviation plus a twelfth of a voxel replaces this third if it is more. A larger radius at a corner of the
+/// cell replaces that of the ball. Flat cells cut off bends, so a tenth of the cell's longest side replaces these
+/// shares of the radius if it is more. It counts as a quarter of a voxel at most. If the solid consists of voxels, the
+/// shares of the radius do not apply.
+///
+/// Unless the solid consists of voxels, sheets are also judged one by one. These are the sheets with 12 of the points,
+/// and the largest 341 others of at least 4 square voxels, with 12 points each. At most half of the points of each may
+/// be outside the allowance.
+///
+/// Single footprints: ends of sheets and thin walls have vertices with one footprint in judged cells. Such a vertex
+/// must be within the allowance and a quarter of the radius, too. Vertices of judged cells with a radius below one
+/// voxel are exempt. A tenth of the vertices of judged cells, or 16, may be further off.
+///
+/// A stricter limit holds if a cell at the vertex surely sees two walls. Such a cell claims more than theta and 20
+/// degrees (images: 40), and all its other corners see as much. No such vertex may be off by more than 1.5 times the
+/// distance allowed to missed balls of its radius. If judged sheets are larger than 256 square voxels, at most three in
+/// five vertices deeper than the allowance may have one footprint.
+///
+/// Missing parts: balls are grown from random points of the solid. They are also grown in each body, from points beside
+/// its surface, or in its box if it consists of voxels. Without a theta, this is not checked.
+///
+/// A ball counts if it sees two walls at 30 degrees more than theta, or half of the way to 180 if that is less. The
+/// walls must be at least lambda apart. Walls closer than 4 voxels plus lambda count only at 80 degrees or more, and
+/// not if the solid consists of voxels. The distance of the ball's centre from the axis must be at most
+/// `missing_allowance`, 2 voxels plus the deviation. Unless the solid consists of voxels, it must also be at most half
+/// of the ball's radius, or 2 voxels if that is more.
+///
+/// This must hold for 95 % of the balls (voxels of a mesh: 90 %). In each body with 20 or more balls of 80 degrees or
+/// more, it must hold for half of these. If it fails for more than 10 % of these in all bodies together, it must hold
+/// for 90 % in each. Three balls may be missed in any case.
+///
+/// Against the voxels of a mesh, the shares in the middle and the vertices that are far off are reported and not
+/// judged.
 struct MedialCheck {
-  double allowance = 0;              ///< how far from the middle a point may be, mesh units
-  std::size_t one_wall = 0;          ///< vertices with one footprint, or two seen at less than 5 degrees
-  std::size_t claimed_vertices = 0;  ///< vertices of what should be seen at more than theta
+  double allowance = 0;              ///< Largest accepted distance from the middle, mesh units.
+  std::size_t one_wall = 0;          ///< Vertices with one footprint, or two seen at less than 5 degrees.
+  std::size_t claimed_vertices = 0;  ///< Vertices of judged cells.
   std::size_t one_wall_off =
-      0;  ///< of those that both are (some, where many), not near the middle nor beside a thin part
-  std::size_t one_wall_far = 0;     ///< and of these, those that are far off
-  Vec3d far_at;                     ///< the first of these, mesh units
-  std::size_t deep_vertices = 0;    ///< vertices that should be seen at more than theta, deeper than the allowance
-  std::size_t deep_one_wall = 0;    ///< of these, those with one footprint
-  double homotopy_share = 0;        ///< of the area of all triangles: what only homotopy keeps, at theta or less
-  std::size_t samples = 0;          ///< points of sheets and curves that were looked at
-  double medial_share = 1;          ///< of these, what is in the middle, by area; a curve counts as a voxel wide
-  double near_share = 1;            ///< the same within a quarter of the way to the walls
-  double close_share = 1;           ///< the same within a third of a voxel, or the deviation, or an eighth of that way
-  double close_allowance = 0;       ///< that length, mesh units
-  double off_by = 0;                ///< how far the worst of these with two walls is from the middle, mesh units
-  Vec3d off_at;                     ///< and there, mesh units
-  std::size_t sheets_judged = 0;    ///< sheets with samples enough to judge them one by one; 0 of images
-  std::size_t sheets_off = 0;       ///< of these, those that are for the most part not in the middle
-  Vec3d sheet_off_at;               ///< a point of the first of these, mesh units
-  double sought_angle = 0;          ///< degrees from which the axis must have all; 0 where that was not looked at
-  double missing_allowance = 0;     ///< how close the axis must come to the balls, mesh units
-  std::size_t balls = 0;            ///< from random points of the solid whose walls are seen at more than that
-  double missed_share = 0;          ///< of these, those that have no point of the axis near their centres
-  double missed_by = 0;             ///< how far the worst of all is from the axis, mesh units
-  Vec3d missed_at;                  ///< and there, mesh units
-  std::size_t bodies_unseen = 0;    ///< bodies in which too few points beside the surface show such balls
-  std::size_t bodies_missed = 0;    ///< of the others, those of whose balls too many have no point of the axis near
-  double missed_share_of_body = 0;  ///< the same share as `missed_share`, of the worst body
-  double missed_in_body_by = 0;     ///< how far the worst ball of that body is from the axis, mesh units
-  Vec3d missed_in_body_at;          ///< and there, mesh units
-  bool judges_missing = false;      ///< whether there are balls enough, in the whole solid or a body, to tell
-  bool holds = false;               ///< enough is in the middle, and little is missed
+      0;  ///< Vertices with one footprint, neither near the middle nor at a thin part; sampled if many.
+  std::size_t one_wall_far = 0;     ///< Those of these that are far off.
+  Vec3d far_at;                     ///< Position of the first of these, mesh units.
+  std::size_t deep_vertices = 0;    ///< Vertices of judged cells that are deeper than the allowance.
+  std::size_t deep_one_wall = 0;    ///< Those of these with one footprint.
+  double homotopy_share = 0;        ///< Share of the area of all triangles that is not judged.
+  std::size_t samples = 0;          ///< Examined points of sheets and curves.
+  double medial_share = 1;          ///< Share of these that is in the middle, by area. A curve counts as a voxel wide.
+  double near_share = 1;            ///< Share within the allowance and a quarter of the radius of the ball.
+  double close_share = 1;           ///< Share within `close_allowance` and an eighth of that radius.
+  double close_allowance = 0;       ///< A third of a voxel, or the deviation plus a twelfth of a voxel, mesh units.
+  double off_by = 0;                ///< Largest distance of these from the middle, where two walls exist, mesh units.
+  Vec3d off_at;                     ///< Place of that distance, mesh units.
+  std::size_t sheets_judged = 0;    ///< Sheets that were judged one by one; 0 if the solid consists of voxels.
+  std::size_t sheets_off = 0;       ///< Those of these that are for the most part not in the middle.
+  Vec3d sheet_off_at;               ///< Point of the first of these, mesh units.
+  double sought_angle = 0;          ///< Degrees from which nothing may be missing; 0 if that was not checked.
+  double missing_allowance = 0;     ///< Largest accepted distance of a ball's centre from the axis, mesh units.
+  std::size_t balls = 0;            ///< Balls from random points of the solid that count.
+  double missed_share = 0;          ///< Share of these without a point of the axis near their centres.
+  double missed_by = 0;             ///< Largest distance of these from the axis, mesh units.
+  Vec3d missed_at;                  ///< Place of that distance, mesh units.
+  std::size_t bodies_unseen = 0;    ///< Bodies with fewer than 20 such balls from points beside the surface.
+  std::size_t bodies_missed = 0;    ///< Other bodies in which too many balls have no point of the axis nearby.
+  double missed_share_of_body = 0;  ///< As `missed_share`, for the worst body.
+  double missed_in_body_by = 0;     ///< Largest distance of a ball of that body from the axis, mesh units.
+  Vec3d missed_in_body_at;          ///< Place of that distance, mesh units.
+  bool judges_missing = false;      ///< True if the whole solid or a body has enough balls to judge.
+  bool holds = false;               ///< True if enough is in the middle, and little is missed.
 };
 
 template <>
@@ -322,20 +352,22 @@ struct Description<MedialCheck> {
   };
 };
 
-/// Whether the triangles of an axis lie in the solid between their edges: a ball as large as a point is deep covers a
-/// part of a triangle; what the balls of the corners leave is cut up until balls cover it, or a point of it is found
-/// outside. Triangles are flat and the solid is not, so that they may leave it by what edges that cut a corner may, and
-/// the deviation; those that leave it by less are told.
+/// Result of the check that the triangles of an axis lie in the solid between their edges. Around a point of depth r, a
+/// ball of radius r lies in the body. The part of a triangle that the balls of its corners do not cover is cut up. This
+/// ends when balls cover it or one of its points is found outside.
+///
+/// Triangles are flat and the solid is not. So they may leave it by the tolerance, plus the limit for edges that cut a
+/// corner, plus the deviation. Those that leave it by less are reported.
 struct TriangleCheck {
-  std::size_t triangles = 0;  ///< looked at
-  std::size_t leaving = 0;    ///< of them, those that leave the body of their corners by more than the tolerance
-  std::size_t outside = 0;    ///< of these, those that do so by more than the allowance
-  double outside_by = 0;      ///< how far the furthest is out, mesh units
-  Vec3d where;                ///< and there, mesh units
-  std::size_t undecided = 0;  ///< those in walls so thin that 512 points of them do not tell
-  double tolerance = 0;       ///< that of edges, mesh units
-  double allowance = 0;       ///< in the largest body, mesh units
-  bool holds = false;         ///< none is outside
+  std::size_t triangles = 0;  ///< Checked triangles.
+  std::size_t leaving = 0;    ///< Triangles that leave the body of their corners by more than the tolerance.
+  std::size_t outside = 0;    ///< Those of these that leave it by more than the allowance.
+  double outside_by = 0;      ///< Largest distance from the body, mesh units.
+  Vec3d where;                ///< Place of that distance, mesh units.
+  std::size_t undecided = 0;  ///< Triangles in very thin walls that 512 points (64 if hopeless) do not decide.
+  double tolerance = 0;       ///< Tolerance of edges, mesh units.
+  double allowance = 0;       ///< Allowance in the largest body, mesh units.
+  bool holds = false;         ///< True if no triangle is outside.
 };
 
 template <>
@@ -355,21 +387,24 @@ struct Description<TriangleCheck> {
   };
 };
 
-/// Whether an axis lists what it should, and labels it as its triangles ask for: all edges of one triangle as rims,
-/// all of three or more as seams, those of none as curves, and no others; vertices by what ends at them (MedialRole).
-/// Sheets are numbered from 0, without gaps. Each hangs together over edges of two triangles, and two sheets share such
-/// edges only next to seams. Whether sheets go on past a seam there, the file decides. No exception is allowed.
+/// Result of the check that an axis lists and labels its cells as its triangles require. Edges of one triangle must be
+/// listed as rims, those of three or more as seams, those of none as curves, and no others. Roles of vertices follow
+/// from these and from sheets (MedialRole).
+///
+/// Sheets must be numbered from 0, without gaps. Each must be connected over edges of two triangles. Two sheets may
+/// share such an edge only next to a seam. The file decides whether a sheet continues past a seam there. No exception
+/// is allowed.
 struct LabelCheck {
-  std::size_t doubled = 0;       ///< cells that name the vertices of another one
-  std::size_t inner_listed = 0;  ///< listed edges of two triangles
-  std::size_t unlisted = 0;      ///< edges of one triangle, or of three or more, that are not listed
-  std::size_t edge_roles = 0;    ///< edges of a false role
-  std::size_t vertex_roles = 0;  ///< vertices of a false role
-  std::size_t sheets = 0;        ///< labels of triangles
-  std::size_t gaps = 0;          ///< numbers below the largest that no triangle has
-  std::size_t torn = 0;          ///< of them, those that do not hang together
-  std::size_t parted = 0;        ///< edges of two sheets, away from seams
-  bool holds = false;            ///< nothing is wrong
+  std::size_t doubled = 0;       ///< Cells with the same vertices as another cell.
+  std::size_t inner_listed = 0;  ///< Listed edges of two triangles.
+  std::size_t unlisted = 0;      ///< Edges of one triangle, or of three or more, that are not listed.
+  std::size_t edge_roles = 0;    ///< Edges with a wrong role.
+  std::size_t vertex_roles = 0;  ///< Vertices with a wrong role.
+  std::size_t sheets = 0;        ///< Labels of triangles.
+  std::size_t gaps = 0;          ///< Numbers below the largest that no triangle has.
+  std::size_t torn = 0;          ///< Sheets that are not connected.
+  std::size_t parted = 0;        ///< Edges between two sheets, away from seams.
+  bool holds = false;            ///< True if nothing is wrong.
 };
 
 template <>
@@ -390,22 +425,24 @@ struct Description<LabelCheck> {
   };
 };
 
-/// Whether the separation angles of triangles and edges are those of their places: told by shares, since a triangle has
-/// the largest angle that is seen within half a voxel of it, and that of others which went for it. Against voxels, of
-/// images or meshes, what corners and places see is told only.
+/// Result of the check that the separation angles of triangles and edges fit their positions. A triangle has the
+/// largest angle within half a voxel of it, and of triangles removed for it. So only shares are judged, from 64 cells
+/// on. Against voxels, of images or meshes, the shares that depend on corners and positions are reported and not
+/// judged.
 struct AngleCheck {
-  std::size_t triangles = 0;      ///< whose corners all see two walls
-  double below_share = 0;         ///< of their area: what says 10 degrees less than each of the three corners sees
-  std::size_t samples = 0;        ///< triangles that were looked at
-  double above_share = 0;         ///< of these: what says 20 degrees more than is seen within a voxel
-  std::size_t curve_samples = 0;  ///< edges of curves that were looked at
-  double curves_above_share = 0;  ///< the same of these
-  std::size_t borders = 0;        ///< rims and seams
-  std::size_t borders_above = 0;  ///< of them, those that say more than all their triangles
-  std::size_t borders_below = 0;  ///< those that say 20 degrees less
-  std::size_t rims = 0;           ///< looked at; none where theta is not known
-  double low_rims_share = 0;  ///< of rims and curves, by length: rims of sheets that nothing sees at more than theta
-  bool holds = false;         ///< shares are small
+  std::size_t triangles = 0;      ///< Triangles whose corners all have 10 degrees or more.
+  double below_share = 0;         ///< Share of their area over 10 degrees below each corner. At most 0.8 is accepted.
+  std::size_t samples = 0;        ///< Examined triangles.
+  double above_share = 0;         ///< Share over 20 degrees above all seen within a voxel. At most 0.2 is accepted.
+  std::size_t curve_samples = 0;  ///< Examined edges of curves.
+  double curves_above_share = 0;  ///< Share of these with such an angle. At most 0.6 is accepted.
+  std::size_t borders = 0;        ///< Rims and seams.
+  std::size_t borders_above = 0;  ///< Those with an angle above those of all their triangles. None is accepted.
+  std::size_t borders_below = 0;  ///< Those with an angle over 20 degrees below. At most half are accepted.
+  std::size_t rims = 0;           ///< Examined rims; none if theta is not known.
+  double low_rims_share = 0;  ///< Share of the length of rims and curves in rims of sheets of at most theta: at most
+                              ///< 0.25.
+  bool holds = false;         ///< True if all shares are small enough.
 };
 
 template <>
@@ -429,23 +466,23 @@ struct Description<AngleCheck> {
   };
 };
 
-/// What to look at besides numbers of components, tunnels and voids: for files that do not hold everything.
+/// Parts that a certificate checks besides numbers of components, tunnels and voids, for files without some data.
 struct CertificateOptions {
-  /// Where vertices and edges lie. Without it, the Betti numbers of the whole solid and the whole axis are compared,
-  /// and crossings of the mesh are not looked for.
+  /// Positions of vertices and edges. Without them, the Betti numbers of the whole solid and the whole axis are
+  /// compared.
   bool positions = true;
-  bool radii = true;       ///< with positions
-  bool footprints = true;  ///< with radii
-  bool angles = true;      ///< of vertices, triangles and edges; with footprints
-  bool sites = true;       ///< with footprints: a site that is none() is not looked at
-  bool labels = true;      ///< roles of vertices and edges, and sheets; with positions
-  bool balls = true;       ///< with radii: to measure what the balls fill
-  bool medial = true;      ///< with positions and radii: whether it is in the middle; sheets and curves by their angles
-  // What the axis says of itself, for the medial check; what is not known stays unset.
-  std::optional<double> theta = {};      ///< degrees
-  std::optional<double> lambda = {};     ///< mesh units
-  std::optional<double> spacing = {};    ///< side of a voxel, mesh units
-  std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units
+  bool radii = true;       ///< Needs positions.
+  bool footprints = true;  ///< Needs radii.
+  bool angles = true;      ///< Angles of vertices, triangles and edges. Needs footprints.
+  bool sites = true;       ///< Needs footprints. Sites that are none() are not checked.
+  bool labels = true;      ///< Roles of vertices and edges, and sheets. Needs positions.
+  bool balls = true;       ///< Distances between solid and balls. Needs radii.
+  bool medial = true;      ///< Middle and missing parts. Needs radii, and angles for sheets and curves.
+  // Parameters that the axis reports, for the medial check; unset if not known.
+  std::optional<double> theta = {};      ///< Degrees.
+  std::optional<double> lambda = {};     ///< Mesh units.
+  std::optional<double> spacing = {};    ///< Side of a voxel, mesh units.
+  std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units.
 };
 
 template <>
@@ -474,20 +511,20 @@ struct Description<CertificateOptions> {
 struct Certificate {
   SolidRule against = SolidRule::polyhedron;
   CertificateOptions checked;
-  BettiNumbers solid{};           ///< from its boundary, or its voxels: the sum of its bodies'
-  BettiNumbers axis{};            ///< of the complex, by homology()
-  std::optional<double> voxel;    ///< shortest side of those that the solid is made of, where it is, mesh units
-  std::vector<BodyCheck> bodies;  ///< each must agree; one for the whole without CertificateOptions::positions
+  BettiNumbers solid{};           ///< Sum over the bodies, from the boundary of the solid or its voxels.
+  BettiNumbers axis{};            ///< Betti numbers of the complex, by homology().
+  std::optional<double> voxel;    ///< Shortest side of a voxel, mesh units, if the solid consists of voxels.
+  std::vector<BodyCheck> bodies;  ///< Each must agree. One for the whole solid without CertificateOptions::positions.
   bool topology_holds = false;
   GeometryCheck geometry;
   EdgeCheck edges;
   TriangleCheck triangles;
-  LabelCheck labels;  ///< with CertificateOptions::labels
-  AngleCheck angles;  ///< with CertificateOptions::angles
+  LabelCheck labels;  ///< Computed with CertificateOptions::labels.
+  AngleCheck angles;  ///< Computed with CertificateOptions::angles.
   HomologyCheck homology;
   BallUnionCheck balls;
   MedialCheck medial;
-  std::vector<std::string> mismatches;  ///< one sentence each; empty where all holds
+  std::vector<std::string> mismatches;  ///< One sentence per mismatch; empty if all holds.
 
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
 };
@@ -518,12 +555,12 @@ struct Description<Certificate> {
   };
 };
 
-/// What the solid of a mesh is: SolidRule::polyhedron where it is closed, manifold and has a single side, and where its
-/// triangles neither cross nor, within one body, touch; also where resolve_crossings() makes such a mesh of it, with
-/// the same inside; else SolidRule::winding.
+/// Rule for the solid of a mesh. SolidRule::polyhedron requires that the mesh is closed, manifold and orientable. Its
+/// triangles must not cross or, within one body, touch. A mesh that resolve_crossings() turns into such a mesh, with
+/// the same inside, counts, too. The rule of all other meshes is SolidRule::winding.
 struct MeshSolidRule {
   SolidRule rule = SolidRule::polyhedron;
-  std::string reason;  ///< one sentence
+  std::string reason;  ///< One sentence.
 };
 template <>
 struct Description<MeshSolidRule> {
@@ -535,41 +572,48 @@ struct Description<MeshSolidRule> {
   };
 };
 
-/// Found by the verifier's own reading of the mesh and find_self_intersections(); a mesh without its crossings is
-/// taken from resolve_crossings(), and read in the same way. @throws InvalidMesh for what validate() refuses,
-/// Cancelled.
+/// Returns the rule for the solid of a mesh. The verifier reads the mesh itself and calls find_self_intersections(). If
+/// the mesh crosses itself, the result of resolve_crossings() is read in the same way.
+/// @throws InvalidMesh if validate() rejects the mesh; Cancelled.
 [[nodiscard]] MeshSolidRule solid_rule(const MeshView& mesh, const Context& context = {});
 
-/// Checks an axis against the closed, manifold mesh whose solid it is said to have. Nothing of the
-/// construction is used: Betti numbers come from the homology of the surface and the nesting of its components by
-/// counting crossings of lines; distances from a search of its own. Shells may face either way, and touch. Triangles
-/// that name a vertex twice are left out. Where the mesh crosses itself, the solid is that of resolve_crossings().
+/// Checks an axis against the solid that a closed, manifold mesh bounds.
 ///
-/// Betti numbers are compared body by body: a connected part of the axis belongs to the body that its deepest vertex
-/// lies in. That its loops and closed surfaces are around the tunnels and voids of that body is shown by linking
-/// numbers (HomologyCheck).
-/// @throws InvalidMesh where the mesh is not closed and manifold, or crosses itself, which is not resolved, or a shell
-/// encloses nothing, or just what another one does; InvalidOption for a complex that is none (see homology()), or lacks
-/// a column of MedialView; Cancelled. Cost: on one core about 2 s for 100,000 vertices and as many triangles.
+/// The check uses no field, no voxels and no record of the construction. Betti numbers come from the homology of the
+/// surface and the nesting of its components, by counting crossings of lines. Distances come from separate searches.
+/// Shared with the construction are the search for crossings of triangles, their resolution, signs of determinants and
+/// the numbering of sites. Shells may face either way, and touch. Triangles that name a vertex twice are left out. If
+/// the mesh crosses itself, the solid is that of resolve_crossings().
+///
+/// Betti numbers are compared body by body. A connected part of the axis belongs to the body that contains its deepest
+/// vertex. Linking numbers prove that its loops and closed surfaces go around the tunnels and voids of that body
+/// (HomologyCheck).
+/// @throws InvalidMesh if the mesh is not closed and manifold, or crosses itself and this is not resolved. Also if a
+/// shell encloses nothing, or exactly what another one does. InvalidOption if the complex is invalid (see homology())
+/// or lacks a column of MedialView; Cancelled.
+/// Cost: on one core about 2 s for 100,000 vertices and as many triangles.
 [[nodiscard]] Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options = {},
                                   const Context& context = {});
 
-/// The same against voxels whose closed union is the solid: of an image, with distances to their faces; or of a mesh
-/// that is no polyhedron (SolidRule::winding), with distances to that mesh, where voxels_inside() makes them. The
-/// voxels are taken as given: who makes them as the construction does shares its errors.
-/// @param grid  of the voxels' centres.  @param surface  the mesh; nullptr for an image.
-/// @throws InvalidGrid (also for a grid that does not cover the mesh), InvalidMesh, InvalidOption (also for a grid of
-/// another size than the voxels, and where there are no voxels), Cancelled.
+/// Checks an axis against the closed union of voxels. The voxels are those of an image, and distances refer to their
+/// faces. Or they represent a mesh that is not a polyhedron (SolidRule::winding), and distances refer to that mesh.
+/// voxels_inside() computes such voxels. They are used as given, so an error that they share with the construction is
+/// not detected.
+/// @param grid  of the voxels' centres.
+/// @param surface  the mesh; nullptr for an image.
+/// @throws InvalidGrid, also if the grid does not cover the mesh. InvalidMesh. InvalidOption, also if the sizes of the
+/// grid and the voxels differ, or no voxel exists. Cancelled.
 [[nodiscard]] Certificate certify(const Complex& axis, const VoxelSet& voxels, const GridSpec& grid,
                                   const MeshView* surface, const CertificateOptions& options = {},
                                   const Context& context = {});
 
-/// Whether any complex, of a medial axis or not, has the topology of the solid of a mesh: what certify() checks of
-/// places, without the columns of MedialView. Betti numbers agree body by body; vertices and edges lie in the solid.
+/// Checks whether any complex, a medial axis or not, has the topology of the solid of a mesh. Performs the checks of
+/// certify() that need only positions, without the columns of MedialView. Betti numbers must agree body by body, and
+/// vertices, edges and triangles must lie in the solid.
 /// @throws as certify().
 [[nodiscard]] Certificate certify_topology(const Complex& complex, const MeshView& mesh, const Context& context = {});
 
-/// The same against voxels, as certify() takes them.
+/// Checks the topology of any complex against voxels, which are as in certify().
 [[nodiscard]] Certificate certify_topology(const Complex& complex, const VoxelSet& voxels, const GridSpec& grid,
                                            const MeshView* surface, const Context& context = {});
 

@@ -22,104 +22,113 @@
 namespace blum {
 
 struct CertifiedAxisOptions {
-  std::vector<double> thetas{60};  ///< degrees, each once: an axis for each; rising where sheets are pruned
-  /// Vertices go within it (decimate()), mesh units, >= 0; 0 keeps all, and borders of sheets at the cells of the grid.
-  /// Default: a quarter of the smallest side of a voxel.
+  std::vector<double> thetas{60};  ///< Degrees, each once, one axis per angle. Ascending if sheets are pruned.
+  /// Tolerance for removing vertices (decimate()), mesh units, >= 0. 0 keeps all vertices, and the borders of sheets at
+  /// the cells of the grid. Default: a quarter of the smallest side of a voxel.
   std::optional<double> tolerance = {};
-  bool prunes_sheets = false;  ///< whole sheets of at most theta go, each angle from the one before (prune_sheets())
-  OptionStyle style = OptionStyle::python;  ///< of options in what mismatches say to do
+  bool prunes_sheets = false;               ///< Removes whole sheets (prune_sheets()), each angle from the axis before.
+  OptionStyle style = OptionStyle::python;  ///< Form of the options that mismatches recommend.
 };
 
-/// An axis that waits for its certificate.
+/// Axis to be certified.
 struct AxisCandidate {
   const DecimatedAxis& axis;
-  const MedialMetadata& metadata;  ///< of how it was made; source, version and what was selected stay unset
-  const MedialAxis* whole;         ///< the axis of all angles that it was taken from; nullptr where none was
-  double grid_shift;               ///< MedialAxisOptions::grid_shift of this, voxels
-  std::vector<PhaseTime>& phases;  ///< of the whole run, to add to
+  const MedialMetadata& metadata;  ///< Describes how it was made; source, version and selection are unset.
+  const MedialAxis* whole;         ///< Axis of all angles from which it was taken; nullptr if none was.
+  double grid_shift;               ///< MedialAxisOptions::grid_shift of that axis, voxels.
+  std::vector<PhaseTime>& phases;  ///< Phases of the whole run, to be extended.
 };
 
-/// How axes are certified: a program that writes files looks at what it wrote.
+/// Certifies an axis. A program that writes files checks the written file.
 using CertifyAxis = FunctionRef<Certificate(const AxisCandidate&)>;
 
-/// An axis at one angle, in the best of its forms that is certified, or in the last one.
+/// Axis at one angle, in the best form that is certified, or in the last form.
 struct CertifiedAxis {
   DecimatedAxis axis;
-  MedialMetadata metadata;  ///< as AxisCandidate::metadata
-  Certificate certificate;  ///< certified_axes(): look whether it holds
-  /// Why better forms were not taken (WarningCode::form_not_certified); empty where the best one holds, and where none
-  /// does: then the certificate of the last one says why.
+  MedialMetadata metadata;  ///< As AxisCandidate::metadata.
+  Certificate certificate;  ///< May fail in results of certified_axes(): check Certificate::holds().
+  /// Reasons against better forms (WarningCode::form_not_certified). Empty if the best form is certified. Also empty if
+  /// no form is; then the certificate of the last one gives the reasons.
   std::vector<Warning> warnings;
 };
 
 /// Axes of one solid at several angles, made on one grid.
 struct CertifiedAxes {
-  std::vector<CertifiedAxis> axes;  ///< in the order of the angles
-  MedialAxisReport report;          ///< on the grid that was kept
-  double grid_shift = 0;            ///< of this, voxels
-  std::vector<Warning> warnings;    ///< of the grid; those of each axis are with it
-  /// All that is not certified, one sentence each: model_problems(), then "at theta 60: ..." of each axis.
+  std::vector<CertifiedAxis> axes;  ///< In the order of the angles.
+  MedialAxisReport report;          ///< For the grid that was kept.
+  double grid_shift = 0;            ///< Shift of that grid, voxels.
+  std::vector<Warning> warnings;    ///< Warnings about the grid; each axis has its own.
+  /// One sentence for each failure: model_problems(), then "at theta 60: ..." of each axis.
   std::vector<std::string> mismatches;
-  std::vector<PhaseTime> phases;  ///< seconds; also of grids that were tried in vain
+  std::vector<PhaseTime> phases;  ///< Seconds, including grids that were tried in vain.
 
-  /// Whether the model of the solid passes and all axes are certified.
+  /// Returns true if the model of the solid passes and all axes are certified.
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
 };
 
-/// The grids that axes of a solid may be made on.
+/// Grids on which axes of a solid may be made.
 struct AxisGrids {
-  double shift = 0;      ///< MedialAxisOptions::grid_shift of the first one, voxels, from -1 to 1
-  bool may_move = true;  ///< of an image, it may not
-  /// The axis of all angles with a value of MedialAxisOptions::grid_shift.
+  double shift = 0;      ///< MedialAxisOptions::grid_shift of the first grid, -1 to 1 voxels.
+  bool may_move = true;  ///< False for an image.
+  /// Computes the axis of all angles with a value of MedialAxisOptions::grid_shift.
   FunctionRef<std::shared_ptr<const MedialAxis>(double shift)> make;
 };
 
-/// The axes of a solid as `blum medial` writes them. Each is tried in forms, the best first: with its borders where
-/// they belong and few vertices; with few vertices; as the cells have it. The last one is as good as the cells; the
-/// others are for people, and where walls are thin one may fail that the next one does not. Parts much thinner than a
-/// voxel may lie badly in one grid and well in the next: where an axis is not certified in any form although the model
-/// of its solid passes, the grid is moved by a part of a voxel, at most three times, and the grid with the fewest
-/// mismatches is kept.
-/// @throws InvalidOption; what make and certify throw; as MedialAxis::lean(), decimate() and prune_sheets(). An axis
-/// that is not certified is no error: look at holds(). Cost: that of make and of certify for each form and grid that is
-/// tried, mostly one.
+/// Returns the axes of a solid as `blum medial` writes them.
+///
+/// Each axis is tried in up to three forms, the best first. The first has fitted borders and few vertices, the second
+/// few vertices, the third all vertices, as the cells have them. Where walls are thin, a form may fail that the next
+/// one passes. The last form is as good as the cells; the others are for people.
+///
+/// Parts much thinner than a voxel may lie badly in one grid and well in another. So the grid is moved by part of a
+/// voxel if an axis is not certified in any form although the model passes. At most three other grids are tried, and
+/// the grid with the fewest mismatches is kept.
+/// @throws InvalidOption; as `make` and `certify`; as MedialAxis::lean(), decimate() and prune_sheets(). An axis that
+/// is not certified is not an error: check holds().
+/// Cost: `make` and `certify` for each form and grid that is tried, mostly one.
 [[nodiscard]] CertifiedAxes certified_axes(const AxisGrids& grids, CertifyAxis certify,
                                            const CertifiedAxisOptions& options = {}, const Context& context = {});
 
-/// The same of a mesh, certified by MeshAxisVerifier. @param medial  its angles are those of the options.
-/// @throws InvalidMesh, OutOfMemory, as medial_axis(), and as above.
+/// Returns the axes of a mesh, certified by MeshAxisVerifier.
+/// @param medial  its angles are replaced by those of the options.
+/// @throws InvalidMesh; OutOfMemory; as medial_axis(); as certified_axes() above.
 [[nodiscard]] CertifiedAxes certified_axes(const MeshView& mesh, const CertifiedAxisOptions& options = {},
                                            const MedialAxisOptions& medial = {}, const Context& context = {});
-/// The same of MedialAxisOptions::selection of an image, certified by ImageAxisVerifier.
-/// @throws InvalidImage, OutOfMemory, as medial_axis(), and as above.
+/// Returns the axes of MedialAxisOptions::selection of an image, certified by ImageAxisVerifier.
+/// @throws InvalidImage; OutOfMemory; as medial_axis(); as certified_axes() above.
 [[nodiscard]] CertifiedAxes certified_axes(const VoxelImageView& image, const CertifiedAxisOptions& options = {},
                                            const MedialAxisOptions& medial = {}, const Context& context = {});
 
-/// The axis of a mesh at one angle, certified. @param theta  degrees.  @param tolerance  as CertifiedAxisOptions.
-/// @return  with all warnings. @throws NotCertified; as certified_axes().
+/// Returns the certified axis of a mesh at one angle.
+/// @param theta  degrees.
+/// @param tolerance  as in CertifiedAxisOptions.
+/// @return  with all warnings.
+/// @throws NotCertified; as certified_axes().
 [[nodiscard]] CertifiedAxis certified_axis(const MeshView& mesh, double theta, const MedialAxisOptions& medial = {},
                                            std::optional<double> tolerance = {}, const Context& context = {});
-/// The same of an axis that is there, on its grid alone. @param axis  medial_axis(mesh).
+/// Returns the certified axis at one angle of an existing axis, whose grid is not moved.
+/// @param axis  result of medial_axis(mesh).
+/// @throws NotCertified; as certified_axes().
 [[nodiscard]] CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, double theta,
                                            std::optional<double> tolerance = {}, const Context& context = {});
 
-/// An axis that was made in another way, as of a Voronoi complex: with few vertices if it is certified so, else with
-/// all. An axis that is not certified is no error.
-/// @param whole      with all vertices.
-/// @param metadata   of it: theta is in warnings.
-/// @param tolerance  as CertifiedAxisOptions, but 0 by default.
+/// Certifies an axis that was made in another way, for example from a Voronoi complex. Returns it with few vertices if
+/// that form is certified, else with all. An axis that is not certified is not an error.
+/// @param whole      axis with all vertices.
+/// @param metadata   of that axis; warnings mention its theta.
+/// @param tolerance  as in CertifiedAxisOptions, but without a default; 0 keeps all vertices.
 [[nodiscard]] CertifiedAxis certified_axis(Complex whole, const MedialMetadata& metadata, double tolerance,
                                            CertifyAxis certify, std::vector<PhaseTime>& phases,
                                            const Context& context = {});
 
-/// The smallest side of a voxel of any body, mesh units.
+/// Returns the smallest side of a voxel of any body, mesh units.
 [[nodiscard]] double least_spacing(const MedialAxisReport& report);
 
-/// How an axis was made: what a file says of it but source, version and what was selected.
+/// Returns the metadata of an axis, without source, version and selection.
 [[nodiscard]] MedialMetadata medial_metadata(const MedialAxis& axis, double theta);
 
-/// Where the model of a solid does not pass, and what there is to do about it: one sentence for each body.
-/// @param style  of the options that it names.
+/// Returns one sentence for each body whose model does not pass, with advice.
+/// @param style  form of the options that it names.
 [[nodiscard]] std::vector<std::string> model_problems(const MedialAxisReport& report,
                                                       OptionStyle style = OptionStyle::python);
 

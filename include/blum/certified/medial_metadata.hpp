@@ -1,4 +1,4 @@
-// Blum: what is known of a medial axis besides its complex. SPDX-License-Identifier: Apache-2.0
+// Blum: metadata of a medial axis besides its complex. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -13,26 +13,26 @@
 
 namespace blum {
 
-/// What a file of a medial axis says besides the complex; what it does not know stays unset.
+/// Metadata in a file of a medial axis; unknown members are unset.
 struct MedialMetadata {
-  std::string source = {};   ///< where the solid came from, for example a file name
-  std::string version = {};  ///< Blum's; written where the axis has all columns of MedialView
+  std::string source = {};   ///< Source of the solid, for example a file name.
+  std::string version = {};  ///< Version of Blum; written if the axis has all columns of MedialView.
   SiteIds site_ids = SiteIds::features;
-  std::optional<double> theta = {};    ///< degrees
-  std::optional<double> lambda = {};   ///< mesh units
-  std::optional<double> spacing = {};  ///< smallest side of a voxel, mesh units
-  /// DecimatedAxis::deviation, >= 0, mesh units; unset where no vertices were taken out.
+  std::optional<double> theta = {};    ///< Degrees.
+  std::optional<double> lambda = {};   ///< Mesh units.
+  std::optional<double> spacing = {};  ///< Smallest side of a voxel, mesh units.
+  /// DecimatedAxis::deviation, >= 0, mesh units; unset if no vertices were removed.
   std::optional<double> deviation = {};
-  /// What the topology is against: "polyhedron", "winding" or "voxels" (SolidRule).
+  /// Rule of the solid to which the topology refers: "polyhedron", "winding" or "voxels" (SolidRule).
   std::string solid_rule = {};
-  std::optional<GridSpec> grid = {};  ///< voxel centres, where the solid is only known as voxels (SolidRule::winding)
-  // Of the solid's file: which voxels of an image, at most one of two (neither: all that are not 0), and how a mesh was
-  // welded.
-  std::optional<std::int64_t> label = {};  ///< those of this value
-  std::optional<double> threshold = {};    ///< those of this value or more, in image values
-  std::optional<double> weld = {};  ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format
-  /// Images: the solid is what the smooth surface of its voxels bounds, with SmoothSurfaceOptions::iterations; unset:
-  /// the union of their boxes.
+  std::optional<GridSpec> grid = {};  ///< Voxel centres. Needed for SolidRule::winding, which knows only voxels.
+  // Selection in the file of the solid. At most one of two rules selects the voxels of an image (neither: all that are
+  // not 0). `weld` is for meshes.
+  std::optional<std::int64_t> label = {};  ///< Voxels of this value.
+  std::optional<double> threshold = {};    ///< Voxels of this value or more, in image values.
+  std::optional<double> weld = {};  ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format.
+  /// Images: the smooth surface of the voxels bounds the solid, with SmoothSurfaceOptions::iterations. Unset: the solid
+  /// is the union of their boxes.
   std::optional<int> smooth = {};
 };
 

@@ -1,4 +1,4 @@
-// Blum: medial axes and what their files claim, checked against their solids. SPDX-License-Identifier: Apache-2.0
+// Blum: verification of medial axes and the claims of their files. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@
 
 namespace blum {
 
-/// What a file, or who made it, says of an axis.
+/// Claims of a file, or of its author, about an axis.
 struct MedialClaims {
   MedialMetadata metadata;
   bool has_radii = true;
@@ -31,51 +31,54 @@ struct MedialClaims {
   bool has_labels = true;
 };
 
-/// A mesh bounds no polyhedron, so that the solid of its axis is known by voxels, and the axis's file does not say
-/// which.
+/// Error for a mesh that does not bound a polyhedron, if the axis's file does not name the voxels that its solid
+/// consists of.
 class UntoldVoxels : public InvalidMesh {
  public:
   explicit UntoldVoxels(const std::string& reason)
       : InvalidMesh("the mesh bounds no polyhedron (" + reason +
                     "), so its axis is that of voxels: give grid, that of their centres"),
         reason_(reason) {}
-  /// Why it bounds none, in one sentence.
+  /// Returns one sentence with the reason why the mesh does not bound a polyhedron.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
   std::string reason_;
 };
 
-/// What a file says that is not so, one sentence each: its solid has another rule than it says; its voxels are of other
-/// sides than the image's, or of a mesh's voxels its grid has other steps than its spacing; it lacks what Blum writes
-/// into every file, or has sites of another kind of solid.
-/// @param found  what the solid is.  @param image_grid  where it is an image: of the voxels' centres; else nullptr.
+/// Returns one sentence for each false claim. A claim is false in these cases: The solid has another rule. The sides of
+/// the voxels differ from those of the image. For the voxels of a mesh, the steps of the grid differ from the spacing.
+/// A file by Blum lacks data that Blum always writes, or its sites belong to another kind of solid.
+/// @param found  rule of the solid.
+/// @param image_grid  grid of the voxels' centres for an image, else nullptr.
 [[nodiscard]] std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found,
                                                     const GridSpec* image_grid);
 
-/// Certifies axes of a mesh with what their files claim. What it reads of the mesh it reads once (AxisVerifier), and
-/// the voxels of a mesh that bounds no polyhedron once for axes that name the same grid, one after the other. May be
-/// used from many threads at once.
+/// Certifies axes of a mesh with the claims of their files. It reads the mesh once (AxisVerifier). If the mesh does not
+/// bound a polyhedron, consecutive axes that name the same grid share its voxels. Many threads may use it at once.
 class MeshAxisVerifier {
  public:
-  /// @param mesh  must stay as it is while this lives. @throws InvalidMesh for what validate() refuses.
+  /// @param mesh  must stay unchanged while the verifier exists.
+  /// @throws InvalidMesh if validate() rejects the mesh.
   explicit MeshAxisVerifier(const MeshView& mesh);
   MeshAxisVerifier(const MeshAxisVerifier&) = delete;
   MeshAxisVerifier& operator=(const MeshAxisVerifier&) = delete;
 
-  /// AxisVerifier::certify() against the solid of the mesh, with what is false of the claims among the mismatches: of
-  /// the polyhedron, or, where the verifier finds none (solid_rule()), of the voxels inside on the grid that the claims
-  /// name. What the file does not have is not checked, nor are sites that it does not have for this kind of solid.
-  /// Where Blum wrote it, no vertex may lack a site.
-  /// @param available_memory  bytes: a grid that takes more is refused.
-  /// @throws UntoldVoxels where the claims name no grid and one is needed; InvalidGrid where that has fewer than 8
-  /// steps along the longest side of the mesh; InvalidMesh where no voxel of it lies inside; OutOfMemory; as certify()
-  /// and voxels_inside().
+  /// Certifies an axis against the solid of the mesh (AxisVerifier::certify()), and adds false claims to the
+  /// mismatches.
+  ///
+  /// The solid is the polyhedron that the mesh bounds. If the verifier finds none (solid_rule()), the solid consists of
+  /// the voxels inside on the grid that the claims name. Data that the file does not have are not checked, nor are
+  /// sites of another kind of solid. If Blum wrote the file, no vertex may lack a site.
+  /// @param available_memory  bytes; a grid that needs more is rejected.
+  /// @throws UntoldVoxels if a grid is needed and the claims name none. InvalidGrid if the grid has fewer than 8 steps
+  /// along the longest side of the mesh. InvalidMesh if none of its voxels lies inside. OutOfMemory; as certify() and
+  /// voxels_inside().
   [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims,
                                    const CertificateOptions& options = {}, double available_memory = 1e300,
                                    const Context& context = {}) const;
 
-  /// That of the polyhedron: certificates without claims.
+  /// Returns the verifier of the polyhedron, for certificates without claims.
   [[nodiscard]] const AxisVerifier& polyhedron() const { return polyhedron_; }
 
  private:
@@ -89,18 +92,20 @@ class MeshAxisVerifier {
   MeshView mesh_;
   AxisVerifier polyhedron_;
   mutable std::mutex mutex_;
-  mutable std::shared_ptr<const Voxels> voxels_;  ///< the last ones
+  mutable std::shared_ptr<const Voxels> voxels_;  ///< The last ones used.
 };
 
-/// The same for axes of an image: of the union of its selected, closed voxels; or, where the claims say so, of what
-/// their smooth surface bounds (MedialMetadata::smooth). The solid of the last selection is kept.
+/// Certifies axes of an image with the claims of their files. The solid is the union of the selected, closed voxels. If
+/// the claims say so (MedialMetadata::smooth), it is the solid that their smooth surface bounds. The solid of the last
+/// selection is kept.
 class ImageAxisVerifier {
  public:
-  /// @param image  must stay as it is while this lives.
+  /// @param image  must stay unchanged while the verifier exists.
   explicit ImageAxisVerifier(VoxelImageView image) : image_(std::move(image)) {}
   ImageAxisVerifier(const ImageAxisVerifier&) = delete;
   ImageAxisVerifier& operator=(const ImageAxisVerifier&) = delete;
 
+  /// Certifies an axis against the selected solid, and adds false claims to the mismatches.
   /// @throws as certify(), selected_voxels() and smooth_surface().
   [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const LabelSelection& selection,
                                    const CertificateOptions& options = {}, const Context& context = {}) const;
@@ -113,15 +118,17 @@ class ImageAxisVerifier {
 
   VoxelImageView image_;
   mutable std::mutex mutex_;
-  mutable std::shared_ptr<const Selected> selected_;  ///< the last one
+  mutable std::shared_ptr<const Selected> selected_;  ///< The last one used.
 };
 
-/// MeshAxisVerifier for one axis. @throws as MeshAxisVerifier::verify().
+/// Verifies one axis with a MeshAxisVerifier.
+/// @throws as MeshAxisVerifier::verify().
 [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
                                  const CertificateOptions& options = {}, double available_memory = 1e300,
                                  const Context& context = {});
 
-/// ImageAxisVerifier for one axis. @throws as ImageAxisVerifier::verify().
+/// Verifies one axis with an ImageAxisVerifier.
+/// @throws as ImageAxisVerifier::verify().
 [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
                                  const LabelSelection& selection, const CertificateOptions& options = {},
                                  const Context& context = {});

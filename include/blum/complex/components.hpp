@@ -10,13 +10,14 @@
 
 namespace blum {
 
-/// For each vertex the smallest vertex of its connected component, which stands for it.
-/// @throws InvalidOption for an edge or a triangle that names a vertex that is none, or one twice. Cost: near-linear.
+/// Returns for each vertex the smallest vertex of its connected component, which represents it.
+/// @throws InvalidOption if an edge or a triangle names a vertex that does not exist, or one twice.
+/// Cost: near-linear.
 [[nodiscard]] std::vector<std::uint32_t> components(const ComplexView& complex);
 
-/// All of some complexes in one, one behind the other, with nothing joined.
-/// @throws InvalidOption unless those that have vertices (edges, triangles) have the same columns on them, in one
-/// order.
+/// Returns all given complexes in one, one after the other, without joining anything.
+/// @throws InvalidOption if the complexes that have vertices (edges, triangles) differ in their columns or the order of
+/// these. Also if the result has more than 2^31 - 1 vertices.
 [[nodiscard]] Complex disjoint_union(std::span<const Complex> parts);
 
 }  // namespace blum

@@ -10,14 +10,16 @@
 
 namespace blum {
 
-/// Betti numbers over Z/2 of the complex of the vertices, the edges, the triangles and their edges, by reduction of
-/// boundary matrices. Edges and triangles that are named twice count once.
-/// @throws InvalidOption for a corner that is no vertex, or an edge or triangle that names one twice; Cancelled.
+/// Returns the Betti numbers over Z/2 of a complex, which consists of its vertices, edges, triangles and sides of
+/// triangles. They are computed by reduction of boundary matrices. Edges and triangles that occur twice count once.
+/// @throws InvalidOption if a corner is not a vertex, or an edge or triangle names one twice; Cancelled.
 /// Cost: near-linear for surfaces that meet along few seams.
 [[nodiscard]] BettiNumbers homology(const ComplexView& complex, const Context& context = {});
 
-/// Vertices less edges plus triangles, each counted once, also the edges of triangles: the alternating sum of the Betti
-/// numbers. @throws as homology(). Cost: that of Incidence.
+/// Returns the number of vertices minus edges plus triangles, which is the alternating sum of the Betti numbers. Sides
+/// of triangles are edges, too. Each cell counts once.
+/// @throws as homology().
+/// Cost: that of Incidence.
 [[nodiscard]] std::int64_t euler_characteristic(const ComplexView& complex, const Context& context = {});
 
 }  // namespace blum

@@ -1,4 +1,4 @@
-// Blum: which cells of a complex touch which. SPDX-License-Identifier: Apache-2.0
+// Blum: incidences of the cells of a complex. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,29 +16,30 @@
 
 namespace blum {
 
-/// The edges of a complex, each once, and what touches what; a copy that does not need the complex again.
+/// Edges of a complex, each once, and incidences of its cells. It is a copy, independent of the complex.
 class Incidence {
  public:
   Incidence() = default;
-  /// @throws InvalidOption for an edge or a triangle that names a vertex that is none, or one twice, and for 2^32 or
-  /// more listed edges and sides of triangles; Cancelled.
-  /// Cost: linear but for sorting the edges of each vertex; about 60 bytes per triangle.
+  /// Computes the incidences of a complex.
+  /// @throws InvalidOption if an edge or a triangle names a vertex that does not exist, or one twice. Also if listed
+  /// edges and sides of triangles are 2^32 or more in all. Cancelled.
+  /// Cost: linear except for sorting the edges of each vertex; about 60 bytes per triangle.
   explicit Incidence(const ComplexView& complex, const Context& context = {});
 
-  /// The edges that are listed and the sides of triangles, each once, the smaller vertex first, in rising order.
+  /// Returns the listed edges and the sides of triangles, each once, the smaller vertex first, in ascending order.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const { return edges_; }
-  /// Which of edges() each listed edge is.
+  /// Returns the index in edges() of each listed edge.
   [[nodiscard]] std::span<const std::uint32_t> edge_of_listed() const { return edge_of_listed_; }
-  /// Which of edges() the sides of each triangle are: from corner 0 to 1, from 1 to 2, from 2 to 0.
+  /// Returns the indices in edges() of the sides of each triangle: from corner 0 to 1, from 1 to 2, from 2 to 0.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 3>> sides() const { return sides_; }
-  /// The triangles at each of edges(), rising; one that is listed twice is there twice.
+  /// Returns the triangles at each of edges(), ascending. A triangle that is listed twice occurs twice.
   [[nodiscard]] const IndexRows& triangles_of_edge() const { return triangles_of_edge_; }
-  /// Which of edges() end at each vertex, rising.
+  /// Returns the indices in edges() of the edges at each vertex, ascending.
   [[nodiscard]] const IndexRows& edges_of_vertex() const { return edges_of_vertex_; }
-  /// The triangles at each vertex, rising.
+  /// Returns the triangles at each vertex, ascending.
   [[nodiscard]] const IndexRows& triangles_of_vertex() const { return triangles_of_vertex_; }
 
-  /// Which of edges() joins two vertices, if any does.
+  /// Returns the index in edges() of the edge between two vertices; nullopt if none exists.
   [[nodiscard]] std::optional<std::uint32_t> find_edge(std::uint32_t a, std::uint32_t b) const;
 
  private:

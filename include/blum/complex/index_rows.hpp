@@ -10,11 +10,11 @@
 
 namespace blum {
 
-/// A row of indices for each cell, all in one array.
+/// Rows of indices, one for each cell, in one array.
 class IndexRows {
  public:
   IndexRows() = default;
-  /// @param first  where the row of each cell begins, and the end: one more than there are cells.
+  /// @param first  start of each row, and the end of the last one: one more than the number of cells.
   IndexRows(std::vector<std::size_t> first, std::vector<std::uint32_t> items)
       : first_(std::move(first)), items_(std::move(items)) {}
 
@@ -30,8 +30,8 @@ class IndexRows {
 
 namespace detail {
 
-/// For each of `cell_count` cells the things that name it, rising.
-/// @param cells_of  cells_of(k): the cells that thing k names, in a range.
+/// Returns for each of `cell_count` cells the things that name it, ascending.
+/// @param cells_of  cells_of(k) returns the cells that thing k names, as a range.
 template <class CellsOf>
 [[nodiscard]] IndexRows rows_of(std::size_t thing_count, std::size_t cell_count, const CellsOf& cells_of) {
   std::vector<std::size_t> first(cell_count + 1, 0);

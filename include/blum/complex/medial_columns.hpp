@@ -18,13 +18,13 @@
 
 namespace blum {
 
-/// Where a vertex or edge of a medial axis lies; columns hold these numbers.
+/// Location of a vertex or an edge on a medial axis; columns hold these numbers.
 enum class MedialRole : std::uint8_t {
-  sheet,     ///< inside a sheet: all around it is surface
-  rim,       ///< on the free border of a sheet
-  seam,      ///< where three or more triangles meet
-  curve,     ///< on no triangle
-  junction,  ///< a vertex where seams or curves begin, end or meet, or sheets touch
+  sheet,     ///< Inside a sheet: surrounded by surface.
+  rim,       ///< On the free border of a sheet.
+  seam,      ///< At three or more triangles.
+  curve,     ///< On no triangle.
+  junction,  ///< Vertex where seams or curves begin, end or meet, or where sheets touch.
 };
 
 template <>
@@ -35,40 +35,42 @@ struct Description<MedialRole> {
                                      NamedValue{MedialRole::junction, "junction"}};
 };
 
-/// A medial axis is a complex with these columns, here by name. Vertices are centres of balls that the solid holds.
-/// Edges are curves, rims and seams: the inner edges of sheets are not listed.
-/// Names of vertex columns begin with none of vertex_, edge_ and triangle_, by which .npz files tell kinds apart.
+/// Names of the columns that make a complex a medial axis. Vertices are centres of balls inside the solid. Edges are
+/// curves, rims and seams; inner edges of sheets are not listed. No name of a vertex column starts with vertex_, edge_
+/// or triangle_, because .npz files use these prefixes to distinguish kinds of columns.
 namespace medial_columns {
 
 /// Vertices, float64: exact distance to the surface, mesh units.
 inline constexpr std::string_view radius = "radius";
-/// Vertices, 3 x float64: the closest point of the surface, and that of the other wall; the same point twice where only
-/// one wall is near.
+/// Vertices, 3 x float64: the closest point of the surface, and the closest point of the other wall. Both are the same
+/// point if only one wall is near.
 inline constexpr std::array<std::string_view, 2> footprints{"footprint_0", "footprint_1"};
-/// Vertices, int32: of the input mesh, or voxels of the input image, that the footprints lie on; -1 where not known.
+/// Vertices, int32: the sites of the input mesh, or voxels of the input image, that contain the footprints; -1 if
+/// unknown.
 inline constexpr std::array<std::string_view, 2> sites{"site_0", "site_1"};
-/// Vertices, float64: between the footprints as the position sees them, degrees. Edges and triangles, float32: degrees;
-/// 0 where only homotopy keeps them.
+/// Vertices, float64, degrees: the angle between the footprints, seen from the vertex. Edges and triangles, float32,
+/// degrees: their angle, or 0 if only homotopy keeps them.
 inline constexpr std::string_view separation_angle = "separation_angle";
-/// Vertices and edges, int32: MedialRole; of edges rim, seam or curve.
+/// Vertices and edges, int32: MedialRole. Edges have the roles rim, seam or curve.
 inline constexpr std::string_view role = "role";
-/// Triangles, int32, from 0. Sheets are the triangles joined through edges that exactly two triangles share; next to a
-/// seam, not through edges where these are 37 degrees from flat, or more. Of an axis of a mesh they are numbered by the
-/// faces that they lie between (see medial_axis()), of an image by their first triangle.
+/// Triangles, int32: number of the sheet, from 0. A sheet is joined through edges of exactly two triangles. Next to a
+/// seam, edges that bend by 37 degrees or more do not join. Sheets of a mesh's axis are numbered by the faces that they
+/// lie between (see medial_axis()), those of an image's axis by their first triangle.
 inline constexpr std::string_view sheet = "sheet";
 
-/// Axes of all angles have these besides (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: they
-/// are there where theta is less; infinite for always.
+/// Additional column of axes of all angles (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: they
+/// exist while theta is less than this; infinite if they always exist.
 inline constexpr std::string_view until = "until";
-/// Edges, float32, degrees: an edge has its role where from <= theta < until. One that is a seam first, then a rim and
-/// at last a curve is listed three times.
+/// Edges, float32, degrees: an edge has its role while from <= theta < until. An edge that is first a seam, then a rim
+/// and at last a curve is listed three times.
 inline constexpr std::string_view from = "from";
 
 }  // namespace medial_columns
 
-/// The columns of a medial axis to read from. Lives no longer than the complex, and only while that stays as it is.
+/// Columns of a medial axis, for reading. Valid while the complex exists and does not change.
 struct MedialView {
-  /// @throws InvalidOption where a column is missing, of another type, or of another count of rows.
+  /// Finds the columns.
+  /// @throws InvalidOption if a column is missing, or has another type or count of rows.
   explicit MedialView(const Complex& complex);
 
   std::span<const Vec3d> positions;
@@ -96,24 +98,26 @@ struct MedialView {
   std::span<const std::int32_t> roles_, edge_roles_;
 };
 
-/// The columns besides of axes of all angles.
+/// Additional columns of axes of all angles, for reading.
 struct MedialLevels {
+  /// Finds the columns.
   /// @throws InvalidOption as MedialView().
   explicit MedialLevels(const Complex& complex);
 
   std::span<const float> vertex_until, edge_from, edge_until, triangle_until;
 };
 
-/// What to tell where a column of medial_columns is needed and missing: its name, and which files hold it.
+/// Returns the message for a missing column of medial_columns: its name, and the file formats that hold it.
 /// @param kind  "vertices", "edges" or "triangles".
 [[nodiscard]] std::string missing_medial_column(std::string_view kind, std::string_view name);
 
-/// Adds what MedialView needs and a complex lacks: radii, footprints and angles of 0, no sites, one sheet; vertices
-/// of the role sheet and edges of the role curve.
+/// Adds the columns of MedialView that a complex lacks. Radii, footprints and angles are 0, sites are unknown, and all
+/// triangles are of one sheet. Vertices have the role sheet, and edges the role curve.
 void add_missing_medial_columns(Complex& complex);
 
-/// An axis with all columns of MedialView, for what needs not look at those that it lacks: the complex itself where it
-/// has them, else a copy after add_missing_medial_columns(). Lives no longer than the complex.
+/// Axis with all columns of MedialView, for functions that do not use the columns that may be missing. It is the
+/// complex itself if that has all columns, else a copy after add_missing_medial_columns(). Valid while the complex
+/// exists.
 class CompleteAxis {
  public:
   explicit CompleteAxis(const Complex& axis);
@@ -125,18 +129,21 @@ class CompleteAxis {
   std::optional<Complex> copy_;
 };
 
-/// What is wrong with a complex as a medial axis, in one sentence; empty where nothing is: it is a complex
-/// (problem_of), all columns of MedialView are there; numbers are finite, no radius is negative, sites are -1 or more,
-/// roles are those of MedialRole (of edges curve, rim or seam), and sheets are numbered from 0 and no more than there
-/// are triangles.
+/// Returns the first problem of a complex as a medial axis in one sentence, or an empty string.
+///
+/// It must be a complex (problem_of) of at most 2^31 - 1 vertices, with all columns of MedialView. Numbers must be
+/// finite, radii not negative, sites -1 or more, and roles those of MedialRole (edges: curve, rim or seam). Sheets must
+/// be numbered from 0, with no more numbers than triangles.
 [[nodiscard]] std::string problem_of_medial(const Complex& axis);
-/// The same of axes of all angles, which have the columns of MedialLevels, too: numbers, that may be infinite.
+/// Returns the first problem of axes of all angles, or an empty string. They must also have the columns of
+/// MedialLevels, whose numbers may be infinite, but not NaN.
 [[nodiscard]] std::string problem_of_nested(const Complex& axes);
 
-/// One more than the largest sheet; 0 without triangles. @throws InvalidOption where there is no such column.
+/// Returns one more than the largest sheet number; 0 without triangles.
+/// @throws InvalidOption if the column is missing.
 [[nodiscard]] std::size_t sheet_count(const Complex& axis);
 
-/// How many of each there are.
+/// Numbers of cells of a medial axis, by role.
 struct MedialCounts {
   std::size_t vertices = 0, triangles = 0, sheets = 0;
   std::size_t curve_edges = 0, rim_edges = 0, seam_edges = 0, junctions = 0;
@@ -156,6 +163,7 @@ struct Description<MedialCounts> {
       Member{"junctions", &MedialCounts::junctions, "", "vertices where seams or curves meet"},
   };
 };
+/// Returns the numbers of cells of a medial axis.
 /// @throws InvalidOption as MedialView().
 [[nodiscard]] MedialCounts count(const Complex& axis);
 

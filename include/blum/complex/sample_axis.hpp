@@ -10,21 +10,23 @@
 
 namespace blum {
 
-/// A point of a medial axis with a radius interpolated linearly between vertices.
+/// Point of a medial axis with a radius, which is interpolated linearly between vertices.
 struct AxisSample {
   Vec3d position;
-  double radius = 0;         ///< mesh units
-  std::uint32_t vertex = 0;  ///< itself, or a corner of the edge or triangle that it lies on
+  double radius = 0;         ///< Mesh units.
+  std::uint32_t vertex = 0;  ///< The vertex itself, or a corner of its edge or triangle.
 };
 
-/// All vertices, in their order, and points of the listed edges and the triangles that are longer than a step, such
-/// that no point of an axis is further than the step from a sample: the balls of an axis that few triangles hold. Radii
-/// of decimated axes are then as exact as their tolerance.
-/// @param step  > 0, mesh units.  @throws InvalidOption for another one.
-/// Cost: linear in the samples, about (length / step) and (area / step^2) of them besides the vertices.
+/// Returns the balls of an axis with long edges or large triangles. These are all vertices, in their order, then points
+/// of listed edges and triangles that are longer than a step. No point of the axis is further than the step from a
+/// sample, unless an edge or side is longer than 4,096 steps. Radii of decimated axes are as exact as their tolerance.
+/// @param step  > 0, mesh units.
+/// @throws InvalidOption if the step is out of range.
+/// Cost: linear in the samples. Besides the vertices, these are about length / step for edges and area / step^2 for
+/// triangles.
 [[nodiscard]] std::vector<AxisSample> sample_axis(const MedialView& axis, double step);
 
-/// The area of all triangles, square mesh units.
+/// Returns the area of all triangles, square mesh units.
 [[nodiscard]] double area_of(const MedialView& axis);
 
 }  // namespace blum

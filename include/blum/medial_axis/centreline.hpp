@@ -24,10 +24,11 @@
 namespace blum {
 
 struct CentrelineOptions {
-  /// Which voxels. Not zero: each value that there is by itself, and then all must be whole numbers.
+  /// Selected voxels. By default (not zero), each value in the image is a label of its own, and all must be whole
+  /// numbers.
   LabelSelection selection = {};
-  /// A branch with a free end goes where it reaches at most this many radii of the ball at its root, and a voxel and a
-  /// half: at 1 it hardly leaves that ball. 0: all stay that are longer.
+  /// A branch with a free end stays if its reach exceeds this many radii of the ball at its root by 1.5 voxels. At 1 a
+  /// removed branch hardly leaves that ball. At 0 all longer branches stay.
   double spur = 1;
 };
 
@@ -44,9 +45,9 @@ struct Description<CentrelineOptions> {
 };
 
 enum class CentrelineNodeKind : std::uint8_t {
-  point,    ///< of a part that is a blob, without branches
-  end,      ///< of one branch
-  junction  ///< of several branches, or of one that comes back to it
+  point,    ///< Part without branches, for example a blob.
+  end,      ///< End of one branch.
+  junction  ///< End of several branches, or of one that returns to it.
 };
 template <>
 struct Description<CentrelineNodeKind> {
@@ -58,8 +59,8 @@ struct Description<CentrelineNodeKind> {
 
 struct CentrelineNode {
   CentrelineNodeKind kind = CentrelineNodeKind::point;
-  Vec3d position{};   ///< in the world
-  double radius = 0;  ///< of an end, that of its branch there; else the distance to the closest voxel outside
+  Vec3d position{};   ///< World coordinates.
+  double radius = 0;  ///< At an end that of its branch; otherwise the distance to the closest voxel outside.
 };
 template <>
 struct Description<CentrelineNode> {
@@ -73,14 +74,14 @@ struct Description<CentrelineNode> {
   };
 };
 
-/// A curve between two nodes, or a closed one without any.
+/// Curve between two nodes, or a closed curve without nodes.
 struct CentrelineBranch {
-  std::array<std::int32_t, 2> nodes{-1, -1};  ///< indices of its first and last node; -1 for closed curves
-  double length = 0;                          ///< of the polyline, nodes included
-  double mean_radius = 0;                     ///< along its length, outside of the balls of its junctions
-  double min_radius = 0;                      ///< likewise
-  std::vector<Vec3d> points = {};             ///< from node to node; of closed curves the first point is also the last
-  std::vector<double> radii = {};             ///< of each point: of the circle with the area of the section there
+  std::array<std::int32_t, 2> nodes{-1, -1};  ///< Indices of its first and last node; -1 for closed curves.
+  double length = 0;                          ///< Length of the polyline, including the nodes.
+  double mean_radius = 0;                     ///< Mean along its length, outside the balls of its junctions.
+  double min_radius = 0;                      ///< Least radius, likewise.
+  std::vector<Vec3d> points = {};             ///< From node to node. Closed curves repeat the first point at the end.
+  std::vector<double> radii = {};             ///< Radius of the circle with the area of the section, at each point.
 };
 template <>
 struct Description<CentrelineBranch> {
@@ -99,16 +100,16 @@ struct Description<CentrelineBranch> {
   };
 };
 
-/// The centreline of the voxels of one label.
+/// Centreline of the voxels of one label.
 struct Centreline {
-  std::optional<std::int64_t> label = {};  ///< unset where a threshold selects
-  std::uint64_t voxels = 0;                ///< how many there are
+  std::optional<std::int64_t> label = {};  ///< Unset if a threshold selects.
+  std::uint64_t voxels = 0;                ///< Number of voxels.
   std::vector<CentrelineNode> nodes = {};
   std::vector<CentrelineBranch> branches = {};
-  BettiNumbers label_betti{};  ///< of the union of the closed voxels: components, tunnels, voids
-  BettiNumbers graph_betti{};  ///< of nodes and branches
-  bool homotopy_kept = true;   ///< whether these are equal
-  std::string homotopy;        ///< a sentence: kept, or what differs and why
+  BettiNumbers label_betti{};  ///< Components, tunnels and voids of the union of the closed voxels.
+  BettiNumbers graph_betti{};  ///< Components, tunnels and voids of the nodes and branches.
+  bool homotopy_kept = true;   ///< True if these are equal.
+  std::string homotopy;        ///< One sentence: kept, or the difference and its reason.
 };
 template <>
 struct Description<Centreline> {
@@ -127,39 +128,39 @@ struct Description<Centreline> {
 };
 
 struct Centrelines {
-  std::vector<Centreline> labels;  ///< by rising label
+  std::vector<Centreline> labels;  ///< By ascending label.
   std::vector<PhaseTime> phases;
-  std::vector<Warning> warnings;  ///< centreline_warnings() of them
+  std::vector<Warning> warnings;  ///< Result of centreline_warnings().
 };
 
-/// The centreline of each label of an image, as a graph of curves.
+/// Returns the centreline of each label of an image, as a graph of curves.
 ///
 /// Voxels touch in corners (26), the background by faces (6), as for betti_numbers(). Beyond the image is background.
-/// Voids are filled first. The voxels are thinned in the order of their distance to the background; each step keeps
-/// the homotopy type, and so do pruning and the merging of junctions whose balls hold each other. Then the curves are
-/// moved to the centroids of the sections across them, no point by more than a voxel; the radius at a point is that of
-/// the circle with the section's area. A free end lies where its ball touches the tip.
-/// docs/theory/centrelines.md has the method.
+/// Voids are filled first. Then the voxels are thinned in the order of their distance to the background. Each step
+/// preserves the homotopy type. So do pruning and the merging of junctions that lie in each other's balls. Finally,
+/// curves are moved to the centroids of the sections across them, no point by more than a voxel. The radius at a point
+/// is that of the circle with the section's area. A free end lies where its ball touches the tip. See
+/// docs/theory/centrelines.md for the method.
 ///
 /// @param image  must pass validate(image).
 /// @return  the same bytes for any number of threads. Labels without voxels have neither nodes nor branches.
-/// @throws InvalidImage (also where labels are asked for and a value is no whole number), InvalidOption, OutOfMemory,
-/// Cancelled. Cost: about that of distance_transform() twice; 10 bytes for each voxel of the largest box around a
-/// label.
+/// @throws InvalidImage, also if values are labels and one is not a whole number; InvalidOption; OutOfMemory;
+/// Cancelled.
+/// Cost: about twice that of distance_transform(); 10 bytes per voxel of the largest box around a label.
 [[nodiscard]] Centrelines centreline(const VoxelImageView& image, const CentrelineOptions& options = {},
                                      const Context& context = {});
 
-/// Those of some labels, in this order. options.selection is not looked at.
+/// Returns the centrelines of the given labels, in this order. options.selection is ignored.
 [[nodiscard]] Centrelines centreline(const VoxelImageView& image, std::span<const std::int64_t> labels,
                                      const CentrelineOptions& options = {}, const Context& context = {});
 
-/// What deserves a look in the centrelines of an image with this grid: that it has a single layer of voxels
-/// (WarningCode::single_layer), which labels have none (WarningCode::nothing_found), or another topology than their
-/// curves (WarningCode::other_topology). At most six: the last one counts those that are not named.
+/// Returns warnings about the centrelines of an image with this grid. An image may have a single layer of voxels
+/// (WarningCode::single_layer). A label may have none (WarningCode::nothing_found), or another topology than its curves
+/// (WarningCode::other_topology). At most six are returned; the last one counts those that are left out.
 [[nodiscard]] std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpec& grid);
 
-/// All branches as edges from point to point, for files. Columns of vertices: `radius`; of edges: `label` (int64; 0
-/// where there is none) and `branch` (int32, counted over all labels), `length`, `mean_radius` and `min_radius` of it.
+/// Returns all branches as edges from point to point, for files. Vertices have the column `radius`. Edges have `label`
+/// (int64; 0 if unset), `branch` (int32, counted over all labels), and its `length`, `mean_radius` and `min_radius`.
 /// Branches share the vertices of their nodes.
 [[nodiscard]] Complex complex_of(const Centrelines& lines);
 

@@ -31,25 +31,25 @@ namespace blum {
 struct MedialAxisOptions {
   /// Meshes: voxels along the longest side of the box around the mesh, 8 to 800.
   int resolution = 256;
-  /// Meshes: side of a voxel, > 0 and at most the diagonal of the solid, mesh units; instead of `resolution`.
+  /// Meshes: side of a voxel, > 0 and at most the diagonal of the solid, mesh units. Replaces `resolution`.
   std::optional<double> spacing = {};
-  /// Meshes: a body whose model does not pass (see CellularModel), or of which no voxel shows, is done again with
-  /// voxels of half the side, as long as at most this many lie along its own longest side. Less than `resolution` says:
-  /// never.
+  /// Meshes: most voxels along the longest side of a body, 8 to 800. A body is computed again with voxels of half the
+  /// side if its model does not pass (see CellularModel) or contains no voxel. This limit ends the refinement; a value
+  /// below `resolution` prevents it.
   int max_resolution = 512;
-  /// Meshes: how far the grid is moved along each of its axes, -1 to 1 voxels. The grid lies around the mesh, and so
-  /// goes where that goes; by this one sees what depends on where it lies.
+  /// Meshes: shift of the grid along each of its axes, -1 to 1 voxels. The grid moves with the mesh, so this shows how
+  /// the result depends on its position.
   double grid_shift = 0;
-  /// Pieces of the axis whose two footprints are closer than this count for nothing (the lambda-medial axis of Chazal
-  /// and Lieutier 2005), >= 0 and at most the diagonal of the solid, mesh units.
+  /// Parts of the axis whose two footprints are closer than this are ignored, >= 0 and at most the diagonal of the
+  /// solid, mesh units. (Lambda-medial axis of Chazal and Lieutier 2005.)
   double lambda = 0;
-  /// The smallest theta that will be asked for, 0 to 180 degrees: what is seen at less is not looked at closely, which
-  /// saves time where much is. What joins the rest may then run elsewhere.
+  /// Smallest theta that will be requested, 0 to 180 degrees. Smaller angles are evaluated coarsely, which saves time
+  /// if they are frequent. The parts that join the rest may then run elsewhere.
   double least_theta = 0;
-  /// The largest theta that will be asked for, least_theta to 180 degrees: in which order the rest could go on is not
-  /// found out. Axes are the same. MedialAxis::nested() needs 180.
+  /// Largest theta that will be requested, least_theta to 180 degrees. The remaining collapse order is not computed.
+  /// Axes are the same. MedialAxis::nested() needs 180.
   double greatest_theta = 180;
-  /// medial_axis() of an image: which voxels are the solid. Not looked at where a Solid is given.
+  /// For medial_axis() of an image: voxels of the solid. Ignored if a Solid is given.
   LabelSelection selection = {};
 };
 
@@ -78,15 +78,15 @@ struct Description<MedialAxisOptions> {
   };
 };
 
-/// The cells that one body (a connected part of the solid) was made of.
+/// Cells of one body (a connected part of the solid).
 struct BodyReport {
-  BettiNumbers betti{};  ///< of the body
-  /// Whether the cells have the homotopy type of the body, and so the axis has at every theta.
+  BettiNumbers betti{};  ///< Betti numbers of the body.
+  /// True if the cells have the homotopy type of the body. Then the axis has it at every theta.
   bool topology_matches = false;
-  double spacing = 0;                  ///< smallest side of a voxel, mesh units
-  std::size_t voxels = 0;              ///< whose centres are inside
-  std::size_t extra_cells = 0;         ///< polyhedra: cells of the model that are none of a voxel's
-  std::vector<ModelFailure> failures;  ///< polyhedra: places where the model has not the homotopy type
+  double spacing = 0;                  ///< Smallest side of a voxel, mesh units.
+  std::size_t voxels = 0;              ///< Voxels whose centres are inside.
+  std::size_t extra_cells = 0;         ///< Polyhedra: cells of the model that are not cells of voxels.
+  std::vector<ModelFailure> failures;  ///< Polyhedra: places where the model lacks the body's homotopy type.
 };
 
 template <>
@@ -106,14 +106,15 @@ struct Description<BodyReport> {
 
 struct MedialAxisReport {
   SolidRule rule = SolidRule::polyhedron;
-  std::string reason;               ///< one sentence: why this rule
-  std::size_t reversed_shells = 0;  ///< shells that faced the solid and were reversed
-  BettiNumbers betti{};             ///< of the whole solid: the sum of the bodies'
-  bool topology_matches = false;    ///< whether the axis has its homotopy type, at every theta: all bodies' do
-  GridSpec grid;                    ///< voxel centres: of the first body, or of the image
+  std::string reason;               ///< One sentence: the reason for this rule.
+  std::size_t reversed_shells = 0;  ///< Shells that faced the solid and were reversed.
+  BettiNumbers betti{};             ///< Betti numbers of the solid: the sum over its bodies.
+  bool topology_matches = false;    ///< True for all bodies. Then the axis has the solid's homotopy type at every
+                                    ///< theta.
+  GridSpec grid;                    ///< Voxel centres, of the first body or of the image.
   std::vector<BodyReport> bodies;
-  std::vector<PhaseTime> phases;  ///< seconds
-  std::vector<Warning> warnings;  ///< that shells were reversed, or that the solid is known as voxels
+  std::vector<PhaseTime> phases;  ///< Seconds.
+  std::vector<Warning> warnings;  ///< Report reversed triangles or shells, or a solid that is known as voxels.
 };
 
 template <>
@@ -135,49 +136,55 @@ struct Description<MedialAxisReport> {
   };
 };
 
-/// The medial axis of a solid for all angles theta at once: a complex of polygons, edges and vertices that the
-/// solid's cells collapse to, and the order in which it collapses further.
+/// Medial axis of a solid for all angles theta at once. It is a complex of polygons, edges and vertices to which the
+/// cells of the solid collapse, with the order in which it collapses further.
 class MedialAxis {
  public:
   MedialAxis(MedialAxis&&) noexcept;
   MedialAxis& operator=(MedialAxis&&) noexcept;
   ~MedialAxis();
 
-  /// The part where two footprints are seen at more than theta apart, and what homotopy needs to join it: a complex
-  /// with the columns of MedialView and the Betti numbers report().betti. What a larger theta gives is part of what a
-  /// smaller one gives.
+  /// Returns the part of the axis with a separation angle above theta, and the cells that connect it up to homotopy.
+  /// The complex has the columns of MedialView. Its Betti numbers are report().betti if report().topology_matches. The
+  /// result for a larger theta is part of that for a smaller one.
   /// @param theta  degrees, MedialAxisOptions::least_theta to greatest_theta.
-  /// @throws InvalidOption, Cancelled. Cost: linear in the result; about 0.5 s for a million triangles.
+  /// @throws InvalidOption if theta is out of range; Cancelled.
+  /// Cost: linear in the result; about 0.5 s for a million triangles.
   [[nodiscard]] Complex simplify(double theta, const Context& context = {}) const;
 
-  /// The same with its borders where they belong: of a polyhedron, seams and junctions lie where three or four walls
-  /// are equally far, rims and ends where the separation angle is theta or, at convex edges, 0.02 voxels from the
-  /// surface; ribbons without width are curves. The Betti numbers are those of simplify(); what a larger theta gives is
-  /// no longer a part of what a smaller one gives. Of other solids, simplify(theta).
-  /// @throws as simplify(). Cost: besides, about 0.1 ms for each vertex of seams, rims and curves.
+  /// Returns the axis at theta with borders fitted to the surface of a polyhedron; for other solids simplify(theta).
+  ///
+  /// Seams and junctions lie where three or four walls are equally far. Rims and ends lie where the separation angle is
+  /// theta or, at convex edges, 0.02 voxels from the surface. Ribbons without width become curves. The Betti numbers
+  /// are those of simplify(). The result for a larger theta is no longer part of that for a smaller one.
+  /// @throws as simplify().
+  /// Cost: that of simplify(), and about 0.1 ms per vertex of seams, rims and curves.
   [[nodiscard]] Complex fitted(double theta, const Context& context = {}) const;
 
-  /// What decimate() leaves of fitted() within a tolerance, but in less time and memory: what lies far inside of sheets
-  /// is thinned out first, by up to a sixteenth of the tolerance, and not fitted. Of solids that are no polyhedra,
+  /// Returns fitted() after decimation within a tolerance, but with less time and memory than both need. The insides of
+  /// sheets are thinned first, by up to a sixteenth of the tolerance, and not fitted. Solids that are not polyhedra get
   /// decimate() of simplify().
   /// @param tolerance  mesh units, >= 0; 0 keeps all vertices.
   /// @throws as fitted() and decimate().
   [[nodiscard]] DecimatedAxis lean(double theta, double tolerance, const Context& context = {}) const;
 
-  /// The axes of all angles from least_theta() to 180 as sets of points, in one complex: to show, and to simplify
-  /// without computing anything again. It has the columns of MedialView and MedialLevels; at an angle, the triangles,
-  /// curves and vertices that are there cover what simplify() gives for it. Vertices at the same place are one, and
-  /// pieces without extent are left out, so that its topology need not be that of the solid. Sheets and the roles of
-  /// vertices are those at the least angle. @throws Cancelled. Cost: near-linear in the axis at the least angle; about
-  /// 1 s for a million triangles.
+  /// Returns the axes of all angles from least_theta() to 180 as sets of points, in one complex. It serves to show
+  /// axes, and to simplify them without further computation.
+  ///
+  /// The complex has the columns of MedialView and MedialLevels. The triangles, curves and vertices that exist at an
+  /// angle cover the result of simplify() for it. Vertices at the same place are merged, and parts without extent are
+  /// left out. So the topology may differ from that of the solid. Sheets and roles of vertices are those at the least
+  /// angle.
+  /// @throws Cancelled; InvalidOption if greatest_theta() is below 180.
+  /// Cost: near-linear in the axis at the least angle; about 1 s for a million triangles.
   [[nodiscard]] Complex nested(const Context& context = {}) const;
 
-  /// MedialAxisOptions::least_theta.
+  /// Returns MedialAxisOptions::least_theta.
   [[nodiscard]] double least_theta() const;
-  /// MedialAxisOptions::greatest_theta.
+  /// Returns MedialAxisOptions::greatest_theta.
   [[nodiscard]] double greatest_theta() const;
 
-  /// MedialAxisOptions::lambda, mesh units.
+  /// Returns MedialAxisOptions::lambda, mesh units.
   [[nodiscard]] double lambda() const;
 
   [[nodiscard]] const MedialAxisReport& report() const;
@@ -190,33 +197,36 @@ class MedialAxis {
   std::unique_ptr<Data> data_;
 };
 
-/// The medial axis of a solid.
+/// Computes the medial axis of a solid.
 ///
-/// Sheets of a mesh are numbered by the flat or smooth parts of the surface that they lie between, these by their first
-/// faces; of one pair, by the distances of their centroids from vertices of the mesh; those with less than a thousandth
-/// of the area come last. So the same sheet has the same number wherever the mesh lies and however fine the grid is,
-/// where that shows the same sheets (docs/guide/medial-axes.md has the rule in full). Sheets of an image are numbered
-/// in the order of their first triangles.
+/// Sheets of a mesh are numbered by the flat or smooth parts of the surface on both sides, and these by their first
+/// faces. Sheets with the same two parts are ordered by the distances of their centroids from vertices of the mesh.
+/// Those with less than a thousandth of the area come last. So a sheet has the same number wherever the mesh lies. It
+/// also has it on every grid that shows the same sheets. (docs/guide/medial-axes.md has the full rule.) Sheets of an
+/// image are numbered in the order of their first triangles.
 ///
-/// Vertices lie on the bisector of two parts of the surface where there are two, within 0.7 voxels of a corner of the
-/// voxel lattice; their radius is the exact distance to the surface (1e-9 of the extent).
+/// Vertices lie on the bisector of two parts of the surface if two exist. Along each axis of the grid they are at most
+/// 0.7 voxels from a corner of the voxel lattice. If no such point is found, a vertex may lie elsewhere in the solid
+/// (docs/theory/medial-axis.md). The radius is the exact distance to the surface (1e-9 of the extent).
 ///
-/// @return      report().topology_matches says whether the axis has the topology of the solid: look at it. Of a mesh,
-///              sites are those of SiteTable(mesh). Of an image, distances are to the faces of the voxels, and sites
-///              are voxels that are not selected, or that lie just outside of the image, where the id is that of the
-///              image's voxel next to them. The same bytes for any number of threads.
-/// @throws InvalidMesh for a solid without any interior that voxels could show: where triangles face inwards, the
-/// message says so; InvalidOption, OutOfMemory, Cancelled.
-/// Cost: near-linear in the voxels of the solid; about 10 bytes for each voxel of the box.
+/// @return      the same bytes for any number of threads. Check report().topology_matches, which is true if the axis
+///              has the topology of the solid. Sites of a mesh are those of SiteTable(mesh). In images, distances refer
+///              to the faces of the voxels. Their sites are the voxels beyond these faces, which are not selected or
+///              lie just outside the image. A voxel outside has the id of the image's voxel next to it.
+/// @throws InvalidMesh if no voxel shows an interior of the solid (the message mentions triangles that face inwards).
+/// Also if the solid is smaller than 5e-7 of its largest coordinate. InvalidOption; OutOfMemory; Cancelled.
+/// Cost: near-linear in the voxels of the solid; about 10 bytes per voxel of the box.
 /// Method: docs/theory/medial-axis.md (Sud 2006, ch. 5; Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009).
 [[nodiscard]] MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options = {},
                                      const Context& context = {});
 
-/// The same of Solid::of(mesh) in one call; segments and points are ignored. @throws as both.
+/// Computes the medial axis of Solid::of(mesh). Segments and points are ignored.
+/// @throws as both.
 [[nodiscard]] MedialAxis medial_axis(const MeshView& mesh, const MedialAxisOptions& options = {},
                                      const Context& context = {});
 
-/// The same of Solid::of(image, options.selection) in one call. @throws as both.
+/// Computes the medial axis of Solid::of(image, options.selection).
+/// @throws as both.
 [[nodiscard]] MedialAxis medial_axis(const VoxelImageView& image, const MedialAxisOptions& options = {},
                                      const Context& context = {});
 

@@ -1,4 +1,4 @@
-// Blum: when a vertex meets a face, or an edge an edge, as they move. SPDX-License-Identifier: Apache-2.0
+// Blum: times of impact of moving vertices, faces and edges. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ namespace blum {
 
 /// Four points that move along straight lines, each at its own constant speed, from time 0 to time 1.
 struct FourMovingPoints {
-  std::array<Vec3d, 4> start;  ///< mesh units, finite
-  std::array<Vec3d, 4> end;    ///< mesh units, finite
+  std::array<Vec3d, 4> start;  ///< Mesh units, finite.
+  std::array<Vec3d, 4> end;    ///< Mesh units, finite.
 };
 
-/// Options of questions about continuous collisions.
+/// Options of continuous collisions.
 struct ImpactOptions {
-  /// How much earlier than the true time of impact the one told may be, as a part of the motion: 2^-40 to 1.
+  /// Largest time by which a reported impact may precede the true one, as a part of the motion: 2^-40 to 1.
   double tolerance = 1e-6;
-  /// How close, in mesh units, counts as meeting: 0 to 1e150. With 0, features must have a point in common.
+  /// Distance, in mesh units, at which features meet: 0 to 1e150. At 0, they must have a point in common.
   double min_separation = 0;
 };
 
@@ -41,29 +41,32 @@ struct Description<ImpactOptions> {
   };
 };
 
-/// @throws InvalidOption.
+/// Checks options.
+/// @throws InvalidOption if one is out of range.
 void check(const ImpactOptions& options);
 
-/// The first time at which a moving vertex lies in a moving triangle, its border included.
+/// Returns the first time at which a moving vertex lies in a moving triangle, its border included.
 ///
-/// With a minimum separation, the first time at which they are no further apart than that.
+/// With a minimum separation, returns the first time at which their distance is at most that.
 ///
-/// Whether there is one is exact for the coordinates as they are: no contact is missed, none is made up, whatever the
-/// motion: triangles may lose their area and turn over, points may stay in a plane or at a place.
+/// The existence of a contact is exact for the given coordinates: none is missed and none is made up, whatever the
+/// motion. Triangles may lose their area and turn over. Points may stay in a plane or in one place.
 /// @param points  the vertex, then the corners of the triangle.
-/// @return        nullopt where they never meet; else a time from 0 to 1, no later than the first contact, and no more
-///                than options.tolerance earlier.
-/// @throws InvalidMesh where a coordinate is not finite; InvalidOption.
-/// Cost: 0.1 microseconds where simple bounds tell them apart, 1 for most contacts, some 10 where doubles do not
-/// decide. Method: docs/theory/proximity.md.
+/// @return        nullopt if they never meet. Otherwise a time from 0 to 1 that is not after the first contact. It is
+///                at most options.tolerance earlier, plus 2^-52 for rounding.
+/// @throws InvalidMesh if a coordinate is not finite; InvalidOption.
+/// Cost: 0.1 microseconds if simple bounds separate them, 1 for most contacts, some 10 if doubles do not decide.
+/// Method: docs/theory/proximity.md.
 [[nodiscard]] std::optional<double> vertex_face_impact(const FourMovingPoints& points,
                                                        const ImpactOptions& options = {});
 
-/// The first time at which two moving edges have a point in common, their ends included; see vertex_face_impact().
+/// Returns the first time at which two moving edges have a point in common, their ends included; see
+/// vertex_face_impact().
 /// @param points  the ends of one edge, then those of the other.
 [[nodiscard]] std::optional<double> edge_edge_impact(const FourMovingPoints& points, const ImpactOptions& options = {});
 
-/// The same for many, threaded. @throws Cancelled besides.
+/// Return the times of impact of many vertices and faces, or pairs of edges, with many threads.
+/// @throws Cancelled; as vertex_face_impact().
 [[nodiscard]] std::vector<std::optional<double>> vertex_face_impacts(std::span<const FourMovingPoints> points,
                                                                      const ImpactOptions& options = {},
                                                                      const Context& context = {});

@@ -1,4 +1,4 @@
-// Blum: how objects of a scene move, and what meets. SPDX-License-Identifier: Apache-2.0
+// Blum: motions of the objects of a scene, and their collisions. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -14,36 +14,36 @@
 
 namespace blum {
 
-/// An object of a scene: its number, in the order in which objects were added.
+/// Object of a scene: its number, in the order in which objects were added.
 using ObjectId = Id<struct ObjectTag>;
 
-/// Where an object goes from where it is: each of its vertices along a straight line, at a constant speed, from time 0
-/// to time 1. (A body that turns does so along chords, which bring its vertices to the right places at both ends.)
+/// Motion of an object from its present place. Each vertex moves along a straight line, at a constant speed, from time
+/// 0 to time 1. Rotation is treated likewise: vertices move along chords, and are exact at both ends.
 struct ObjectMotion {
   ObjectId object;
-  std::span<const Vec3d> vertices = {};      ///< at the end, before the transform; none: as they are
-  std::optional<RigidTransform> place = {};  ///< at the end; nullopt: where it is
+  std::span<const Vec3d> vertices = {};      ///< At the end, before the transform; empty: as they are.
+  std::optional<RigidTransform> place = {};  ///< At the end; nullopt: where it is.
 };
 
-/// What of two objects meets, or of one with itself.
+/// Collisions of two objects, or of one with itself.
 struct ObjectCollisions {
   ObjectId first;
   ObjectId second;
-  std::vector<VertexFaceCollision> vertex_face;  ///< a vertex of the first one, a face of the second
-  std::vector<VertexFaceCollision> face_vertex;  ///< a vertex of the second, a face of the first; none of one object
-  std::vector<EdgeEdgeCollision> edge_edge;      ///< an edge of the first one, then one of the second
+  std::vector<VertexFaceCollision> vertex_face;  ///< A vertex of the first object and a face of the second.
+  std::vector<VertexFaceCollision> face_vertex;  ///< A vertex of the second object, a face of the first; empty for one.
+  std::vector<EdgeEdgeCollision> edge_edge;      ///< An edge of the first object, then one of the second.
 
-  /// The earliest time of impact; nullopt where nothing collides.
+  /// Returns the earliest time of impact; nullopt if nothing collides.
   [[nodiscard]] std::optional<double> earliest() const;
 };
 
 struct SceneCollisions {
-  std::vector<ObjectCollisions> objects;  ///< the pairs of which something meets, by rising (first, second)
-  std::size_t box_pairs = 0;              ///< pairs of features whose moving boxes touch
-  std::size_t exact_tests = 0;            ///< pairs that were tested: those that no direction tells apart
+  std::vector<ObjectCollisions> objects;  ///< Pairs of objects that collide, by ascending (first, second).
+  std::size_t box_pairs = 0;              ///< Pairs of features whose moving boxes touch.
+  std::size_t exact_tests = 0;            ///< Pairs that were tested, because no direction separates them.
   std::vector<PhaseTime> phases;
 
-  /// The earliest time of impact; nullopt where nothing collides.
+  /// Returns the earliest time of impact; nullopt if nothing collides.
   [[nodiscard]] std::optional<double> earliest() const;
 };
 

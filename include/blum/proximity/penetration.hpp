@@ -1,4 +1,4 @@
-// Blum: how deep solids lie in each other. SPDX-License-Identifier: Apache-2.0
+// Blum: penetration depths of solids. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,8 +16,9 @@
 namespace blum {
 
 struct PenetrationOptions {
-  /// How much larger than the depth told the true one may be, as a part of it: 1e-6 to 1. Where 200,000 points are not
-  /// enough to show that, as of parts of curved surfaces much wider than deep, the bound told is larger.
+  /// Largest excess of the true depth over the reported one, as a part of it: 1e-6 to 1. If 200,000 points do not
+  /// suffice to show that, the reported bound is larger. This happens for parts of curved surfaces that are much wider
+  /// than deep.
   double depth_tolerance = 0.01;
 };
 
@@ -31,39 +32,42 @@ struct Description<PenetrationOptions> {
   };
 };
 
-/// @throws InvalidOption.
+/// Checks options.
+/// @throws InvalidOption if one is out of range.
 void check(const PenetrationOptions& options);
 
-/// A connected part of what two solids have in common.
+/// Connected part of the overlap of two solids.
 ///
-/// Its border consists of a part of the surface of each, that lies in the other one. The depth is the largest distance
-/// of a point of one of these parts from the other part (Sud 2006, ch. 4: local penetration depth). It is no least way
-/// apart: moving by it brings the deepest point to the other part, and others may still be inside; nor does it count
-/// what of the surfaces is not in the part. Where surfaces coincide, it is that of moving one by next to nothing.
+/// Its border consists of two sides, each the part of one solid's surface that lies in the other solid. The depth is
+/// the largest distance of a point of one side from the other side (Sud 2006, ch. 4: local penetration depth). It is
+/// not the shortest separating translation: moving by it brings the deepest point to the other side, but others may
+/// stay inside. Surfaces outside the part do not count. If surfaces coincide, the depth is the limit for an
+/// infinitesimal displacement.
 struct Penetration {
   ObjectId first_object;
   ObjectId second_object;
-  double depth = 0;        ///< mesh units; that of deep_point and surface_point
-  double depth_bound = 0;  ///< what it is at most: a bound for certain, but for rounding
-  /// Of length 1: where the first object is to be moved, by `depth`, to bring the deepest point to the surface.
+  double depth = 0;        ///< Mesh units; distance of `deep_point` and `surface_point`.
+  double depth_bound = 0;  ///< Upper bound on the true depth, proven except for rounding.
+  /// Unit vector. Moving the first object by `depth` in this direction brings the deepest point to the surface.
   Vec3d direction;
-  Vec3d deep_point;                    ///< the deepest point of the surface of one object in the other one
-  Vec3d surface_point;                 ///< the closest one to it of the surface of that
-  bool is_first_deep = false;          ///< whether the deepest point is one of the first object; else of the second
-  std::uint32_t deep_triangle = 0;     ///< that deep_point lies on, in its object
-  std::uint32_t surface_triangle = 0;  ///< that surface_point lies on, in the other one
-  /// Of the parts of the surfaces of the first object and the second, square mesh units. Both in the first entry where
-  /// an object is compared with itself.
+  Vec3d deep_point;                    ///< Deepest point of the surface of one object in the other one.
+  Vec3d surface_point;                 ///< Closest point to it on the surface of the other object.
+  bool is_first_deep = false;          ///< True if the deepest point belongs to the first object, else to the second.
+  std::uint32_t deep_triangle = 0;     ///< Triangle of its object that contains `deep_point`.
+  std::uint32_t surface_triangle = 0;  ///< Triangle of the other object that contains `surface_point`.
+  /// Areas of the sides of the first and the second object, square mesh units. If an object is compared with itself,
+  /// the first entry contains both.
   std::array<double, 2> area{};
-  double volume = 0;  ///< cubic mesh units
-  /// Where the surfaces cross: closed curves, unless more than two parts meet on them. Each ends where it began.
+  double volume = 0;  ///< Cubic mesh units.
+  /// Curves in which the surfaces cross. Each ends where it began. They are simple closed curves, unless more than two
+  /// parts meet on them.
   std::vector<std::vector<Vec3d>> curves;
 };
 
-/// What solids have in common, in its connected parts, of each pair the deepest first.
+/// Overlaps of solids, as connected parts, for each pair the deepest first.
 struct Penetrations {
   std::vector<Penetration> parts;
-  std::size_t object_pairs = 0;  ///< compared; an object with itself is one
+  std::size_t object_pairs = 0;  ///< Compared pairs; an object with itself is one.
   std::vector<PhaseTime> phases;
 };
 

@@ -1,4 +1,4 @@
-// Blum: the cellular model of a body, beside the voxels of a grid. SPDX-License-Identifier: Apache-2.0
+// Blum: cellular model of a body, relative to the voxels of a grid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -19,47 +19,49 @@
 
 namespace blum {
 
-/// A cell of a model that no cell of the voxels stands for.
+/// Cell of a model that does not correspond to a cell of the voxels.
 struct ExtraCell {
-  /// Where an interval of a line between two nodes begins or ends.
+  /// End of an interval on a line between two nodes.
   struct End {
-    Vec3d point;                                 ///< mesh units
-    std::optional<std::uint32_t> triangle = {};  ///< of the surface; none where a node of the grid is the end
+    Vec3d point;                                 ///< Mesh units.
+    std::optional<std::uint32_t> triangle = {};  ///< Triangle of the surface; none if a node of the grid is the end.
   };
-  int dimension = 0;  ///< 0 to 3
-  /// The cell of the voxels that lies there; none where the model's cubes were split.
+  int dimension = 0;  ///< 0 to 3.
+  /// Cell of the voxels at this place; none if cubes of the model were split there.
   std::optional<Cell> place = {};
-  Vec3d witness;            ///< a point of the solid's component that the cell stands for, mesh units
-  std::optional<Box3> box;  ///< vertices in split cubes: of what is left of the cube, mesh units
-  std::array<End, 2> ends;  ///< polygons: of the interval that it stands for
+  Vec3d witness;            ///< Point of the component of the solid that the cell represents, mesh units.
+  std::optional<Box3> box;  ///< Vertices in split cubes: what is left of the cube, mesh units.
+  std::array<End, 2> ends;  ///< Polygons: ends of the interval that it represents.
 };
 
-/// The cellular model of a body (see CellularModel) over a grid, as the closed voxels around the nodes that are inside,
-/// and what differs from their union: where walls or gaps are thinner than a voxel, the model has cells that no voxel
-/// has, and several in the place of one. All else are cells of the lattice of voxels: a voxel for a node inside, a
-/// square for a line between nodes, an edge for a square of the grid, a vertex for a cube.
+/// Cellular model of a body (see CellularModel) over a grid. It consists of the closed voxels around the nodes inside,
+/// and of the differences from their union. Where walls or gaps are thinner than a voxel, the model has cells that no
+/// voxel has, or several cells in place of one. All other cells are cells of the lattice of voxels. A node inside is a
+/// voxel, a line between nodes a square, a square of the grid an edge, and a cube a vertex.
 struct BodyCells {
-  CellLattice lattice;         ///< of the voxels: voxel (i, j, k) is the one around node (i, j, k) of the grid
-  VoxelSet inside;             ///< the nodes inside; exact, ties broken as CellularModel does
-  std::vector<Cell> replaced;  ///< cells of the voxels that are none of the model, rising: it has extra cells there
+  CellLattice lattice;         ///< Lattice of the voxels. Voxel (i, j, k) surrounds node (i, j, k) of the grid.
+  VoxelSet inside;             ///< Nodes inside. Exact, with ties broken as in CellularModel.
+  std::vector<Cell> replaced;  ///< Cells of the voxels that extra cells replace in the model, ascending.
   std::vector<ExtraCell> extra;
-  /// Of each extra cell, of one dimension less: cells of the lattice, where they are below `first`, else `first` and
-  /// the number of an extra cell.
+  /// Faces of each extra cell, of one dimension less. Numbers below `first` are cells of the lattice; others are
+  /// `first` plus the number of an extra cell.
   IndexRows faces;
   std::uint32_t first = 0;
-  /// Numbers of extra cells, and cells of the lattice that these are faces of.
+  /// Pairs of an extra cell and a cell of the lattice of which it is a face: numbers of both.
   std::vector<std::array<std::uint32_t, 2>> cofaces;
 
-  /// Places where a component is not contractible: where there are any, the model has not the body's homotopy type.
+  /// Places where a component is not contractible. If any exists, the model does not have the body's homotopy type.
   std::vector<ModelFailure> failures;
 };
 
+/// Computes the cellular model of a body.
 /// @param body  closed, manifold, without self-intersections, facing outwards.
-/// @param grid  its axes are those of space; all of the body lies more than one step inside of its outermost nodes.
-/// @param finer  where the model shall be finer than it must be, mesh units: boxes that hold some of the surface, and
-///               share inner points with one of these, are split until none of their sides is longer than about a
-///               quarter of its longest one.
-/// @throws InvalidMesh, InvalidGrid, OutOfMemory, Cancelled as Solid::model(). Cost: as that.
+/// @param grid  its axes are those of space. All of the body lies more than one step inside its outermost nodes.
+/// @param finer  boxes in which the model must be finer than necessary, mesh units. Boxes of the model that contain
+///               part of the surface, and share inner points with one of these, are split. This ends when no side is
+///               longer than about a quarter of the longest side of that box.
+/// @throws InvalidMesh, InvalidGrid, OutOfMemory, Cancelled as Solid::model().
+/// Cost: that of Solid::model().
 [[nodiscard]] BodyCells body_cells(const TriangleMesh& body, const GridSpec& grid, std::span<const Box3> finer,
                                    const Context& context = {});
 

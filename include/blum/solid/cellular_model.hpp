@@ -1,4 +1,4 @@
-// Blum: the solid as a cellular model with its homotopy type. SPDX-License-Identifier: Apache-2.0
+// Blum: cellular models with the homotopy type of a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -26,11 +26,11 @@ class Solid;
 struct CellularModelOptions {
   /// Cubes along the longest side of the box around the solid, 1 to 800.
   int resolution = 64;
-  /// Side of a cube, > 0, mesh units; instead of `resolution`.
+  /// Side of a cube, > 0, mesh units. Replaces `resolution`.
   std::optional<double> spacing = {};
-  /// How far the grid is moved along each axis, 0 to 1 cube. Where a place fails, another choice may pass.
+  /// Shift of the grid along each axis, 0 to 1 cube. If a place fails, another shift may pass.
   double shift = 0.381966;
-  /// How often a cube that fails is split, 0 to 200.
+  /// Largest number of splits of a failing cube, 0 to 200.
   int most_splits = 60;
 };
 
@@ -51,12 +51,12 @@ struct Description<CellularModelOptions> {
   };
 };
 
-/// What keeps a cell from passing.
+/// Reason why a cell does not pass.
 enum class ModelObstacle : std::uint8_t {
-  hole_in_square,  ///< the solid has a hole within a side of the box: an empty needle, say, that no split opens
-  slanted_needle,  ///< the same where it runs at a slant, and thousands of splits would not open it
-  handle,          ///< a component in the box has a tunnel, or an inner boundary
-  void_in_cube     ///< a void lies wholly inside of the box
+  hole_in_square,  ///< The solid has a hole within a side of the box, for example an empty needle that no split opens.
+  slanted_needle,  ///< Such a hole is slanted, and thousands of splits would not open it.
+  handle,          ///< A component in the box has a tunnel, or an inner boundary.
+  void_in_cube     ///< A void lies wholly inside the box.
 };
 
 template <>
@@ -68,15 +68,15 @@ struct Description<ModelObstacle> {
                                      NamedValue{ModelObstacle::void_in_cube, "void in cube"}};
 };
 
-/// A box in which a component of the solid is not contractible, and that could not be split further.
+/// Box in which a component of the solid is not contractible, and that could not be split further.
 struct ModelFailure {
-  Vec3d low{};   ///< corner, mesh units
-  Vec3d high{};  ///< the corner opposite
+  Vec3d low{};   ///< Corner, mesh units.
+  Vec3d high{};  ///< Opposite corner.
   ModelObstacle obstacle = ModelObstacle::handle;
-  double cuts = 0;  ///< slanted_needle: splits that it takes to open it in this box; with cubes half as large, half
+  double cuts = 0;  ///< For `slanted_needle`: splits to open it in this box; half as many at half the size.
 
-  /// A split opens a hole where this stays in its plane: as far as it is wide, over how much it slants. Where it takes
-  /// more of them than this in one box, they are not begun.
+  /// A split opens a hole over the length for which the hole stays in its plane: its width divided by its slant. If one
+  /// box needs more splits than this, none is made.
   static constexpr double most_cuts = 8192;
 };
 
@@ -93,16 +93,16 @@ struct Description<ModelFailure> {
 };
 
 struct CellularModelReport {
-  bool passes = false;  ///< whether every component in a cell is contractible: then the model has the homotopy type
-  GridSpec grid;        ///< the corners of the cubes
-  std::size_t cut_cubes = 0;            ///< cubes that the surface meets
-  std::size_t failing_cubes = 0;        ///< of these, cubes that had to be split
-  std::size_t boxes = 0;                ///< that these were split into
-  int splits = 0;                       ///< largest number of splits that a box comes from
-  std::array<std::int64_t, 4> cells{};  ///< vertices, edges, polygons, polyhedra of the model
-  std::int64_t euler = 0;               ///< alternating sum of these: components less tunnels plus voids
-  std::vector<ModelFailure> failures;   ///< places that do not pass
-  std::vector<PhaseTime> phases;        ///< seconds
+  bool passes = false;        ///< True if every component in a cell is contractible, which proves the homotopy type.
+  GridSpec grid;              ///< Corners of the cubes.
+  std::size_t cut_cubes = 0;  ///< Cubes that the surface meets.
+  std::size_t failing_cubes = 0;        ///< Cubes of these that had to be split.
+  std::size_t boxes = 0;                ///< Boxes into which these were split.
+  int splits = 0;                       ///< Largest number of splits that led to a box.
+  std::array<std::int64_t, 4> cells{};  ///< Vertices, edges, polygons and polyhedra of the model.
+  std::int64_t euler = 0;               ///< Their alternating sum: components less tunnels plus voids.
+  std::vector<ModelFailure> failures;   ///< Places that do not pass.
+  std::vector<PhaseTime> phases;        ///< Seconds.
 };
 
 template <>
@@ -124,31 +124,34 @@ struct Description<CellularModelReport> {
   };
 };
 
-/// A regular cell complex with the homotopy type of a polyhedron, at any resolution.
+/// Regular cell complex with the homotopy type of a polyhedron, at any resolution.
 ///
-/// The solid is cut by a grid of cubes. Each connected component of the solid in a cube is a vertex of the model, each
-/// in a square between cubes an edge, each interval of a grid edge inside the solid a polygon, and each grid node
-/// inside a polyhedron. Where all components are contractible, which exact local tests decide, the model is homotopy
-/// equivalent to the solid; cubes where they are not are split until they are. Walls, gaps and tunnels may be thinner
-/// than a cube. The theorem and its proof: docs/theory/solid.md.
+/// A grid of cubes cuts the solid. The model has a vertex for each connected component of the solid in a cube, and an
+/// edge for each in a square between cubes. It has a polygon for each interval of a grid edge inside the solid, and a
+/// polyhedron for each grid node inside. If all components are contractible, the model is homotopy equivalent to the
+/// solid. Exact local tests decide this, and cubes that fail are split until they pass. Walls, gaps and tunnels may be
+/// thinner than a cube. Theorem and proof: docs/theory/solid.md.
 class CellularModel {
  public:
   [[nodiscard]] const CellularModelReport& report() const;
 
-  /// The model, collapsed as far as removing free cells from outside goes: vertices, edges and triangles with the same
-  /// homotopy type, their corners in the solid. Mesh units. @throws Cancelled; OutOfMemory.
-  /// Cost: near-linear in the cells; about 0.3 us and 100 bytes for each.
+  /// Returns the model after collapses from outside, as far as free cells exist. The result has vertices, edges and
+  /// triangles with the same homotopy type, and their corners lie in the solid. Mesh units.
+  /// @throws Cancelled; OutOfMemory.
+  /// Cost: near-linear in the cells; about 0.3 us and 100 bytes each.
   [[nodiscard]] Complex complex(const Context& context = {}) const;
 
-  /// Components, tunnels and voids of the model, by the homology of complex(). @throws and cost as that.
+  /// Returns the components, tunnels and voids of the model, from the homology of complex().
+  /// @throws as complex().
+  /// Cost: that of complex().
   [[nodiscard]] BettiNumbers betti(const Context& context = {}) const;
 
  private:
   friend class Solid;
   struct Data;
   explicit CellularModel(std::shared_ptr<const Data> data);
-  /// Of Solid::model().
-  /// @param groups  of the bodies: those of one do not touch each other.
+  /// Computes Solid::model().
+  /// @param groups  group of each body. Bodies of one group do not touch each other.
   static CellularModel of(const Solid& solid, const std::vector<std::uint32_t>& groups,
                           const CellularModelOptions& options, const Context& context);
   std::shared_ptr<const Data> data_;

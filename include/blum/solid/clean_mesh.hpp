@@ -16,23 +16,22 @@
 
 namespace blum {
 
-/// What cleaning a mesh has done.
+/// Effects of cleaning a mesh.
 struct CleanReport {
-  std::size_t vertices_before = 0;  ///< that triangles name
-  std::size_t vertices = 0;         ///< of the result
+  std::size_t vertices_before = 0;  ///< Vertices that triangles name.
+  std::size_t vertices = 0;         ///< Vertices of the result.
   std::size_t triangles_before = 0;
   std::size_t triangles = 0;
-  std::size_t reversed_triangles = 0;  ///< that faced another way than most of their shell
-  std::size_t reversed_shells = 0;     ///< that faced the solid
-  std::size_t collapses = 0;           ///< vertices that were moved onto a neighbour
-  std::size_t flips = 0;               ///< edges that were turned
-  /// Each point of the result has one of the mesh that is no further away than this, and each point of the mesh one of
-  /// the result: a bound, rounding included, of at most the tolerance. Mesh units.
+  std::size_t reversed_triangles = 0;  ///< Triangles that faced another way than most of their shell.
+  std::size_t reversed_shells = 0;     ///< Shells that faced the solid.
+  std::size_t collapses = 0;           ///< Vertices that were moved onto a neighbour.
+  std::size_t flips = 0;               ///< Edges that were flipped.
+  /// Bound on the Hausdorff distance of the mesh and the result, rounding included, at most the tolerance. Mesh units.
   double deviation = 0;
-  double smallest_height_before = 0;  ///< of a triangle, above its longest side; mesh units
+  double smallest_height_before = 0;  ///< Height of a triangle above its longest side, mesh units.
   double smallest_height = 0;
-  BettiNumbers betti_before{};  ///< of the solid: components, tunnels, voids
-  BettiNumbers betti{};         ///< of the result's; they are the same
+  BettiNumbers betti_before{};  ///< Components, tunnels and voids of the solid.
+  BettiNumbers betti{};         ///< Those of the result's solid, which are the same.
 };
 
 template <>
@@ -59,41 +58,38 @@ struct Description<CleanReport> {
   };
 };
 
-/// A cleaned mesh.
+/// Cleaned mesh.
 struct CleanedMesh {
-  TriangleMesh
-      mesh;  ///< its vertices are some of the input's, in their order, behind them those where it crossed itself
-  std::vector<std::uint32_t> vertex_of;  ///< of each vertex, in the input; rising; or SolidBody::no_vertex
+  TriangleMesh mesh;  ///< Its vertices are some of the input's, in their order, then those at crossings.
+  std::vector<std::uint32_t> vertex_of;  ///< Vertex of the input, ascending; SolidBody::no_vertex at crossings.
   CleanReport report;
-  Solid solid;                         ///< that the mesh bounds, as it was found when the result was checked
-  std::vector<Warning> warnings = {};  ///< of a mesh: what was reversed (reversal_warnings()) or left out
+  Solid solid;                         ///< Solid that the mesh bounds, as found when the result was checked.
+  std::vector<Warning> warnings = {};  ///< For a mesh: what was reversed (reversal_warnings()) or left out.
 };
 
-/// A closed mesh without needles and vertices that it can do without, within a tolerance: what to do before
-/// voronoi_complex(), whose cost grows with the number of sites, and with small ones most.
+/// Removes needless vertices and needles from a closed mesh, within a tolerance. Use it before voronoi_complex(), whose
+/// cost grows with the number of sites, and most with small ones.
 ///
-/// Vertices are moved onto neighbours and edges of flat triangles are turned, one by one, what moves the surface least
-/// first. Each step keeps the surface what it is up to homeomorphism (the link condition), is bounded in how far the
-/// surface moves, adds to what its place has moved before, and is checked in exact arithmetic against all triangles
-/// around: no two cross or touch. Steps that would fold the surface over, or make triangles flatter than the tolerance
-/// and than those which they replace, are left out. In the end the whole result is checked anew. Vertices never move
-/// to new places. Method, and why the bound holds: docs/theory/solid.md.
+/// Steps are made one by one, the smallest change of the surface first. A step moves a vertex onto a neighbour, or
+/// flips an edge of a flat triangle. It keeps the surface up to homeomorphism (the link condition). It has a bound on
+/// how far the surface moves, which adds to what its place has moved before. Exact arithmetic checks that no new
+/// triangle crosses or touches another one. Steps that would fold the surface over are left out. So are steps that
+/// lower the smallest height of triangles, unless it stays above a quarter and no needle results. Finally the whole
+/// result is checked again. Vertices never move to new places. Method and proof of the bound: docs/theory/solid.md.
 ///
-/// @param solid      a polyhedron whose bodies do not touch. Its surface is what is cleaned, and what the result is
-/// near
-///                   to; coordinates of magnitude 1e-45 to 1e45, or 0.
-/// @param tolerance  the result is nowhere further from the surface than this, nor the surface from it: mesh units; at
-///                   least 1e-12 of the diagonal of the box around it, and at most that diagonal.
+/// @param solid      polyhedron whose bodies do not touch. Its surface is cleaned, and the result is near this surface.
+///                   Coordinates have magnitude 1e-45 to 1e45, or are 0.
+/// @param tolerance  largest distance between surface and result, in both directions, mesh units. At least 1e-12 of the
+///                   diagonal of the box around the surface, and at most that diagonal.
 /// @return           the same for any number of threads.
-/// @throws InvalidMesh where the solid is none such; InvalidOption for tolerances out of range; Cancelled; Error where
-/// the result's check fails, which would be a mistake of Blum's.
-/// Cost: about 12 microseconds for each triangle on one core where most go, 3 where none do; 500 bytes.
+/// @throws InvalidMesh if the solid is not such a polyhedron. InvalidOption if the tolerance is out of range.
+/// Cancelled. Error if the check of the result fails, which would be an error in Blum.
+/// Cost: on one core about 12 microseconds per triangle if most are removed, 3 if none are; 500 bytes.
 [[nodiscard]] CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& context = {});
 
-/// The same of the solid that a mesh bounds, found by Solid::of().
-/// @param mesh  closed; it may face any way, and cross itself where that is resolved. Triangles without area may be in
-///              it where a flip of their longest side takes them out. Its segments, points and vertices that no
-///              triangle names are left out.
+/// Cleans the surface of the solid that a mesh bounds, found by Solid::of().
+/// @param mesh  closed. It may face any way, and cross itself if that is resolved. It may have triangles without area
+///              if flips of their longest sides remove them. Its segments, points and unused vertices are left out.
 [[nodiscard]] CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context = {});
 
 }  // namespace blum

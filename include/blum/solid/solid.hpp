@@ -1,4 +1,4 @@
-// Blum: the solid that a mesh or an image stands for. SPDX-License-Identifier: Apache-2.0
+// Blum: the solid that a mesh or an image represents. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -30,14 +30,14 @@
 
 namespace blum {
 
-/// A closed shell of the surface of a polyhedron.
+/// Closed shell of the surface of a polyhedron.
 struct SolidShell {
-  std::uint32_t body = 0;                    ///< that it bounds from outside, or that it is a void of
-  std::uint32_t depth = 0;                   ///< number of other shells that it lies in: at odd depth it is a void
-  std::optional<std::uint32_t> parent = {};  ///< the innermost shell that it lies in
-  std::int64_t genus = 0;                    ///< number of handles
-  double volume = 0;                         ///< that it encloses, > 0, cubic mesh units
-  bool is_reversed = false;                  ///< whether it faced the solid in the input
+  std::uint32_t body = 0;                    ///< Body that it bounds from outside, or of which it is a void.
+  std::uint32_t depth = 0;                   ///< Number of other shells that contain it. At odd depth it is a void.
+  std::optional<std::uint32_t> parent = {};  ///< Innermost shell that contains it.
+  std::int64_t genus = 0;                    ///< Number of handles.
+  double volume = 0;                         ///< Enclosed volume, > 0, cubic mesh units.
+  bool is_reversed = false;                  ///< True if it faced the solid in the input.
 };
 
 template <>
@@ -53,110 +53,117 @@ struct Description<SolidShell> {
       Member{"is_reversed", &SolidShell::is_reversed, "", "whether it faced the solid in the input"}};
 };
 
-/// A connected part of a solid, or the whole of it, and the triangles of the input around it.
+/// Connected part of a solid, or the whole of it, and the triangles of the input around it.
 struct SolidBody {
-  /// Of a vertex that the input does not have: where triangles crossed.
+  /// Marks a vertex that the input does not have, because triangles crossed there.
   static constexpr std::uint32_t no_vertex = ResolvedMesh::no_vertex;
 
   TriangleMesh mesh;
-  std::vector<std::uint32_t> vertex_of;    ///< of each vertex of `mesh`, in the input; or no_vertex
-  std::vector<std::uint32_t> triangle_of;  ///< of each triangle of `mesh`, that of the input which it is a part of
-  BettiNumbers betti{};                    ///< SolidRule::polyhedron: of the body
-  std::vector<std::uint32_t> shells;       ///< SolidRule::polyhedron: the outer one, then its voids, rising
+  std::vector<std::uint32_t> vertex_of;    ///< Vertex of the input for each vertex of `mesh`; or no_vertex.
+  std::vector<std::uint32_t> triangle_of;  ///< Triangle of the input of which each triangle of `mesh` is a part.
+  BettiNumbers betti{};                    ///< SolidRule::polyhedron: Betti numbers of the body.
+  std::vector<std::uint32_t> shells;       ///< SolidRule::polyhedron: the outer shell, then its voids, ascending.
 
-  /// The site of the input that a site of `mesh` stands for. Where crossings were resolved, new vertices and edges
-  /// stand for a face that they lie on, up to the rounding of their coordinates.
+  /// Returns the site of the input that a site of `mesh` represents. If crossings were resolved, new vertices and edges
+  /// represent a face that contains them, up to the rounding of their coordinates.
   [[nodiscard]] SiteId input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const;
 };
 
-/// The surface of a solid as one mesh.
+/// Surface of a solid as one mesh.
 struct SolidSurface {
-  /// Of a polyhedron it faces away from it. Triangles are those of the input in their order, with the second and third
-  /// corner of some exchanged; where crossings were resolved, those that were made.
+  /// The surface of a polyhedron faces away from it. Its triangles are those of the input in their order, with the
+  /// second and third corner of some exchanged. If crossings were resolved, they are the resulting triangles.
   TriangleMesh mesh;
-  /// Where crossings were resolved: of each vertex, in the input, or SolidBody::no_vertex. Else empty: numbers stay.
+  /// If crossings were resolved: vertex of the input for each vertex, or SolidBody::no_vertex. Otherwise empty, because
+  /// numbers stay.
   std::vector<std::uint32_t> vertex_of;
-  /// Where crossings were resolved: of each triangle, that of the input which it is a part of. Else empty.
+  /// If crossings were resolved: triangle of the input of which each triangle is a part. Otherwise empty.
   std::vector<std::uint32_t> triangle_of;
 };
 
-/// The solid that a mesh or an image stands for: which rule tells its inside, its bodies and their topology. It is
-/// found once and passed on, and asked of nothing else: copies share what was found, and all of it may be asked from
-/// many threads at once.
+/// Solid that a mesh or an image represents: the rule for its inside, its bodies and their topology. It is computed
+/// once and passed on. Copies share the data, and many threads may read it at once.
 ///
-/// What of a grid's nodes lies inside, where no polyhedron is bounded (SolidRule::winding), depends on that grid and is
-/// not part of the solid: voxels_inside() tells it by the signs of fields.
+/// For SolidRule::winding, the nodes of a grid that are inside depend on the grid. They are not part of the solid;
+/// voxels_inside() computes them from the signs of fields.
 class Solid {
  public:
-  /// Closed, manifold meshes that do not cross themselves are polyhedra (SolidRule::polyhedron), shell by shell: each
+  /// Returns the solid of a mesh.
+  ///
+  /// Closed, manifold meshes that do not cross themselves are polyhedra (SolidRule::polyhedron), shell by shell. Each
   /// outer shell and the voids in it are one body, and bodies may touch. Triangles that face another way than most of
   /// their shell are reversed, and so are shells that face the solid. Closed meshes that cross, overlap or touch
-  /// themselves become such ones where resolve_crossings() can: the solid is where their winding number is 1 or more.
-  /// For other meshes it is where that is above 1/2 (SolidRule::winding). The mesh may go away.
-  /// @throws InvalidMesh unless it passes validate(mesh), and where there are no triangles; Cancelled.
-  /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh; where it crosses itself, that of
+  /// themselves become such meshes if resolve_crossings() succeeds. The solid is then where their winding number is 1
+  /// or more. The solid of other meshes is where that is above 1/2 (SolidRule::winding). The mesh is not needed
+  /// afterwards.
+  /// @throws InvalidMesh if validate(mesh) fails or no triangle exists; Cancelled.
+  /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh. If it crosses itself, also that of
   /// resolve_crossings() and of both again.
   [[nodiscard]] static Solid of(const MeshView& mesh, const Context& context = {});
 
-  /// The union of the selected, closed voxels of an image; those that touch in a corner are one body.
-  /// @throws InvalidImage (also when no voxel is selected), InvalidOption, Cancelled.
+  /// Returns the union of the selected, closed voxels of an image. Voxels that touch in a corner belong to one body.
+  /// @throws InvalidImage, also if no voxel is selected; InvalidOption; Cancelled.
   [[nodiscard]] static Solid of(const VoxelImageView& image, const LabelSelection& selection = {},
                                 const Context& context = {});
 
   [[nodiscard]] SolidRule rule() const;
-  /// One sentence: why this rule.
+  /// Returns one sentence: the reason for this rule.
   [[nodiscard]] const std::string& reason() const;
 
-  /// What keeps a mesh from bounding bodies that do not touch, in one sentence with what to do; empty where nothing
-  /// does. Not empty where rule() is SolidRule::winding, and where bodies touch each other in more than vertices or
-  /// edges that have their places in common.
+  /// Returns the reason why a mesh does not bound bodies that do not touch, in one sentence with advice. Empty if it
+  /// does. Not empty if rule() is SolidRule::winding or SolidRule::voxels. Also not empty if bodies touch in more than
+  /// vertices or edges with the same positions.
   [[nodiscard]] const std::string& problem() const;
 
-  /// Components, tunnels and voids of the whole solid; nullopt for SolidRule::winding, where only voxels have numbers.
+  /// Returns components, tunnels and voids of the whole solid. Returns nullopt for SolidRule::winding, where only
+  /// voxels have such numbers.
   [[nodiscard]] std::optional<BettiNumbers> betti() const;
-  /// Polyhedra: each faces outwards. SolidRule::winding: one, of all triangles. Images: none.
+  /// Returns the bodies. Those of polyhedra face outwards. SolidRule::winding: one, of all triangles. Images: none.
   [[nodiscard]] std::span<const SolidBody> bodies() const&;
-  std::span<const SolidBody> bodies() const&& = delete;  // they go away with the solid
-  /// Meshes: the surface of all bodies, or of what there is where none is bounded. Images: empty.
+  std::span<const SolidBody> bodies() const&& = delete;  // they are part of the solid
+  /// Returns the surface of all bodies of a mesh, or the whole mesh if it bounds none. Images: empty.
   [[nodiscard]] const SolidSurface& surface() const&;
   const SolidSurface& surface() const&& = delete;
-  /// Meshes: the facts of the input as it was given, before anything was reversed or resolved. Images: zeros.
+  /// Returns the topology of the input mesh, before any reversal or resolution. Images: zeros.
   [[nodiscard]] const Topology& topology() const&;
   const Topology& topology() const&& = delete;
-  /// Polyhedra: in the order of their smallest triangles. Else none.
+  /// Returns the shells of a polyhedron in the order of their smallest triangles. Otherwise none.
   [[nodiscard]] std::span<const SolidShell> shells() const&;
   std::span<const SolidShell> shells() const&& = delete;
-  /// How many shells faced the solid and were reversed.
+  /// Returns the number of shells that faced the solid and were reversed.
   [[nodiscard]] std::size_t reversed_shells() const;
-  /// How many triangles faced another way than most of their shell and were reversed.
+  /// Returns the number of triangles that faced another way than most of their shell and were reversed.
   [[nodiscard]] std::size_t reversed_triangles() const;
-  /// What stood in the way of the mesh being a polyhedron, where that was resolved; nullopt where nothing did, and
-  /// where reason() says why it was not.
+  /// Returns counts of the defects that were resolved to make the mesh a polyhedron. Returns nullopt if no defect
+  /// exists, or if defects were not resolved; then reason() gives the cause.
   [[nodiscard]] const std::optional<CrossingCounts>& resolved() const;
-  /// SolidRule::winding: whether the triangles face inwards as a whole, so that hardly anything is inside: reversing
-  /// them all is what helps. Judged by the volume between them and the middle of their box.
+  /// SolidRule::winding: returns true if the triangles face inwards as a whole, so that hardly anything is inside.
+  /// Reversing all triangles helps. The sign of the volume between them and the middle of their box decides.
   [[nodiscard]] bool faces_inwards() const;
 
-  /// Meshes: the box around the input, mesh units. Images: that of all voxels of the image, selected or not.
+  /// Returns the box around the input mesh, mesh units. Images: the box of all voxels, selected or not.
   [[nodiscard]] const Box3& box() const;
-  /// Meshes: the sites of the input. Images: empty.
+  /// Returns the sites of the input mesh. Images: empty.
   [[nodiscard]] const SiteTable& sites() const;
-  /// Images: the selected voxels, on grid(). Meshes: empty.
+  /// Returns the selected voxels of an image, on grid(). Meshes: empty.
   [[nodiscard]] const VoxelSet& voxels() const;
-  /// Images: the grid of the voxels' centres.
+  /// Returns the grid of an image's voxel centres.
   [[nodiscard]] const GridSpec& grid() const;
 
-  /// Whether a point lies in the solid. Exact, for coordinates of magnitude 1e-80 to 1e100 or 0, where the mesh is
-  /// closed and consistently oriented: crossings of a ray are counted; points of the surface of a polyhedron lie in it.
-  /// Elsewhere as WindingNumber::is_inside(). For images exact up to the rounding of the grid's coordinates; voxels are
+  /// Returns true if a point lies in the solid.
+  ///
+  /// For closed and consistently oriented meshes the result is exact, for coordinates of magnitude 1e-80 to 1e100 or 0.
+  /// It counts crossings of a ray. Points on the surface of a polyhedron lie in it. Other meshes use
+  /// WindingNumber::is_inside(). For images it is exact up to the rounding of the grid's coordinates; voxels are
   /// closed.
-  /// @param p  finite.  Cost: about a microsecond; the first call also builds what it searches in.
+  /// @param p  finite.
+  /// Cost: about a microsecond. The first call also builds a search structure.
   [[nodiscard]] bool inside(const Vec3d& p) const;
 
-  /// A cell complex with the homotopy type of a polyhedron: look at its report() for whether that is proven.
-  /// @throws InvalidOption, also for an image, whose voxels are such a complex; InvalidMesh for SolidRule::winding, and
-  /// where coordinates lie further apart than 45 orders of magnitude; InvalidGrid, OutOfMemory, Cancelled.
-  /// Cost: linear in triangles, and in the cubes that the surface meets; 3 bytes for each cube of the box.
+  /// Returns a cell complex with the homotopy type of a polyhedron. Its report() states whether that is proven.
+  /// @throws InvalidOption, also for an image, whose voxels are such a complex. InvalidMesh for SolidRule::winding, or
+  /// if coordinates lie further apart than 45 orders of magnitude. InvalidGrid, OutOfMemory, Cancelled.
+  /// Cost: linear in triangles, and in the cubes that the surface meets; 3 bytes per cube of the box.
   [[nodiscard]] CellularModel model(const CellularModelOptions& options = {}, const Context& context = {}) const;
 
  private:
@@ -165,8 +172,10 @@ class Solid {
   std::shared_ptr<const Data> data_;
 };
 
-/// @throws InvalidMesh where a solid is no polyhedron whose surface is a manifold apart from itself: vertices or edges
-/// of it have their places in common, or Solid::problem() is not empty. Cost: near-linear in the surface.
+/// Checks that a solid is a polyhedron whose surface is a manifold without contacts.
+/// @throws InvalidMesh if it is not: if vertices or edges of it have the same positions, or Solid::problem() is not
+/// empty.
+/// Cost: near-linear in the surface.
 void check_manifold(const Solid& solid);
 
 }  // namespace blum

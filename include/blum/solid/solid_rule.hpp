@@ -1,4 +1,4 @@
-// Blum: what a solid is. SPDX-License-Identifier: Apache-2.0
+// Blum: rules that define a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace blum {
 
-/// What a solid is, and so what a certificate is worth.
+/// Rule that defines a solid, and so the meaning of a certificate.
 enum class SolidRule : std::uint8_t {
-  polyhedron,  ///< what the closed shells of a mesh bound: tunnels and voids are known exactly
-  winding,  ///< where the winding number is above 1/2: the mesh is open, crosses itself or is not manifold. As voxels
-            ///< it is those whose centre is inside, and only the topology of these voxels is kept
-  voxels    ///< the union of the selected, closed voxels of an image
+  polyhedron,  ///< Bounded by the closed shells of a mesh. Tunnels and voids are known exactly.
+  winding,  ///< Where the winding number is above 1/2. The mesh is open, crosses itself or is not manifold. As voxels
+            ///< it consists of those whose centre is inside, and only their topology is preserved.
+  voxels    ///< Union of the selected, closed voxels of an image.
 };
 
 template <>

@@ -11,27 +11,33 @@
 
 namespace blum {
 
-/// The surface of the points around which a closed mesh winds once or more, as it faces: shells that lie in each other
-/// and face the same way bound what is in at least one of them. The mesh itself where that is so already.
+/// Returns the surface of the points around which a closed mesh winds once or more, with its present orientation.
+/// Shells that lie in each other and face the same way bound the union of both. If the mesh already is that surface,
+/// returns it.
 ///
-/// It is Solid::of() for meshes that move: nothing is reversed, and bodies, shells and topology are not looked for,
-/// which would take several times as long as this.
+/// This is Solid::of() for moving meshes. It reverses nothing, and computes no bodies, shells and topology, which would
+/// take several times as long.
 ///
-/// @param mesh  passes validate(mesh). Its segments and points are left out.
-/// @param name  what errors call it, such as "object 3".
-/// @throws InvalidMesh where there are no triangles, where they face inwards as a whole, where the mesh is not closed
-/// and its crossings are not resolved; Cancelled.
-/// Cost: about 0.3 microseconds for each triangle; where it crosses itself, that of resolve_crossings().
+/// @param mesh  must pass validate(mesh). Its segments and points are left out.
+/// @param name  name in errors, for example "object 3".
+/// @throws InvalidMesh if no triangle exists, or they face inwards as a whole. Also if the mesh is not closed, or its
+/// crossings are not resolved. Cancelled.
+/// Cost: about 0.3 microseconds per triangle; that of resolve_crossings() if it crosses itself.
 [[nodiscard]] SolidSurface winding_surface(TriangleMesh mesh, const std::string& name, const Context& context = {});
 
-/// @throws InvalidMesh where a mesh has no triangles, or a negative volume. Cost: linear.
+/// Checks that a mesh faces outwards.
+/// @throws InvalidMesh if it has no triangles, or a negative volume.
+/// Cost: linear.
 void check_faces_outwards(const MeshView& mesh, const std::string& name);
 
-/// @throws InvalidMesh where a mesh is not closed, with what to do. Cost: O(n log n).
+/// Checks that a mesh is closed.
+/// @throws InvalidMesh with advice if it is not.
+/// Cost: O(n log n).
 void check_is_closed(const MeshView& mesh, const std::string& name);
 
-/// How many edges of a mesh are traversed more often one way than the other: 0 where it is closed, so that it has whole
-/// winding numbers. Cost: O(n log n).
+/// Returns the number of edges that are traversed more often one way than the other. It is 0 for closed meshes, whose
+/// winding numbers are whole.
+/// Cost: O(n log n).
 [[nodiscard]] std::size_t open_edges(const MeshView& mesh);
 
 }  // namespace blum

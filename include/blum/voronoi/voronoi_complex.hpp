@@ -21,12 +21,12 @@
 
 namespace blum {
 
-/// What a Voronoi complex is made of.
+/// Part of the Voronoi diagram that a complex represents.
 enum class VoronoiPart : std::uint8_t {
-  all,          ///< walls between regions, and the surface
-  walls,        ///< without the surface
-  medial_axis,  ///< of the walls those whose points have two footprints: none between a face and its own reflex edge,
-                ///< or an edge and its end
+  all,          ///< Walls between regions, and the surface.
+  walls,        ///< Walls without the surface.
+  medial_axis,  ///< Walls whose points have two footprints. Walls between a face and its own reflex edge, or an edge
+                ///< and its end, are left out. So are walls between edges that form one line.
 };
 
 template <>
@@ -37,18 +37,18 @@ struct Description<VoronoiPart> {
 };
 
 struct VoronoiOptions {
-  /// What the complex is made of.
+  /// Part of the diagram.
   VoronoiPart part = VoronoiPart::all;
-  /// Cubes that meet the solid are at most the side of the box around it over this, 1 to 1024.
+  /// Cubes that meet the solid are at most the side of the box around it, divided by this, 1 to 1024.
   int resolution = 16;
-  /// Cubes that meet the solid have a diagonal of at most this, > 0, mesh units; what `resolution` asks for holds, too.
+  /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies.
   std::optional<double> tolerance = {};
-  /// How often cubes are split at most, 1 to 24.
+  /// Largest number of times that a cube is split, 1 to 24.
   int depth = 24;
-  /// How many places of the grid are tried at most, 1 to 100: where few cubes fail, others may pass.
+  /// Largest number of positions of the grid that are tried, 1 to 100. If few cubes fail, another position may pass.
   int grids = 4;
-  /// No more cubes than this, those that are split included, 1,000 to 100,000,000: what does not pass then is reported.
-  /// Each takes about 10 kB.
+  /// Largest number of cubes, including those that are split, 1,000 to 100,000,000. Cubes that do not pass then are
+  /// reported. Each takes about 10 kB.
   std::int64_t max_cubes = 1'000'000;
 };
 
@@ -74,16 +74,16 @@ struct Description<VoronoiOptions> {
   };
 };
 
-/// What keeps a cube from passing.
+/// Reason why a cube does not pass.
 enum class VoronoiObstacle : std::uint8_t {
   none,
-  square,        ///< the inside of one of its squares could not be told from its border
-  tunnel,        ///< the region of a site passes through it, or may
-  enclosed,      ///< the region of a site lies wholly inside, or may
-  face_hole,     ///< a hole of a face lies in it, or next to it
-  handle,        ///< a component of the solid in it has a tunnel or a second boundary
-  joins,         ///< which walls on its boundary are one inside is not known
-  contradiction  ///< signs contradict each other
+  square,        ///< The border of one of its squares does not determine the inside of the square.
+  tunnel,        ///< The region of a site passes through it, or may.
+  enclosed,      ///< The region of a site lies wholly inside it, or may.
+  face_hole,     ///< A hole of a face lies in it, or next to it.
+  handle,        ///< A component of the solid in it has a tunnel or a second boundary.
+  joins,         ///< It is unknown which walls on its boundary are connected inside.
+  contradiction  ///< Signs contradict each other.
 };
 
 template <>
@@ -96,10 +96,10 @@ struct Description<VoronoiObstacle> {
       NamedValue{VoronoiObstacle::joins, "joins"},         NamedValue{VoronoiObstacle::contradiction, "contradiction"}};
 };
 
-/// A cube that does not pass, at the largest depth.
+/// Cube that does not pass, at the largest depth.
 struct FailingVoronoiCell {
-  Vec3d low{};   ///< corner, mesh units
-  Vec3d high{};  ///< the corner opposite
+  Vec3d low{};   ///< Corner, mesh units.
+  Vec3d high{};  ///< Opposite corner.
   VoronoiObstacle obstacle = VoronoiObstacle::none;
 };
 
@@ -115,34 +115,34 @@ struct Description<FailingVoronoiCell> {
 };
 
 struct VoronoiReport {
-  /// Whether every cube passes, all signs agree, and the Betti numbers found are those expected: then the homology of
-  /// the complex is proven to be that of the part of the exact diagram that was asked for.
+  /// True if every cube passes, all signs agree, and the Betti numbers are the expected ones. Then the complex is
+  /// proven to have the homology of the requested part of the exact diagram.
   bool certified = false;
-  BettiNumbers expected{};  ///< of the part: from the solid's own, holes of faces and regions
-  BettiNumbers found{};     ///< of the complex
-  /// Where it is certified: each point of the complex has one of the exact part that is no further away than this, and
-  /// each point of that one of the complex; mesh units. The largest diagonal of a cube that either is in.
+  BettiNumbers expected{};  ///< For the part: from the numbers of the solid, of holes in faces, and of regions.
+  BettiNumbers found{};     ///< Betti numbers of the complex.
+  /// Bound on the Hausdorff distance of the complex and the exact part, if certified, mesh units. It is the largest
+  /// diagonal of a cube that either of them meets.
   double hausdorff_bound = 0;
-  std::size_t faces = 0;            ///< sites
-  std::size_t reflex_edges = 0;     ///< sites
-  std::size_t reflex_vertices = 0;  ///< sites
-  /// Of these, vertices whose cones are thinner than 1e-3, radians: their regions, that much narrower than long, count
+  std::size_t faces = 0;            ///< Faces among the sites.
+  std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.
+  std::size_t reflex_vertices = 0;  ///< Reflex vertices among the sites.
+  /// Reflex vertices whose cones are thinner than 1e-3 radians. Their regions, narrower than long by this factor, count
   /// as part of walls.
   std::size_t thin_vertices = 0;
-  std::size_t grids = 0;              ///< places of the grid that were tried
-  std::size_t cubes = 0;              ///< that meet the solid, and are not split
-  std::size_t squares = 0;            ///< and parts of squares
-  std::size_t undecided_squares = 0;  ///< of these, those whose borders do not tell what is inside
-  std::size_t splits = 0;             ///< cubes that were split because they did not pass
-  int depth = 0;                      ///< how often the smallest cube was split
-  bool stopped_at_max_cubes = false;  ///< whether more would have been split, but for VoronoiOptions::max_cubes
-  double governors = 0;               ///< labels that may be closest in a cube, mean
-  std::size_t lines = 0;              ///< parts of grid lines in the solid whose labels were found
-  std::size_t exact_lines = 0;        ///< of these, those where doubles did not tell
-  std::size_t undecided_lines = 0;    ///< of these, those where nothing did
-  std::size_t contradictions = 0;     ///< nodes of which different sites are told
+  std::size_t grids = 0;              ///< Positions of the grid that were tried.
+  std::size_t cubes = 0;              ///< Cubes that meet the solid, and are not split.
+  std::size_t squares = 0;            ///< Squares, and parts of squares.
+  std::size_t undecided_squares = 0;  ///< Squares of these whose borders do not determine the inside.
+  std::size_t splits = 0;             ///< Cubes that were split because they did not pass.
+  int depth = 0;                      ///< Number of splits that led to the smallest cube.
+  bool stopped_at_max_cubes = false;  ///< True if VoronoiOptions::max_cubes prevented splits.
+  double governors = 0;               ///< Mean number of labels that may be closest in a cube.
+  std::size_t lines = 0;              ///< Parts of grid lines in the solid whose labels were found.
+  std::size_t exact_lines = 0;        ///< Lines of these that doubles did not decide.
+  std::size_t undecided_lines = 0;    ///< Lines of these that nothing decided.
+  std::size_t contradictions = 0;     ///< Nodes with different sites on different lines.
   std::vector<FailingVoronoiCell> failing;
-  std::vector<PhaseTime> phases;  ///< seconds
+  std::vector<PhaseTime> phases;  ///< Seconds.
 };
 
 template <>
@@ -183,41 +183,48 @@ struct Description<VoronoiReport> {
 
 /// Walls and surface of a Voronoi diagram.
 struct VoronoiComplex {
-  /// Triangles on walls between regions and on the surface. Columns of vertices: `radius` (float64, mesh units: the
-  /// distance from the closest site; 0 on the surface), `footprint_0`, `footprint_1` (3 x float64: the closest points
-  /// of the surface; of more than two, those that are seen furthest apart; the same one twice where there is one),
-  /// `site_0`, `site_1` (int32: what these lie on, by SiteTable), `separation_angle` (float64: between them, degrees).
-  /// Of triangles: `site_a` and `site_b` (int32, the smaller one first: the regions on both sides; -1 and a site on the
-  /// surface), `separation_angle` (float32, degrees: at which the middle sees both; 0 below 1e-6, and on the surface).
-  /// Corners run counterclockwise as seen from the region of site_b. Sites a and b are numbered as faces, by their
-  /// smallest triangle, then reflex edges, then reflex vertices, as polyhedron_sites() lists them.
+  /// Triangles on walls between regions and on the surface.
+  ///
+  /// Vertices have the column `radius` (float64, mesh units), the distance from the closest site, 0 on the surface.
+  /// `footprint_0` and `footprint_1` (3 x float64) are the closest points of the surface. If more than two exist, those
+  /// with the largest angle are taken; if only one exists, both are the same. `site_0` and `site_1` (int32) are their
+  /// sites in the SiteTable. `separation_angle` (float64, degrees) is the angle between the footprints.
+  ///
+  /// Triangles have `site_a` and `site_b` (int32), the regions on both sides, the smaller one first; -1 and a site on
+  /// the surface. `separation_angle` (float32, degrees) is the angle at which the middle sees both. It is 0 below 1e-6,
+  /// and on the surface. Corners run counterclockwise as seen from the region of site_b.
+  ///
+  /// Numbers of site_a and site_b count faces, by their smallest triangle, then reflex edges, then reflex vertices, as
+  /// in polyhedron_sites().
   Complex complex;
   VoronoiReport report;
 };
 
-/// The Voronoi diagram of the faces, reflex edges and reflex vertices of a polyhedron inside it, as a complex.
+/// Computes the Voronoi diagram of the faces, reflex edges and reflex vertices of a polyhedron inside it, as a complex.
 ///
-/// K is the union of the walls between regions of different sites and the surface. Space is cut by an octree in generic
-/// position: on its edges what is closest is found by the order of roots, by exact signs where doubles do not tell; its
-/// squares are split in two dimensions until their borders tell what is inside; a cube passes where what is on its
-/// boundary proves that all components of K in it are acyclic, and is split where not. Then K has the homology of the
-/// complex of pairs of a cell and a component of K in it, which is what comes out: a vertex for each component in a
-/// cube, in a square and on an edge. (Sud 2006, 5.3 and 5.4; the theorem and its proof: docs/theory/voronoi.md.)
+/// Let K be the union of the surface and the walls between regions of different sites. An octree in generic position
+/// cuts space. On its edges, the order of roots gives the closest sites, or exact signs if doubles do not decide. Its
+/// squares are split in two dimensions until their borders determine their inside. A cube passes if its boundary proves
+/// that all components of K in it are acyclic; otherwise it is split.
 ///
-/// Where the report says that it is not certified, parts are missing from the complex or may be wrong.
+/// Then K has the homology of the complex of pairs of a cell and a component of K in it. This complex is the result,
+/// with a vertex for each component in a cube, in a square and on an edge. (Sud 2006, 5.3 and 5.4; theorem and proof:
+/// docs/theory/voronoi.md.)
 ///
-/// @param solid  a polyhedron whose bodies do not touch (Solid::problem()). Sites are those of its surface().mesh, and
-///               coordinates there of magnitude 1e-45 to 1e45, or 0, and at most 1e8 times its size from the origin.
-///               Triangles are taken as they are: faces bent by rounding are several sites.
-/// @throws InvalidMesh where it is none; InvalidOption; Cancelled; OutOfMemory.
-/// Cost: about 0.1 ms and 10 kB per cube on one core; thousands to tens of thousands of cubes for 1,000 triangles.
+/// If the report says that it is not certified, parts of the complex may be missing or wrong.
+///
+/// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of its surface().mesh.
+///               Coordinates there have magnitude 1e-45 to 1e45, or are 0, and are at most 1e8 times its size from the
+///               origin. Triangles are used as given, so faces bent by rounding are several sites.
+/// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
+/// Cost: about 0.1 ms and 10 kB per cube on one core. 1,000 triangles take thousands to tens of thousands of cubes.
 [[nodiscard]] VoronoiComplex voronoi_complex(const Solid& solid, const VoronoiOptions& options = {},
                                              const Context& context = {});
 
-/// The same of the solid that a mesh bounds, found by Solid::of(). Triangles that face the wrong way are taken the
-/// other way round, which changes no number of a site.
-/// @param mesh  without segments and points. Where it crosses itself the sites would not be its own, so that its solid
-///              is asked for.
+/// Computes the Voronoi diagram of the solid that a mesh bounds, found by Solid::of(). Triangles that face the wrong
+/// way are reversed, which changes no number of a site.
+/// @param mesh  without segments and points. It must not cross itself, because then the sites would not be its own:
+///              pass its Solid instead.
 /// @throws InvalidMesh also for these.
 [[nodiscard]] VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options = {},
                                              const Context& context = {});

@@ -14,12 +14,12 @@
 
 namespace blum {
 
-/// A connected part of the border between two regions.
+/// Connected part of the border between two regions.
 struct VoronoiWall {
-  std::int32_t site_a = 0;           ///< of the region on one side: the smaller one
-  std::int32_t site_b = 0;           ///< of that on the other
-  double area = 0;                   ///< square mesh units
-  std::vector<std::uint32_t> seams;  ///< along its border, rising
+  std::int32_t site_a = 0;           ///< Site of the region on one side: the smaller one.
+  std::int32_t site_b = 0;           ///< Site of the region on the other side.
+  double area = 0;                   ///< Square mesh units.
+  std::vector<std::uint32_t> seams;  ///< Seams along its border, ascending.
 };
 
 template <>
@@ -34,12 +34,12 @@ struct Description<VoronoiWall> {
   };
 };
 
-/// A line in which regions of three or more sites meet.
+/// Line in which regions of three or more sites meet.
 struct VoronoiSeam {
-  std::vector<std::int32_t> sites;       ///< of the regions around it, rising
-  double length = 0;                     ///< mesh units
-  std::vector<std::uint32_t> walls;      ///< that meet in it, rising
-  std::vector<std::uint32_t> junctions;  ///< at which it ends, rising: two, one where it returns, none of a closed line
+  std::vector<std::int32_t> sites;       ///< Sites of the regions around it, ascending.
+  double length = 0;                     ///< Mesh units.
+  std::vector<std::uint32_t> walls;      ///< Walls that meet in it, ascending.
+  std::vector<std::uint32_t> junctions;  ///< Its ends, ascending: two; one if it returns to it; none for a closed line.
 };
 
 template <>
@@ -54,12 +54,13 @@ struct Description<VoronoiSeam> {
   };
 };
 
-/// A point in which seams meet, or one ends.
+/// Point in which seams meet, or one ends.
 struct VoronoiJunction {
-  std::uint32_t vertex = 0;          ///< of the complex
-  Vec3d position;                    ///< of that vertex, mesh units: within VoronoiReport::hausdorff_bound of the point
-  std::vector<std::int32_t> sites;   ///< of the regions around it, rising
-  std::vector<std::uint32_t> seams;  ///< that begin or end there, rising
+  std::uint32_t vertex = 0;          ///< Vertex of the complex.
+  Vec3d position;                    ///< Position of the vertex, mesh units, off by at most
+                                     ///< VoronoiReport::hausdorff_bound.
+  std::vector<std::int32_t> sites;   ///< Sites of the regions around it, ascending.
+  std::vector<std::uint32_t> seams;  ///< Seams that begin or end there, ascending.
 };
 
 template <>
@@ -74,12 +75,12 @@ struct Description<VoronoiJunction> {
   };
 };
 
-/// A Voronoi diagram as parts that meet. Numbers of walls, seams and junctions are places in these lists.
+/// Voronoi diagram as a graph of parts that meet. Numbers of walls, seams and junctions are indices into these lists.
 struct VoronoiGraph {
-  std::vector<VoronoiRegion> regions;      ///< of a complex with its surface, by rising site
-  std::vector<VoronoiWall> walls;          ///< by their first triangle
-  std::vector<VoronoiSeam> seams;          ///< by their first edge
-  std::vector<VoronoiJunction> junctions;  ///< by rising vertex
+  std::vector<VoronoiRegion> regions;      ///< Regions of a complex with its surface, by ascending site.
+  std::vector<VoronoiWall> walls;          ///< By their first triangle.
+  std::vector<VoronoiSeam> seams;          ///< By their first edge.
+  std::vector<VoronoiJunction> junctions;  ///< By ascending vertex.
 };
 
 template <>
@@ -94,12 +95,13 @@ struct Description<VoronoiGraph> {
   };
 };
 
-/// The parts of what voronoi_complex() makes, as its triangles tell: a wall is made of triangles between the same two
-/// sites that share edges, a seam of edges whose triangles name three or more sites, cut at vertices at which not just
-/// two of these meet. Parts narrower than a cube may be missing, and junctions closer to each other than that are one.
+/// Returns the parts of a result of voronoi_complex(). A wall consists of triangles between the same two sites that
+/// share edges. A seam consists of edges whose triangles name three or more sites. It is cut at vertices at which not
+/// exactly two such edges meet. Parts narrower than a cube may be missing, and junctions closer together than a cube
+/// are one.
 ///
 /// @param complex  with the columns `site_a` and `site_b`.
-/// @throws InvalidOption where these are missing; InvalidMesh saying problem_of(complex); Cancelled.
+/// @throws InvalidOption if these are missing; InvalidMesh with the text of problem_of(complex); Cancelled.
 /// Cost: O(n log n) in the triangles, about 1 us and 100 bytes each.
 [[nodiscard]] VoronoiGraph voronoi_graph(const Complex& complex, const Context& context = {});
 

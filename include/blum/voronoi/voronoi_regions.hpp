@@ -1,4 +1,4 @@
-// Blum: the regions of a Voronoi diagram and their neighbours. SPDX-License-Identifier: Apache-2.0
+// Blum: regions of a Voronoi diagram and their neighbours. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace blum {
 
-/// The wall between a region and another one.
+/// Neighbour of a region, and the wall to it.
 struct VoronoiNeighbour {
-  std::int32_t site = 0;  ///< of the other one
-  double area = 0;        ///< of the wall, square mesh units
+  std::int32_t site = 0;  ///< Site of the neighbour.
+  double area = 0;        ///< Area of the wall, square mesh units.
 };
 
 template <>
@@ -28,12 +28,12 @@ struct Description<VoronoiNeighbour> {
   };
 };
 
-/// What is closest to a site.
+/// Points that are closest to one site.
 struct VoronoiRegion {
   std::int32_t site = 0;
-  double volume = 0;                         ///< cubic mesh units; 0 where there is no surface
-  double surface_area = 0;                   ///< of its part of the surface, square mesh units
-  std::vector<VoronoiNeighbour> neighbours;  ///< by rising site
+  double volume = 0;                         ///< Cubic mesh units; 0 if the complex has no surface.
+  double surface_area = 0;                   ///< Area of its part of the surface, square mesh units.
+  std::vector<VoronoiNeighbour> neighbours;  ///< By ascending site.
 };
 
 template <>
@@ -48,12 +48,12 @@ struct Description<VoronoiRegion> {
   };
 };
 
-/// The regions of what voronoi_complex() makes, by rising site: those that triangles bound. Volumes and areas are those
-/// of the triangles: off by at most about the area of a region's walls times VoronoiReport::hausdorff_bound, mostly
-/// much less. Regions thinner than a cube may have a volume of 0, or a little below.
-/// @param complex  with the columns `site_a` and `site_b`; with the surface (VoronoiPart::all), or volumes mean
-/// nothing.
-/// @throws InvalidOption where these are missing; InvalidMesh saying problem_of(complex).
+/// Returns the regions of a result of voronoi_complex() that have triangles, by ascending site. Volumes and areas are
+/// those of the triangles. A volume is off by about the area of the region's walls times VoronoiReport::hausdorff_bound
+/// at most, mostly much less. Regions thinner than a cube may have a volume of 0, or slightly below.
+/// @param complex  with the columns `site_a` and `site_b`. Without the surface (VoronoiPart::all), volumes are
+///                 meaningless.
+/// @throws InvalidOption if these are missing; InvalidMesh with the text of problem_of(complex).
 /// Cost: O(n log n) in the triangles.
 [[nodiscard]] std::vector<VoronoiRegion> voronoi_regions(const Complex& complex);
 

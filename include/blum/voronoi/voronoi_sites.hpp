@@ -1,4 +1,4 @@
-// Blum: the sites of a polyhedron by the numbers that Voronoi diagrams have. SPDX-License-Identifier: Apache-2.0
+// Blum: sites of a polyhedron by their numbers in Voronoi diagrams. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -21,11 +21,11 @@ struct Description<SiteKind> {
                                      NamedValue{SiteKind::face, "face"}};
 };
 
-/// A face, reflex edge or reflex vertex of a polyhedron: what it is of the mesh.
+/// Face, reflex edge or reflex vertex of a polyhedron, by its parts in the mesh.
 struct VoronoiSite {
   SiteKind kind = SiteKind::face;
-  std::vector<std::uint32_t> triangles;  ///< of a face, rising: coplanar ones that share edges
-  std::vector<std::uint32_t> vertices;   ///< of an edge both ends, the smaller one first; of a vertex itself
+  std::vector<std::uint32_t> triangles;  ///< For a face, ascending: coplanar triangles that share edges.
+  std::vector<std::uint32_t> vertices;   ///< Both ends of an edge, the smaller first; or the vertex itself.
 };
 
 template <>
@@ -39,9 +39,11 @@ struct Description<VoronoiSite> {
   };
 };
 
-/// Site k of the list is number k of `site_a` and `site_b` in the complexes of voronoi_complex(), and of
-/// VoronoiRegion::site: faces by their smallest triangle, then reflex edges by their vertices, then reflex vertices.
-/// @throws as polyhedron_sites(). Cost: its own.
+/// Returns the sites of a polyhedron. Site k has the number k in `site_a` and `site_b` of voronoi_complex(), and in
+/// VoronoiRegion::site. Faces come first, by their smallest triangle, then reflex edges by their vertices, then reflex
+/// vertices.
+/// @throws as polyhedron_sites().
+/// Cost: that of polyhedron_sites().
 [[nodiscard]] std::vector<VoronoiSite> voronoi_sites(const MeshView& mesh, const Context& context = {});
 
 }  // namespace blum
