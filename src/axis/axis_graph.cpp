@@ -225,7 +225,7 @@ AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Axi
   check_needed(axis);
   const CompleteAxis all(axis);
   if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
-    throw InvalidOption("there is no graph of what is no medial axis: " + problem);
+    throw InvalidOption("this is not a medial axis, so it has no graph: " + problem);
   }
   AxisGraph graph;
   const AxisParts parts(all.get(), context);

@@ -92,7 +92,7 @@ DecimatedAxis decimate(const Complex& axis, double tolerance, const Context& con
     throw InvalidOption("tolerance is " + exact_text(tolerance) + ", but must be at least 0");
   }
   if (const std::string problem = problem_of_medial(axis); !problem.empty()) {
-    throw InvalidOption("triangles cannot be taken from what is no medial axis: " + problem);
+    throw InvalidOption("this is not a medial axis, so its triangles cannot be decimated: " + problem);
   }
   if (tolerance == 0) return {axis, 0, axis.positions.size()};
   SheetDecimator decimator(input_of(axis, context), tolerance, context);

@@ -337,9 +337,8 @@ class AxisExtender {
     if (!(report.open_length > 0)) return;
     out_.warnings.emplace_back(
         WarningCode::not_extended,
-        "rims " + rounded_text(report.open_length) + " long, of " + rounded_text(report.rim_length) +
-            " in all, are not extended: nothing is near, or triangles would fold back or leave the "
-            "solid");
+        "rims of length " + rounded_text(report.open_length) + ", of " + rounded_text(report.rim_length) +
+            " in total, are not extended: nothing is within reach, or triangles would fold back or leave the solid");
   }
 
   void count() {
@@ -391,8 +390,8 @@ void check(const Complex& axis, const Solid& solid, const ExtendOptions& options
   }
   if (solid.rule() == SolidRule::voxels) {
     throw InvalidOption(
-        "axes of images are not extended: their surface is that of the voxels; make the axis of "
-        "smooth_surface()");
+        "axes of images cannot be extended, because their surface is that of voxels: compute the axis of "
+        "smooth_surface() instead");
   }
   if (!axis.positions.empty() && axis.vertex_columns.find(medial_columns::radius) == nullptr) {
     throw InvalidOption(missing_medial_column("vertices", medial_columns::radius));
@@ -409,7 +408,7 @@ ExtendedAxis extend_axis(const Complex& axis, const Solid& solid, const ExtendOp
   check(axis, solid, options);
   const CompleteAxis all(axis);
   if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
-    throw InvalidOption("what is no medial axis is not extended: " + problem);
+    throw InvalidOption("this is not a medial axis, so it cannot be extended: " + problem);
   }
   return AxisExtender(all.get(), solid, options, context).run();
 }

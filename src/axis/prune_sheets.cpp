@@ -247,7 +247,7 @@ Complex prune_sheets(const Complex& axis, double theta, const Context& context) 
   check_needed(axis);
   const CompleteAxis all(axis);
   if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
-    throw InvalidOption("sheets cannot be dropped from what is no medial axis: " + problem);
+    throw InvalidOption("this is not a medial axis, so its sheets cannot be pruned: " + problem);
   }
   Pruner pruner(all.get(), theta, context);
   pruner.prune();

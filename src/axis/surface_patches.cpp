@@ -122,10 +122,9 @@ void SurfacePatches::add_up() {
 
 std::vector<std::uint32_t> SurfacePatches::at(SiteId site) const {
   if (site.value >= sites_.size()) {
-    throw InvalidOption("the axis names the site " + std::to_string(site.value) + ", but the mesh has " +
-                        std::to_string(sites_.size()) +
-                        ": it is not the mesh that the axis was made of, or was welded "
-                        "otherwise");
+    throw InvalidOption("the axis names site " + std::to_string(site.value) +
+                        ", but the number of sites of the mesh is " + std::to_string(sites_.size()) +
+                        ": the axis belongs to another mesh, or to the same mesh welded differently");
   }
   const Site on = sites_.site(site);
   std::vector<std::uint32_t> out;

@@ -164,8 +164,9 @@ AxisVerifier::AxisVerifier(const MeshView& mesh) {
 
 AxisVerifier::AxisVerifier(VoxelSet voxels, const GridSpec& grid, const MeshView* surface) {
   validate(grid);
-  if (grid.size != voxels.size()) throw InvalidOption("the grid of a certificate is not that of its voxels");
-  if (voxels.count() == 0) throw InvalidOption("there are no voxels, and so no solid to check an axis against");
+  if (grid.size != voxels.size()) throw InvalidOption("the grid and the voxels of a certificate differ in size");
+  if (voxels.count() == 0)
+    throw InvalidOption("the set of voxels is empty, so there is no solid to check an axis against");
   if (surface != nullptr) validate(*surface);
   reading_ = std::make_unique<const VoxelReading>(std::move(voxels), grid, surface);
 }

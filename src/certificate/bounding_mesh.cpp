@@ -114,7 +114,7 @@ void check_same_inside(const MeshView& mesh, const MeshView& resolved, const Con
     const std::optional<int> before = around_given.around(p);
     const std::optional<int> after = around_own.around(p);
     if (before && after && *after != (*before >= 1 ? 1 : 0)) {
-      throw NoPolyhedron("the mesh without its crossings has another inside");
+      throw NoPolyhedron("the mesh has another interior once its crossings are resolved");
     }
   }
 }
@@ -136,7 +136,7 @@ BoundingMesh::BoundingMesh(const MeshView& mesh, const Context& context) : mesh_
     check_polyhedron(resolved_->mesh, context);
     check_same_inside(mesh, resolved_->mesh, context);
   } catch (const NoPolyhedron& error) {
-    throw NoPolyhedron(why + "; without its crossings: " + error.reason());
+    throw NoPolyhedron(why + "; once its crossings are resolved: " + error.reason());
   }
 }
 

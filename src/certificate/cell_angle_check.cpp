@@ -202,12 +202,12 @@ void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<
                          " have a separation angle below those of all their corners");
   }
   if (!by_voxels && check.samples >= few && check.above_share > most_above) {
-    mismatches.push_back("of the triangles, " + percent(check.above_share) +
-                         " have a separation angle above what is seen around them");
+    mismatches.push_back("of the sampled triangles, " + percent(check.above_share) +
+                         " have a separation angle above all angles found around them");
   }
   if (!by_voxels && check.curve_samples >= few && check.curves_above_share > most_curves_above) {
-    mismatches.push_back("of the curves, " + percent(check.curves_above_share) +
-                         " have a separation angle above what is seen around them");
+    mismatches.push_back("of the sampled edges of curves, " + percent(check.curves_above_share) +
+                         " have a separation angle above all angles found around them");
   }
   if (check.borders_above > 0) {
     mismatches.push_back(count_text(check.borders_above) +
@@ -219,8 +219,8 @@ void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<
   }
   if (check.rims >= few && check.low_rims_share > most_low_rims) {
     mismatches.push_back("of the rims and curves, " + percent(check.low_rims_share) +
-                         " are rims of sheets that nothing sees at more than " + rounded_text(theta) +
-                         " degrees, which the axis at that theta does not have");
+                         " are rims of sheets without any angle above " + rounded_text(theta) +
+                         " degrees; the axis at this theta has no such sheets");
   }
 }
 

@@ -139,7 +139,7 @@ void compare_topology(Certificate& certificate, const Name& name) {
   }
   certificate.topology_holds = wrong == 0;
   if (wrong > most_named) {
-    certificate.mismatches.push_back("the axis in " + std::to_string(wrong - most_named) + " bodies more is wrong");
+    certificate.mismatches.push_back("the axis is wrong in " + std::to_string(wrong - most_named) + " more bodies");
   }
 }
 
@@ -154,7 +154,7 @@ Certificate verifier::certify_against(const Complex& complex, const KnownSolid& 
     certificate.axis = homology(complex.view(), context);
     certificate.bodies = {{certificate.solid, certificate.axis}};
     compare_topology(certificate, [](std::size_t) { return std::string("the solid"); });
-    certificate.homology.shown = "nothing: places were not looked at";
+    certificate.homology.shown = "nothing: positions were not checked";
     return certificate;
   }
   const MedialView axis(complex);

@@ -138,7 +138,7 @@ EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const 
   if (check.outside > 0) mismatches.push_back(explained(check, all.allowed / factor));
   if (check.across > 0) {
     mismatches.push_back("of the " + count_text(check.edges) + " edges of the axis " + count_text(check.across) +
-                         " cross gaps of the solid that are narrower than edges are checked, the first one at " +
+                         " cross gaps of the solid that are narrower than the steps of the check, the first one at " +
                          verifier::place_text(check.across_at));
   }
   return check;

@@ -151,14 +151,14 @@ void explain(const LabelCheck& check, std::vector<std::string>& mismatches) {
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) mismatches.push_back(count_text(count) + " " + what);
   };
-  add(check.doubled, "cells are there twice");
-  add(check.inner_listed, "edges are listed that lie inside of sheets");
+  add(check.doubled, "cells are listed twice");
+  add(check.inner_listed, "listed edges lie inside sheets");
   add(check.unlisted, "rims and seams are not listed");
   add(check.edge_roles, "edges have a role that their triangles do not give them");
   add(check.vertex_roles, "vertices have a role that their edges and sheets do not give them");
-  add(check.gaps, "numbers of sheets below the largest are of no sheet");
-  add(check.torn, "sheets do not hang together over edges of two triangles");
-  add(check.parted, "edges away from seams part two sheets");
+  add(check.gaps, "sheet numbers below the largest are not used");
+  add(check.torn, "sheets are not connected through edges of two triangles");
+  add(check.parted, "edges that are not seams separate two sheets");
 }
 
 }  // namespace

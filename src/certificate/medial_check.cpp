@@ -428,43 +428,48 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
   const double most_missed_here = by_voxels ? most_missed_of_voxels : most_missed;
   const std::string allowed = " (allowed: " + rounded_text(check.allowance) + ")";
   if (!by_voxels && check.medial_share < least_share) {
-    mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.medial_share) +
-                         " are in the middle between two, the worst " + rounded_text(check.off_by) + " off it at " +
-                         place_text(check.off_at) + allowed);
+    mismatches.push_back("of the sheets and curves that should lie between two walls, only " +
+                         percent(check.medial_share) + " lie midway, the worst " + rounded_text(check.off_by) +
+                         " off at " + place_text(check.off_at) + allowed);
   }
   if (!by_voxels && check.near_share < least_near_share) {
-    mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.near_share) +
-                         " are as near to the middle between two as a quarter of the way to these");
+    mismatches.push_back("of the sheets and curves that should lie between two walls, only " +
+                         percent(check.near_share) +
+                         " lie within a quarter of the distance to the walls from the middle");
   }
   if (!by_voxels && check.close_share < least_close_share) {
-    mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.close_share) +
-                         " are within " + rounded_text(check.close_allowance) + " of the middle between two");
+    mismatches.push_back("of the sheets and curves that should lie between two walls, only " +
+                         percent(check.close_share) + " are within " + rounded_text(check.close_allowance) +
+                         " of the middle");
   }
   const double vertices_off = most_vertices_off * static_cast<double>(check.claimed_vertices);
   if (static_cast<double>(check.one_wall_off) > std::max(vertices_off, few_vertices)) {
-    mismatches.push_back("of the " + count_text(check.claimed_vertices) + " vertices that two walls should see, " +
-                         count_text(check.one_wall_off) + " have one and are not near the middle" + allowed);
+    mismatches.push_back("of the " + count_text(check.claimed_vertices) +
+                         " vertices that should lie between two walls, " + count_text(check.one_wall_off) +
+                         " see only one and are not near the middle" + allowed);
   }
   if (!by_voxels && check.one_wall_far > 0) {
     mismatches.push_back(
-        count_text(check.one_wall_far) + " vertices that two walls should see have one and are more than " +
+        count_text(check.one_wall_far) + " vertices that should lie between two walls see only one and are more than " +
         rounded_text(far_off * check.missing_allowance) + " off the middle, the first at " + place_text(check.far_at));
   }
   if (!by_voxels && check.sheets_off > 0) {
-    mismatches.push_back("of the " + count_text(check.sheets_judged) + " sheets that two walls should see, " +
-                         count_text(check.sheets_off) + " are for the most part not in the middle, the first at " +
+    mismatches.push_back("of the " + count_text(check.sheets_judged) + " sheets that should lie between two walls, " +
+                         count_text(check.sheets_off) + " are mostly off the middle, the first at " +
                          place_text(check.sheet_off_at) + allowed);
   }
   const auto balls = static_cast<double>(check.balls);
   if (check.balls >= few_balls && check.missed_share * balls > std::max(most_missed_here * balls, few_missed + 0.5)) {
     mismatches.push_back("the axis misses " + percent(check.missed_share) +
-                         " of what random points of the solid show at more than " + rounded_text(check.sought_angle) +
-                         " degrees, by up to " + rounded_text(check.missed_by) + " at " + place_text(check.missed_at) +
-                         " (allowed: " + rounded_text(check.missing_allowance) + ")");
+                         " of the medial balls that random points of the solid show with angles above " +
+                         rounded_text(check.sought_angle) + " degrees, by up to " + rounded_text(check.missed_by) +
+                         " at " + place_text(check.missed_at) + " (allowed: " + rounded_text(check.missing_allowance) +
+                         ")");
   }
   if (check.bodies_missed > 0) {
     mismatches.push_back("in " + count_text(check.bodies_missed) + " of the bodies the axis misses up to " +
-                         percent(check.missed_share_of_body) + " of what points beside the surface show at more than " +
+                         percent(check.missed_share_of_body) +
+                         " of the medial balls that points near the surface show with angles above " +
                          rounded_text(check.sought_angle) + " degrees, by up to " +
                          rounded_text(check.missed_in_body_by) + " at " + place_text(check.missed_in_body_at));
   }
@@ -569,8 +574,8 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
     if (one_wall > most_deep_of_one_wall * static_cast<double>(check.deep_vertices) &&
         claimed.sheets().total() > enough_sheet * allowed.voxel * allowed.voxel) {
       mismatches.push_back("of the " + count_text(check.deep_vertices) +
-                           " vertices deep inside that two walls should " + "see, " + count_text(check.deep_one_wall) +
-                           " have the same footprint twice");
+                           " vertices deep inside that should lie between two walls, " +
+                           count_text(check.deep_one_wall) + " have the same footprint twice");
     }
   }
   if (options.theta) {

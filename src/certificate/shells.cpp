@@ -269,8 +269,8 @@ class Prober {
 bool encloses(const ClosedShell& outer, const ClosedShell& inner) {
   if (std::abs(outer.volume - inner.volume) <= 1e-12 * inner.volume) {
     throw NoPolyhedron(
-        "two shells of the mesh enclose the same volume at the same place: which is the void, and which "
-        "fills it, cannot be told");
+        "two shells of the mesh enclose the same volume at the same place, so the void and its filling cannot be "
+        "distinguished");
   }
   return outer.volume > inner.volume;
 }
@@ -282,7 +282,7 @@ ClosedShells cut_into_shells(const MeshView& mesh, const Context& context) {
   Sets triangles(mesh.triangles.size());
   Sets corners(3 * mesh.triangles.size());
   const std::vector<Side> sides = sorted_sides(mesh, context);
-  if (sides.empty()) throw NoPolyhedron("the mesh has no triangle that names three vertices: it bounds nothing");
+  if (sides.empty()) throw NoPolyhedron("the mesh has no triangle with three different vertices, so it bounds nothing");
   for_each_edge(sides, [&](const Side& a, const Side& b) {
     triangles.join(a.corner / 3, b.corner / 3);
     // One side begins where the other one ends, unless the triangles face different ways.

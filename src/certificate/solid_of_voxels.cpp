@@ -227,7 +227,7 @@ void check_covers(const GridSpec& grid, const MeshView& surface) {
         const double at = q[a] / grid.spacing[a];
         if (at >= -0.5 && at <= static_cast<double>(grid.size[a]) - 0.5) continue;
         throw InvalidGrid("the grid of the voxels does not cover the mesh: vertex " + std::to_string(v) +
-                          " lies beyond it");
+                          " lies outside it");
       }
     }
   }
@@ -238,7 +238,7 @@ void check_covers(const GridSpec& grid, const MeshView& surface) {
 KnownSolid solid_of_voxels(const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
                            const Context& context) {
   if (surface != nullptr) {
-    if (surface->triangles.empty()) throw InvalidMesh("the mesh has no triangles: distances to it are not known");
+    if (surface->triangles.empty()) throw InvalidMesh("the mesh has no triangles, so distances to it are undefined");
     check_covers(grid, *surface);
   }
   VoxelBodies bodies(voxels, context);

@@ -90,22 +90,22 @@ void explain(const Findings& found, double factor, std::vector<std::string>& mis
   const std::string of_all = "of the " + count_text(check.vertices) + " vertices of the axis ";
   if (check.not_finite > 0) {
     mismatches.push_back(of_all + count_text(check.not_finite) +
-                         " have a coordinate, footprint, angle or radius that is no finite number");
+                         " have a coordinate, footprint, angle or radius that is not finite");
   }
   add(found.radius, "a radius differs from the exact distance to the surface by ");
   add(found.off_surface, "a footprint lies off the surface by ");
   add(found.footprint, "the distance to a footprint differs from the radius by ");
   if (std::isinf(found.site.error)) {
-    mismatches.emplace_back("a footprint is said to lie on a site that the solid does not have");
+    mismatches.emplace_back("a footprint names a site that the solid does not have");
   } else {
-    add(found.site, "a footprint lies off the site that is named for it by ");
+    add(found.site, "a footprint lies off the site that it names by ");
   }
   if (found.angle.is_too_much()) {
     mismatches.push_back("a separation angle differs from the angle between the footprints by " +
                          rounded_text(found.angle.error) + " degrees" + allowed(found.angle.allowed, " degrees"));
   }
   if (check.outside > 0) {
-    mismatches.push_back(of_all + count_text(check.outside) + " lie outside of the solid, by up to " +
+    mismatches.push_back(of_all + count_text(check.outside) + " lie outside the solid, by up to " +
                          rounded_text(found.outside.error / factor) + allowed(found.outside.allowed / factor, ""));
   }
 }

@@ -35,7 +35,7 @@ AxisSolid solid_of_axis(const SolidSelection& given, bool is_image, const Medial
   if (recorded_text.empty() || is_same(given, recorded, is_image)) return {given, {}};
   return {given,
           {{WarningCode::other_solid,
-            axis + " was made with " + recorded_text + "; " + given_text + " is used, as it was given"}}};
+            axis + " was computed with " + recorded_text + "; " + given_text + " is used, because it was given"}}};
 }
 
 }  // namespace blum

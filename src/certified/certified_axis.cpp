@@ -22,8 +22,8 @@ struct AxisForm {
   std::string_view without;         ///< start of a sentence that explains why the next form is used
 };
 
-constexpr std::string_view without_borders = "borders of sheets stay at the cells of the grid: elsewhere, ";
-constexpr std::string_view without_few_vertices = "the axis keeps all vertices: with fewer, ";
+constexpr std::string_view without_borders = "borders of sheets stay at the cells of the grid, because otherwise ";
+constexpr std::string_view without_few_vertices = "the axis keeps all vertices, because with fewer ";
 
 double checked_tolerance(double tolerance) {
   if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
@@ -137,12 +137,12 @@ void check(const CertifiedAxisOptions& options) {
   if (options.thetas.empty()) throw InvalidOption("thetas is empty: an axis needs an angle");
   for (auto theta = options.thetas.begin(); theta != options.thetas.end(); ++theta) {
     if (std::find(options.thetas.begin(), theta, *theta) != theta) {
-      throw InvalidOption("thetas name " + rounded_text(*theta) + " twice: each has one axis");
+      throw InvalidOption("thetas contain " + rounded_text(*theta) + " twice: each angle has one axis");
     }
   }
   if (options.tolerance) static_cast<void>(checked_tolerance(*options.tolerance));
   if (options.prunes_sheets && !std::is_sorted(options.thetas.begin(), options.thetas.end())) {
-    throw InvalidOption("thetas must rise where sheets are pruned: each angle goes on from the one before");
+    throw InvalidOption("thetas must increase if sheets are pruned, because each axis is pruned from the one before");
   }
 }
 
@@ -207,8 +207,8 @@ CertifiedAxes certified_axes(const AxisGrids& grids, CertifyAxis certify, const 
   for (const double step : steps_from(grids.shift)) {
     if (!may_move || best.holds()) break;
     CertifiedAxes next = axes_on(grids, grids.shift + step, certify, options, context);
-    next.warnings.push_back(
-        {WarningCode::grid_moved, "the grid was moved by " + rounded_text(step) + " voxels: as it was, " + reason});
+    next.warnings.push_back({WarningCode::grid_moved,
+                             "the grid was moved by " + rounded_text(step) + " voxels; before the move: " + reason});
     const bool is_better = next.report.topology_matches && next.mismatches.size() < best.mismatches.size();
     if (is_better) std::swap(best, next);
     // Grids that were tried in vain took time, too.
@@ -282,10 +282,11 @@ std::vector<std::string> model_problems(const MedialAxisReport& report, OptionSt
     const bool has_needle = std::any_of(failures.begin(), failures.end(), [](const ModelFailure& failure) {
       return failure.obstacle == ModelObstacle::slanted_needle;
     });
-    const std::string advice = has_needle ? "fill the narrow holes, or turn the part so that they run along an axis"
-                                          : "raise " + finer + ", or mend the mesh there";
+    const std::string advice =
+        has_needle ? "fill the narrow holes, or rotate the part so that they run along a coordinate axis"
+                   : "raise " + finer + ", or repair the mesh there";
     out.push_back("the model of " + (report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : "the solid") +
-                  " at voxels of side " + rounded_text(body.spacing) + " does not pass in " +
+                  " at voxels of side " + rounded_text(body.spacing) + " fails in " +
                   plural(failures.size(), "place", "places") + ", the first one at " + place_text(at) + " (" +
                   std::string(to_string(failures.front().obstacle)) + "): " + advice);
   }

@@ -73,8 +73,8 @@ void check_fine_enough(const GridSpec& grid, const MeshView& mesh) {
   const double longest = std::max({size.x, size.y, size.z});
   const double step = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   if (step * least <= longest * (1 + rounding)) return;
-  throw InvalidGrid("the grid that the axis names has steps of " + sides_text(grid) +
-                    ", fewer than 8 along the mesh, " + "whose longest side is " + rounded_text(longest));
+  throw InvalidGrid("the grid that the axis names has a spacing of " + sides_text(grid) +
+                    ": fewer than 8 steps along the mesh, " + "whose longest side is " + rounded_text(longest));
 }
 
 bool selects_same(const LabelSelection& a, const LabelSelection& b) {
@@ -103,16 +103,16 @@ std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule foun
   const MedialMetadata& metadata = claims.metadata;
   const std::string rule(to_string(found));
   if (!metadata.solid_rule.empty() && metadata.solid_rule != rule) {
-    out.push_back("the file says that its solid is '" + metadata.solid_rule + "', and it is '" + rule + "'");
+    out.push_back("the file says that its solid is '" + metadata.solid_rule + "', but it is '" + rule + "'");
   }
   if (image_grid != nullptr && metadata.grid && !has_same_sides(*metadata.grid, *image_grid)) {
     out.push_back("the file says that its voxels have the sides " + sides_text(*metadata.grid) +
-                  ", and the image's have " + sides_text(*image_grid));
+                  ", but those of the image have " + sides_text(*image_grid));
   }
   if (found == SolidRule::winding && metadata.grid && metadata.spacing &&
       !has_sides(*metadata.grid, *metadata.spacing)) {
     out.push_back("the file says that its spacing is " + rounded_text(*metadata.spacing) +
-                  ", and its grid has steps of " + sides_text(*metadata.grid));
+                  ", but its grid has a spacing of " + sides_text(*metadata.grid));
   }
   if (metadata.version.empty()) return out;  // of another program, which need not write all of it
   const SiteIds sites = found == SolidRule::voxels ? SiteIds::voxels : SiteIds::features;
@@ -153,13 +153,13 @@ std::shared_ptr<const MeshAxisVerifier::Voxels> MeshAxisVerifier::voxels_on(cons
   const double bytes = 16.0 * static_cast<double>(grid.node_count());
   if (bytes > available_memory) {
     throw OutOfMemory("the grid that the axis names, of " + count_text(grid.node_count()) + " nodes, needs " +
-                      rounded_text(bytes / 1e9) + " GB of memory, which are not free; it is not one that Blum would " +
-                      "have made here");
+                      rounded_text(bytes / 1e9) + " GB of memory, more than is free; Blum would not " +
+                      "choose such a grid on this machine");
   }
   VoxelSet voxels = voxels_inside(mesh_, grid, context);
   if (voxels.count() == 0) {
     throw InvalidMesh("the mesh bounds no polyhedron (" + reason +
-                      "), and no voxel of the grid that the axis names lies inside of it, so there is no solid");
+                      "), and no voxel of the grid that the axis names lies inside it, so there is no solid");
   }
   voxels_ = std::make_shared<const Voxels>(Voxels{grid, AxisVerifier(std::move(voxels), grid, &mesh_)});
   return voxels_;

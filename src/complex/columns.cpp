@@ -30,7 +30,7 @@ std::string_view Column::type_name() const {
 
 Column& Columns::add(Column column) {
   if (column.name.empty()) throw InvalidOption("a column needs a name");
-  if (find(column.name) != nullptr) throw InvalidOption("there is a column " + quoted(column.name) + " already");
+  if (find(column.name) != nullptr) throw InvalidOption("a column " + quoted(column.name) + " exists already");
   if (column.components == 0) throw InvalidOption("column " + quoted(column.name) + " has no components");
   const std::size_t count = number_count(column);
   if (count % column.components != 0 || count / column.components != rows_) {
@@ -59,8 +59,8 @@ std::size_t Columns::place_of(std::string_view name, std::size_t components, std
   }
   if (column->values.index() != type || column->components != components) {
     throw InvalidOption("column " + quoted(name) + " holds " + std::to_string(column->components) + " " +
-                        std::string(column->type_name()) + " per row, where " + std::to_string(components) + " " +
-                        std::string(type_names[type]) + " are asked for");
+                        std::string(column->type_name()) + " per row, but " + std::to_string(components) + " " +
+                        std::string(type_names[type]) + " are requested");
   }
   return static_cast<std::size_t>(column - columns_.data());
 }
@@ -75,7 +75,8 @@ void Columns::resize(std::size_t rows) {
 Columns Columns::pick(std::span<const std::uint32_t> rows) const {
   for (const std::uint32_t row : rows) {
     if (row >= rows_) {
-      throw InvalidOption("row " + std::to_string(row) + " is asked for, but there are " + std::to_string(rows_));
+      throw InvalidOption("row " + std::to_string(row) + " is out of range: the number of rows is " +
+                          std::to_string(rows_));
     }
   }
   Columns out(rows.size());
@@ -102,7 +103,8 @@ void Columns::append(const Columns& other) {
                  [](const Column& a, const Column& b) {
                    return a.name == b.name && a.components == b.components && a.values.index() == b.values.index();
                  });
-  if (!is_alike) throw InvalidOption("rows can only be added from columns of the same names and types, in one order");
+  if (!is_alike)
+    throw InvalidOption("rows can only be added from columns of the same names and types, in the same order");
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     std::visit(
         [&]<class T>(std::vector<T>& values) {

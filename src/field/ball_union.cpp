@@ -324,7 +324,7 @@ Field ball_union_field(std::span<const Ball> balls, const GridSpec& grid, const 
   field.grid = grid;
   field.distance = Buffer<float>(grid.node_count());
   field.sign_rule = SignRule::balls;
-  field.sign_reason = "inside where a ball is";
+  field.sign_reason = "a point is inside if it lies in a ball";
   const std::vector<Task> tasks = cut_grid(balls, grid, context);
   parallel_for(context, tasks.size(), 1, "balls", [&](const WorkRange& range) {
     BlockFiller(grid, context, field.distance.span()).fill(tasks[range.begin]);

@@ -134,8 +134,8 @@ struct ClosestPointQuery::Data {
 
   void refit(std::span<const Vec3d> vertices, const Context& context) {
     if (vertices.size() != mesh.vertices.size()) {
-      throw InvalidMesh("a query of a mesh with " + std::to_string(mesh.vertices.size()) + " vertices is refitted to " +
-                        std::to_string(vertices.size()) + "; make a new one");
+      throw InvalidMesh("a query for a mesh with " + std::to_string(mesh.vertices.size()) +
+                        " vertices cannot be refitted to " + std::to_string(vertices.size()) + "; create a new one");
     }
     MeshView moved = mesh;
     moved.vertices = vertices;

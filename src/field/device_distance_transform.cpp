@@ -26,7 +26,7 @@ DeviceDistanceTransform::DeviceDistanceTransform(const GridSpec& grid, const Dis
   validate(grid);
   if (grid.node_count() > max_id_count) throw InvalidImage("the image has more voxels than there are ids for");
   if (options.selection.rule == LabelSelection::Rule::threshold && std::isnan(options.selection.threshold)) {
-    throw InvalidOption("the threshold is not a number; give a number");
+    throw InvalidOption("the threshold is NaN, but must be a number");
   }
   state_ = std::make_unique<State>(grid, options, context.device);
 }
@@ -51,7 +51,7 @@ void DeviceDistanceTransform::compute(const DeviceArrayView& values, const Devic
                        std::to_string(state_->grid.node_count()) + " voxels");
   }
   if (values.data == nullptr || field.distance == nullptr || field.site == nullptr) {
-    throw InvalidOption("values, distances and sites on a device need memory");
+    throw InvalidOption("values, distances and sites on a device must not be null");
   }
   detail::ImageRequest request = state_->request;
   request.distance = field.distance;

@@ -21,7 +21,7 @@ void check_vertices(const DeviceArrayView& vertices) {
 
 void check_indices(const DeviceArrayView& indices, const std::string& name) {
   if (indices.rows == 0) return;
-  if (indices.data == nullptr) throw InvalidOption(name + " on a device have rows, but no memory");
+  if (indices.data == nullptr) throw InvalidOption(name + " on a device have rows, but their data are null");
   if (indices.type != ElementType::int32 && indices.type != ElementType::uint32 && indices.type != ElementType::int64) {
     throw InvalidOption(name + " on a device must be int32, uint32 or int64");
   }
@@ -63,7 +63,8 @@ struct DeviceFieldSolver::State {
 DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context) {
   validate(grid);
   check_options(options);
-  if (options.order != 1) throw InvalidOption("fields in a device's memory are of order 1; order 2 is for the CPU");
+  if (options.order != 1)
+    throw InvalidOption("fields in device memory have order 1; order 2 is computed on the CPU only");
   // No mesh on a device supports normals, so they are rejected before a mesh is known.
   if (options.sign == SignMode::normals) (void)sign::plan_unseen_signs(options.sign, 0);
   state_ = std::make_unique<State>(grid, options, context.device);
@@ -101,7 +102,7 @@ void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFie
   check_vertices(vertices);
   const bool wants_sites = state_->options.sites;
   if (vertices.data == nullptr || field.distance == nullptr || (wants_sites && field.site == nullptr)) {
-    throw InvalidOption("vertices, distances and sites on a device need memory");
+    throw InvalidOption("vertices, distances and sites on a device must not be null");
   }
   FieldRequest request = make_field_request(state_->grid, state_->options, *state_->plan);
   request.distance = field.distance;

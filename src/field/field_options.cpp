@@ -12,7 +12,7 @@ void check_options(const FieldOptions& options) {
     throw InvalidOption("the band's half-width must be positive and finite, in mesh units");
   }
   if (options.site_ids == SiteIds::voxels) {
-    throw InvalidOption("voxel ids are for fields of images; a mesh has features or triangles");
+    throw InvalidOption("voxel ids are for fields of images; for a mesh, choose features or triangles");
   }
   if (options.order != 1 && options.order != 2) {
     throw InvalidOption("the order of a field is 1 or 2, not " + std::to_string(options.order));
@@ -26,7 +26,7 @@ void check_objects(const FieldOptions& options) {
 
 void check_site_ids(const FieldOptions& options, bool has_free_parts) {
   if (options.site_ids == SiteIds::triangles && has_free_parts) {
-    throw InvalidOption("triangle ids were asked for, but the mesh also has segments or points: ask for features");
+    throw InvalidOption("triangle ids cannot name the segments or points of this mesh: choose features");
   }
 }
 

@@ -25,8 +25,8 @@ std::vector<Warning> facing_warnings(SignRule rule, const MeshView& mesh, const 
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
   if (rule != SignRule::normals && SelfIntersectionSearch().finds_any(mesh, quiet)) return {};
   return {{WarningCode::facing,
-           "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
-           "says more of its shells"}};
+           "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; its "
+           "topology lists the shells"}};
 }
 
 }  // namespace
@@ -37,15 +37,15 @@ std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, co
   const auto is_inside = [](float distance) { return distance < 0; };
   const bool has_inside = std::any_of(field.distance.begin(), field.distance.end(), is_inside);
   if (!has_inside && facts.inconsistent_edges > 0) {
-    return {{WarningCode::nothing_inside,
-             "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
-                 " between triangles that face different ways, so that their winding numbers cancel; orient the mesh "
-                 "first"}};
+    return {
+        {WarningCode::nothing_inside,
+         "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
+             " between triangles that face different ways, so their winding numbers cancel; orient the mesh first"}};
   }
   std::vector<Warning> facing = facing_warnings(field.sign_rule, mesh, facts, context);
   if (has_inside || !facing.empty()) return facing;
   return {{WarningCode::nothing_inside,
-           "no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"}};
+           "no node is inside: the shape encloses nothing, lies outside the grid, or is too thin for its spacing"}};
 }
 
 std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, const Context& context) {

@@ -27,8 +27,9 @@ std::string describe(const LabelSelection& selection) {
 void check_selected(std::size_t selected, const VoxelImageView& image, const ImageRequest& request) {
   if (selected == 0) throw InvalidImage(nothing_selected_text(image, request.selection));
   if (request.is_signed && selected == request.voxel_count()) {
-    throw InvalidImage("every voxel of the image " + describe(request.selection) +
-                       ", so a signed field has nothing to measure to; ask for an unsigned one or another selection");
+    throw InvalidImage(
+        "every voxel of the image " + describe(request.selection) +
+        ", so a signed field has no boundary to measure to; request an unsigned one or another selection");
   }
 }
 

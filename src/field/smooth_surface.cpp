@@ -563,8 +563,8 @@ class Embedding {
       std::erase_if(back, [this](std::uint32_t v) { return steps_[v] == 0; });
       if (back.empty()) {
         throw InvalidGrid(
-            "the spacing is so small beside the origin that rounded coordinates make the surface cross "
-            "itself: move the image closer to the origin");
+            "the spacing is so small relative to the origin that rounded coordinates make the surface cross itself: "
+            "move the image closer to the origin");
       }
       for (const std::uint32_t v : back) {
         --steps_[v];

@@ -13,8 +13,8 @@ Mat3 closest_rotation(const Mat3& matrix) {
   const bool turns = dot(cross(c[0], c[1]), c[2]) > 0;
   if (!turns || !(place.rotation_error() <= farthest)) {
     throw InvalidOption(
-        "a matrix is no rotation, not even roughly: the columns of one have length 1 and are at right angles, here to "
-        "0.1, and it mirrors nothing; scale or mirror vertices instead");
+        "the matrix is not a rotation to within 0.1: its columns must be orthonormal and right-handed; scale or mirror "
+        "vertices instead");
   }
   for (int round = 0; round < most_rounds && place.rotation_error() > close_enough; ++round) {
     // Mean of the matrix and its inverse transpose: Newton's method for the polar decomposition.

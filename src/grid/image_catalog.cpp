@@ -38,8 +38,8 @@ int whole(const ParameterValues& p, const char* name) {
 ImageInfo ball() {
   return {"ball_image", "a ball, or a hollow ball, in the middle of a cubic image",
           with_spacing({count_parameter("size", "voxels along each side", 64, 8, 1024),
-                        {"radius", "of the ball, as a fraction of half the shortest side", 0.7, 0.3, 0.9, false},
-                        {"inner_radius", "of a void, as a fraction of the radius; 0: none", 0, 0, 0.7, false}}),
+                        {"radius", "radius of the ball, as a fraction of half the shortest side", 0.7, 0.3, 0.9, false},
+                        {"inner_radius", "radius of a void, as a fraction of the radius; 0: none", 0, 0, 0.7, false}}),
           [](const ParameterValues& p) {
             return make_ball_image({whole(p, "size"), spacing(p), p.at("radius"), p.at("inner_radius")});
           },
@@ -50,7 +50,7 @@ ImageInfo tubes() {
   return {"tube_image", "a network of tubes along the lines of a cubic lattice",
           with_spacing({count_parameter("nodes", "nodes along each axis", 3, 1, 50),
                         count_parameter("pitch", "voxels from node to node", 20, 6, 500),
-                        {"radius", "of the tubes, in voxels, at most pitch / 2 - 2", 4, 1, 248, false},
+                        {"radius", "radius of the tubes, in voxels, at most pitch / 2 - 2", 4, 1, 248, false},
                         count_parameter("labelled", "1: tubes along x, y, z have labels 1, 2, 3; 0: all 1", 0, 0, 1)}),
           [](const ParameterValues& p) {
             return make_tube_image(
@@ -66,7 +66,7 @@ ImageInfo balls() {
   return {"balls_image", "balls on a lattice, each with its own label",
           with_spacing({count_parameter("count", "number of balls", 8, 1, 65535),
                         count_parameter("pitch", "voxels between centres", 16, 6, 500),
-                        {"radius", "in voxels, at most pitch / 2 - 1", 5.5, 1, 249, false}}),
+                        {"radius", "radius of each ball, in voxels, at most pitch / 2 - 1", 5.5, 1, 249, false}}),
           [](const ParameterValues& p) {
             return make_balls_image({whole(p, "count"), whole(p, "pitch"), p.at("radius"), spacing(p)});
           },

@@ -169,9 +169,8 @@ inline constexpr auto table = [] {
       Row{image, "NPY", ".npy", ".npy", "scalars of any type, [z, y, x]; no spacing", "NumPy", &image_npy},
       Row{image, "Vol", ".vol", "", "bytes; no spacing", "DGtal", &image_vol},
 
-      Row{field, "NRRD", ".nrrd", ".nrrd",
-          "distances; sites (and what is of order 2) in files beside it, NAME.site.nrrd", "3D Slicer, ITK",
-          &field_nrrd},
+      Row{field, "NRRD", ".nrrd", ".nrrd", "distances; sites and values of order 2 in files beside it, NAME.site.nrrd",
+          "3D Slicer, ITK", &field_nrrd},
       Row{field, "NPZ", ".npz", ".npz", "distances, sites, vertices of sites", "NumPy", &field_npz},
       Row{field, "VTI", ".vti", ".vti", "distances, sites", "ParaView, VTK", &field_vti},
 

@@ -221,7 +221,7 @@ FileContent content_of(const fs::path& path) {
         std::pair{FileContent::complex, "medial axes and other complexes "}}) {
     known += (known.empty() ? "; " : ", ") + std::string(what) + extension_list(content, FileAccess::read);
   }
-  throw FileError("'" + path.string() + "' is of no known kind" + known);
+  throw FileError("'" + path.string() + "' has no known format" + known);
 }
 
 bool holds_complex(const fs::path& path) {

@@ -285,7 +285,7 @@ void check_place(const Box3& box) {
   const double size = longest_side(box);
   if (!(size > 0 && size < least_size * coordinate)) return;
   throw InvalidMesh("the mesh is " + exact_text(size) + " long, with coordinates of up to " + exact_text(coordinate) +
-                    ", which leave it too few digits: move it towards the origin");
+                    ", which leaves too few digits: move it towards the origin");
 }
 
 /// Returns true if a needle keeps the model from passing with smaller voxels, too.
@@ -297,8 +297,8 @@ bool stays_stuck(const BodyReport& report, double smaller) {
 
 InvalidMesh without_interior(const Solid& solid, double spacing) {
   if (solid.rule() == SolidRule::polyhedron) return InvalidMesh("the mesh has no interior");
-  return InvalidMesh("the mesh has no interior: no winding number above 1/2 shows at voxels of " + exact_text(spacing) +
-                     (solid.faces_inwards() ? "; its triangles face inwards: flip them" : ""));
+  return InvalidMesh("the mesh has no interior: no winding number above 1/2 was found with voxels of " +
+                     exact_text(spacing) + (solid.faces_inwards() ? "; its triangles face inwards: flip them" : ""));
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ Random random_of(std::uint64_t seed, std::size_t number) {
 
 void check_count(std::size_t count) {
   if (count <= most_points) return;
-  throw OutOfMemory("more than 2^31 points are asked for: ask for fewer, with several seeds");
+  throw OutOfMemory("more than 2^31 points are requested: request fewer, with several seeds");
 }
 
 /// Triangles, weighted by area.
@@ -253,7 +253,7 @@ void check(const NearSampleOptions& options) {
     throw InvalidOption("sigma is " + exact_text(*options.sigma) + ", but must be above 0");
   }
   if (!(options.in_box >= 0 && options.in_box <= 1)) {
-    throw InvalidOption("in_box is " + exact_text(options.in_box) + ", but must be 0 to 1: a part of all points");
+    throw InvalidOption("in_box is " + exact_text(options.in_box) + ", but must be 0 to 1: a fraction of all points");
   }
 }
 

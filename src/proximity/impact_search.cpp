@@ -23,8 +23,8 @@ namespace {
 void check(const MeshView& mesh, std::span<const Vec3d> end) {
   validate(mesh);
   if (end.size() != mesh.vertices.size()) {
-    throw InvalidMesh("the mesh has " + std::to_string(mesh.vertices.size()) + " vertices at the start, and " +
-                      std::to_string(end.size()) + " at the end; they must be as many");
+    throw InvalidMesh("the mesh has " + std::to_string(mesh.vertices.size()) + " vertices at the start, but " +
+                      std::to_string(end.size()) + " at the end; both must have the same number");
   }
   MeshView last = mesh;
   last.vertices = end;
@@ -267,7 +267,7 @@ std::vector<Collision> ImpactSearch::gathered(std::size_t blocks, const char* ph
   throw_if_cancelled(context_);  // parts that stopped are incomplete
   if (collisions_ > most_collisions) {
     throw OutOfMemory("more than " + std::to_string(most_collisions) +
-                      " pairs collide: parts that lie on each other, mostly; take duplicates away");
+                      " pairs collide, usually because parts lie on each other: remove duplicates");
   }
   std::vector<Collision> all;
   for (const Found<Collision>& part : parts) {

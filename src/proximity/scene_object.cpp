@@ -35,16 +35,16 @@ void check(const RigidTransform& place) {
   if (const double error = place.rotation_error(); !(error <= tolerance)) {
     constexpr double rounding = 1e-5;  // error of single precision, and of some products in it
     throw InvalidOption(
-        "a transform is not rigid: the columns of its rotation must have length 1 and be at right angles to 1e-9, but "
-        "are so to " +
+        "a transform is not rigid: the columns of its rotation must be orthonormal to within 1e-9, but are so only to "
+        "within " +
         rounded_text(error) +
-        (error <= rounding ? ": it was rounded to single precision, it seems; give the closest rotation, "
-                             "closest_rotation(matrix)"
+        (error <= rounding ? ": it seems to be rounded to single precision; pass closest_rotation(matrix)"
                            : ": it scales or shears; scale vertices instead"));
   }
   if (dot(cross(c[0], c[1]), c[2]) < 0) {
     throw InvalidOption(
-        "a transform is a reflection, which turns bodies inside out; mirror the mesh instead, and turn its triangles");
+        "a transform is a reflection, which turns bodies inside out; mirror the mesh instead, and reverse its "
+        "triangles");
   }
   if (!is_finite(place.translation) || magnitude(place.translation) > largest_coordinate) {
     throw InvalidOption("the translation of a transform is not finite, or beyond 1e70");
@@ -58,7 +58,7 @@ void check(const MeshView& mesh) {
   validate(mesh);
   const double largest = bounds(mesh).largest_coordinate();
   if (largest > largest_coordinate) {
-    throw InvalidMesh("a coordinate is beyond 1e70, which is the most that an object of a scene may have; scale it");
+    throw InvalidMesh("a coordinate is beyond 1e70, the limit for objects of a scene: scale it");
   }
   if (largest > 0 && largest < smallest_coordinate) {
     throw InvalidMesh("no coordinate is above 1e-140: an object of a scene must be larger; scale it");
@@ -81,8 +81,8 @@ void SceneObject::set_mesh(const MeshView& mesh, const Context& context) {
 
 void SceneObject::check_positions(std::span<const Vec3d> vertices, const Context& context) const {
   if (vertices.size() != mesh_.vertices.size()) {
-    throw InvalidMesh("the object has " + std::to_string(mesh_.vertices.size()) + " vertices, but is updated with " +
-                      std::to_string(vertices.size()) + "; give it another mesh where these change");
+    throw InvalidMesh("the object has " + std::to_string(mesh_.vertices.size()) + " vertices, but the update has " +
+                      std::to_string(vertices.size()) + "; set a new mesh to change their number");
   }
   std::atomic<bool> are_fine = true;
   std::atomic<bool> is_any_large = false;

@@ -138,7 +138,7 @@ void CandidateLimit::check() const {
   throw_if_cancelled(*context_);
   if (!is_stopped_) return;
   throw InvalidMesh("more than " + std::to_string(most_candidates) +
-                    " pairs of primitives lie on each other or next to it: take duplicates away");
+                    " pairs of primitives coincide or are adjacent: remove duplicates");
 }
 
 namespace {
@@ -307,7 +307,7 @@ void add_sorted(std::vector<std::vector<PrimitivePair>> parts, const Context& co
 void check_count(std::size_t pairs) {
   if (pairs <= most_close_pairs) return;
   throw OutOfMemory("more than " + std::to_string(most_close_pairs) +
-                    " pairs are that close: ask for a smaller distance, or take duplicates away");
+                    " pairs are that close: use a smaller distance, or remove duplicates");
 }
 
 namespace {
@@ -429,7 +429,7 @@ void check_neighbours(const ObjectPair& objects) {
   if (most == count.end() || pairs_among(*most) <= most_candidates) return;
   throw InvalidMesh(name_of(objects.first(), objects.a()) + ": " + std::to_string(*most) +
                     " primitives meet at vertex " + std::to_string(most - count.begin()) + ", which are more than " +
-                    std::to_string(most_candidates) + " pairs: take duplicates away");
+                    std::to_string(most_candidates) + " pairs: remove duplicates");
 }
 
 void check_equal_triangles(const ObjectPair& objects) {

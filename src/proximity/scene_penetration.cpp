@@ -691,8 +691,9 @@ std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& ov
   const std::string second = name_of(two.second, *two.b);
   check_is_closed(two.a->mesh(), first);
   check_is_closed(two.b->mesh(), second);
-  throw InvalidMesh("what " + (two.first == two.second ? "parts of " + first : first + " and " + second) +
-                    " have in common cannot be told: " + obstacle);
+  throw InvalidMesh("the intersection of " +
+                    (two.first == two.second ? "parts of " + first : first + " and " + second) +
+                    " cannot be computed: " + obstacle);
 }
 
 /// Returns the parts, the deepest first.

@@ -48,24 +48,25 @@ ShapeInfo nested_shells() {
 }
 
 ShapeInfo bodies() {
-  return {"bodies",
-          "separate equal bodies on a cubic lattice",
-          {count_parameter("count", "number of bodies", 27, 1, 4000000), length_parameter("size", "of each body", 0.5),
-           length_parameter("spacing", "between centres, above size", 1),
-           count_parameter("frequency", "0: boxes; else spheres of 20 frequency^2 triangles", 0, 0, 1581)},
-          [](const ShapeParameters& p) {
-            const Values v{p};
-            return make_bodies({v.whole("count"), v.real("size"), v.real("spacing"), v.whole("frequency")});
-          },
-          [](const ShapeParameters& p) -> Betti { return {{Values{p}.whole("count"), 0, 0}}; }};
+  return {
+      "bodies",
+      "separate equal bodies on a cubic lattice",
+      {count_parameter("count", "number of bodies", 27, 1, 4000000), length_parameter("size", "size of each body", 0.5),
+       length_parameter("spacing", "distance between centres, above size", 1),
+       count_parameter("frequency", "0: boxes; else spheres of 20 frequency^2 triangles", 0, 0, 1581)},
+      [](const ShapeParameters& p) {
+        const Values v{p};
+        return make_bodies({v.whole("count"), v.real("size"), v.real("spacing"), v.whole("frequency")});
+      },
+      [](const ShapeParameters& p) -> Betti { return {{Values{p}.whole("count"), 0, 0}}; }};
 }
 
 ShapeInfo wedge() {
   return {"wedge",
           "a triangular prism with one sharp edge",
-          {{"angle", "between the faces that meet in the sharp edge, in degrees", 30, 1e-6, 179.999, false},
-           length_parameter("length", "of those faces", 1),
-           length_parameter("width", "of the sharp edge", 1)},
+          {{"angle", "angle between the faces that meet in the sharp edge, in degrees", 30, 1e-6, 179.999, false},
+           length_parameter("length", "length of those faces", 1),
+           length_parameter("width", "length of the sharp edge", 1)},
           [](const ShapeParameters& p) {
             const Values v{p};
             return make_wedge({v.real("angle"), v.real("length"), v.real("width")});
@@ -74,17 +75,17 @@ ShapeInfo wedge() {
 }
 
 ShapeInfo star() {
-  return {
-      "star",
-      "an extruded star",
-      {count_parameter("spikes", "number of spikes", 5, 2, 2000), length_parameter("outer_radius", "of the tips", 1),
-       length_parameter("inner_radius", "of the corners between, below outer_radius", 0.4),
-       length_parameter("thickness", "along z", 0.3)},
-      [](const ShapeParameters& p) {
-        const Values v{p};
-        return make_star({v.whole("spikes"), v.real("outer_radius"), v.real("inner_radius"), v.real("thickness")});
-      },
-      always(1, 0, 0)};
+  return {"star",
+          "an extruded star",
+          {count_parameter("spikes", "number of spikes", 5, 2, 2000),
+           length_parameter("outer_radius", "radius of the tips", 1),
+           length_parameter("inner_radius", "radius of the corners between tips, below outer_radius", 0.4),
+           length_parameter("thickness", "thickness along z", 0.3)},
+          [](const ShapeParameters& p) {
+            const Values v{p};
+            return make_star({v.whole("spikes"), v.real("outer_radius"), v.real("inner_radius"), v.real("thickness")});
+          },
+          always(1, 0, 0)};
 }
 
 ShapeInfo plate() {
@@ -92,8 +93,9 @@ ShapeInfo plate() {
       "plate",
       "a plate with a grid of round holes",
       {count_parameter("holes_x", "holes along x", 3, 0, 3000), count_parameter("holes_y", "holes along y", 2, 0, 3000),
-       length_parameter("pitch", "between hole centres", 1), length_parameter("hole_radius", "below pitch / 2", 0.3),
-       length_parameter("thickness", "along z", 0.25),
+       length_parameter("pitch", "distance between hole centres", 1),
+       length_parameter("hole_radius", "radius of each hole, below pitch / 2", 0.3),
+       length_parameter("thickness", "thickness along z", 0.25),
        count_parameter("hole_segments", "sides of each hole, a multiple of 4", 32, 4, 100000)},
       [](const ShapeParameters& p) {
         const Values v{p};
@@ -110,10 +112,11 @@ ShapeInfo bracket() {
   return {
       "bracket",
       "an L-shaped bracket with holes and ribs",
-      {length_parameter("length", "of the foot, along x", 3), length_parameter("height", "of the wall, along z", 3),
-       length_parameter("width", "along y", 3), length_parameter("thickness", "of foot and wall", 0.4),
+      {length_parameter("length", "length of the foot, along x", 3),
+       length_parameter("height", "height of the wall, along z", 3), length_parameter("width", "width along y", 3),
+       length_parameter("thickness", "thickness of foot and wall", 0.4),
        count_parameter("holes", "holes in the foot, and as many in the wall", 2, 0, 10000),
-       length_parameter("hole_radius", "of each hole", 0.3),
+       length_parameter("hole_radius", "radius of each hole", 0.3),
        count_parameter("ribs", "1: ribs between foot and wall; 0: none", 1, 0, 1),
        count_parameter("hole_segments", "sides of each hole, a multiple of 4", 32, 4, 100000)},
       [](const ShapeParameters& p) {
@@ -125,31 +128,32 @@ ShapeInfo bracket() {
 }
 
 ShapeInfo gear() {
-  return {
-      "gear",
-      "a spur gear or drive wheel with a bore and round openings",
-      {count_parameter("teeth", "number of teeth", 20, 4, 2000), length_parameter("root_radius", "between teeth", 0.85),
-       length_parameter("tip_radius", "above root_radius", 1),
-       length_or_zero("bore_radius", "of the bore; 0: none", 0.2),
-       count_parameter("openings", "round holes between bore and teeth", 5, 0, 1000),
-       length_parameter("opening_radius", "of each opening", 0.13), length_parameter("thickness", "along z", 0.3),
-       count_parameter("hole_segments", "sides of each hole", 32, 3, 10000)},
-      [](const ShapeParameters& p) {
-        const Values v{p};
-        return make_gear({v.whole("teeth"), v.real("root_radius"), v.real("tip_radius"), v.real("bore_radius"),
-                          v.whole("openings"), v.real("opening_radius"), v.real("thickness"),
-                          v.whole("hole_segments")});
-      },
-      [](const ShapeParameters& p) -> Betti {
-        const Values v{p};
-        return {{1, v.whole("openings") + (v.real("bore_radius") > 0 ? 1 : 0), 0}};
-      }};
+  return {"gear",
+          "a spur gear or drive wheel with a bore and round openings",
+          {count_parameter("teeth", "number of teeth", 20, 4, 2000),
+           length_parameter("root_radius", "radius between teeth", 0.85),
+           length_parameter("tip_radius", "radius of the tips, above root_radius", 1),
+           length_or_zero("bore_radius", "radius of the bore; 0: none", 0.2),
+           count_parameter("openings", "round holes between bore and teeth", 5, 0, 1000),
+           length_parameter("opening_radius", "radius of each opening", 0.13),
+           length_parameter("thickness", "thickness along z", 0.3),
+           count_parameter("hole_segments", "sides of each hole", 32, 3, 10000)},
+          [](const ShapeParameters& p) {
+            const Values v{p};
+            return make_gear({v.whole("teeth"), v.real("root_radius"), v.real("tip_radius"), v.real("bore_radius"),
+                              v.whole("openings"), v.real("opening_radius"), v.real("thickness"),
+                              v.whole("hole_segments")});
+          },
+          [](const ShapeParameters& p) -> Betti {
+            const Values v{p};
+            return {{1, v.whole("openings") + (v.real("bore_radius") > 0 ? 1 : 0), 0}};
+          }};
 }
 
 ShapeInfo menger() {
   return {"menger",
           "the Menger sponge",
-          {count_parameter("level", "how often it is refined", 2, 0, 5), length_parameter("size", "of the whole", 1)},
+          {count_parameter("level", "number of refinements", 2, 0, 5), length_parameter("size", "overall size", 1)},
           [](const ShapeParameters& p) {
             const Values v{p};
             return make_menger({v.whole("level"), v.real("size")});
@@ -169,7 +173,7 @@ ShapeInfo menger() {
 ShapeInfo fan_part() {
   return {"fan_part",
           "a sector of a fan: curved and flat faces that meet in sharp edges, like a CAD model",
-          {length_parameter("size", "of the whole", 1),
+          {length_parameter("size", "overall size", 1),
            count_parameter("resolution", "parts of the smallest block; 8 gives 12,288 triangles", 8, 1, 500)},
           [](const ShapeParameters& p) {
             const Values v{p};

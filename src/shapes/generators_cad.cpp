@@ -257,7 +257,7 @@ TriangleMesh make_wedge(const WedgeOptions& options) {
   const double half = 0.5 * options.angle * detail::pi / 180;
   const double x = options.length * std::cos(half);
   const double z = options.length * std::sin(half);
-  require(z > 0 && x > 0, "angle", "large enough to tell the faces apart", options.angle);
+  require(z > 0 && x > 0, "angle", "large enough to keep the faces apart", options.angle);
   const double y = 0.5 * options.width;
   TriangleMesh mesh;
   mesh.vertices = {{0, -y, 0}, {x, -y, -z}, {x, -y, z}, {0, y, 0}, {x, y, -z}, {x, y, z}};
@@ -385,7 +385,7 @@ TriangleMesh make_bodies(const BodiesOptions& options) {
   int side = 1;
   while (static_cast<double>(side) * side * side < options.count) ++side;
   require(options.size > 1e-12 * side * options.spacing, "size",
-          "above 1e-12 of the lattice's side, or bodies vanish in the rounding of their places", options.size);
+          "above 1e-12 of the lattice's side, or rounding makes bodies vanish", options.size);
   const double middle = 0.5 * (side - 1);
   TriangleMesh mesh;
   for (int i = 0; i < options.count; ++i) {

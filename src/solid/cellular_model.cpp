@@ -208,7 +208,7 @@ CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint3
                                 const CellularModelOptions& options, const Context& context) {
   check(options);
   if (solid.rule() == SolidRule::voxels) {
-    throw InvalidOption("a union of voxels is its own cellular model: models are of meshes");
+    throw InvalidOption("a union of voxels is its own cellular model: build models of meshes only");
   }
   if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh("no cellular model: " + solid.reason());
   auto data = std::make_shared<Data>();
@@ -222,7 +222,7 @@ CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint3
     if (!(box.size()[a] / spacing <= most_resolution + 1) || !(spacing > 64 * std::numeric_limits<double>::epsilon())) {
       throw InvalidOption("spacing is " + exact_text(std::ldexp(spacing, -data->exponent)) +
                           ", too small for this mesh: at most " + std::to_string(most_resolution) +
-                          " cubes along a side, and none smaller than coordinates are rounded");
+                          " cubes along a side, none smaller than the rounding of coordinates");
     }
   }
   const Vec3d origin = box.lower - Vec3d{1, 1, 1} * ((1 + options.shift) * spacing);

@@ -29,9 +29,8 @@ void check_tolerance(const MeshView& mesh, double tolerance) {
   constexpr double least = 1e-12;
   if (tolerance >= least * diagonal && tolerance <= diagonal && tolerance > 0) return;
   throw InvalidOption(
-      "cleaning a mesh: the tolerance is above 0, at least 1e-12 of the diagonal of the box around the "
-      "mesh and at most that diagonal, which is " +
-      rounded_text(diagonal) + "; not " + exact_text(tolerance));
+      "cleaning a mesh: the tolerance must be above 0, and 1e-12 to 1 times the diagonal of the mesh, " +
+      rounded_text(diagonal) + ", not " + exact_text(tolerance));
 }
 
 void check_coordinates(const MeshView& mesh) {
@@ -140,9 +139,9 @@ void check_result(const Solid& before, const Solid& after, double deviation, dou
   const bool is_sound = after.rule() == SolidRule::polyhedron && !after.resolved() && after.problem().empty() &&
                         problem_of_places(after.surface().mesh).empty();
   if (is_sound && after.betti() == before.betti() && deviation <= tolerance) return;
-  throw Error("cleaning a mesh: the result is not what it must be (" +
+  throw Error("cleaning a mesh: the result is wrong (" +
               (is_sound ? "its solid has other Betti numbers" : after.problem()) +
-              "), which is a mistake of Blum's: please report it, and use the mesh as it is");
+              "), which is a bug in Blum: please report it, and use the mesh without cleaning");
 }
 
 std::size_t count_named(const MeshView& mesh) {
@@ -220,7 +219,7 @@ CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& co
   if (!mesh.segments.empty() || !mesh.points.empty()) {
     out.warnings.emplace_back(WarningCode::left_out, plural(mesh.segments.size(), "segment", "segments") + " and " +
                                                          plural(mesh.points.size(), "point", "points") +
-                                                         " beside the triangles were left out");
+                                                         " besides the triangles were left out");
   }
   return out;
 }

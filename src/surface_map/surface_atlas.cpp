@@ -154,8 +154,8 @@ std::array<TexturePlace, 3> chart_in(const Rectangle& r, std::size_t which, std:
   double fits = std::max(texel, longest / (most_a_side - 32));
   for (int step = 0; step < 200 && texel_count(legs, fits) > 0.98 * most_a_side * most_a_side; ++step) fits *= 1.1;
   throw InvalidOption("texels of " + exact_text(texel) + " make a texture of more than " + std::to_string(most_a_side) +
-                      " x " + std::to_string(most_a_side) + " of them; from about " + exact_text(fits) +
-                      " on it is small enough");
+                      " x " + std::to_string(most_a_side) + " texels: use texels of about " + exact_text(fits) +
+                      " or more");
 }
 
 void check(const MeshView& mesh) {
@@ -234,7 +234,7 @@ SurfaceAtlas surface_atlas_from(const MeshView& mesh, std::span<const TexturePla
   check(mesh);
   if (width < 1 || height < 1 || width > most_a_side || height > most_a_side) {
     throw InvalidOption("a texture of " + std::to_string(width) + " x " + std::to_string(height) +
-                        " texels is asked for; it must have 1 to " + std::to_string(most_a_side) + " a side");
+                        " texels is requested; it must have 1 to " + std::to_string(most_a_side) + " per side");
   }
   if (corners.size() != mesh.triangles.size()) {
     throw InvalidOption("there are texture coordinates for " + std::to_string(corners.size()) + " triangles of " +
@@ -251,8 +251,9 @@ SurfaceAtlas surface_atlas_from(const MeshView& mesh, std::span<const TexturePla
       const bool is_there = index < coordinates.size();
       const TexturePlace at = is_there ? coordinates[index] : TexturePlace{};
       if (!is_there || !(at.x >= 0 && at.y >= 0 && at.x <= width && at.y <= height)) {
-        throw InvalidOption("corner " + std::to_string(k) + " of triangle " + std::to_string(t) +
-                            (is_there ? " lies outside of the texture" : " names a texture coordinate that is none"));
+        throw InvalidOption(
+            "corner " + std::to_string(k) + " of triangle " + std::to_string(t) +
+            (is_there ? " lies outside the texture" : " names a texture coordinate that does not exist"));
       }
       out.corners[t][k] = at;
     }

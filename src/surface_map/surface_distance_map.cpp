@@ -139,8 +139,8 @@ namespace {
 /// Moves the vertices of a mesh. The new positions must be as many, and valid.
 void move_vertices(TriangleMesh& mesh, std::span<const Vec3d> vertices) {
   if (vertices.size() != mesh.vertices.size()) {
-    throw InvalidMesh("a mesh of " + std::to_string(mesh.vertices.size()) + " vertices is moved to " +
-                      std::to_string(vertices.size()) + " places");
+    throw InvalidMesh("a mesh of " + std::to_string(mesh.vertices.size()) + " vertices cannot be moved to " +
+                      std::to_string(vertices.size()) + " positions");
   }
   validate({vertices, mesh.triangles, mesh.segments, mesh.points});
   mesh.vertices.assign(vertices.begin(), vertices.end());

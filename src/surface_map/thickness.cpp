@@ -203,18 +203,18 @@ void check_solid(const MeshView& solid) {
 std::vector<Warning> warnings_of(const Orientation& found) {
   const auto edges = [](std::size_t count) { return plural(count, "edge", "edges"); };
   if (found.boundary_edges > 0) {
-    return {{WarningCode::open_mesh,
-             "the mesh is open (" + edges(found.boundary_edges) +
-                 " with one triangle): behind a hole there is no thickness, or one too large; welding joins vertices"}};
+    return {{WarningCode::open_mesh, "the mesh is open (" + edges(found.boundary_edges) +
+                                         " with one triangle): behind a hole the thickness is missing or too large; "
+                                         "weld the mesh to merge equal vertices"}};
   }
   if (found.inconsistent_edges > 0) {
     return {{WarningCode::facing, "triangles face different ways (" + edges(found.inconsistent_edges) +
-                                      "): where they face inwards, thickness is measured outside of the solid"}};
+                                      "): where they face inwards, thickness is measured outside the solid"}};
   }
   if (!found.closed || found.outward) return {};
   return {{WarningCode::facing,
            found.signed_volume < 0
-               ? "triangles face into the solid, so that thickness is measured outside of it; turn them around"
+               ? "triangles face into the solid, so thickness is measured outside it; reverse them"
                : "shells lie in or cross each other and face the same way, or have no volume: thickness may be that of "
                  "one of them alone"}};
 }

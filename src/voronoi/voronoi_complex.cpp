@@ -35,7 +35,7 @@ using namespace voronoi;
 void check(const VoronoiOptions& options) {
   const auto check_range = [](const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
     if (value >= least && value <= most) return;
-    throw InvalidOption("Voronoi complex: " + std::string(name) + " is " + std::to_string(least) + " to " +
+    throw InvalidOption("Voronoi complex: " + std::string(name) + " must be " + std::to_string(least) + " to " +
                         std::to_string(most) + ", not " + std::to_string(value));
   };
   check_range("resolution", options.resolution, 1, 1024);
@@ -43,7 +43,7 @@ void check(const VoronoiOptions& options) {
   check_range("grids", options.grids, 1, 100);
   check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
-    throw InvalidOption("Voronoi complex: tolerance is above 0, not " + exact_text(*options.tolerance));
+    throw InvalidOption("Voronoi complex: tolerance must be above 0, not " + exact_text(*options.tolerance));
   }
 }
 
@@ -97,7 +97,7 @@ int least_depth(const VoronoiOptions& options, const Box3& box) {
   while (depth <= most && std::ldexp(root * std::numbers::sqrt3, -depth) > *options.tolerance) ++depth;
   if (depth <= most) return depth;
   throw InvalidOption("Voronoi complex: a tolerance of " + exact_text(*options.tolerance) +
-                      " is below a 2,000th of the box around the mesh");
+                      " is too small: it must be at least 6e-4 times the longest side of the mesh");
 }
 
 /// Refuses options that cannot succeed: with the surface, cubes of the requested size fill the solid.
@@ -108,10 +108,10 @@ void check_count(const VoronoiOptions& options, int least_depth, const Box3& box
   const double side = std::ldexp(CellSplitter::side_of_root * std::max({size.x, size.y, size.z}), -least_depth);
   const double least = volume / (side * side * side);
   if (least <= static_cast<double>(options.max_cubes)) return;
-  throw InvalidOption("Voronoi complex: the resolution or tolerance asks for at least " +
-                      std::to_string(static_cast<std::int64_t>(std::min(least, 1e18))) +
-                      " cubes, more than there may be (max_cubes, --max-cubes " + std::to_string(options.max_cubes) +
-                      "): a coarser one, walls alone, or more cubes");
+  throw InvalidOption("Voronoi complex: the resolution or tolerance needs at least " +
+                      std::to_string(static_cast<std::int64_t>(std::min(least, 1e18))) + " cubes, but max_cubes is " +
+                      std::to_string(options.max_cubes) +
+                      ": use a coarser one, compute only walls, or raise max_cubes");
 }
 
 /// Returns the number of problems that keep an octree from passing.
@@ -231,8 +231,7 @@ VoronoiComplex with_memory(const Work& work) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    throw OutOfMemory(
-        "a Voronoi complex of this mesh needs more memory than there is: allow fewer cubes (max_cubes, --max-cubes)");
+    throw OutOfMemory("a Voronoi complex of this mesh needs more memory than is free: lower max_cubes");
   }
 }
 

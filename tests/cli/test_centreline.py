@@ -93,7 +93,7 @@ def test_labels_and_thresholds_are_chosen(image, tmp_path):
 
 def test_meshes_are_refused_and_help_has_examples(tmp_path):
     run("make", "box", "-o", tmp_path / "box.ply")
-    assert "no voxel image" in run("centreline", tmp_path / "box.ply", "-o", tmp_path / "g.json", status=1)[1]
+    assert "not a voxel image" in run("centreline", tmp_path / "box.ply", "-o", tmp_path / "g.json", status=1)[1]
     assert "blum centreline vessels.nii.gz -o vessels.json" in run("centreline", "--help")[0]
 
 

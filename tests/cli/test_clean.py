@@ -65,7 +65,7 @@ def test_what_is_wrong_is_said(plate, tmp_path):
     run("make", "soup", "-o", tmp_path / "soup.ply")
     assert "closed" in run("clean", tmp_path / "soup.ply", "-o", out, "--tolerance", "0.1", status=1)[1]
     run("make", "ball_image", "-o", tmp_path / "image.nrrd")
-    assert "no mesh" in run("clean", tmp_path / "image.nrrd", "-o", out, "--tolerance", "0.1", status=1)[1]
+    assert "not a mesh" in run("clean", tmp_path / "image.nrrd", "-o", out, "--tolerance", "0.1", status=1)[1]
     assert "out.ply" not in names(tmp_path)
 
 
@@ -74,7 +74,7 @@ def test_what_is_no_triangle_is_left_out_with_a_warning(tmp_path):
     with (tmp_path / "box.obj").open("a") as file:
         file.write("l 1 8\np 3\n")
     _, err = run("clean", tmp_path / "box.obj", "-o", tmp_path / "out.ply", "--tolerance", 0.001, warns=True)
-    assert "1 segment and 1 point beside the triangles were left out" in err
+    assert "1 segment and 1 point besides the triangles were left out" in err
     assert run_json("voronoi", tmp_path / "box.obj", "--clean", 0.001, warns=True)["certified"]
     _, err = run("voronoi", tmp_path / "box.obj", status=1)
     assert "box.obj" in err and "segments or points" in err

@@ -86,7 +86,7 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
     lacking = [name + ": not in the file" for name in lacking] * (end in ("obj", "ma"))
     said = [name for name in certificate["not_checked"] if name not in lacking]
     assert certificate["not_checked"][: len(lacking)] == lacking
-    assert said[-2:] == ["source: taken as said", "version: taken as said"]
+    assert said[-2:] == ["source: copied from the file", "version: copied from the file"]
 
 
 def test_angles_give_a_file_each_and_nested_axes(solids, tmp_path):
@@ -162,7 +162,7 @@ def test_sites_of_images_are_voxels_that_are_not_selected(tmp_path):
     assert (sites >= 0).all() and (image[z, y, x][~at_border] == 0).all() and (~at_border).sum() > 20
     off = np.abs(footprints - np.stack([x, y, z], axis=-1)).max(axis=-1)
     assert off[image[z, y, x] == 0].max() <= 0.5 + 1e-9
-    assert "not selected" in json.loads(str(arrays["metadata"]))["sites"]
+    assert "unselected" in json.loads(str(arrays["metadata"]))["sites"]
 
 
 def test_lambda_leaves_out_what_is_thin(solids, axes, tmp_path):
@@ -280,7 +280,7 @@ def test_voxels_finer_than_asked_are_told_of(solids, tmp_path):
     longest = max(upper - lower for lower, upper in zip(*run_json("info", tmp_path / "p.obj")["bounds"].values()))
     assert solid["asked_spacing"] == pytest.approx(longest / 16) and spacing < 0.6 * longest / 16
     (line,) = [line for line in out.splitlines() if line.startswith("refined")]
-    assert f"voxels from side {longest / 16:.6g} to {spacing:.6g}: of larger ones none lies inside" in line
+    assert f"voxels from side {longest / 16:.6g} to {spacing:.6g}: no larger voxel lies inside" in line
     assert "refined" not in run("medial", solids / "box.obj", "-o", tmp_path / "b.vtp", "--resolution", 12)[0]
 
 
@@ -456,7 +456,7 @@ USAGE = [
     ("medial box.obj -o out.vtp --theta 20,20", "twice"),
     ("medial box.obj -o out.vtp --theta 20,20.0000001", "two outputs"),
     ("medial box.obj -o out.vtp --theta 20 --theta 60", "--theta"),
-    ("medial box.obj -o out.vtp --theta 20 60", "for several angles, --theta 20,60"),
+    ("medial box.obj -o out.vtp --theta 20 60", "for several angles, use --theta 20,60"),
     ("medial box.obj -o out.vtp --spacing 0.00001", "--spacing 1e-05 is too small"),
     ("reconstruct axis.ma -o out.ply --spacing 0.00001", "--spacing 1e-05 is too small"),
     ("medial box.obj -o out.vtp --lambda=-1", "negative"),

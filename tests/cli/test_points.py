@@ -123,7 +123,7 @@ def test_what_makes_no_sense_is_refused(box, tmp_path):
     (tmp_path / "empty.csv").write_text("")
     for name, word in (
         ("short.csv", "line 3: there is no z"),
-        ("word.xyz", "line 2: y is no number: 'five'"),
+        ("word.xyz", "line 2: y is not a number: 'five'"),
         ("nan.csv", "not finite"),
         ("flat.npy", "[n, 3]"),
         ("none.npz", "no array 'points'"),

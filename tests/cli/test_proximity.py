@@ -67,9 +67,9 @@ def test_edges_are_told_by_name_or_option(tmp_path):
     [
         ("1,1,2,1", "six or seven columns"),
         ("1,1,2,1,3,1,1,1", "more than seven columns"),
-        ("1,3,2,1,3,1", "no power of two"),
-        ("1,0,2,1,3,1", "no power of two"),
-        ("1,-2,2,1,3,1", "no power of two"),
+        ("1,3,2,1,3,1", "not a power of two"),
+        ("1,0,2,1,3,1", "not a power of two"),
+        ("1,-2,2,1,3,1", "not a power of two"),
         ("1.5,1,2,1,3,1", "not a whole number"),
         ("nan,1,2,1,3,1", "not a whole number"),
         ("9007199254740993,1,2,1,3,1", "not exactly a double"),
@@ -86,7 +86,7 @@ def test_what_is_no_question_is_refused(tmp_path, line, message):
 
 def test_files_without_questions_are_refused(tmp_path):
     (tmp_path / "vf.csv").write_text("\n\n")
-    assert "no questions" in run("ccd", tmp_path / "vf.csv", status=1)[1]
+    assert "no queries" in run("ccd", tmp_path / "vf.csv", status=1)[1]
     assert "absent-vf.csv" in run("ccd", tmp_path / "absent-vf.csv", status=1)[1]
     (tmp_path / "folder-vf.csv").mkdir()
     assert "folder-vf.csv" in run("ccd", tmp_path / "folder-vf.csv", status=1)[1]
@@ -95,7 +95,7 @@ def test_files_without_questions_are_refused(tmp_path):
     rows = (tmp_path / "a-vf.csv").read_text().splitlines()
     rows[3] = rows[3][:-1] + "0"
     (tmp_path / "a-vf.csv").write_text("\n".join(rows))
-    assert "line 4: the answer is not that of the row before" in run("ccd", tmp_path / "a-vf.csv", status=1)[1]
+    assert "line 4: the answer differs from that of the row before" in run("ccd", tmp_path / "a-vf.csv", status=1)[1]
     write_queries(tmp_path / "b-vf.csv", [FALLING], [1])
     assert "tolerance" in run("ccd", tmp_path / "b-vf.csv", "--tolerance", "0", status=2)[1]
 
@@ -159,8 +159,8 @@ def test_what_is_no_motion_is_refused(frames):
     write_obj(frames / "other.obj", vertices, [(0, 1, 2), (3, 5, 4)])
     for arguments, status, message in [
         ([start, frames / "less.obj", "--self", "-o", out], 1, "it has 3 vertices, not 6"),
-        ([start, frames / "other.obj", "--self", "-o", out], 1, "name other vertices"),
-        ([start, end, "-o", out], 2, "give --self"),
+        ([start, frames / "other.obj", "--self", "-o", out], 1, "have other corners"),
+        ([start, end, "-o", out], 2, "add --self"),
         ([start, "--self", "-o", out], 2, "takes two files"),
         ([start, end, "--self", "-o", frames / "p.txt"], 2, "the extension must be .npz"),
         ([start, end, "--self", "-o", frames / "p.obj"], 2, "the extension must be .npz"),

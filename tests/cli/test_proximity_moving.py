@@ -266,14 +266,14 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
     blum.Mesh(mesh.vertices * 1e72, mesh.triangles).write(tmp_path / "far.obj")
     two = [ball, plate, "-o", out, "--to"]
     for arguments, status, message in [
-        ([*two, fallen], 2, "--to names 1 file, but 2 objects are given: name one for each, in the same order"),
-        ([*two, fallen, plate, plate], 2, "--to names 3 files, but 2 objects are given"),
-        ([*two, plate, fallen], 1, f"'{plate}': it has 8 vertices, not 2,562 as '{ball}': frames of one motion have"),
-        ([*two, fallen, tmp_path / "other.ply"], 1, "other.ply': its triangles, segments or points name other vertices"),
+        ([*two, fallen], 2, "--to has 1 file, but 2 objects are given; give one file for each, in the same order"),
+        ([*two, fallen, plate, plate], 2, "--to has 3 files, but 2 objects are given"),
+        ([*two, plate, fallen], 1, f"'{plate}': it has 8 vertices, not 2,562 like '{ball}': frames of one motion need"),
+        ([*two, fallen, tmp_path / "other.ply"], 1, "other.ply': its triangles, segments or points have other corners"),
         ([*two, fallen, tmp_path / "far.obj"], 1, f"'{plate}' at the end: a coordinate is beyond 1e70"),
         ([tmp_path / "far.obj", "--self", "-o", out, "--to", plate], 1, "far.obj': a coordinate is beyond 1e70"),
         ([*two, fallen, tmp_path / "absent.ply"], 1, "absent.ply"),
-        ([ball, "-o", out, "--to", fallen], 2, "give --self, or the files of more objects"),
+        ([ball, "-o", out, "--to", fallen], 2, "add --self, or the files of more objects"),
         ([*two, fallen, plate, "-o", tmp_path / "p.obj"], 2, ""),
         ([ball, plate, "-o", tmp_path / "p.obj", "--to", fallen, plate], 2, "must be .npz, .csv, .json or .vtp"),
         ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),
@@ -284,7 +284,7 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([*two, fallen, plate, "--min-separation", "-1"], 2, "min"),
         ([*two, fallen, plate, "--frames", "--self"], 2, "--frames and --to exclude each other"),
         ([ball, plate, ring, "--self", "-o", out], 2, "takes two files"),
-        ([ball, plate, ring, "--self", "-o", out], 2, "--to names their files"),
+        ([ball, plate, ring, "--self", "-o", out], 2, "their files at the end with --to"),
         ([ball, plate, "-o", out], 2, "--to END"),
     ]:
         assert message in run("proximity", "continuous", *arguments, status=status)[1], arguments

@@ -191,8 +191,8 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
     (tmp_path / "empty.obj").write_text("")
     (tmp_path / "folder.csv").mkdir()
     for arguments, status, message in [
-        ([torus], 2, "give --self, or the files of more objects"),
-        ([torus, "-o", out], 2, "give --self"),
+        ([torus], 2, "add --self, or the files of more objects"),
+        ([torus, "-o", out], 2, "add --self"),
         ([torus, moved, "--max-distance", "-0.5"], 2, "--max-distance '-0.5': must not be negative"),
         ([torus, moved, "--max-distance", "nan"], 2, "--max-distance 'nan'"),
         ([torus, moved, "--max-distance", "inf"], 2, "--max-distance 'inf'"),

@@ -43,7 +43,7 @@ def frames(folder, *files):
 
 
 @pytest.mark.parametrize(
-    ("other", "what"), [("short.obj", "it has 23 triangles, not 24 as"), ("order.obj", "its triangles, segments or points name other")]
+    ("other", "what"), [("short.obj", "it has 23 triangles, not 24 like"), ("order.obj", "its triangles, segments or points have other corners")]
 )
 def test_frames_that_differ_are_an_error(folder, tmp_path, other, what):
     out = tmp_path / "pairs.json"
@@ -56,7 +56,7 @@ def test_steps_that_change_are_skipped_and_told(folder, tmp_path):
     files = "frame0.obj", "frame1.obj", "short.obj", "short.obj"
     out = tmp_path / "pairs.json"
     command = [*frames(folder, *files), "--skip-changed", "-o", out]
-    reason = f"'{folder / 'short.obj'}': it has 23 triangles, not 24 as '{folder / 'frame1.obj'}'"
+    reason = f"'{folder / 'short.obj'}': it has 23 triangles, not 24 like '{folder / 'frame1.obj'}'"
     assert f"skipped  {reason}\n" in run(*command)[0]
     answer = run_json(*command)
     assert answer["skipped"] == [{"frame": 1, "reason": reason}]
@@ -65,7 +65,7 @@ def test_steps_that_change_are_skipped_and_told(folder, tmp_path):
     assert answer["pairs"][0] == len(told[0]["pairs"]) > 0
     run("view", *[folder / file for file in files], "--frames", "--pairs", out, "-o", tmp_path / "page.html")
     two = [folder / "box.obj", folder / "crossing.obj"]
-    assert "--skip-changed is for --frames" in run("proximity", "continuous", *two, "--skip-changed", status=2)[1]
+    assert "--skip-changed needs --frames" in run("proximity", "continuous", *two, "--skip-changed", status=2)[1]
 
 
 @pytest.mark.parametrize("query", ["closest", "collide"])
@@ -120,7 +120,7 @@ def test_limit_cuts_files_short_and_says_so(folder, tmp_path):
 def test_to_without_files_says_so(folder, tmp_path):
     two = [folder / "box.obj", folder / "crossing.obj"]
     err = run("proximity", "continuous", *two, "--to", "-o", tmp_path / "z.csv", status=2)[1]
-    assert "--to names no file" in err
+    assert "--to needs a file for each SCENE" in err
     assert names(tmp_path) == []
 
 

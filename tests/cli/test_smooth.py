@@ -146,7 +146,7 @@ def test_surfaces_of_images_are_written(rod, tmp_path):
         ("surface rod.npy -o s.ply --smooth --label 5", "has the label 5", 1),
         ("surface rod.npy -o s.ply --smooth --iterations -1", "0", 2),
         ("surface rod.npy -o s.ply --smooth --iterations 1001", "1000", 2),
-        ("surface ball.ply -o s.ply --smooth", "no voxel image", 1),
+        ("surface ball.ply -o s.ply --smooth", "not a voxel image", 1),
         ("surface f.npz -o s.ply --label 1", "--smooth", 2),
         ("medial ball.ply -o a.vtp --smooth", "images", 2),
         ("medial rod.npy -o a.vtp --smooth --weld", "meshes", 2),

@@ -45,7 +45,7 @@ def test_every_format_of_meshes_is_written(ball, tmp_path, end):
 
 def test_what_has_no_surface_is_refused_and_nothing_written(ball, tmp_path):
     for arguments, reason in [(("ball.npz", "--level", 9), "one side"), (("ball.npz", "--level", -3), "one side"),
-                              (("unsigned.npz",), "no signs"), (("band.npz", "--level", 1), "up to 0.3 only")]:
+                              (("unsigned.npz",), "is unsigned"), (("band.npz", "--level", 1), "up to 0.3 only")]:
         name, *rest = arguments
         _, err = run("surface", ball / name, "-o", tmp_path / "s.ply", *rest, status=1)
         assert "no surface at the level" in err and reason in err

@@ -74,8 +74,8 @@ def test_what_is_wrong_is_said(shapes, tmp_path):
     plate, sphere, out = shapes / "plate.ply", shapes / "sphere.ply", tmp_path / "map.png"
     for words, said in (
         ((plate, "-o", out), "another mesh"),
-        ((plate, sphere, "-o", out, "--self"), "alone"),
-        ((plate, "-o", out, "--self", "--thickness", "ray"), "two kinds"),
+        ((plate, sphere, "-o", out, "--self"), "takes one mesh"),
+        ((plate, "-o", out, "--self", "--thickness", "ray"), "different kinds"),
         ((plate, "-o", out, "--thickness", "cone"), "'ray' or 'ball'"),
         ((plate, "-o", out, "--thickness", "ray", "--separation", 20), "--thickness ball"),
         ((plate, "-o", out, "--self", "--sign", "auto"), "--sign"),

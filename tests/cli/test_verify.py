@@ -103,16 +103,16 @@ def change_angles(arrays):
 
 
 @pytest.mark.parametrize("change,reason", [
-    (claim_winding, "its solid is 'winding', and it is 'polyhedron'"),
-    (claim_nonsense, "its solid is 'nonsense', and it is 'polyhedron'"),
+    (claim_winding, "its solid is 'winding', but it is 'polyhedron'"),
+    (claim_nonsense, "its solid is 'nonsense', but it is 'polyhedron'"),
     (drop_radii, "holds no radii"),
     (drop_footprints, "holds no footprints"),
     (drop_sites, "holds no sites"),
     (drop_angles, "holds no separation angles"),
-    (change_sites, "off the site that is named for it"),
+    (change_sites, "off the site that it names"),
     (change_angles, "a separation angle differs"),
     (move_a_vertex, "a radius differs from the exact distance"),
-    (move_a_vertex_outside, "outside of the solid"),
+    (move_a_vertex_outside, "outside the solid"),
     (scale_radii, "a radius differs from the exact distance"),
     (move_a_footprint, "a footprint lies off the surface"),
     (drop_a_triangle, "the solid has 0 tunnels, the axis 1"),
@@ -139,10 +139,10 @@ def test_the_axis_of_another_solid_is_found_out(solids, axes):
 
 
 def test_the_solid_that_a_file_names_is_said_first_where_another_one_is_given(solids, axes, tmp_path):
-    said = "blum: error: NOT certified: the file says that it is the axis of 'box.obj'; "
+    said = "blum: error: NOT certified: the file names 'box.obj' as its solid; "
     assert run("verify", solids / "torus.obj", axes / "box.npz", status=3)[1].startswith(said)
     false = falsified(axes, tmp_path, "box.npz", scale_radii)
-    assert "the axis of" not in run("verify", solids / "box.obj", false, status=3)[1]
+    assert "as its solid" not in run("verify", solids / "box.obj", false, status=3)[1]
 
 
 def test_a_mesh_that_encloses_nothing_has_no_solid(axes, tmp_path):
@@ -155,7 +155,7 @@ def test_the_axis_of_another_label_is_found_out(solids, tmp_path):
     run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 1)
     run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 1)
     _, err = run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 2, status=3, warns=True)
-    assert f"'{tmp_path / 'b.npz'}' was made with --label 1; --label 2 is used, as it was given" in err
+    assert f"'{tmp_path / 'b.npz'}' was computed with --label 1; --label 2 is used, because it was given" in err
 
 
 @pytest.mark.parametrize("selection", [("--label", 2), ("--threshold", 2.5)], ids=lambda s: s[0])
@@ -168,13 +168,13 @@ def test_the_file_tells_which_voxels_it_is_of(solids, tmp_path, end, selection):
                          20, *options)["distance"] for options in ((), selection)]
     assert distance[0] == distance[1]
     _, err = run("verify", solids / "balls.npy", axis, "--label", 1, status=3, warns=True)
-    assert f"was made with {selection[0]} {selection[1]}; --label 1 is used" in err
+    assert f"was computed with {selection[0]} {selection[1]}; --label 1 is used" in err
 
 
 def test_a_file_that_does_not_tell_which_voxels_asks_for_the_option(solids, tmp_path):
     for end in ("obj", "ma"):
         run("medial", solids / "balls.npy", "-o", tmp_path / f"b.{end}", "--label", 2)
-        assert "if --label or --threshold was given" in run("verify", solids / "balls.npy", tmp_path / f"b.{end}",
+        assert "repeat --label, --threshold or --smooth" in run("verify", solids / "balls.npy", tmp_path / f"b.{end}",
                                                             status=3)[1]
         run("verify", solids / "balls.npy", tmp_path / f"b.{end}", "--label", 2)
     assert "--threshold" not in run("verify", solids / "balls.npy", tmp_path / "b.ma", "--label", 1, status=3)[1]
@@ -196,7 +196,7 @@ def test_the_file_tells_how_the_mesh_was_welded(solids, tmp_path):
         run("verify", tmp_path / "soup.obj", tmp_path / "s.obj", *weld)
         assert "--weld" in run("verify", tmp_path / "soup.obj", tmp_path / "s.obj", status=1)[1]
     _, err = run("verify", tmp_path / "soup.obj", tmp_path / "s.npz", "--weld", warns=True)
-    assert "was made with --weld 1e-06; --weld is used" in err
+    assert "was computed with --weld 1e-06; --weld is used" in err
 
 
 def frame(path, window):
@@ -218,9 +218,9 @@ def test_a_weld_tolerance_that_changes_the_solid_is_warned_of(tmp_path):
     told = "welding within 0.03 removed 6 of 16 vertices: the surface has 1 component and the Euler number"
     _, err = run("medial", part, "-o", tmp_path / "p.npz", "--resolution", 16, "--weld", 0.03, "--allow-uncertified",
                  warns=True)
-    assert told in err and "in place of 1 component and the Euler number 0" in err
+    assert told in err and "instead of 1 component and the Euler number 0" in err
     _, err = run("verify", part, tmp_path / "p.npz", warns=True)
-    assert f"as '{tmp_path / 'p.npz'}' asks, {told}" in err
+    assert f"as '{tmp_path / 'p.npz'}' records, {told}" in err
     summary = run_json("verify", part, tmp_path / "p.npz", "--weld", 0.03, warns=True)
     assert len(summary["warnings"]) == 1 and summary["input"]["weld"]["lost"] == 6
     assert summary["input"]["weld"]["before"]["euler_number"] == 0
@@ -266,18 +266,18 @@ def test_the_voxels_that_an_open_mesh_is_taken_as_are_told(solids, axes, tmp_pat
     out, _ = run("verify", solids / "open.obj", axes / "open.npz")
     assert ", as the voxels of the winding number of side 0.0625; " in out
     false = falsified(axes, tmp_path, "open.npz", lambda arrays: change_metadata(arrays, spacing="0.03125"))
-    assert "its spacing is 0.03125, and its grid has steps of 0.0625" in run("verify", solids / "open.obj", false,
+    assert "its spacing is 0.03125, but its grid has a spacing of 0.0625" in run("verify", solids / "open.obj", false,
                                                                             status=3)[1]
 
 
 def test_where_random_points_show_nothing_that_is_not_checked(solids, axes, tmp_path):
     false = falsified(axes, tmp_path, "box.npz", lambda arrays: change_metadata(arrays, **{"lambda": "1.7"}))
     out, _ = run("verify", solids / "box.obj", false, "--verbose")
-    assert "lambda 1.7" in out and "what is missing: random points show nothing above 90 degrees" in out
+    assert "lambda 1.7" in out and "missing parts: random points show nothing above 90 degrees" in out
     assert "missing parts not checked" in out
     certificate = run_json("verify", solids / "box.obj", false)["certificate"]
     assert "missing" not in certificate["checked"]
-    assert "what is missing: random points show nothing above 90 degrees" in certificate["not_checked"]
+    assert "missing parts: random points show nothing above 90 degrees" in certificate["not_checked"]
 
 
 def test_nested_axes_are_not_checked_and_that_is_told(solids, tmp_path):
@@ -290,7 +290,7 @@ def test_nested_axes_are_not_checked_and_that_is_told(solids, tmp_path):
 
 def test_positions_of_obj_files_are_verified(solids, axes, tmp_path):
     (tmp_path / "out.obj").write_text("v 0.7 0 0\np 1\n")
-    assert "outside of the solid" in run("verify", solids / "box.obj", tmp_path / "out.obj", status=3)[1]
+    assert "outside the solid" in run("verify", solids / "box.obj", tmp_path / "out.obj", status=3)[1]
     (tmp_path / "chords.obj").write_text("v 1 0 0\nv -0.5 0.866 0\nv -0.5 -0.866 0\nl 1 2\nl 2 3\nl 3 1\n")
     assert "3 leave the solid between" in run("verify", solids / "torus.obj", tmp_path / "chords.obj", status=3)[1]
 
@@ -322,7 +322,7 @@ def test_the_topology_of_files_without_geometry_is_verified(solids, axes, tmp_pa
 @pytest.mark.parametrize("end", ["obj", "ma"])
 def test_what_files_without_labels_do_not_tell_is_not_told(solids, axes, end):
     out, _ = run("verify", solids / "box.obj", axes / f"box.{end}")
-    assert "0 edges of curves (the file tells no sheets)" in out and "rims" not in out and "1 sheet" not in out
+    assert "0 edges of curves (no sheets in the file)" in out and "rims" not in out and "1 sheet" not in out
     counts = run_json("verify", solids / "box.obj", axes / f"box.{end}")["axis"]["counts"]
     assert counts["sheets"] is counts["rim_edges"] is counts["seam_edges"] is counts["junctions"] is None
     assert counts["triangles"] == len(np.load(axes / "box.npz")["triangles"]) and counts["curve_edges"] == 0
@@ -383,8 +383,8 @@ def test_an_axis_of_voxels_needs_a_file_that_says_which(solids, tmp_path):
     for end in ("obj", "ma"):
         run("medial", solids / "open.obj", "-o", tmp_path / f"o.{end}", "--resolution", 12, warns=True)
         _, err = run("verify", solids / "open.obj", tmp_path / f"o.{end}", status=1)
-        assert "not closed and manifold" in err and ".obj and .ma name neither rule nor grid" in err
-        assert "verify the .vtp, .ply or .npz of the same run" in err
+        assert "not closed and manifold" in err and ".obj and .ma store neither rule nor grid" in err
+        assert "Verify the .vtp, .ply or .npz file of the same run" in err
 
 
 def test_an_open_mesh_that_faces_inwards_is_told_of(solids, tmp_path):
@@ -430,7 +430,7 @@ def test_a_mesh_that_crosses_itself_unresolved_is_no_polyhedron_whatever_the_axi
     (tmp_path / "axis.ma").write_text("2 0 0\nv 0 0 0 0.5\nv 0.3 0.3 0.3 0.5\n")
     for end in ("obj", "ma"):
         _, err = run("verify", two, tmp_path / f"axis.{end}", status=1)
-        assert "crosses itself" in err and "verify the .vtp, .ply or .npz" in err
+        assert "crosses itself" in err and "Verify the .vtp, .ply or .npz" in err
     run("medial", two, "-o", tmp_path / "t.npz", "--resolution", 16, warns=True)
     run("verify", two, tmp_path / "t.npz")
     false = falsified(tmp_path, tmp_path, "t.npz", lambda arrays: change_metadata(arrays, solid_rule="polyhedron"))

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the too
 
 def test_help_says_what_it_does():
     out, _ = run("view", "--help")
-    for words in ("--output", "--port", "--open", "this machine only", "Exit status 1"):
+    for words in ("--output", "--port", "--open", "only this machine", "Exit status 1"):
         assert words in out
 
 

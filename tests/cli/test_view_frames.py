@@ -113,8 +113,8 @@ def test_free_segments_and_points_are_said_to_be_left_out(tmp_path, frames):
 
 
 @pytest.mark.parametrize(("content", "words"), [
-    ("", ["no JSON"]),
-    ('{"frames": [', ["no JSON", "line 1"]),
+    ("", ["not JSON"]),
+    ('{"frames": [', ["not JSON", "line 1"]),
     ("[]", ["the file must be an object"]),
     ("{}", ['has no "frames"']),
     ({"frames": {}}, ["frames must be an array"]),
@@ -124,7 +124,7 @@ def test_free_segments_and_points_are_said_to_be_left_out(tmp_path, frames):
     ([{"pairs": {}}], ["frames[0].pairs must be an array"]),
     ([{"pairs": [pair(), 1]}], ["frames[0].pairs[1] must be an object"]),
     ([{}, {"pairs": [pair(kind="touch")]}], ["frames[1].pairs[0].kind is 'touch'", "closest, collision or"]),
-    ([{"pairs": [pair(kind=1)]}], ["frames[0].pairs[0].kind must be a text"]),
+    ([{"pairs": [pair(kind=1)]}], ["frames[0].pairs[0].kind must be a string"]),
     ([{"pairs": [{"kind": "closest", "distance": 1}]}], ['frames[0].pairs[0] has no "points"']),
     ([{"pairs": [pair(points=[[0, 0, 0]])]}], ["frames[0].pairs[0].points must be two points"]),
     ([{"pairs": [pair(points=[[0, 0, 0], [0, 0]])]}], ["frames[0].pairs[0].points[1] must be three numbers"]),
@@ -137,7 +137,7 @@ def test_free_segments_and_points_are_said_to_be_left_out(tmp_path, frames):
     ([{"stages": {"": 1}}], ["frames[0].stages"]),
     ([{"stages": {f"s{k}": 1 for k in range(8)}}, {"stages": {"s8": 1}}], ["frames[1].stages.s8", "at most 8"]),
     ('{"frames": [{"stages": {"a": 1e999}}, {}, {}, {}]}', ["pairs.json"]),
-    ('{"frames": [{"stages": {"a": NaN}}, {}, {}, {}]}', ["no JSON"]),
+    ('{"frames": [{"stages": {"a": NaN}}, {}, {}, {}]}', ["not JSON"]),
 ])
 def test_what_is_wrong_with_pairs_is_said_with_its_place(tmp_path, frames, content, words):
     if isinstance(content, list):
@@ -176,7 +176,7 @@ def test_frames_that_cannot_be_shown_are_named(tmp_path, frames, text, words):
 def test_frames_are_meshes(tmp_path, frames, shapes, axes):
     for other in (shapes / "ball.nrrd", shapes / "sphere.npz", axes / "box.npz"):
         _, err = run("view", frames[0], other, "--frames", "-o", tmp_path / "page.html", status=1)
-        assert other.name in err and "no mesh" in err
+        assert other.name in err and "not a mesh" in err
 
 
 @pytest.mark.parametrize(("arguments", "words"), [

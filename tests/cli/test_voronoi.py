@@ -331,7 +331,7 @@ def test_meshes_that_bound_no_solid(solids, tmp_path):
     _, err = run("voronoi", solids / "open.obj", "-o", tmp_path / "o.vtp", status=1)
     assert "open.obj" in err and "bounds no solid" in err and "closed" in err
     _, err = run("voronoi", solids / "ball.nrrd", "-o", tmp_path / "o.vtp", status=1)
-    assert "ball.nrrd" in err and "is no mesh" in err
+    assert "ball.nrrd" in err and "is not a mesh" in err
     assert names(tmp_path) == []
 
 

@@ -114,7 +114,7 @@ def assert_same(actual, expected):
 
 def assert_metadata(metadata):
     assert METADATA.items() <= metadata.items()
-    assert "linear index" in metadata["sites"] and "not selected" in metadata["sites"] and "2 seam" in metadata["roles"]
+    assert "linear index" in metadata["sites"] and "unselected" in metadata["sites"] and "2 seam" in metadata["roles"]
 
 
 def test_sample_has_something_to_compare(expected):

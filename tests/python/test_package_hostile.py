@@ -77,7 +77,7 @@ def test_fields_are_not_written_with_a_mesh_that_is_not_theirs(tmp_path, box):
     triangles[0, 0] = kept
     field.write(tmp_path / "field.npz")
     field.mesh = blum.Mesh(np.eye(3), [[0, 1, 2]])
-    with pytest.raises(ValueError, match="not the mesh that the field is of"):
+    with pytest.raises(ValueError, match="the field belongs to another mesh"):
         field.write(tmp_path / "other.npz")
     assert not (tmp_path / "other.npz").exists()
 

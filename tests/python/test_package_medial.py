@@ -150,7 +150,7 @@ def test_one_verifier_certifies_many_axes_as_each_alone(axis, plate, tmp_path):
     for label in (1, 2, 1):
         piece = blum.medial_axis(labels, label=label).simplify(60)
         assert of_image.certify(piece) == piece.certificate
-        with pytest.warns(blum.InputWarning, match="was made with"):
+        with pytest.warns(blum.InputWarning, match="was computed with"):
             assert not of_image.certify(piece, label=3 - label)
 
 
@@ -313,8 +313,8 @@ def test_the_tool_certifies_the_voxels_of_a_mesh_as_python_does(tmp_path):
 @pytest.mark.parametrize(
     "changes,dropped,reason",
     [
-        ({"solid_rule": "winding"}, (), "its solid is 'winding', and it is 'polyhedron'"),
-        ({"solid_rule": "nonsense"}, (), "its solid is 'nonsense', and it is 'polyhedron'"),
+        ({"solid_rule": "winding"}, (), "its solid is 'winding', but it is 'polyhedron'"),
+        ({"solid_rule": "nonsense"}, (), "its solid is 'nonsense', but it is 'polyhedron'"),
         ({}, ("radius",), "holds no radii"),
         ({}, ("separation_angle",), "holds no separation angles"),
         ({"site_ids": "voxels"}, (), "holds no sites of this kind of solid"),
@@ -347,4 +347,4 @@ def test_a_file_says_which_voxels_its_axis_is_of(tmp_path):
     assert blum.certify(read, labels).holds
     assert not blum.certify(read, labels, label=1)
     sparse = blum.certify(read, blum.Image(labels, spacing=(2, 2, 2)))
-    assert any("its voxels have the sides 1 1 1, and the image's have 2 2 2" in text for text in sparse.mismatches)
+    assert any("voxels have the sides 1 1 1, but those of the image have 2 2 2" in text for text in sparse.mismatches)

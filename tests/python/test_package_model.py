@@ -62,7 +62,7 @@ def test_what_is_no_polyhedron_has_no_model():
     tiny = blum.generate("box")
     vertices = tiny.vertices.copy()
     vertices[vertices == vertices.max()] = 1e-60
-    with pytest.raises(blum.InvalidMesh, match="too small for exact answers"):
+    with pytest.raises(blum.InvalidMesh, match="too small next to the others"):
         blum.Solid(vertices, tiny.triangles).model()
 
 

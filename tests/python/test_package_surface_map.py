@@ -188,9 +188,9 @@ def test_maps_are_read_as_they_were_written(tmp_path, kind):
     assert np.array_equal(again.mesh.vertices, part.vertices) and np.array_equal(again.mesh.triangles, part.triangles)
     assert again.statistics() == map.statistics()
     again.write(tmp_path / "again.glb")
-    with pytest.raises(ValueError, match="do not tell which"):
+    with pytest.raises(ValueError, match="do not record which"):
         _ = again.object
-    with pytest.raises(blum.FormatError, match="holds no surface map"):
+    with pytest.raises(blum.FormatError, match="does not hold a surface map"):
         blum.distance_field(part, resolution=8).write(tmp_path / "field.npz")
         blum.read_surface_map(tmp_path / "field.npz")
 

@@ -37,7 +37,7 @@ struct EmulatedPlatform {
 
   static void expect_device(int device) {
     if (device == 0) return;
-    throw DeviceError("there is no CUDA device " + std::to_string(device) + ": 1 can be seen, counted from 0");
+    throw DeviceError("there is no CUDA device " + std::to_string(device) + ": 1 visible, counted from 0");
   }
   static void expect_runnable() {}
   static int device_of(const void*) { return 0; }

@@ -29,12 +29,12 @@ struct AxisGraphOptions {
 template <>
 struct Description<AxisGraphOptions> {
   static constexpr std::string_view name = "AxisGraphOptions";
-  static constexpr std::string_view doc = "What the graph of a medial axis is asked for";
+  static constexpr std::string_view doc = "Options of the graph of a medial axis";
   static constexpr std::tuple members{
       Member{"patch_angle", &AxisGraphOptions::patch_angle, "degrees",
-             "with the mesh: patches are faces joined through edges that bend by at most this", Range::between(0, 180)},
+             "with the mesh: largest bend of the edges that join faces to a patch", Range::between(0, 180)},
       Member{"homotopy_angle", &AxisGraphOptions::homotopy_angle, "degrees",
-             "theta of the axis: what carries at most this is there for homotopy alone; none: nothing is",
+             "theta of the axis: cells with at most this angle exist for homotopy alone; unset: none do",
              Range::between(0, 180)},
   };
 };
@@ -48,13 +48,12 @@ struct AxisSpread {
 template <>
 struct Description<AxisSpread> {
   static constexpr std::string_view name = "AxisSpread";
-  static constexpr std::string_view doc =
-      "The least, a low, the middle and the largest value of a number over a part of an axis";
+  static constexpr std::string_view doc = "Minimum, low value, median and maximum of a number over a part of an axis";
   static constexpr std::tuple members{
-      Member{"minimum", &AxisSpread::minimum, "", "at any of its vertices"},
-      Member{"low", &AxisSpread::low, "", "5 % of its area or length has at most this"},
-      Member{"median", &AxisSpread::median, "", "half of its area or length has at most this"},
-      Member{"maximum", &AxisSpread::maximum, "", "at any of its vertices"},
+      Member{"minimum", &AxisSpread::minimum, "", "minimum over its vertices"},
+      Member{"low", &AxisSpread::low, "", "value that 5 % of its area or length do not exceed"},
+      Member{"median", &AxisSpread::median, "", "value that half of its area or length do not exceed"},
+      Member{"maximum", &AxisSpread::maximum, "", "maximum over its vertices"},
   };
 };
 
@@ -92,15 +91,16 @@ struct AxisJunction {
 template <>
 struct Description<AxisJunction> {
   static constexpr std::string_view name = "AxisJunction";
-  static constexpr std::string_view doc = "A vertex where seams and curves of an axis begin, end or meet";
+  static constexpr std::string_view doc = "Vertex where seams and curves of an axis begin, end or meet";
   static constexpr std::tuple members{
-      Member{"vertex", &AxisJunction::vertex, "", "of the axis"},
-      Member{"kind", &AxisJunction::kind, "", "what meets there"},
-      Member{"position", &AxisJunction::position, "mesh units", "of the vertex"},
+      Member{"vertex", &AxisJunction::vertex, "", "vertex of the axis"},
+      Member{"kind", &AxisJunction::kind, "", "kind of the parts that meet there"},
+      Member{"position", &AxisJunction::position, "mesh units", "position of the vertex"},
       Member{"radius", &AxisJunction::radius, "mesh units", "distance to the surface"},
-      Member{"seams", &AxisJunction::seams, "", "that begin or end there; one that does both is there twice"},
-      Member{"curves", &AxisJunction::curves, "", "that begin or end there; one that does both is there twice"},
-      Member{"sheets", &AxisJunction::sheets, "", "that it lies on"},
+      Member{"seams", &AxisJunction::seams, "", "seams that begin or end there; a seam that does both is listed twice"},
+      Member{"curves", &AxisJunction::curves, "",
+             "curves that begin or end there; a curve that does both is listed twice"},
+      Member{"sheets", &AxisJunction::sheets, "", "sheets that contain it"},
   };
 };
 
@@ -121,19 +121,20 @@ struct AxisLine {
 template <>
 struct Description<AxisLine> {
   static constexpr std::string_view name = "AxisLine";
-  static constexpr std::string_view doc = "A seam or a curve of an axis, from junction to junction or closed";
+  static constexpr std::string_view doc = "Seam or curve of an axis, from junction to junction or closed";
   static constexpr std::tuple members{
-      Member{"length", &AxisLine::length, "mesh units", "of its edges"},
+      Member{"length", &AxisLine::length, "mesh units", "length of its edges"},
       Member{"homotopy_length", &AxisLine::homotopy_length, "mesh units",
-             "of its edges that are there for homotopy alone"},
-      Member{"closed", &AxisLine::closed, "", "whether it is a loop without a junction"},
-      Member{"junctions", &AxisLine::junctions, "", "where it begins and ends; none of closed ones"},
+             "length of its edges that exist for homotopy alone"},
+      Member{"closed", &AxisLine::closed, "", "true if it is a loop without a junction"},
+      Member{"junctions", &AxisLine::junctions, "", "junctions at its two ends; none if closed"},
       Member{"radius", &AxisLine::radius, "mesh units", "distance to the surface along it"},
-      Member{"sheets", &AxisLine::sheets, "", "of seams: those that meet along it; of curves: those at its ends"},
-      Member{"vertices", &AxisLine::vertices, "", "of the axis, in order; of closed ones the first again at the end"},
-      Member{"points", &AxisLine::points, "mesh units", "their positions"},
-      Member{"radii", &AxisLine::radii, "mesh units", "their radii"},
-      Member{"arc_length", &AxisLine::arc_length, "mesh units", "from the first vertex to each"},
+      Member{"sheets", &AxisLine::sheets, "", "seams: sheets that meet along it; curves: sheets at its ends"},
+      Member{"vertices", &AxisLine::vertices, "",
+             "vertices of the axis, in order; if closed, the first one again at the end"},
+      Member{"points", &AxisLine::points, "mesh units", "positions of the vertices"},
+      Member{"radii", &AxisLine::radii, "mesh units", "radii of the vertices"},
+      Member{"arc_length", &AxisLine::arc_length, "mesh units", "arc length from the first vertex to each vertex"},
   };
 };
 
@@ -149,13 +150,12 @@ struct AxisPatch {
 template <>
 struct Description<AxisPatch> {
   static constexpr std::string_view name = "AxisPatch";
-  static constexpr std::string_view doc =
-      "A smooth part of the input mesh: faces joined through edges that bend little";
+  static constexpr std::string_view doc = "Smooth part of the input mesh: faces joined through edges that bend little";
   static constexpr std::tuple members{
       Member{"faces", &AxisPatch::faces, "", "triangles of the mesh"},
-      Member{"area", &AxisPatch::area, "square mesh units", "of the faces"},
-      Member{"centroid", &AxisPatch::centroid, "mesh units", "of the area"},
-      Member{"normal", &AxisPatch::normal, "", "of unit length, the mean over the area; 0 where there is none"},
+      Member{"area", &AxisPatch::area, "square mesh units", "area of the faces"},
+      Member{"centroid", &AxisPatch::centroid, "mesh units", "centroid of the area"},
+      Member{"normal", &AxisPatch::normal, "", "unit vector, mean normal over the area; 0 if there is none"},
   };
 };
 
@@ -170,11 +170,11 @@ template <>
 struct Description<AxisPatchPair> {
   static constexpr std::string_view name = "AxisPatchPair";
   static constexpr std::string_view doc =
-      "Two parts of the surface that a sheet lies between; several patches stand for the edge or corner between them";
+      "Two parts of the surface on both sides of a sheet; several patches stand for the edge or corner between them";
   static constexpr std::tuple members{
-      Member{"first", &AxisPatchPair::first, "", "patches that the footprints of one side lie on"},
-      Member{"second", &AxisPatchPair::second, "", "patches that those of the other side lie on"},
-      Member{"share", &AxisPatchPair::share, "", "of the sheet's area, 0 to 1"},
+      Member{"first", &AxisPatchPair::first, "", "patches with the footprints of one side"},
+      Member{"second", &AxisPatchPair::second, "", "patches with the footprints of the other side"},
+      Member{"share", &AxisPatchPair::share, "", "share of the sheet's area, 0 to 1"},
   };
 };
 
@@ -203,32 +203,32 @@ struct AxisSheet {
 template <>
 struct Description<AxisSheet> {
   static constexpr std::string_view name = "AxisSheet";
-  static constexpr std::string_view doc = "A sheet of an axis; its border is that of the surface cut open along seams";
+  static constexpr std::string_view doc = "Sheet of an axis; its border is that of the surface cut open along seams";
   static constexpr std::tuple members{
-      Member{"sheet", &AxisSheet::sheet, "", "its number in the axis"},
-      Member{"triangles", &AxisSheet::triangles, "", "that it has"},
-      Member{"area", &AxisSheet::area, "square mesh units", "of the triangles"},
+      Member{"sheet", &AxisSheet::sheet, "", "number of the sheet in the axis"},
+      Member{"triangles", &AxisSheet::triangles, "", "number of triangles"},
+      Member{"area", &AxisSheet::area, "square mesh units", "area of the triangles"},
       Member{"homotopy_area", &AxisSheet::homotopy_area, "square mesh units",
-             "of the triangles that are there for homotopy alone"},
-      Member{"for_homotopy", &AxisSheet::for_homotopy, "", "whether all of them are"},
+             "area of the triangles that exist for homotopy alone"},
+      Member{"for_homotopy", &AxisSheet::for_homotopy, "", "true if all triangles exist for homotopy alone"},
       Member{"thickness", &AxisSheet::thickness, "mesh units", "twice the radius"},
       Member{"separation_angle", &AxisSheet::separation_angle, "degrees",
-             "at which its vertices see their footprints: near 180 between parallel walls"},
+             "separation angle of its vertices: near 180 between parallel walls"},
       Member{"wall_area", &AxisSheet::wall_area, "square mesh units",
-             "of the triangles between walls that face each other: at 150 degrees or more"},
+             "area of the triangles between walls that face each other: at 150 degrees or more"},
       Member{"wall_thickness", &AxisSheet::wall_thickness, "mesh units",
-             "twice the radius of these; zeros where there are none"},
-      Member{"centroid", &AxisSheet::centroid, "mesh units", "of the area"},
-      Member{"rim_length", &AxisSheet::rim_length, "mesh units", "of the border where it ends freely"},
-      Member{"seam_length", &AxisSheet::seam_length, "mesh units", "of the border along seams"},
+             "twice the radius of these triangles; zeros if there are none"},
+      Member{"centroid", &AxisSheet::centroid, "mesh units", "centroid of the area"},
+      Member{"rim_length", &AxisSheet::rim_length, "mesh units", "length of the border where the sheet ends freely"},
+      Member{"seam_length", &AxisSheet::seam_length, "mesh units", "length of the border along seams"},
       Member{"crease_length", &AxisSheet::crease_length, "mesh units",
-             "of the border along edges where it meets one other sheet"},
-      Member{"boundary_loops", &AxisSheet::boundary_loops, "", "closed lines that its border consists of"},
+             "length of the border along edges where it meets one other sheet"},
+      Member{"boundary_loops", &AxisSheet::boundary_loops, "", "number of closed lines that form its border"},
       Member{"euler_characteristic", &AxisSheet::euler_characteristic, "",
-             "of the surface cut open: 1 for a disc, 0 for a ring, 2 for a sphere"},
-      Member{"seams", &AxisSheet::seams, "", "that it meets others or itself along"},
+             "Euler characteristic of the surface cut open: 1 for a disc, 0 for a ring, 2 for a sphere"},
+      Member{"seams", &AxisSheet::seams, "", "seams along which it meets others or itself"},
       Member{"patch_pairs", &AxisSheet::patch_pairs, "",
-             "parts of the surface that it lies between, by falling share; none without the mesh"},
+             "parts of the surface on both sides, by falling share; none without the mesh"},
   };
 };
 
@@ -249,21 +249,21 @@ struct AxisGraph {
 template <>
 struct Description<AxisGraph> {
   static constexpr std::string_view name = "AxisGraph";
-  static constexpr std::string_view doc = "A medial axis as sheets, seams, curves and junctions that meet";
+  static constexpr std::string_view doc = "Medial axis as sheets, seams, curves and junctions that meet";
   static constexpr std::tuple members{
-      Member{"sheets", &AxisGraph::sheets, "", "by rising number"},
-      Member{"seams", &AxisGraph::seams, "", "where three or more triangles meet"},
-      Member{"curves", &AxisGraph::curves, "", "edges of no triangle"},
-      Member{"junctions", &AxisGraph::junctions, "", "by rising vertex"},
+      Member{"sheets", &AxisGraph::sheets, "", "sheets by rising number"},
+      Member{"seams", &AxisGraph::seams, "", "lines where three or more triangles meet"},
+      Member{"curves", &AxisGraph::curves, "", "lines of edges without triangles"},
+      Member{"junctions", &AxisGraph::junctions, "", "junctions by rising vertex"},
       Member{"patches", &AxisGraph::patches, "", "smooth parts of the mesh; none without it"},
-      Member{"area", &AxisGraph::area, "square mesh units", "of all triangles"},
+      Member{"area", &AxisGraph::area, "square mesh units", "area of all triangles"},
       Member{"homotopy_area", &AxisGraph::homotopy_area, "square mesh units",
-             "of those that are there for homotopy alone"},
-      Member{"seam_length", &AxisGraph::seam_length, "mesh units", "of all seams"},
-      Member{"curve_length", &AxisGraph::curve_length, "mesh units", "of all curves"},
-      Member{"rim_length", &AxisGraph::rim_length, "mesh units", "of all rims"},
+             "area of the triangles that exist for homotopy alone"},
+      Member{"seam_length", &AxisGraph::seam_length, "mesh units", "length of all seams"},
+      Member{"curve_length", &AxisGraph::curve_length, "mesh units", "length of all curves"},
+      Member{"rim_length", &AxisGraph::rim_length, "mesh units", "length of all rims"},
       Member{"homotopy_curve_length", &AxisGraph::homotopy_curve_length, "mesh units",
-             "of curves that are there for homotopy alone"},
+             "length of curves that exist for homotopy alone"},
   };
 };
 

@@ -30,15 +30,15 @@ struct ExtendOptions {
 template <>
 struct Description<ExtendOptions> {
   static constexpr std::string_view name = "ExtendOptions";
-  static constexpr std::string_view doc = "How the sheets of a medial axis are extended to the surface";
+  static constexpr std::string_view doc = "Options of extending the sheets of a medial axis to the surface";
   static constexpr std::tuple members{
       Member{"max_length", &ExtendOptions::max_length, "radii",
-             "rims are extended by at most this many of their radii; in plates the border is 1 away",
-             Range::positive()},
+             "largest extension of a rim, in radii of the rim; in plates the border is 1 away", Range::positive()},
       Member{"border_radius", &ExtendOptions::border_radius, "",
-             "rims stay whose radius is at most this part of the largest one of their sheet", Range::at_least(0)},
+             "rims that stay: those with at most this fraction of the largest radius of their sheet",
+             Range::at_least(0)},
       Member{"tolerance", &ExtendOptions::tolerance, "radii",
-             "how far the new border may be off the surface between its vertices", Range::positive()},
+             "largest distance of the new border from the surface between its vertices", Range::positive()},
   };
 };
 
@@ -62,23 +62,23 @@ struct ExtendReport {
 template <>
 struct Description<ExtendReport> {
   static constexpr std::string_view name = "ExtendReport";
-  static constexpr std::string_view doc = "What became of the rims of a medial axis that was extended";
+  static constexpr std::string_view doc = "Counts and lengths of the rims of an extended medial axis by outcome";
   static constexpr std::tuple members{
-      Member{"rim_length", &ExtendReport::rim_length, "mesh units", "of the axis"},
+      Member{"rim_length", &ExtendReport::rim_length, "mesh units", "length of the rims of the axis"},
       Member{"open_length", &ExtendReport::open_length, "mesh units",
-             "of the rims that got no triangle and are not at the border"},
-      Member{"rim_vertices", &ExtendReport::rim_vertices, "", "of the axis; the sum of the next four"},
+             "length of the rims that got no triangle and are not at the border"},
+      Member{"rim_vertices", &ExtendReport::rim_vertices, "", "rim vertices of the axis; sum of the next four"},
       Member{"reached_border", &ExtendReport::reached_border, "", "rim vertices that were joined to the surface"},
       Member{"reached_sheet", &ExtendReport::reached_sheet, "", "rim vertices that were joined to another sheet"},
       Member{"at_border", &ExtendReport::at_border, "",
-             "rim vertices that were at the border or on another sheet already"},
+             "rim vertices that were already at the border or on another sheet"},
       Member{"not_reached", &ExtendReport::not_reached, "", "rim vertices that met nothing within the length"},
       Member{"left_out", &ExtendReport::left_out, "",
-             "rim edges without triangles, as these would fold back or leave the solid"},
-      Member{"vertices", &ExtendReport::vertices, "", "new ones"},
-      Member{"triangles", &ExtendReport::triangles, "", "new ones"},
-      Member{"axis_area", &ExtendReport::axis_area, "square mesh units", "of all triangles of the axis"},
-      Member{"area", &ExtendReport::area, "square mesh units", "of all triangles of the extended surface"},
+             "rim edges without triangles, because these would fold back or leave the solid"},
+      Member{"vertices", &ExtendReport::vertices, "", "new vertices"},
+      Member{"triangles", &ExtendReport::triangles, "", "new triangles"},
+      Member{"axis_area", &ExtendReport::axis_area, "square mesh units", "area of all triangles of the axis"},
+      Member{"area", &ExtendReport::area, "square mesh units", "area of all triangles of the extended surface"},
   };
 };
 

@@ -54,11 +54,13 @@ struct Description<BodyCheck> {
   static constexpr std::string_view name = "BodyCheck";
   static constexpr std::string_view doc = "Components, tunnels and voids of one body and of the axis in it";
   static constexpr std::tuple members{
-      Member{"solid_betti", &BodyCheck::solid, "", "of the body"},
-      Member{"axis_betti", &BodyCheck::axis, "", "of the parts of the axis that lie in it"},
-      Member{"tunnels_met", &BodyCheck::tunnels_met, "", "rank modulo 2 of what loops of the axis run around"},
-      Member{"voids_met", &BodyCheck::voids_met, "", "rank modulo 2 of what closed surfaces of the axis are around"},
-      Member{"proven", &BodyCheck::proven, "", "what is shown of its topology"},
+      Member{"solid_betti", &BodyCheck::solid, "", "components, tunnels, voids of the body"},
+      Member{"axis_betti", &BodyCheck::axis, "", "components, tunnels, voids of the parts of the axis in it"},
+      Member{"tunnels_met", &BodyCheck::tunnels_met, "",
+             "rank modulo 2 of the linking of loops of the axis with the tunnels"},
+      Member{"voids_met", &BodyCheck::voids_met, "",
+             "rank modulo 2 of the winding of closed surfaces of the axis around the voids"},
+      Member{"proven", &BodyCheck::proven, "", "proven agreement of its topology"},
   };
 };
 
@@ -85,12 +87,12 @@ struct GeometryCheck {
 template <>
 struct Description<GeometryCheck> {
   static constexpr std::string_view name = "GeometryCheck";
-  static constexpr std::string_view doc = "How far vertices are from what they claim";
+  static constexpr std::string_view doc = "Errors of the vertices";
   static constexpr std::tuple members{
-      Member{"vertices", &GeometryCheck::vertices, "", "looked at"},
+      Member{"vertices", &GeometryCheck::vertices, "", "checked vertices"},
       Member{"not_finite", &GeometryCheck::not_finite, "",
-             "of them, those with a coordinate or radius that is no finite number"},
-      Member{"outside", &GeometryCheck::outside, "", "of them, those outside of the solid by more than is allowed"},
+             "vertices with a coordinate, radius, footprint or angle that is not finite"},
+      Member{"outside", &GeometryCheck::outside, "", "vertices outside the solid by more than the tolerance"},
       Member{"outside_by", &GeometryCheck::outside_by, "mesh units", "largest distance of a vertex from the solid"},
       Member{"radius_error", &GeometryCheck::radius_error, "mesh units",
              "largest |radius - exact distance to the surface|"},
@@ -101,8 +103,8 @@ struct Description<GeometryCheck> {
       Member{"site_error", &GeometryCheck::site_error, "mesh units", "largest distance of a footprint from its site"},
       Member{"angle_error", &GeometryCheck::angle_error, "degrees",
              "largest |separation angle - angle between the footprints|"},
-      Member{"tolerance", &GeometryCheck::tolerance, "mesh units", "what is allowed in the largest body"},
-      Member{"holds", &GeometryCheck::holds, "", "whether no vertex is outside, and no error above what is allowed"},
+      Member{"tolerance", &GeometryCheck::tolerance, "mesh units", "tolerance in the largest body"},
+      Member{"holds", &GeometryCheck::holds, "", "true if no vertex is outside, and no error exceeds its tolerance"},
   };
 };
 
@@ -131,19 +133,20 @@ struct EdgeCheck {
 template <>
 struct Description<EdgeCheck> {
   static constexpr std::string_view name = "EdgeCheck";
-  static constexpr std::string_view doc = "Whether edges lie in the solid between their ends";
+  static constexpr std::string_view doc = "Check that edges lie in the solid between their ends";
   static constexpr std::tuple members{
-      Member{"edges", &EdgeCheck::edges, "", "looked at, each once"},
-      Member{"pushed", &EdgeCheck::pushed, "", "of them, those that cut a corner, and can be pushed into the solid"},
-      Member{"pushed_by", &EdgeCheck::pushed_by, "mesh units", "how far the furthest of these is out"},
-      Member{"outside", &EdgeCheck::outside, "", "those that leave the solid otherwise"},
-      Member{"outside_by", &EdgeCheck::outside_by, "mesh units", "how far the furthest of these is out, at least"},
-      Member{"where", &EdgeCheck::where, "mesh units", "and there"},
-      Member{"across", &EdgeCheck::across, "", "those out by no more than the tolerance that cross a gap there"},
-      Member{"across_at", &EdgeCheck::across_at, "mesh units", "the first of these"},
-      Member{"untold", &EdgeCheck::untold, "", "those of which that cannot be told: only Betti numbers are proven"},
-      Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "what is allowed"},
-      Member{"holds", &EdgeCheck::holds, "", "whether none is outside or crosses a gap"},
+      Member{"edges", &EdgeCheck::edges, "", "checked edges, each counted once"},
+      Member{"pushed", &EdgeCheck::pushed, "", "edges that cut a corner, and can be pushed into the solid"},
+      Member{"pushed_by", &EdgeCheck::pushed_by, "mesh units", "largest distance of these from the solid"},
+      Member{"outside", &EdgeCheck::outside, "", "edges that leave the solid otherwise"},
+      Member{"outside_by", &EdgeCheck::outside_by, "mesh units", "largest distance of these from the solid, at least"},
+      Member{"where", &EdgeCheck::where, "mesh units", "place of that distance"},
+      Member{"across", &EdgeCheck::across, "",
+             "edges that leave the solid only within the tolerance, but cross a gap there"},
+      Member{"across_at", &EdgeCheck::across_at, "mesh units", "place of the first of these"},
+      Member{"untold", &EdgeCheck::untold, "", "edges for which that is undecided; then only Betti numbers are proven"},
+      Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "tolerance"},
+      Member{"holds", &EdgeCheck::holds, "", "true if no edge is outside or crosses a gap"},
   };
 };
 
@@ -169,16 +172,17 @@ struct HomologyCheck {
 template <>
 struct Description<HomologyCheck> {
   static constexpr std::string_view name = "HomologyCheck";
-  static constexpr std::string_view doc = "Whether an axis's way into its solid is an isomorphism of homology";
+  static constexpr std::string_view doc =
+      "Check that the inclusion of the axis into its solid is an isomorphism of homology";
   static constexpr std::tuple members{
-      Member{"paths", &HomologyCheck::paths, "", "closed ones along the surface that loops were linked with"},
-      Member{"triangles", &HomologyCheck::triangles, "", "of the axis, in bodies with tunnels"},
-      Member{"across", &HomologyCheck::across, "", "of them, those that span a hole of the solid"},
-      Member{"where", &HomologyCheck::where, "mesh units", "the first of these"},
-      Member{"doubtful", &HomologyCheck::doubtful, "", "edges that touch the surface, so that linking cannot be told"},
-      Member{"proven", &HomologyCheck::proven, "", "what is shown in every body"},
-      Member{"holds", &HomologyCheck::holds, "", "whether nothing speaks against it, shown or not"},
-      Member{"shown", &HomologyCheck::shown, "", "what is shown, and why no more: one sentence"},
+      Member{"paths", &HomologyCheck::paths, "", "closed paths along the surface with which loops were linked"},
+      Member{"triangles", &HomologyCheck::triangles, "", "triangles of the axis in bodies with tunnels"},
+      Member{"across", &HomologyCheck::across, "", "triangles that span a hole of the solid"},
+      Member{"where", &HomologyCheck::where, "mesh units", "place of the first of these"},
+      Member{"doubtful", &HomologyCheck::doubtful, "", "edges that touch the surface, so that linking is undecided"},
+      Member{"proven", &HomologyCheck::proven, "", "result that holds in every body"},
+      Member{"holds", &HomologyCheck::holds, "", "true if nothing contradicts it, proven or not"},
+      Member{"shown", &HomologyCheck::shown, "", "proven result, and the reason why it is not more, in one sentence"},
   };
 };
 
@@ -206,17 +210,18 @@ struct BallUnionCheck {
 template <>
 struct Description<BallUnionCheck> {
   static constexpr std::string_view name = "BallUnionCheck";
-  static constexpr std::string_view doc = "How much of the solid the balls of an axis fill: told, not judged";
+  static constexpr std::string_view doc =
+      "Distances between the solid and the balls of an axis, reported and not judged";
   static constexpr std::tuple members{
       Member{"solid_to_balls", &BallUnionCheck::solid_to_balls, "mesh units",
-             "largest distance of the solid's surface from the union"},
-      Member{"mean_solid_to_balls", &BallUnionCheck::mean_solid_to_balls, "mesh units", "the same, its mean"},
+             "largest distance of the solid's surface from the union of the balls"},
+      Member{"mean_solid_to_balls", &BallUnionCheck::mean_solid_to_balls, "mesh units", "mean of that distance"},
       Member{"balls_beyond_solid", &BallUnionCheck::balls_beyond_solid, "mesh units",
-             "how far balls reach out of the solid"},
+             "largest distance by which balls reach out of the solid"},
       Member{"balls_to_surface", &BallUnionCheck::balls_to_surface, "mesh units",
              "largest distance of the union's surface from the solid's"},
       Member{"sample_step", &BallUnionCheck::step, "mesh units",
-             "each point of the surface is at most this far from a sample"},
+             "largest distance of a point of the surface from a sample"},
   };
 };
 
@@ -309,46 +314,52 @@ struct MedialCheck {
 template <>
 struct Description<MedialCheck> {
   static constexpr std::string_view name = "MedialCheck";
-  static constexpr std::string_view doc = "Whether an axis is in the middle of its solid, and all that is there";
+  static constexpr std::string_view doc =
+      "Check that an axis lies in the middle of its solid, and that no part is missing";
   static constexpr std::tuple members{
-      Member{"allowance", &MedialCheck::allowance, "mesh units", "how far from the middle a point may be"},
-      Member{"one_wall", &MedialCheck::one_wall, "", "vertices that see one wall"},
-      Member{"claimed_vertices", &MedialCheck::claimed_vertices, "", "vertices of what two walls should see"},
+      Member{"allowance", &MedialCheck::allowance, "mesh units",
+             "largest accepted distance of a point from the middle"},
+      Member{"one_wall", &MedialCheck::one_wall, "", "vertices that see only one wall"},
+      Member{"claimed_vertices", &MedialCheck::claimed_vertices, "",
+             "vertices of cells that should lie between two walls"},
       Member{"one_wall_off", &MedialCheck::one_wall_off, "",
-             "of those that both are (some, where many), those not near the middle nor beside a thin part"},
-      Member{"one_wall_far", &MedialCheck::one_wall_far, "", "of these, those far off"},
-      Member{"far_at", &MedialCheck::far_at, "mesh units", "the first of these"},
+             "vertices (sampled if many) that should see two walls, see one, and lie neither near the middle nor "
+             "beside a thin part"},
+      Member{"one_wall_far", &MedialCheck::one_wall_far, "", "those of these that are far off"},
+      Member{"far_at", &MedialCheck::far_at, "mesh units", "position of the first of these"},
       Member{"deep_vertices", &MedialCheck::deep_vertices, "",
-             "of what two walls should see, deeper than the allowance"},
-      Member{"deep_one_wall", &MedialCheck::deep_one_wall, "", "of these, those that see one wall"},
-      Member{"homotopy_share", &MedialCheck::homotopy_share, "", "of the area: what only homotopy keeps"},
-      Member{"samples", &MedialCheck::samples, "", "points of sheets and curves that were looked at"},
-      Member{"medial_share", &MedialCheck::medial_share, "", "of these, what is in the middle, by area"},
-      Member{"near_share", &MedialCheck::near_share, "", "the same within a quarter of the way to the walls"},
+             "vertices of cells that should lie between two walls, deeper than the allowance"},
+      Member{"deep_one_wall", &MedialCheck::deep_one_wall, "", "those of these that see only one wall"},
+      Member{"homotopy_share", &MedialCheck::homotopy_share, "", "share of the area that exists for homotopy alone"},
+      Member{"samples", &MedialCheck::samples, "", "examined points of sheets and curves"},
+      Member{"medial_share", &MedialCheck::medial_share, "", "share of these in the middle, by area"},
+      Member{"near_share", &MedialCheck::near_share, "", "share also within a quarter of the distance to the walls"},
       Member{"close_share", &MedialCheck::close_share, "",
-             "the same within a third of a voxel, or the deviation, or an eighth of that way"},
-      Member{"close_allowance", &MedialCheck::close_allowance, "mesh units", "that length"},
-      Member{"off_by", &MedialCheck::off_by, "mesh units", "how far the worst of these is from the middle"},
-      Member{"off_at", &MedialCheck::off_at, "mesh units", "and there"},
-      Member{"sheets_judged", &MedialCheck::sheets_judged, "", "sheets with samples enough to judge them one by one"},
-      Member{"sheets_off", &MedialCheck::sheets_off, "", "of these, those for the most part not in the middle"},
-      Member{"sheet_off_at", &MedialCheck::sheet_off_at, "mesh units", "a point of the first of these"},
+             "share within close_allowance or an eighth of the distance to the walls"},
+      Member{"close_allowance", &MedialCheck::close_allowance, "mesh units",
+             "a third of a voxel, or the deviation plus a twelfth of a voxel"},
+      Member{"off_by", &MedialCheck::off_by, "mesh units", "largest distance of these from the middle"},
+      Member{"off_at", &MedialCheck::off_at, "mesh units", "place of that distance"},
+      Member{"sheets_judged", &MedialCheck::sheets_judged, "", "sheets with enough samples to be judged one by one"},
+      Member{"sheets_off", &MedialCheck::sheets_off, "", "sheets that are mostly off the middle"},
+      Member{"sheet_off_at", &MedialCheck::sheet_off_at, "mesh units", "point of the first of these"},
       Member{"sought_angle", &MedialCheck::sought_angle, "degrees",
-             "from where the axis must have all; 0 where that was not looked at"},
+             "angle from which nothing may be missing; 0 if that was not checked"},
       Member{"missing_allowance", &MedialCheck::missing_allowance, "mesh units",
-             "how close the axis must come to the balls"},
-      Member{"balls", &MedialCheck::balls, "", "from random points of the solid that see more than that"},
-      Member{"missed_share", &MedialCheck::missed_share, "", "of these, those that the axis has nothing near"},
-      Member{"missed_by", &MedialCheck::missed_by, "mesh units", "how far the worst of all is from the axis"},
-      Member{"missed_at", &MedialCheck::missed_at, "mesh units", "and there"},
-      Member{"bodies_unseen", &MedialCheck::bodies_unseen, "", "in which too few points beside the surface see more"},
-      Member{"bodies_missed", &MedialCheck::bodies_missed, "", "of the others, those in which too much is missed"},
-      Member{"missed_share_of_body", &MedialCheck::missed_share_of_body, "", "of the balls of the worst body"},
+             "largest accepted distance of a ball centre from the axis"},
+      Member{"balls", &MedialCheck::balls, "", "balls from random points of the solid that see at least that angle"},
+      Member{"missed_share", &MedialCheck::missed_share, "", "share of these without a point of the axis nearby"},
+      Member{"missed_by", &MedialCheck::missed_by, "mesh units", "largest distance of these from the axis"},
+      Member{"missed_at", &MedialCheck::missed_at, "mesh units", "place of that distance"},
+      Member{"bodies_unseen", &MedialCheck::bodies_unseen, "",
+             "bodies with too few such balls from points near the surface"},
+      Member{"bodies_missed", &MedialCheck::bodies_missed, "", "other bodies in which too many balls are missed"},
+      Member{"missed_share_of_body", &MedialCheck::missed_share_of_body, "", "share of missed balls in the worst body"},
       Member{"missed_in_body_by", &MedialCheck::missed_in_body_by, "mesh units",
-             "how far the worst ball of that body is from the axis"},
-      Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units", "and there"},
-      Member{"judges_missing", &MedialCheck::judges_missing, "", "whether there are balls enough to tell"},
-      Member{"holds", &MedialCheck::holds, "", "whether enough is in the middle, and little is missed"},
+             "largest distance of a ball of that body from the axis"},
+      Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units", "place of that distance"},
+      Member{"judges_missing", &MedialCheck::judges_missing, "", "true if there are enough balls to judge"},
+      Member{"holds", &MedialCheck::holds, "", "true if enough is in the middle, and little is missed"},
   };
 };
 
@@ -373,17 +384,17 @@ struct TriangleCheck {
 template <>
 struct Description<TriangleCheck> {
   static constexpr std::string_view name = "TriangleCheck";
-  static constexpr std::string_view doc = "Whether triangles lie in the solid between their edges";
+  static constexpr std::string_view doc = "Check that triangles lie in the solid between their edges";
   static constexpr std::tuple members{
-      Member{"triangles", &TriangleCheck::triangles, "", "looked at"},
-      Member{"leaving", &TriangleCheck::leaving, "", "of them, those that leave the solid by more than the tolerance"},
-      Member{"outside", &TriangleCheck::outside, "", "of these, those that do so by more than the allowance"},
-      Member{"outside_by", &TriangleCheck::outside_by, "mesh units", "how far the furthest is out"},
-      Member{"where", &TriangleCheck::where, "mesh units", "and there"},
-      Member{"undecided", &TriangleCheck::undecided, "", "those in walls so thin that it cannot be told"},
-      Member{"tolerance", &TriangleCheck::tolerance, "mesh units", "that of edges"},
-      Member{"allowance", &TriangleCheck::allowance, "mesh units", "how far out is allowed"},
-      Member{"holds", &TriangleCheck::holds, "", "whether none is outside"},
+      Member{"triangles", &TriangleCheck::triangles, "", "checked triangles"},
+      Member{"leaving", &TriangleCheck::leaving, "", "triangles that leave the solid by more than the tolerance"},
+      Member{"outside", &TriangleCheck::outside, "", "those of these that leave it by more than the allowance"},
+      Member{"outside_by", &TriangleCheck::outside_by, "mesh units", "largest distance from the solid"},
+      Member{"where", &TriangleCheck::where, "mesh units", "place of that distance"},
+      Member{"undecided", &TriangleCheck::undecided, "", "triangles in walls so thin that the result is undecided"},
+      Member{"tolerance", &TriangleCheck::tolerance, "mesh units", "tolerance of edges"},
+      Member{"allowance", &TriangleCheck::allowance, "mesh units", "accepted distance from the solid"},
+      Member{"holds", &TriangleCheck::holds, "", "true if no triangle is outside"},
   };
 };
 
@@ -410,18 +421,18 @@ struct LabelCheck {
 template <>
 struct Description<LabelCheck> {
   static constexpr std::string_view name = "LabelCheck";
-  static constexpr std::string_view doc = "Whether roles and sheets are those that the triangles give";
+  static constexpr std::string_view doc = "Check that roles and sheets fit the triangles";
   static constexpr std::tuple members{
-      Member{"doubled", &LabelCheck::doubled, "", "cells that name the vertices of another one"},
+      Member{"doubled", &LabelCheck::doubled, "", "cells with the same vertices as another one"},
       Member{"inner_listed", &LabelCheck::inner_listed, "", "listed edges of two triangles"},
       Member{"unlisted", &LabelCheck::unlisted, "", "rims and seams that are not listed"},
-      Member{"edge_roles", &LabelCheck::edge_roles, "", "edges of a false role"},
-      Member{"vertex_roles", &LabelCheck::vertex_roles, "", "vertices of a false role"},
+      Member{"edge_roles", &LabelCheck::edge_roles, "", "edges with a wrong role"},
+      Member{"vertex_roles", &LabelCheck::vertex_roles, "", "vertices with a wrong role"},
       Member{"sheets", &LabelCheck::sheets, "", "labels of triangles"},
       Member{"gaps", &LabelCheck::gaps, "", "numbers below the largest that no triangle has"},
-      Member{"torn", &LabelCheck::torn, "", "of them, those that do not hang together"},
-      Member{"parted", &LabelCheck::parted, "", "edges of two sheets, away from seams"},
-      Member{"holds", &LabelCheck::holds, "", "whether nothing is wrong"},
+      Member{"torn", &LabelCheck::torn, "", "sheets that are not connected"},
+      Member{"parted", &LabelCheck::parted, "", "edges between two sheets, away from seams"},
+      Member{"holds", &LabelCheck::holds, "", "true if nothing is wrong"},
   };
 };
 
@@ -448,21 +459,23 @@ struct AngleCheck {
 template <>
 struct Description<AngleCheck> {
   static constexpr std::string_view name = "AngleCheck";
-  static constexpr std::string_view doc = "Whether separation angles of triangles and edges are those of their places";
+  static constexpr std::string_view doc = "Check that separation angles of triangles and edges fit their positions";
   static constexpr std::tuple members{
-      Member{"triangles", &AngleCheck::triangles, "", "whose corners all see two walls"},
-      Member{"below_share", &AngleCheck::below_share, "", "of their area: what says less than each corner sees"},
-      Member{"samples", &AngleCheck::samples, "", "triangles that were looked at"},
-      Member{"above_share", &AngleCheck::above_share, "", "of these: what says more than is seen within a voxel"},
-      Member{"curve_samples", &AngleCheck::curve_samples, "", "edges of curves that were looked at"},
-      Member{"curves_above_share", &AngleCheck::curves_above_share, "", "the same of these"},
+      Member{"triangles", &AngleCheck::triangles, "", "triangles whose corners all see two walls"},
+      Member{"below_share", &AngleCheck::below_share, "",
+             "share of their area with an angle below those of all corners"},
+      Member{"samples", &AngleCheck::samples, "", "examined triangles"},
+      Member{"above_share", &AngleCheck::above_share, "",
+             "share of these with an angle above all found within a voxel"},
+      Member{"curve_samples", &AngleCheck::curve_samples, "", "examined edges of curves"},
+      Member{"curves_above_share", &AngleCheck::curves_above_share, "", "share of these with such an angle"},
       Member{"borders", &AngleCheck::borders, "", "rims and seams"},
-      Member{"borders_above", &AngleCheck::borders_above, "", "of them, those that say more than all their triangles"},
-      Member{"borders_below", &AngleCheck::borders_below, "", "those that say 20 degrees less"},
-      Member{"rims", &AngleCheck::rims, "", "looked at; none where theta is not known"},
+      Member{"borders_above", &AngleCheck::borders_above, "", "those with an angle above those of all their triangles"},
+      Member{"borders_below", &AngleCheck::borders_below, "", "those with an angle 20 degrees below"},
+      Member{"rims", &AngleCheck::rims, "", "examined rims; none if theta is unknown"},
       Member{"low_rims_share", &AngleCheck::low_rims_share, "",
-             "of rims and curves, by length: rims of sheets that nothing sees at more than theta"},
-      Member{"holds", &AngleCheck::holds, "", "whether shares are small"},
+             "share of the length of rims and curves in rims of sheets without an angle above theta"},
+      Member{"holds", &AngleCheck::holds, "", "true if all shares are small enough"},
   };
 };
 
@@ -489,22 +502,22 @@ template <>
 struct Description<CertificateOptions> {
   static constexpr std::string_view name = "CertificateOptions";
   static constexpr std::string_view doc =
-      "What a certificate looks at besides numbers of components, tunnels and voids";
+      "Parts that a certificate checks besides numbers of components, tunnels and voids";
   static constexpr std::tuple members{
-      Member{"positions", &CertificateOptions::positions, "", "where vertices and edges lie"},
-      Member{"radii", &CertificateOptions::radii, "", "of vertices"},
-      Member{"footprints", &CertificateOptions::footprints, "", "of vertices; with radii"},
-      Member{"angles", &CertificateOptions::angles, "", "of vertices, triangles and edges; with footprints"},
-      Member{"sites", &CertificateOptions::sites, "", "of vertices; with footprints"},
-      Member{"labels", &CertificateOptions::labels, "", "roles and sheets; with positions"},
-      Member{"balls", &CertificateOptions::balls, "", "what the balls fill; with radii"},
-      Member{"medial", &CertificateOptions::medial, "", "whether it is in the middle of the solid; with radii"},
-      Member{"theta", &CertificateOptions::theta, "degrees", "of the axis, as it says"},
-      Member{"lambda", &CertificateOptions::lambda, "mesh units", "of the axis, as it says", Range::at_least(0)},
-      Member{"spacing", &CertificateOptions::spacing, "mesh units", "side of its voxels, as it says",
+      Member{"positions", &CertificateOptions::positions, "", "positions of vertices and edges"},
+      Member{"radii", &CertificateOptions::radii, "", "radii of vertices"},
+      Member{"footprints", &CertificateOptions::footprints, "", "footprints of vertices; needs radii"},
+      Member{"angles", &CertificateOptions::angles, "", "angles of vertices, triangles and edges; needs footprints"},
+      Member{"sites", &CertificateOptions::sites, "", "sites of vertices; needs footprints"},
+      Member{"labels", &CertificateOptions::labels, "", "roles and sheets; needs positions"},
+      Member{"balls", &CertificateOptions::balls, "", "distances between solid and balls; needs radii"},
+      Member{"medial", &CertificateOptions::medial, "", "middle of the solid and missing parts; needs radii"},
+      Member{"theta", &CertificateOptions::theta, "degrees", "angle that the axis reports"},
+      Member{"lambda", &CertificateOptions::lambda, "mesh units", "lambda that the axis reports", Range::at_least(0)},
+      Member{"spacing", &CertificateOptions::spacing, "mesh units", "side of a voxel that the axis reports",
              Range::positive()},
       Member{"deviation", &CertificateOptions::deviation, "mesh units",
-             "how far vertices that were taken out moved it, as it says", Range::at_least(0)},
+             "deviation by removed vertices that the axis reports", Range::at_least(0)},
   };
 };
 
@@ -532,26 +545,27 @@ struct Certificate {
 template <>
 struct Description<Certificate> {
   static constexpr std::string_view name = "Certificate";
-  static constexpr std::string_view doc = "Whether an axis has the topology and the geometry of its solid";
+  static constexpr std::string_view doc =
+      "Result of checking the topology and the geometry of an axis against its solid";
   static constexpr std::tuple members{
-      Member{"against", &Certificate::against, "", "what the solid is"},
-      Member{"checked", &Certificate::checked, "", "what was looked at"},
+      Member{"against", &Certificate::against, "", "rule for the solid"},
+      Member{"checked", &Certificate::checked, "", "checked parts"},
       Member{"solid_betti", &Certificate::solid, "", "components, tunnels, voids of the solid: the sum of its bodies"},
-      Member{"axis_betti", &Certificate::axis, "", "of the axis"},
-      Member{"voxel", &Certificate::voxel, "mesh units", "shortest side of those that the solid is made of"},
+      Member{"axis_betti", &Certificate::axis, "", "components, tunnels, voids of the axis"},
+      Member{"voxel", &Certificate::voxel, "mesh units", "shortest side of a voxel if the solid is made of voxels"},
       Member{"bodies", &Certificate::bodies, "",
-             "each must agree; one for the whole where positions were not looked at"},
-      Member{"topology_holds", &Certificate::topology_holds, "", "whether they all do"},
-      Member{"geometry", &Certificate::geometry, "", "vertices"},
-      Member{"edges", &Certificate::edges, "", "edges"},
-      Member{"triangles", &Certificate::triangles, "", "triangles between their edges"},
-      Member{"labels", &Certificate::labels, "", "roles and sheets"},
-      Member{"angles", &Certificate::angles, "", "separation angles of triangles and edges"},
-      Member{"homology", &Certificate::homology, "", "what the axis runs around"},
-      Member{"balls", &Certificate::balls, "", "what the balls fill"},
-      Member{"medial", &Certificate::medial, "", "whether it is in the middle, and all that is there"},
-      Member{"mismatches", &Certificate::mismatches, "", "one sentence each; empty where all holds"},
-      Fact{"holds", &Certificate::holds, "", "whether nothing differs"},
+             "bodies, which must all agree; one for the whole if positions were not checked"},
+      Member{"topology_holds", &Certificate::topology_holds, "", "true if all bodies agree"},
+      Member{"geometry", &Certificate::geometry, "", "check of the vertices"},
+      Member{"edges", &Certificate::edges, "", "check of the edges"},
+      Member{"triangles", &Certificate::triangles, "", "check of the triangles between their edges"},
+      Member{"labels", &Certificate::labels, "", "check of roles and sheets"},
+      Member{"angles", &Certificate::angles, "", "check of the separation angles of triangles and edges"},
+      Member{"homology", &Certificate::homology, "", "check of tunnels and voids"},
+      Member{"balls", &Certificate::balls, "", "distances between solid and balls"},
+      Member{"medial", &Certificate::medial, "", "check of the middle and of missing parts"},
+      Member{"mismatches", &Certificate::mismatches, "", "one sentence for each mismatch; empty if all holds"},
+      Fact{"holds", &Certificate::holds, "", "true if there is no mismatch"},
   };
 };
 
@@ -565,10 +579,10 @@ struct MeshSolidRule {
 template <>
 struct Description<MeshSolidRule> {
   static constexpr std::string_view name = "MeshSolidRule";
-  static constexpr std::string_view doc = "What the solid of a mesh is";
+  static constexpr std::string_view doc = "Rule for the solid of a mesh";
   static constexpr std::tuple members{
-      Member{"rule", &MeshSolidRule::rule, "", "what its shells bound, or where its winding number is above 1/2"},
-      Member{"reason", &MeshSolidRule::reason, "", "one sentence"},
+      Member{"rule", &MeshSolidRule::rule, "", "volume bounded by the shells, or winding number above 1/2"},
+      Member{"reason", &MeshSolidRule::reason, "", "reason in one sentence"},
   };
 };
 

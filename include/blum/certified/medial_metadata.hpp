@@ -39,22 +39,21 @@ struct MedialMetadata {
 template <>
 struct Description<MedialMetadata> {
   static constexpr std::string_view name = "MedialMetadata";
-  static constexpr std::string_view doc = "What a file of a medial axis says besides the complex";
+  static constexpr std::string_view doc = "Metadata in a file of a medial axis";
   static constexpr std::tuple members{
-      Member{"source", &MedialMetadata::source, "", "where the solid came from, for example a file name"},
-      Member{"version", &MedialMetadata::version, "", "of the Blum that wrote it"},
-      Member{"site_ids", &MedialMetadata::site_ids, "", "what sites count"},
+      Member{"source", &MedialMetadata::source, "", "source of the solid, for example a file name"},
+      Member{"version", &MedialMetadata::version, "", "version of Blum that wrote the file"},
+      Member{"site_ids", &MedialMetadata::site_ids, "", "numbering of sites"},
       Member{"theta", &MedialMetadata::theta, "degrees", "angle of the axis"},
       Member{"lambda", &MedialMetadata::lambda, "mesh units", "MedialAxisOptions::lambda"},
       Member{"spacing", &MedialMetadata::spacing, "mesh units", "smallest side of a voxel"},
-      Member{"deviation", &MedialMetadata::deviation, "mesh units",
-             "how far it is at most from the axis with all vertices"},
-      Member{"solid_rule", &MedialMetadata::solid_rule, "", "what the topology is against"},
-      Member{"grid", &MedialMetadata::grid, "", "voxel centres"},
-      Member{"label", &MedialMetadata::label, "", "of the voxels of an image"},
+      Member{"deviation", &MedialMetadata::deviation, "mesh units", "largest distance from the axis with all vertices"},
+      Member{"solid_rule", &MedialMetadata::solid_rule, "", "rule for the solid that the topology refers to"},
+      Member{"grid", &MedialMetadata::grid, "", "grid of voxel centres"},
+      Member{"label", &MedialMetadata::label, "", "label of the voxels of an image"},
       Member{"threshold", &MedialMetadata::threshold, "", "least value of the voxels of an image"},
-      Member{"weld", &MedialMetadata::weld, "mesh units", "how the vertices of a mesh were merged"},
-      Member{"smooth", &MedialMetadata::smooth, "", "of the voxels of an image: iterations of their smooth surface"},
+      Member{"weld", &MedialMetadata::weld, "mesh units", "tolerance with which the vertices of a mesh were merged"},
+      Member{"smooth", &MedialMetadata::smooth, "", "iterations of the smooth surface of the voxels of an image"},
   };
 };
 

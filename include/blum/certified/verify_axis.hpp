@@ -37,7 +37,7 @@ class UntoldVoxels : public InvalidMesh {
  public:
   explicit UntoldVoxels(const std::string& reason)
       : InvalidMesh("the mesh bounds no polyhedron (" + reason +
-                    "), so its axis is that of voxels: give grid, that of their centres"),
+                    "), so its axis is that of voxels: give the grid of their centres"),
         reason_(reason) {}
   /// Returns one sentence with the reason why the mesh does not bound a polyhedron.
   [[nodiscard]] const std::string& reason() const { return reason_; }

@@ -152,12 +152,12 @@ struct MedialCounts {
 template <>
 struct Description<MedialCounts> {
   static constexpr std::string_view name = "MedialCounts";
-  static constexpr std::string_view doc = "How many of each a medial axis has";
+  static constexpr std::string_view doc = "Counts of the parts of a medial axis";
   static constexpr std::tuple members{
       Member{"vertices", &MedialCounts::vertices, "", "points of the axis"},
-      Member{"triangles", &MedialCounts::triangles, "", "of its sheets"},
+      Member{"triangles", &MedialCounts::triangles, "", "triangles of its sheets"},
       Member{"sheets", &MedialCounts::sheets, "", "connected parts without seams"},
-      Member{"curve_edges", &MedialCounts::curve_edges, "", "edges of no triangle"},
+      Member{"curve_edges", &MedialCounts::curve_edges, "", "edges without triangles"},
       Member{"rim_edges", &MedialCounts::rim_edges, "", "edges of one triangle"},
       Member{"seam_edges", &MedialCounts::seam_edges, "", "edges where sheets meet"},
       Member{"junctions", &MedialCounts::junctions, "", "vertices where seams or curves meet"},

@@ -68,10 +68,10 @@ struct Warning {
 template <>
 struct Description<Warning> {
   static constexpr std::string_view name = "ResultWarning";  // because Python has a Warning of its own
-  static constexpr std::string_view doc = "One thing that a result warns of";
+  static constexpr std::string_view doc = "Warning about a result";
   static constexpr std::tuple members{
-      Member{"code", &Warning::code, "", "what it is about"},
-      Member{"text", &Warning::text, "", "one sentence"},
+      Member{"code", &Warning::code, "", "subject of the warning"},
+      Member{"text", &Warning::text, "", "the warning in one sentence"},
   };
 };
 

@@ -33,12 +33,11 @@ struct ClosestPointOptions {
 template <>
 struct Description<ClosestPointOptions> {
   static constexpr std::string_view name = "ClosestPointOptions";
-  static constexpr std::string_view doc = "What closest points are asked for";
+  static constexpr std::string_view doc = "Options of closest points";
   static constexpr std::tuple members{
-      Member{"sign", &ClosestPointOptions::sign, "",
-             "how the sign is found, by the same rule as for fields; 'none' is cheapest"},
-      Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units",
-             "nothing further than this is looked for", Range::at_least(0)},
+      Member{"sign", &ClosestPointOptions::sign, "", "rule for the sign, as for fields; 'none' is cheapest"},
+      Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units", "largest distance that is searched",
+             Range::at_least(0)},
   };
 };
 

@@ -21,10 +21,11 @@ struct DeviceInfo {
 template <>
 struct Description<DeviceInfo> {
   static constexpr std::string_view name = "DeviceInfo";
-  static constexpr std::string_view doc = "A CUDA device that can be asked for";
-  static constexpr std::tuple members{Member{"device", &DeviceInfo::device, "", "what it is asked for by"},
-                                      Member{"name", &DeviceInfo::name, "", "as its maker calls it"},
-                                      Member{"memory", &DeviceInfo::memory, "bytes", "what it holds"}};
+  static constexpr std::string_view doc = "Available CUDA device";
+  static constexpr std::tuple members{
+      Member{"device", &DeviceInfo::device, "", "name that selects it, for example cuda:0"},
+      Member{"name", &DeviceInfo::name, "", "name given by its maker"},
+      Member{"memory", &DeviceInfo::memory, "bytes", "total memory"}};
 };
 
 /// Available CUDA devices.
@@ -36,10 +37,10 @@ struct CudaDevices {
 template <>
 struct Description<CudaDevices> {
   static constexpr std::string_view name = "CudaDevices";
-  static constexpr std::string_view doc = "The CUDA devices that there are";
+  static constexpr std::string_view doc = "Available CUDA devices";
   static constexpr std::tuple members{
-      Member{"devices", &CudaDevices::devices, "", "each of them"},
-      Member{"reason", &CudaDevices::reason, "", "why there are none, in one sentence; empty where there are some"}};
+      Member{"devices", &CudaDevices::devices, "", "list of the devices"},
+      Member{"reason", &CudaDevices::reason, "", "reason in one sentence if there are none; else empty"}};
 };
 
 /// Loads the CUDA module and returns the devices that it finds. Cost: starting CUDA, once; up to a second.

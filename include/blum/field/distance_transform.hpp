@@ -30,9 +30,9 @@ struct DistanceTransformOptions {
 template <>
 struct Description<DistanceTransformOptions> {
   static constexpr std::string_view name = "DistanceTransformOptions";
-  static constexpr std::string_view doc = "What a distance transform is asked for";
+  static constexpr std::string_view doc = "Options of a distance transform";
   static constexpr std::tuple members{
-      Member{"selection", &DistanceTransformOptions::selection, "", "which voxels are selected"},
+      Member{"selection", &DistanceTransformOptions::selection, "", "selected voxels"},
       Member{"signed", &DistanceTransformOptions::is_signed, "",
              "true: distance to the nearest voxel of the other kind, negative at selected voxels; false: to the "
              "nearest selected voxel"},

@@ -32,8 +32,8 @@ enum class SignMode : std::uint8_t {
   normals,    ///< Side given by the orientation of a closed, consistently oriented mesh. Exact: crossings are counted
               ///< along the grid's rows. Angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide only if shells
               ///< cross or face different ways.
-  winding,  ///< Generalized winding number (Jacobson 2013): above 1/2 is inside. For any soup.
-  none      ///< Unsigned.
+  winding,    ///< Generalized winding number (Jacobson 2013): above 1/2 is inside. For any soup.
+  none        ///< Unsigned.
 };
 
 /// Rule that decided the signs of a field.
@@ -105,22 +105,22 @@ struct FieldOptions {
 template <>
 struct Description<FieldOptions> {
   static constexpr std::string_view name = "FieldOptions";
-  static constexpr std::string_view doc = "What a field is asked for";
+  static constexpr std::string_view doc = "Options of a field";
   static constexpr std::array of_meshes{SiteIds::features, SiteIds::triangles};
   static constexpr std::tuple members{
       Member{"sign", &FieldOptions::sign, "",
-             "how the sign is found; inside is negative. 'auto' goes by orientation where the mesh is closed and "
-             "simple, else by winding numbers"},
+             "rule for the sign, negative inside; 'auto' uses orientation if the mesh is closed and simple, else "
+             "winding numbers"},
       Member{"band", &FieldOptions::band, "mesh units",
              "half-width of a narrow band; beyond it nodes get +-band and no site", Range::positive()},
-      Member{"site_ids", &FieldOptions::site_ids, "", "what sites count: vertices, edges and faces, or triangles",
-             Range{}, of_meshes},
+      Member{"site_ids", &FieldOptions::site_ids, "",
+             "numbering of sites: features (vertices, edges and faces) or triangles", Range{}, of_meshes},
       Member{"sites", &FieldOptions::sites, "", "the closest site of every node, which takes half of the memory"},
       Member{"order", &FieldOptions::order, "",
-             "how many closest sites each node gets, with their distances: 1 or 2 (on the CPU)", Range::between(1, 2)},
+             "number of closest sites per node, with their distances: 1, or 2 on the CPU", Range::between(1, 2)},
       Member{"second", &FieldOptions::second, "",
-             "of order 2, which sites may be second: those without a common vertex with the closest one, or those of "
-             "another object (a connected part of the mesh)"},
+             "for order 2, possible second sites: without a common vertex with the closest one, or of another object "
+             "(connected part of the mesh)"},
   };
 };
 

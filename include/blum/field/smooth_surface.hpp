@@ -23,7 +23,7 @@ struct SmoothSurfaceOptions {
 template <>
 struct Description<SmoothSurfaceOptions> {
   static constexpr std::string_view name = "SmoothSurfaceOptions";
-  static constexpr std::string_view doc = "How the surface of voxels is smoothed";
+  static constexpr std::string_view doc = "Options of smoothing the surface of voxels";
   static constexpr std::tuple members{
       Member{"iterations", &SmoothSurfaceOptions::iterations, "", "rounds of smoothing; 0: the surface of the boxes",
              Range::between(0, 1000)},

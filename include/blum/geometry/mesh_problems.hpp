@@ -31,21 +31,21 @@ namespace mesh_problem {
 
 inline constexpr std::string_view no_triangles = "the mesh has no triangles, so it bounds no solid";
 inline constexpr std::string_view no_interior = "the mesh has no triangles, so it has no interior";
-inline constexpr std::string_view is_an_image = "the solid is one of voxels; a closed mesh is needed here";
+inline constexpr std::string_view is_an_image = "the solid is made of voxels; a closed mesh is needed here";
 inline constexpr std::string_view no_solid = "the mesh bounds no solid";
 inline constexpr std::string_view one_sided =
-    "the mesh bounds no solid: it has one side only, so that it cannot be oriented";
+    "the mesh bounds no solid: it has only one side, so it cannot be oriented";
 inline constexpr std::string_view not_nested =
-    "the mesh bounds no solid: its shells do not lie in each other, they coincide or cross";
+    "the mesh bounds no solid: its shells are not nested: they coincide or cross";
 inline constexpr std::string_view no_volume =
-    "the mesh bounds no solid: a shell of it encloses no volume, so that it faces nowhere";
+    "the mesh bounds no solid: one of its shells encloses no volume, so it has no inside";
 inline constexpr std::string_view more_than_triangles =
-    "the mesh has segments or points beside its triangles, which bound no solid: leave them out";
+    "the mesh has segments or points besides its triangles, which bound no solid: remove them";
 inline constexpr std::string_view touches_when_resolved =
-    "the mesh crosses itself, and what it bounds touches itself where the crossings are resolved: move these parts "
-    "apart, or into each other";
+    "the mesh crosses itself, and its solid touches itself once the crossings are resolved: move these parts apart, or "
+    "into each other";
 /// Ends "the mesh bounds no polyhedron: ...".
-inline constexpr std::string_view shells_cross = "its shells do not lie in each other, they cross or coincide";
+inline constexpr std::string_view shells_cross = "its shells are not nested: they cross or coincide";
 
 /// Returns all reasons found at edges and vertices why a mesh bounds no polyhedron. They end "the mesh bounds no
 /// polyhedron: ...". Empty without such a reason.

@@ -42,20 +42,21 @@ struct CrossingCounts {
 template <>
 struct Description<CrossingCounts> {
   static constexpr std::string_view name = "CrossingCounts";
-  static constexpr std::string_view doc = "What stood in the way of a mesh being the boundary of a solid";
+  static constexpr std::string_view doc =
+      "Defects that keep a mesh from being the boundary of a solid, and their repair, as counts";
   static constexpr std::tuple members{
       Member{"crossing", &CrossingCounts::crossing, "", "pairs of triangles that cross"},
-      Member{"touching", &CrossingCounts::touching, "", "pairs that touch beside what they share, or overlap"},
+      Member{"touching", &CrossingCounts::touching, "",
+             "pairs of triangles that overlap, or touch beyond what they share"},
       Member{"flat", &CrossingCounts::flat, "", "triangles without area"},
       Member{"crowded_edges", &CrossingCounts::crowded_edges, "", "edges with more than two triangles"},
-      Member{"cut", &CrossingCounts::cut, "", "triangles that were cut, or lost their place"},
-      Member{"new_vertices", &CrossingCounts::new_vertices, "", "of the result, that the input does not have"},
+      Member{"cut", &CrossingCounts::cut, "", "triangles that others cross or touch, or that have a cut edge"},
+      Member{"new_vertices", &CrossingCounts::new_vertices, "", "vertices of the result that the input does not have"},
       Member{"touching_edges", &CrossingCounts::touching_edges, "",
              "edges along which parts of the result only touch each other"},
       Member{"pinches", &CrossingCounts::pinches, "",
-             "how often a part of the result meets itself in a vertex, and is apart there"},
-      Member{"rounds", &CrossingCounts::rounds, "",
-             "how often the mesh was resolved until its rounded vertices were in order"},
+             "times a body of the result meets itself in a vertex, and is separated there"},
+      Member{"rounds", &CrossingCounts::rounds, "", "rounds until the rounded vertices made no new crossings"},
   };
 };
 

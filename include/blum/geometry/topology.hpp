@@ -57,17 +57,17 @@ struct Description<Shell> {
   static constexpr std::string_view name = "Shell";
   static constexpr std::string_view doc = "A closed, consistently oriented component of a surface";
   static constexpr std::tuple members{
-      Member{"triangles", &Shell::triangles, "", "how many"},
-      Member{"bounds", &Shell::bounds, "mesh units", "box around it"},
+      Member{"triangles", &Shell::triangles, "", "number of triangles"},
+      Member{"bounds", &Shell::bounds, "mesh units", "bounding box"},
       Member{"signed_volume", &Shell::signed_volume, "cubic mesh units",
-             "positive where it faces away from what it encloses"},
-      Member{"area", &Shell::area, "square mesh units", "of its triangles"},
+             "enclosed volume, positive if the shell faces away from it"},
+      Member{"area", &Shell::area, "square mesh units", "area of its triangles"},
       Member{"euler_characteristic", &Shell::euler_characteristic, "",
-             "vertices - edges + faces, a vertex counting once for each of its fans"},
+             "vertices - edges + faces, with a vertex counted once for each of its fans"},
       Member{"genus", &Shell::genus, "", "number of handles"},
-      Member{"depth", &Shell::depth, "", "number of other shells that it lies in"},
-      Member{"parent", &Shell::parent, "", "the innermost of these; -1 where there is none"},
-      Member{"faces_outwards", &Shell::faces_outwards, "", "whether it faces away from the solid"},
+      Member{"depth", &Shell::depth, "", "number of other shells around it"},
+      Member{"parent", &Shell::parent, "", "innermost shell around it; -1 if none"},
+      Member{"faces_outwards", &Shell::faces_outwards, "", "true if it faces away from the solid"},
   };
 };
 
@@ -115,19 +115,20 @@ struct Topology {
 template <>
 struct Description<Topology> {
   static constexpr std::string_view name = "Topology";
-  static constexpr std::string_view doc = "Counts and facts of a mesh, as `blum info` prints them";
+  static constexpr std::string_view doc = "Counts and properties of a mesh";
   static constexpr std::tuple members{
-      Member{"vertices", &Topology::vertices, "", "all vertices of the mesh"},
-      Member{"named_vertices", &Topology::named_vertices, "", "those that a triangle, segment or point names"},
+      Member{"vertices", &Topology::vertices, "", "number of vertices of the mesh"},
+      Member{"named_vertices", &Topology::named_vertices, "", "vertices that a triangle, segment or point names"},
       Member{"edges", &Topology::edges, "", "distinct edges of triangles and segments"},
-      Member{"triangles", &Topology::triangles, "", "of the mesh"},
-      Member{"segments", &Topology::segments, "", "of the mesh"},
-      Member{"points", &Topology::points, "", "of the mesh"},
+      Member{"triangles", &Topology::triangles, "", "number of triangles"},
+      Member{"segments", &Topology::segments, "", "number of segments"},
+      Member{"points", &Topology::points, "", "number of points"},
       Member{"bounds", &Topology::bounds, "mesh units", "box around the named vertices"},
       Member{"pieces", &Topology::pieces, "",
              "sets of triangles, segments and points connected through shared vertices"},
       Member{"components", &Topology::components, "", "sets of triangles connected through shared edges"},
-      Member{"closed_components", &Topology::closed_components, "", "those where every edge has exactly two triangles"},
+      Member{"closed_components", &Topology::closed_components, "",
+             "components in which every edge has exactly two triangles"},
       Member{"boundary_edges", &Topology::boundary_edges, "", "edges with one triangle"},
       Member{"boundary_loops", &Topology::boundary_loops, "", "holes: chains of boundary edges"},
       Member{"nonmanifold_edges", &Topology::nonmanifold_edges, "", "edges with more than two triangles"},
@@ -136,22 +137,20 @@ struct Description<Topology> {
       Member{"inconsistent_edges", &Topology::inconsistent_edges, "",
              "edges that both their triangles traverse in the same direction"},
       Member{"degenerate_triangles", &Topology::degenerate_triangles, "",
-             "a vertex named twice, or corners exactly on one line"},
+             "triangles that name a vertex twice, or whose corners lie exactly on one line"},
       Member{"duplicate_triangles", &Topology::duplicate_triangles, "",
-             "triangles with the same three vertices as one before them"},
-      Member{"closed", &Topology::closed, "", "whether every edge of a triangle has exactly two triangles"},
-      Member{"oriented", &Topology::oriented, "", "whether no edge is inconsistent"},
-      Member{"manifold", &Topology::manifold, "", "whether no edge or vertex is non-manifold"},
+             "triangles with the same three vertices as an earlier one"},
+      Member{"closed", &Topology::closed, "", "true if every edge of a triangle has exactly two triangles"},
+      Member{"oriented", &Topology::oriented, "", "true if no edge is inconsistent"},
+      Member{"manifold", &Topology::manifold, "", "true if no edge or vertex is non-manifold"},
       Member{"faces_outwards", &Topology::faces_outwards, "",
-             "closed and oriented, and every shell faces away from the solid"},
-      Member{"area", &Topology::area, "square mesh units", "of all triangles"},
+             "true if closed and oriented, and every shell faces away from the solid"},
+      Member{"area", &Topology::area, "square mesh units", "area of all triangles"},
       Member{"signed_volume", &Topology::signed_volume, "cubic mesh units",
-             "of the shells: the volume of the solid where betti is known"},
+             "sum over the shells: the volume of the solid if betti is known"},
       Member{"euler_characteristic", &Topology::euler_characteristic, "", "vertices - edges + faces of the triangles"},
-      Member{"shells", &Topology::shells, "",
-             "the closed, consistently oriented components, by their smallest triangle"},
-      Member{"betti", &Topology::betti, "",
-             "components, tunnels, voids of the solid; unknown where the mesh bounds none"},
+      Member{"shells", &Topology::shells, "", "closed, consistently oriented components, by their smallest triangle"},
+      Member{"betti", &Topology::betti, "", "components, tunnels, voids of the solid; unknown if the mesh bounds none"},
   };
 };
 

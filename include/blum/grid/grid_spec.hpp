@@ -37,12 +37,12 @@ struct GridSpec {
 template <>
 struct Description<GridSpec> {
   static constexpr std::string_view name = "GridSpec";
-  static constexpr std::string_view doc = "Where the nodes of a grid lie";
+  static constexpr std::string_view doc = "Positions of the nodes of a grid";
   static constexpr std::tuple members{
       Member{"origin", &GridSpec::origin, "mesh units", "position of node (0, 0, 0)"},
       Member{"spacing", &GridSpec::spacing, "mesh units", "distance between neighbouring nodes"},
       Member{"size", &GridSpec::size, "", "number of nodes along x, y, z"},
-      Fact{"nodes", &GridSpec::node_count, "", "their number"},
+      Fact{"nodes", &GridSpec::node_count, "", "number of nodes"},
       Member{"direction", &GridSpec::direction, "", "orthonormal; column a is the direction of index axis a"},
   };
 };

@@ -29,13 +29,13 @@ struct LabelFacts {
 template <>
 struct Description<LabelFacts> {
   static constexpr std::string_view name = "LabelFacts";
-  static constexpr std::string_view doc = "The voxels of one value of an image";
+  static constexpr std::string_view doc = "Voxels of one value of an image";
   static constexpr std::tuple members{
-      Member{"label", &LabelFacts::label, "", "their value"},
-      Member{"voxels", &LabelFacts::voxels, "", "how many there are"},
-      Member{"volume", &LabelFacts::volume, "cubic units of the spacing", "of all of them"},
+      Member{"label", &LabelFacts::label, "", "value of the voxels"},
+      Member{"voxels", &LabelFacts::voxels, "", "number of voxels"},
+      Member{"volume", &LabelFacts::volume, "cubic units of the spacing", "total volume"},
       Member{"betti", &LabelFacts::betti, "",
-             "components, tunnels, voids of their union; unknown for 0, the background"},
+             "components, tunnels, voids of the union of the voxels; unknown for 0, the background"},
   };
 };
 
@@ -53,13 +53,13 @@ struct ImageValues {
 template <>
 struct Description<ImageValues> {
   static constexpr std::string_view name = "ImageValues";
-  static constexpr std::string_view doc = "Which values an image holds";
+  static constexpr std::string_view doc = "Values of an image";
   static constexpr std::tuple members{
-      Member{"range", &ImageValues::range, "", "smallest and largest; unknown where there are no numbers"},
-      Member{"nonzero", &ImageValues::nonzero, "", "voxels that are not 0, nor NaN"},
-      Member{"not_numbers", &ImageValues::not_numbers, "", "voxels that are NaN"},
-      Member{"distinct", &ImageValues::distinct, "", "distinct values; unknown where they cannot be labels"},
-      Member{"labels", &ImageValues::labels, "", "the voxels of each value, the most first"},
+      Member{"range", &ImageValues::range, "", "smallest and largest value; unknown if all voxels are NaN"},
+      Member{"nonzero", &ImageValues::nonzero, "", "number of voxels that are neither 0 nor NaN"},
+      Member{"not_numbers", &ImageValues::not_numbers, "", "number of voxels that are NaN"},
+      Member{"distinct", &ImageValues::distinct, "", "number of distinct values; unknown if they cannot be labels"},
+      Member{"labels", &ImageValues::labels, "", "voxels of each value, most frequent value first"},
   };
 };
 

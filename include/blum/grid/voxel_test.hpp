@@ -92,7 +92,7 @@ VoxelTest<T> make_voxel_test(const LabelSelection& selection) {
     case LabelSelection::Rule::label:
       return label_test<T>(selection.label);
     case LabelSelection::Rule::threshold:
-      if (std::isnan(selection.threshold)) throw InvalidOption("the threshold is not a number; give a number");
+      if (std::isnan(selection.threshold)) throw InvalidOption("the threshold is NaN, but must be a number");
       return threshold_test<T>(selection.threshold);
   }
   throw InvalidOption("unknown selection rule " + std::to_string(static_cast<int>(selection.rule)));

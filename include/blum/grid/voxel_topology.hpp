@@ -33,11 +33,11 @@ struct VoxelTopology {
 template <>
 struct Description<VoxelTopology> {
   static constexpr std::string_view name = "VoxelTopology";
-  static constexpr std::string_view doc = "The topology of the union of closed voxels";
+  static constexpr std::string_view doc = "Topology of a union of closed voxels";
   static constexpr std::tuple members{
       Member{"betti", &VoxelTopology::betti, "", "components (26-connected), tunnels, voids"},
       Member{"euler_characteristic", &VoxelTopology::euler_characteristic, "",
-             "vertices - edges + squares - cubes, each once"}};
+             "vertices - edges + squares - cubes, each counted once"}};
 };
 [[nodiscard]] VoxelTopology voxel_topology(const VoxelSet& voxels, const Context& context = {});
 

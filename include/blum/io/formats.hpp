@@ -66,14 +66,14 @@ template <>
 struct Description<FileFormat> {
   static constexpr std::string_view name = "FileFormat";
   static constexpr std::string_view doc =
-      "A format of files of one content; a name that stands for several contents (PLY) is there for each";
+      "File format of one content; a name that several contents use (PLY) is listed once for each";
   static constexpr std::tuple members{
-      Member{"content", &FileFormat::content, "", "what the files hold; medial axes are complexes"},
-      Member{"name", &FileFormat::name, "", "of the format"},
-      Member{"extensions", &FileFormat::extensions, "", "those that are read, in lower case, with their dots"},
+      Member{"content", &FileFormat::content, "", "content of the files; medial axes are complexes"},
+      Member{"name", &FileFormat::name, "", "name of the format"},
+      Member{"extensions", &FileFormat::extensions, "", "extensions that are read, in lower case, with their dots"},
       Member{"written", &FileFormat::written, "",
-             "those that are written: some of these, or of a format that is not read its own"},
-      Member{"holds", &FileFormat::holds, "", "what a file can hold, for people"},
+             "extensions that are written: some of those that are read, or others if the format is not read"},
+      Member{"holds", &FileFormat::holds, "", "possible content, for people"},
       Member{"opens_in", &FileFormat::opens_in, "", "other programs, for people"},
   };
 };

@@ -35,12 +35,11 @@ struct CentrelineOptions {
 template <>
 struct Description<CentrelineOptions> {
   static constexpr std::string_view name = "CentrelineOptions";
-  static constexpr std::string_view doc = "What centrelines are asked for";
+  static constexpr std::string_view doc = "Options of centrelines";
   static constexpr std::tuple members{
-      Member{"selection", &CentrelineOptions::selection, "", "which voxels are selected"},
+      Member{"selection", &CentrelineOptions::selection, "", "selected voxels"},
       Member{"spur", &CentrelineOptions::spur, "radii of the ball at their root",
-             "how far a branch with a free end must reach to stay; a voxel and a half is added",
-             Range::between(0, 100)},
+             "shortest branch with a free end that stays; a voxel and a half is added", Range::between(0, 100)},
   };
 };
 
@@ -65,12 +64,12 @@ struct CentrelineNode {
 template <>
 struct Description<CentrelineNode> {
   static constexpr std::string_view name = "CentrelineNode";
-  static constexpr std::string_view doc = "Where branches end or meet";
+  static constexpr std::string_view doc = "Point where branches end or meet";
   static constexpr std::tuple members{
-      Member{"kind", &CentrelineNode::kind, "", "point: of a blob without branches; end; junction"},
-      Member{"position", &CentrelineNode::position, "world units", "where it lies"},
+      Member{"kind", &CentrelineNode::kind, "", "point (of a blob without branches), end or junction"},
+      Member{"position", &CentrelineNode::position, "world units", "position"},
       Member{"radius", &CentrelineNode::radius, "world units",
-             "of an end, that of its branch there; else the distance to the closest voxel outside"},
+             "end: radius of its branch there; else distance to the closest voxel outside"},
   };
 };
 
@@ -86,17 +85,17 @@ struct CentrelineBranch {
 template <>
 struct Description<CentrelineBranch> {
   static constexpr std::string_view name = "CentrelineBranch";
-  static constexpr std::string_view doc = "A curve between two nodes, or a closed one without any";
+  static constexpr std::string_view doc = "Curve between two nodes, or a closed curve without any";
   static constexpr std::tuple members{
-      Member{"nodes", &CentrelineBranch::nodes, "", "its first and last node; -1 for closed curves"},
-      Member{"length", &CentrelineBranch::length, "world units", "of its polyline"},
+      Member{"nodes", &CentrelineBranch::nodes, "", "first and last node; -1 for closed curves"},
+      Member{"length", &CentrelineBranch::length, "world units", "length of its polyline"},
       Member{"mean_radius", &CentrelineBranch::mean_radius, "world units",
-             "along its length, outside of the balls of its junctions"},
-      Member{"min_radius", &CentrelineBranch::min_radius, "world units", "the smallest, likewise"},
+             "mean radius along its length, outside the balls of its junctions"},
+      Member{"min_radius", &CentrelineBranch::min_radius, "world units", "smallest radius, likewise"},
       Member{"points", &CentrelineBranch::points, "world units",
-             "its polyline, from node to node; of closed curves the first point is also the last"},
+             "polyline from node to node; for closed curves the first point is also the last"},
       Member{"radii", &CentrelineBranch::radii, "world units",
-             "at each point, of the circle with the area of the section there"},
+             "radius at each point: that of the circle with the area of the section there"},
   };
 };
 
@@ -114,16 +113,16 @@ struct Centreline {
 template <>
 struct Description<Centreline> {
   static constexpr std::string_view name = "Centreline";
-  static constexpr std::string_view doc = "The centreline of the voxels of one label";
+  static constexpr std::string_view doc = "Centreline of the voxels of one label";
   static constexpr std::tuple members{
-      Member{"label", &Centreline::label, "", "their value; null where a threshold selects"},
-      Member{"voxels", &Centreline::voxels, "", "how many there are"},
-      Member{"nodes", &Centreline::nodes, "", "where branches end or meet"},
+      Member{"label", &Centreline::label, "", "value of the voxels; null if a threshold selects them"},
+      Member{"voxels", &Centreline::voxels, "", "number of voxels"},
+      Member{"nodes", &Centreline::nodes, "", "points where branches end or meet"},
       Member{"branches", &Centreline::branches, "", "curves between nodes"},
       Member{"label_betti", &Centreline::label_betti, "", "components, tunnels, voids of the voxels"},
       Member{"graph_betti", &Centreline::graph_betti, "", "components, tunnels, voids of nodes and branches"},
-      Member{"homotopy_kept", &Centreline::homotopy_kept, "", "whether these are equal"},
-      Member{"homotopy", &Centreline::homotopy, "", "kept, or what differs and why, as a sentence"},
+      Member{"homotopy_kept", &Centreline::homotopy_kept, "", "true if both are equal"},
+      Member{"homotopy", &Centreline::homotopy, "", "sentence: kept, or the difference and its reason"},
   };
 };
 

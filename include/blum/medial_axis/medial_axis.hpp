@@ -56,25 +56,26 @@ struct MedialAxisOptions {
 template <>
 struct Description<MedialAxisOptions> {
   static constexpr std::string_view name = "MedialAxisOptions";
-  static constexpr std::string_view doc = "What a medial axis is asked for";
+  static constexpr std::string_view doc = "Options of a medial axis";
   static constexpr std::tuple members{
       Member{"resolution", &MedialAxisOptions::resolution, "",
              "meshes: voxels along the longest side of the box around the mesh, 8 to 800", Range::between(8, 800)},
       Member{"spacing", &MedialAxisOptions::spacing, "mesh units", "meshes: side of a voxel, instead of the resolution",
              Range::positive()},
       Member{"max_resolution", &MedialAxisOptions::max_resolution, "",
-             "meshes: a body whose model does not pass is done again with finer voxels, up to this many "
-             "along its longest side",
+             "meshes: most voxels along the longest side of a body; a body whose model does not pass is computed again "
+             "with finer voxels",
              Range::between(8, 800)},
       Member{"grid_shift", &MedialAxisOptions::grid_shift, "voxels",
-             "meshes: how far the grid is moved along each axis, to see what depends on that", Range::between(-1, 1)},
+             "meshes: shift of the grid along each axis, which shows how the result depends on it",
+             Range::between(-1, 1)},
       Member{"lambda", &MedialAxisOptions::lambda, "mesh units",
-             "pieces whose two footprints are closer than this count for nothing", Range::at_least(0)},
+             "smallest distance of the two footprints of pieces that count", Range::at_least(0)},
       Member{"least_theta", &MedialAxisOptions::least_theta, "degrees",
-             "the smallest theta that will be asked for: more is faster", Range::between(0, 180)},
+             "smallest theta that will be requested: larger is faster", Range::between(0, 180)},
       Member{"greatest_theta", &MedialAxisOptions::greatest_theta, "degrees",
-             "the largest theta that will be asked for, at least least_theta: less is faster", Range::between(0, 180)},
-      Member{"selection", &MedialAxisOptions::selection, "", "images: which voxels are the solid"},
+             "largest theta that will be requested, at least least_theta: smaller is faster", Range::between(0, 180)},
+      Member{"selection", &MedialAxisOptions::selection, "", "images: voxels of the solid"},
   };
 };
 
@@ -92,15 +93,15 @@ struct BodyReport {
 template <>
 struct Description<BodyReport> {
   static constexpr std::string_view name = "BodyReport";
-  static constexpr std::string_view doc = "The cells that one connected part of a solid was made of";
+  static constexpr std::string_view doc = "Cells of one connected part of a solid";
   static constexpr std::tuple members{
       Member{"solid_betti", &BodyReport::betti, "", "components, tunnels, voids of the body"},
       Member{"topology_matches", &BodyReport::topology_matches, "",
-             "whether the cells have its homotopy type, and so the axis has at every theta"},
+             "true if the cells have its homotopy type, and so the axis at every theta"},
       Member{"spacing", &BodyReport::spacing, "mesh units", "smallest side of a voxel"},
-      Member{"voxels", &BodyReport::voxels, "", "whose centres are inside"},
-      Member{"extra_cells", &BodyReport::extra_cells, "", "cells of its model that are none of a voxel's"},
-      Member{"failures", &BodyReport::failures, "", "places where the model has not its homotopy type"},
+      Member{"voxels", &BodyReport::voxels, "", "voxels with centres inside"},
+      Member{"extra_cells", &BodyReport::extra_cells, "", "cells of its model that do not belong to a voxel"},
+      Member{"failures", &BodyReport::failures, "", "places where the model does not have its homotopy type"},
   };
 };
 
@@ -120,19 +121,19 @@ struct MedialAxisReport {
 template <>
 struct Description<MedialAxisReport> {
   static constexpr std::string_view name = "MedialAxisReport";
-  static constexpr std::string_view doc = "What a medial axis took as the solid, and what became of it";
+  static constexpr std::string_view doc = "Solid of a medial axis, and the result of its construction";
   static constexpr std::tuple members{
-      Member{"rule", &MedialAxisReport::rule, "", "what the solid is"},
-      Member{"reason", &MedialAxisReport::reason, "", "why this rule, in one sentence"},
+      Member{"rule", &MedialAxisReport::rule, "", "rule for the solid"},
+      Member{"reason", &MedialAxisReport::reason, "", "reason for this rule, in one sentence"},
       Member{"reversed_shells", &MedialAxisReport::reversed_shells, "",
              "shells that faced the solid and were reversed"},
       Member{"solid_betti", &MedialAxisReport::betti, "", "components, tunnels, voids of the whole solid"},
       Member{"topology_matches", &MedialAxisReport::topology_matches, "",
-             "whether the axis has its homotopy type, at every theta"},
-      Member{"grid", &MedialAxisReport::grid, "", "voxel centres: of the first body, or of the image"},
-      Member{"bodies", &MedialAxisReport::bodies, "", "one for each connected part of the solid"},
-      Member{"seconds", &MedialAxisReport::phases, "s", "wall-clock, of each phase"},
-      Member{"warnings", &MedialAxisReport::warnings, "", "whether the solid is not quite what was given"},
+             "true if the axis has its homotopy type, at every theta"},
+      Member{"grid", &MedialAxisReport::grid, "", "grid of voxel centres: of the first body, or of the image"},
+      Member{"bodies", &MedialAxisReport::bodies, "", "connected parts of the solid"},
+      Member{"seconds", &MedialAxisReport::phases, "s", "wall-clock time of each phase"},
+      Member{"warnings", &MedialAxisReport::warnings, "", "differences between the solid and the input"},
   };
 };
 

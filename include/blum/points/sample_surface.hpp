@@ -28,11 +28,10 @@ struct SampleOptions {
 template <>
 struct Description<SampleOptions> {
   static constexpr std::string_view name = "SampleOptions";
-  static constexpr std::string_view doc = "How points of a surface are chosen";
+  static constexpr std::string_view doc = "Options of random points on a surface";
   static constexpr std::tuple members{
-      Member{"seed", &SampleOptions::seed, "", "another number gives other points", Range::between(0, 0x1p62)},
-      Member{"blue_noise", &SampleOptions::blue_noise, "",
-             "points keep their distance from each other; takes 30 times as long"},
+      Member{"seed", &SampleOptions::seed, "", "seed of the random numbers", Range::between(0, 0x1p62)},
+      Member{"blue_noise", &SampleOptions::blue_noise, "", "evenly spaced points (blue noise); takes 30 times as long"},
   };
 };
 
@@ -69,16 +68,16 @@ struct NearSampleOptions {
 template <>
 struct Description<NearSampleOptions> {
   static constexpr std::string_view name = "NearSampleOptions";
-  static constexpr std::string_view doc = "Which points near a surface are chosen";
+  static constexpr std::string_view doc = "Options of random points near a surface";
   static constexpr std::tuple members{
       Member{"sigma", &NearSampleOptions::sigma, "mesh units",
-             "standard deviation of the offset from the surface along each axis; else a hundredth of the diagonal",
+             "standard deviation of the offset from the surface along each axis; by default 1/100 of the diagonal",
              Range::positive()},
-      Member{"in_box", &NearSampleOptions::in_box, "part of all",
-             "points that are uniform in the box, made a tenth larger, instead of near the surface",
+      Member{"in_box", &NearSampleOptions::in_box, "fraction of all",
+             "points that are uniform in the bounding box, enlarged by a tenth, instead of near the surface",
              Range::between(0, 1)},
-      Member{"seed", &NearSampleOptions::seed, "", "another number gives other points", Range::between(0, 0x1p62)},
-      Member{"sign", &NearSampleOptions::sign, "", "how signs are found, as for closest points"},
+      Member{"seed", &NearSampleOptions::seed, "", "seed of the random numbers", Range::between(0, 0x1p62)},
+      Member{"sign", &NearSampleOptions::sign, "", "rule for signs, as for closest points"},
   };
 };
 

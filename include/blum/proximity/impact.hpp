@@ -32,12 +32,12 @@ struct ImpactOptions {
 template <>
 struct Description<ImpactOptions> {
   static constexpr std::string_view name = "ImpactOptions";
-  static constexpr std::string_view doc = "What continuous collisions are asked for";
+  static constexpr std::string_view doc = "Options of continuous collisions";
   static constexpr std::tuple members{
       Member{"tolerance", &ImpactOptions::tolerance, "parts of the motion",
-             "how much earlier than the true time of impact the one told may be", Range::between(0x1p-40, 1)},
+             "largest time by which a reported impact may precede the true one", Range::between(0x1p-40, 1)},
       Member{"min_separation", &ImpactOptions::min_separation, "mesh units",
-             "how close counts as meeting; 0: features must have a point in common", Range::between(0, 1e150)},
+             "distance at which features meet; 0: they must have a point in common", Range::between(0, 1e150)},
   };
 };
 

@@ -25,10 +25,10 @@ struct PenetrationOptions {
 template <>
 struct Description<PenetrationOptions> {
   static constexpr std::string_view name = "PenetrationOptions";
-  static constexpr std::string_view doc = "How well penetration depths are told";
+  static constexpr std::string_view doc = "Precision of penetration depths";
   static constexpr std::tuple members{
       Member{"depth_tolerance", &PenetrationOptions::depth_tolerance, "parts of the depth",
-             "how much larger than the depth told the true one may be", Range::between(1e-6, 1)},
+             "largest excess of the true depth over the reported one", Range::between(1e-6, 1)},
   };
 };
 

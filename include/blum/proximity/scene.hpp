@@ -37,12 +37,12 @@ struct ObjectOptions {
 template <>
 struct Description<ObjectOptions> {
   static constexpr std::string_view name = "ObjectOptions";
-  static constexpr std::string_view doc = "What an object of a scene is called, and compared with";
+  static constexpr std::string_view doc = "Name of an object of a scene, and the objects that it is compared with";
   static constexpr std::tuple members{
-      Member{"layers", &ObjectOptions::layers, "bits", "the layers that the object is in, a bit for each"},
-      Member{"meets", &ObjectOptions::meets, "bits", "the layers whose objects it is compared with"},
-      Member{"self", &ObjectOptions::self, "", "whether it is compared with itself"},
-      Member{"name", &ObjectOptions::name, "", "what messages call it; empty: its number"},
+      Member{"layers", &ObjectOptions::layers, "bits", "layers that contain the object, a bit for each"},
+      Member{"meets", &ObjectOptions::meets, "bits", "layers whose objects it is compared with"},
+      Member{"self", &ObjectOptions::self, "", "true if it is compared with itself"},
+      Member{"name", &ObjectOptions::name, "", "name in messages; if empty, its number"},
   };
 };
 
@@ -69,9 +69,9 @@ struct SceneOptions {
 template <>
 struct Description<SceneOptions> {
   static constexpr std::string_view name = "SceneOptions";
-  static constexpr std::string_view doc = "How a scene finds close pairs";
+  static constexpr std::string_view doc = "Method that finds close pairs of a scene";
   static constexpr std::tuple members{
-      Member{"culling", &SceneOptions::culling, "", "how pairs that cannot count are left out: answers are the same"},
+      Member{"culling", &SceneOptions::culling, "", "method that excludes pairs; results are the same"},
       Member{"cell_size", &SceneOptions::cell_size, "mean extents of primitives",
              "side of the cells of Voronoi culling", Range::between(0.01, 100)},
   };

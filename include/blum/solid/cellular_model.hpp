@@ -37,16 +37,15 @@ struct CellularModelOptions {
 template <>
 struct Description<CellularModelOptions> {
   static constexpr std::string_view name = "CellularModelOptions";
-  static constexpr std::string_view doc = "How fine a cellular model is";
+  static constexpr std::string_view doc = "Resolution of a cellular model";
   static constexpr std::tuple members{
       Member{"resolution", &CellularModelOptions::resolution, "",
              "cubes along the longest side of the box around the solid", Range::between(1, 800)},
       Member{"spacing", &CellularModelOptions::spacing, "mesh units", "side of a cube, instead of the resolution",
              Range::positive()},
       Member{"shift", &CellularModelOptions::shift, "cubes",
-             "how far the grid is moved along each axis: where a place fails, another choice may pass",
-             Range::between(0, 1)},
-      Member{"most_splits", &CellularModelOptions::most_splits, "", "how often a cube that fails is split",
+             "shift of the grid along each axis: if a place fails, another shift may pass", Range::between(0, 1)},
+      Member{"most_splits", &CellularModelOptions::most_splits, "", "largest number of splits of a cube that fails",
              Range::between(0, 200)},
   };
 };
@@ -83,12 +82,12 @@ struct ModelFailure {
 template <>
 struct Description<ModelFailure> {
   static constexpr std::string_view name = "ModelFailure";
-  static constexpr std::string_view doc = "A box in which a component of a solid is not contractible";
+  static constexpr std::string_view doc = "Box in which a component of a solid is not contractible";
   static constexpr std::tuple members{
       Member{"low", &ModelFailure::low, "mesh units", "corner of the box"},
-      Member{"high", &ModelFailure::high, "mesh units", "the corner opposite"},
-      Member{"obstacle", &ModelFailure::obstacle, "", "what keeps it from passing"},
-      Member{"cuts", &ModelFailure::cuts, "", "slanted needle: splits that it takes to open it in this box"},
+      Member{"high", &ModelFailure::high, "mesh units", "opposite corner"},
+      Member{"obstacle", &ModelFailure::obstacle, "", "reason why it does not pass"},
+      Member{"cuts", &ModelFailure::cuts, "", "slanted needle: splits that open it in this box"},
   };
 };
 
@@ -108,19 +107,19 @@ struct CellularModelReport {
 template <>
 struct Description<CellularModelReport> {
   static constexpr std::string_view name = "CellularModelReport";
-  static constexpr std::string_view doc = "What a cellular model consists of, and whether it passes";
+  static constexpr std::string_view doc = "Counts of a cellular model, and the result of its check";
   static constexpr std::tuple members{
       Member{"passes", &CellularModelReport::passes, "",
              "whether every component in a cell is contractible, so that the model has the solid's homotopy type"},
-      Member{"grid", &CellularModelReport::grid, "", "the corners of the cubes"},
+      Member{"grid", &CellularModelReport::grid, "", "corners of the cubes"},
       Member{"cut_cubes", &CellularModelReport::cut_cubes, "", "cubes that the surface meets"},
-      Member{"failing_cubes", &CellularModelReport::failing_cubes, "", "of these, cubes that had to be split"},
-      Member{"boxes", &CellularModelReport::boxes, "", "that these were split into"},
-      Member{"splits", &CellularModelReport::splits, "", "largest number of splits that a box comes from"},
+      Member{"failing_cubes", &CellularModelReport::failing_cubes, "", "those of these that had to be split"},
+      Member{"boxes", &CellularModelReport::boxes, "", "boxes of these cubes after splitting"},
+      Member{"splits", &CellularModelReport::splits, "", "largest number of splits of a box"},
       Member{"cells", &CellularModelReport::cells, "", "vertices, edges, polygons, polyhedra of the model"},
-      Member{"euler", &CellularModelReport::euler, "", "their alternating sum: components less tunnels plus voids"},
+      Member{"euler", &CellularModelReport::euler, "", "their alternating sum: components - tunnels + voids"},
       Member{"failures", &CellularModelReport::failures, "", "places that do not pass"},
-      Member{"seconds", &CellularModelReport::phases, "s", "wall-clock, of each phase"},
+      Member{"seconds", &CellularModelReport::phases, "s", "wall-clock time of each phase"},
   };
 };
 

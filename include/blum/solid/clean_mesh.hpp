@@ -37,24 +37,24 @@ struct CleanReport {
 template <>
 struct Description<CleanReport> {
   static constexpr std::string_view name = "CleanReport";
-  static constexpr std::string_view doc = "What cleaning a mesh has done";
+  static constexpr std::string_view doc = "Changes by cleaning a mesh";
   static constexpr std::tuple members{
-      Member{"vertices_before", &CleanReport::vertices_before, "", "that triangles of the mesh name"},
-      Member{"vertices", &CleanReport::vertices, "", "of the result"},
-      Member{"triangles_before", &CleanReport::triangles_before, "", "of the mesh"},
-      Member{"triangles", &CleanReport::triangles, "", "of the result"},
+      Member{"vertices_before", &CleanReport::vertices_before, "", "vertices that triangles of the mesh name"},
+      Member{"vertices", &CleanReport::vertices, "", "vertices of the result"},
+      Member{"triangles_before", &CleanReport::triangles_before, "", "triangles of the mesh"},
+      Member{"triangles", &CleanReport::triangles, "", "triangles of the result"},
       Member{"reversed_triangles", &CleanReport::reversed_triangles, "",
              "triangles that faced another way than most of their shell"},
       Member{"reversed_shells", &CleanReport::reversed_shells, "", "shells that faced the solid"},
       Member{"collapses", &CleanReport::collapses, "", "vertices that were moved onto a neighbour"},
-      Member{"flips", &CleanReport::flips, "", "edges that were turned"},
-      Member{"deviation", &CleanReport::deviation, "mesh units",
-             "a bound: how far mesh and result are from each other at most"},
+      Member{"flips", &CleanReport::flips, "", "edges that were flipped"},
+      Member{"deviation", &CleanReport::deviation, "mesh units", "bound of the distance between mesh and result"},
       Member{"smallest_height_before", &CleanReport::smallest_height_before, "mesh units",
-             "of a triangle of the mesh, above its longest side"},
-      Member{"smallest_height", &CleanReport::smallest_height, "mesh units", "of a triangle of the result"},
+             "smallest height of a triangle of the mesh above its longest side"},
+      Member{"smallest_height", &CleanReport::smallest_height, "mesh units",
+             "smallest height of a triangle of the result"},
       Member{"betti_before", &CleanReport::betti_before, "", "components, tunnels, voids of the solid"},
-      Member{"betti", &CleanReport::betti, "", "of the result's solid: the same"},
+      Member{"betti", &CleanReport::betti, "", "components, tunnels, voids of the result's solid: the same"},
   };
 };
 

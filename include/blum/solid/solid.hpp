@@ -43,14 +43,14 @@ struct SolidShell {
 template <>
 struct Description<SolidShell> {
   static constexpr std::string_view name = "SolidShell";
-  static constexpr std::string_view doc = "A closed shell of the surface of a polyhedron";
+  static constexpr std::string_view doc = "Closed shell of the surface of a polyhedron";
   static constexpr std::tuple members{
-      Member{"body", &SolidShell::body, "", "that it bounds from outside, or that it is a void of"},
-      Member{"depth", &SolidShell::depth, "", "number of other shells that it lies in: at odd depth it is a void"},
-      Member{"parent", &SolidShell::parent, "", "the innermost shell that it lies in"},
+      Member{"body", &SolidShell::body, "", "body that it bounds from outside, or has as a void"},
+      Member{"depth", &SolidShell::depth, "", "number of other shells around it; it is a void at odd depth"},
+      Member{"parent", &SolidShell::parent, "", "innermost shell around it"},
       Member{"genus", &SolidShell::genus, "", "number of handles"},
-      Member{"volume", &SolidShell::volume, "cubic mesh units", "that it encloses, > 0"},
-      Member{"is_reversed", &SolidShell::is_reversed, "", "whether it faced the solid in the input"}};
+      Member{"volume", &SolidShell::volume, "cubic mesh units", "enclosed volume, > 0"},
+      Member{"is_reversed", &SolidShell::is_reversed, "", "true if it faced the solid in the input"}};
 };
 
 /// Connected part of a solid, or the whole of it, and the triangles of the input around it.

@@ -28,13 +28,13 @@ struct HausdorffOptions {
 template <>
 struct Description<HausdorffOptions> {
   static constexpr std::string_view name = "HausdorffOptions";
-  static constexpr std::string_view doc = "How well a Hausdorff distance is to be known";
+  static constexpr std::string_view doc = "Precision of a Hausdorff distance";
   static constexpr std::tuple members{
       Member{"tolerance", &HausdorffOptions::tolerance, "mesh units",
-             "how wide the interval may be; else a ten-thousandth of the diagonal of the box around both meshes",
+             "largest width of the interval; by default 1/10,000 of the diagonal of the box around both meshes",
              Range::positive()},
       Member{"max_points", &HausdorffOptions::max_points, "",
-             "the search stops, with a wider interval, after so many points of a mesh", Range::between(1, 1e15)},
+             "largest number of points per mesh; the search then stops with a wider interval", Range::between(1, 1e15)},
   };
 };
 
@@ -53,16 +53,16 @@ struct DirectedHausdorff {
 template <>
 struct Description<DirectedHausdorff> {
   static constexpr std::string_view name = "DirectedHausdorff";
-  static constexpr std::string_view doc = "How far a mesh is, at most, from another one";
+  static constexpr std::string_view doc = "Largest distance of the points of a mesh from another mesh";
   static constexpr std::tuple members{
-      Member{"lower", &DirectedHausdorff::lower, "mesh units", "the distance is at least this"},
-      Member{"upper", &DirectedHausdorff::upper, "mesh units", "the distance is at most this"},
+      Member{"lower", &DirectedHausdorff::lower, "mesh units", "lower bound of the distance"},
+      Member{"upper", &DirectedHausdorff::upper, "mesh units", "upper bound of the distance"},
       Member{"points", &DirectedHausdorff::points, "mesh units",
-             "a point of the mesh that is at least 'lower' away, and the closest point of the other mesh"},
+             "point of the mesh that is at least 'lower' away, and the closest point of the other mesh"},
       Member{"primitive", &DirectedHausdorff::primitive, "",
-             "of the mesh, that the first point lies on: triangles, then segments, then points"},
-      Member{"site", &DirectedHausdorff::site, "", "of the other mesh, that the second point lies on"},
-      Member{"evaluations", &DirectedHausdorff::evaluations, "", "points at which the distance was computed"},
+             "primitive of the mesh that contains the first point: triangles, then segments, then points"},
+      Member{"site", &DirectedHausdorff::site, "", "site of the other mesh that contains the second point"},
+      Member{"evaluations", &DirectedHausdorff::evaluations, "", "number of points at which the distance was computed"},
   };
 };
 
@@ -79,16 +79,15 @@ struct HausdorffDistance {
 template <>
 struct Description<HausdorffDistance> {
   static constexpr std::string_view name = "HausdorffDistance";
-  static constexpr std::string_view doc = "The Hausdorff distance of two meshes";
+  static constexpr std::string_view doc = "Hausdorff distance of two meshes";
   static constexpr std::tuple members{
-      Member{"lower", &HausdorffDistance::lower, "mesh units", "the distance is at least this"},
-      Member{"upper", &HausdorffDistance::upper, "mesh units", "the distance is at most this"},
-      Member{
-          "points", &HausdorffDistance::points, "mesh units",
-          "of the first mesh and of the second: one is at least 'lower' from the other mesh, whose closest point the "
-          "other one is"},
-      Member{"forward", &HausdorffDistance::forward, "", "of the first mesh from the second"},
-      Member{"backward", &HausdorffDistance::backward, "", "of the second mesh from the first"},
+      Member{"lower", &HausdorffDistance::lower, "mesh units", "lower bound of the distance"},
+      Member{"upper", &HausdorffDistance::upper, "mesh units", "upper bound of the distance"},
+      Member{"points", &HausdorffDistance::points, "mesh units",
+             "point of the first and of the second mesh: one is at least 'lower' from the other mesh, the other is its "
+             "closest point"},
+      Member{"forward", &HausdorffDistance::forward, "", "distance of the first mesh from the second"},
+      Member{"backward", &HausdorffDistance::backward, "", "distance of the second mesh from the first"},
   };
 };
 

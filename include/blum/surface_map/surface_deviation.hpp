@@ -26,11 +26,11 @@ struct DeviationOptions {
 template <>
 struct Description<DeviationOptions> {
   static constexpr std::string_view name = "DeviationOptions";
-  static constexpr std::string_view doc = "How well deviations are to be known";
+  static constexpr std::string_view doc = "Precision of deviations";
   static constexpr std::tuple members{
-      Member{"pieces", &DeviationOptions::pieces, "", "that the surface is cut into; errors fall with their size",
-             Range::between(1, 1e9)},
-      Member{"sign", &DeviationOptions::sign, "", "how signs are found: negative inside of the other mesh"},
+      Member{"pieces", &DeviationOptions::pieces, "",
+             "approximate number of pieces of the surface; errors fall with their size", Range::between(1, 1e9)},
+      Member{"sign", &DeviationOptions::sign, "", "rule for signs: negative inside the other mesh"},
   };
 };
 
@@ -57,24 +57,22 @@ struct SurfaceDeviation {
 template <>
 struct Description<SurfaceDeviation> {
   static constexpr std::string_view name = "SurfaceDeviation";
-  static constexpr std::string_view doc = "The distances of all points of a surface from another mesh, by area";
+  static constexpr std::string_view doc = "Distances of all points of a surface from another mesh, by area";
   static constexpr std::tuple members{
-      Member{"mean", &SurfaceDeviation::mean, "mesh units", "signed where signs are asked for"},
-      Member{"mean_error", &SurfaceDeviation::mean_error, "mesh units",
-             "the true mean is no further from it, for certain"},
+      Member{"mean", &SurfaceDeviation::mean, "mesh units", "mean, signed if signs are requested"},
+      Member{"mean_error", &SurfaceDeviation::mean_error, "mesh units", "guaranteed bound for the error of the mean"},
       Member{"rms", &SurfaceDeviation::rms, "mesh units", "root of the mean square"},
-      Member{"rms_error", &SurfaceDeviation::rms_error, "mesh units",
-             "the true one is no further from it, for certain"},
-      Member{"smallest", &SurfaceDeviation::smallest, "mesh units", "of the centroids of the pieces"},
-      Member{"largest", &SurfaceDeviation::largest, "mesh units", "of the centroids of the pieces"},
+      Member{"rms_error", &SurfaceDeviation::rms_error, "mesh units", "guaranteed bound for the error of rms"},
+      Member{"smallest", &SurfaceDeviation::smallest, "mesh units", "smallest value at the centroids of the pieces"},
+      Member{"largest", &SurfaceDeviation::largest, "mesh units", "largest value at the centroids of the pieces"},
       Member{"percentiles", &SurfaceDeviation::percentiles, "mesh units",
-             "1, 5, 25, 50, 75, 95 and 99 percent of the area are below"},
+             "values that 1, 5, 25, 50, 75, 95 and 99 percent of the area are below"},
       Member{"percentile_error", &SurfaceDeviation::percentile_error, "mesh units",
-             "of each of them, and of smallest and largest, for certain"},
-      Member{"area", &SurfaceDeviation::area, "square mesh units", "of the surface"},
-      Member{"pieces", &SurfaceDeviation::pieces, "", "that the surface was cut into"},
-      Member{"sign_rule", &SurfaceDeviation::sign_rule, "", "how signs were found"},
-      Member{"sign_reason", &SurfaceDeviation::sign_reason, "", "why by this rule"},
+             "guaranteed bound for the error of each percentile, and of smallest and largest"},
+      Member{"area", &SurfaceDeviation::area, "square mesh units", "area of the surface"},
+      Member{"pieces", &SurfaceDeviation::pieces, "", "number of pieces"},
+      Member{"sign_rule", &SurfaceDeviation::sign_rule, "", "rule that found the signs"},
+      Member{"sign_reason", &SurfaceDeviation::sign_reason, "", "reason for this rule"},
   };
 };
 

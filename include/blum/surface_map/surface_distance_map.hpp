@@ -55,13 +55,13 @@ struct SurfaceMapOptions {
 template <>
 struct Description<SurfaceMapOptions> {
   static constexpr std::string_view name = "SurfaceMapOptions";
-  static constexpr std::string_view doc = "What a surface map is asked for";
+  static constexpr std::string_view doc = "Options of a surface map";
   static constexpr std::tuple members{
       Member{"texel", &SurfaceMapOptions::texel, "mesh units",
-             "side of a texel on the surface; else such that there are about a million", Range::positive()},
+             "side of a texel on the surface; by default for about a million texels", Range::positive()},
       Member{"sign", &SurfaceMapOptions::sign, "",
-             "how the sign of distances to other meshes is found: negative inside of them"},
-      Member{"max_distance", &SurfaceMapOptions::max_distance, "mesh units", "nothing further than this is looked for",
+             "rule for the sign of distances to other meshes: negative inside them"},
+      Member{"max_distance", &SurfaceMapOptions::max_distance, "mesh units", "largest distance that is searched",
              Range::at_least(0)},
   };
 };

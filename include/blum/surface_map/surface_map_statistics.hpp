@@ -31,17 +31,17 @@ struct SurfaceMapStatistics {
 template <>
 struct Description<SurfaceMapStatistics> {
   static constexpr std::string_view name = "SurfaceMapStatistics";
-  static constexpr std::string_view doc = "The values of a surface map, by area";
+  static constexpr std::string_view doc = "Values of a surface map, by area";
   static constexpr std::tuple members{
-      Member{"mean", &SurfaceMapStatistics::mean, "mesh units", "signed where the map is"},
+      Member{"mean", &SurfaceMapStatistics::mean, "mesh units", "mean, signed if the map is"},
       Member{"rms", &SurfaceMapStatistics::rms, "mesh units", "root of the mean square"},
-      Member{"smallest", &SurfaceMapStatistics::smallest, "mesh units", "of the texels"},
-      Member{"largest", &SurfaceMapStatistics::largest, "mesh units", "of the texels"},
+      Member{"smallest", &SurfaceMapStatistics::smallest, "mesh units", "smallest value of a texel"},
+      Member{"largest", &SurfaceMapStatistics::largest, "mesh units", "largest value of a texel"},
       Member{"percentiles", &SurfaceMapStatistics::percentiles, "mesh units",
-             "1, 5, 25, 50, 75, 95 and 99 percent of the measured area are below"},
-      Member{"area", &SurfaceMapStatistics::area, "square mesh units", "of the triangles that have texels"},
+             "values that 1, 5, 25, 50, 75, 95 and 99 percent of the measured area are below"},
+      Member{"area", &SurfaceMapStatistics::area, "square mesh units", "area of the triangles that have texels"},
       Member{"measured_area", &SurfaceMapStatistics::measured_area, "square mesh units",
-             "the part of it whose texels have a value"},
+             "part of the area whose texels have a value"},
   };
 };
 

@@ -47,12 +47,14 @@ struct ThicknessOptions {
 template <>
 struct Description<ThicknessOptions> {
   static constexpr std::string_view name = "ThicknessOptions";
-  static constexpr std::string_view doc = "What thickness means";
+  static constexpr std::string_view doc = "Options of thickness";
   static constexpr std::tuple members{
       Member{"kind", &ThicknessOptions::kind, "",
-             "'ray': straight inwards to the far side; 'ball': diameter of the largest ball inside that touches"},
+             "'ray': distance straight inwards to the far side; 'ball': diameter of the largest inner ball that "
+             "touches the point"},
       Member{"separation", &ThicknessOptions::separation, "degrees",
-             "of balls: triangles that are turned by less do not end them", Range::between(0, 180)},
+             "for balls: largest angle between normals of triangles that do not limit the ball",
+             Range::between(0, 180)},
   };
 };
 

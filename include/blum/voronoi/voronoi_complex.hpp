@@ -55,22 +55,21 @@ struct VoronoiOptions {
 template <>
 struct Description<VoronoiOptions> {
   static constexpr std::string_view name = "VoronoiOptions";
-  static constexpr std::string_view doc = "What a Voronoi complex is made of, and how fine it is";
+  static constexpr std::string_view doc = "Options of a Voronoi complex";
   static constexpr std::tuple members{
       Member{"part", &VoronoiOptions::part, "",
-             "all: walls and surface; walls: without the surface; medial: of the walls those with two footprints"},
+             "all: walls and surface; walls: without the surface; medial: only walls with two footprints"},
       Member{"resolution", &VoronoiOptions::resolution, "",
-             "cubes that meet the solid are at most the longest side of the box around it over this",
+             "longest side of the box around the solid, divided by the largest side of cubes that meet the solid",
              Range::between(1, 1024)},
       Member{"tolerance", &VoronoiOptions::tolerance, "mesh units",
-             "the complex is nowhere further from the exact walls than this, nor these from it", Range::positive()},
-      Member{"depth", &VoronoiOptions::depth, "", "how often cubes are split at most", Range::between(1, 24)},
+             "largest distance between the complex and the exact walls", Range::positive()},
+      Member{"depth", &VoronoiOptions::depth, "", "largest number of splits of a cube", Range::between(1, 24)},
       Member{"grids", &VoronoiOptions::grids, "",
-             "how many places of the grid are tried at most: where few cubes fail, others may pass",
+             "largest number of grid positions that are tried: if few cubes fail, others may pass",
              Range::between(1, 100)},
       Member{"max_cubes", &VoronoiOptions::max_cubes, "",
-             "no more cubes than this, those that are split included: about 10 kB each",
-             Range::between(1000, 100'000'000)},
+             "largest number of cubes, including split ones: about 10 kB each", Range::between(1000, 100'000'000)},
   };
 };
 
@@ -106,11 +105,11 @@ struct FailingVoronoiCell {
 template <>
 struct Description<FailingVoronoiCell> {
   static constexpr std::string_view name = "FailingVoronoiCell";
-  static constexpr std::string_view doc = "A cube in which walls and surface are not known to be contractible";
+  static constexpr std::string_view doc = "Cube in which walls and surface are not known to be contractible";
   static constexpr std::tuple members{
       Member{"low", &FailingVoronoiCell::low, "mesh units", "corner of the cube"},
-      Member{"high", &FailingVoronoiCell::high, "mesh units", "the corner opposite"},
-      Member{"obstacle", &FailingVoronoiCell::obstacle, "", "what keeps it from passing"},
+      Member{"high", &FailingVoronoiCell::high, "mesh units", "opposite corner"},
+      Member{"obstacle", &FailingVoronoiCell::obstacle, "", "reason why it does not pass"},
   };
 };
 
@@ -148,36 +147,34 @@ struct VoronoiReport {
 template <>
 struct Description<VoronoiReport> {
   static constexpr std::string_view name = "VoronoiReport";
-  static constexpr std::string_view doc = "What a Voronoi complex consists of, and whether it is certified";
+  static constexpr std::string_view doc = "Counts of a Voronoi complex, and the result of its certification";
   static constexpr std::tuple members{
       Member{"certified", &VoronoiReport::certified, "",
-             "whether every cube passes and the Betti numbers are as expected: then the homology is proven"},
-      Member{"expected_betti", &VoronoiReport::expected, "",
-             "components, tunnels, voids of the part that was asked for"},
-      Member{"found_betti", &VoronoiReport::found, "", "of the complex"},
+             "true if every cube passes and the Betti numbers are as expected: then the homology is proven"},
+      Member{"expected_betti", &VoronoiReport::expected, "", "components, tunnels, voids of the requested part"},
+      Member{"found_betti", &VoronoiReport::found, "", "components, tunnels, voids of the complex"},
       Member{"hausdorff_bound", &VoronoiReport::hausdorff_bound, "mesh units",
-             "where certified: how far complex and exact part are from each other at most"},
-      Member{"faces", &VoronoiReport::faces, "", "sites: coplanar triangles that share edges are one"},
-      Member{"reflex_edges", &VoronoiReport::reflex_edges, "", "sites"},
-      Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "sites"},
+             "if certified: bound of the distance between the complex and the exact part"},
+      Member{"faces", &VoronoiReport::faces, "", "faces among the sites: coplanar triangles that share edges are one"},
+      Member{"reflex_edges", &VoronoiReport::reflex_edges, "", "reflex edges among the sites"},
+      Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "reflex vertices among the sites"},
       Member{"thin_vertices", &VoronoiReport::thin_vertices, "",
              "reflex vertices whose cones are thinner than 1e-3: their regions count as part of walls"},
-      Member{"grids", &VoronoiReport::grids, "", "places of the grid that were tried"},
-      Member{"cubes", &VoronoiReport::cubes, "", "that meet the solid, and are not split"},
-      Member{"squares", &VoronoiReport::squares, "", "and parts of squares"},
+      Member{"grids", &VoronoiReport::grids, "", "grid positions that were tried"},
+      Member{"cubes", &VoronoiReport::cubes, "", "cubes that meet the solid and are not split"},
+      Member{"squares", &VoronoiReport::squares, "", "squares and parts of squares"},
       Member{"undecided_squares", &VoronoiReport::undecided_squares, "",
-             "of these, those whose borders do not tell what is inside"},
+             "those of these whose borders do not determine the inside"},
       Member{"splits", &VoronoiReport::splits, "", "cubes that were split because they did not pass"},
-      Member{"depth", &VoronoiReport::depth, "", "how often the smallest cube was split"},
-      Member{"stopped_at_max_cubes", &VoronoiReport::stopped_at_max_cubes, "",
-             "whether more would have been split, but for max_cubes"},
-      Member{"governors", &VoronoiReport::governors, "", "labels that may be closest in a cube, mean"},
+      Member{"depth", &VoronoiReport::depth, "", "number of splits of the smallest cube"},
+      Member{"stopped_at_max_cubes", &VoronoiReport::stopped_at_max_cubes, "", "true if max_cubes prevented splits"},
+      Member{"governors", &VoronoiReport::governors, "", "mean number of labels that may be closest in a cube"},
       Member{"lines", &VoronoiReport::lines, "", "parts of grid lines in the solid whose labels were found"},
-      Member{"exact_lines", &VoronoiReport::exact_lines, "", "of these, those where doubles did not tell"},
-      Member{"undecided_lines", &VoronoiReport::undecided_lines, "", "of these, those where nothing did"},
-      Member{"contradictions", &VoronoiReport::contradictions, "", "nodes of which different sites are told"},
+      Member{"exact_lines", &VoronoiReport::exact_lines, "", "those of these that doubles did not decide"},
+      Member{"undecided_lines", &VoronoiReport::undecided_lines, "", "those of these that nothing decided"},
+      Member{"contradictions", &VoronoiReport::contradictions, "", "nodes with different sites on different lines"},
       Member{"failing", &VoronoiReport::failing, "", "cubes that do not pass at the largest depth"},
-      Member{"seconds", &VoronoiReport::phases, "s", "wall-clock, of each phase"},
+      Member{"seconds", &VoronoiReport::phases, "s", "wall-clock time of each phase"},
   };
 };
 

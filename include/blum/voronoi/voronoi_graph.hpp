@@ -25,12 +25,12 @@ struct VoronoiWall {
 template <>
 struct Description<VoronoiWall> {
   static constexpr std::string_view name = "VoronoiWall";
-  static constexpr std::string_view doc = "A connected part of the border between two regions";
+  static constexpr std::string_view doc = "Connected part of the border between two regions";
   static constexpr std::tuple members{
-      Member{"site_a", &VoronoiWall::site_a, "", "the region on one side: the smaller site"},
-      Member{"site_b", &VoronoiWall::site_b, "", "the region on the other"},
-      Member{"area", &VoronoiWall::area, "square mesh units", "of its triangles"},
-      Member{"seams", &VoronoiWall::seams, "", "along its border: places in the list of seams"},
+      Member{"site_a", &VoronoiWall::site_a, "", "site of the region on one side: the smaller site"},
+      Member{"site_b", &VoronoiWall::site_b, "", "site of the region on the other side"},
+      Member{"area", &VoronoiWall::area, "square mesh units", "area of its triangles"},
+      Member{"seams", &VoronoiWall::seams, "", "seams along its border: places in the list of seams"},
   };
 };
 
@@ -45,12 +45,12 @@ struct VoronoiSeam {
 template <>
 struct Description<VoronoiSeam> {
   static constexpr std::string_view name = "VoronoiSeam";
-  static constexpr std::string_view doc = "A line in which regions of three or more sites meet";
+  static constexpr std::string_view doc = "Line in which regions of three or more sites meet";
   static constexpr std::tuple members{
-      Member{"sites", &VoronoiSeam::sites, "", "of the regions around it"},
-      Member{"length", &VoronoiSeam::length, "mesh units", "of its edges"},
-      Member{"walls", &VoronoiSeam::walls, "", "that meet in it: places in the list of walls"},
-      Member{"junctions", &VoronoiSeam::junctions, "", "at which it ends: places in the list of junctions"},
+      Member{"sites", &VoronoiSeam::sites, "", "sites of the regions around it"},
+      Member{"length", &VoronoiSeam::length, "mesh units", "length of its edges"},
+      Member{"walls", &VoronoiSeam::walls, "", "walls that meet in it: places in the list of walls"},
+      Member{"junctions", &VoronoiSeam::junctions, "", "junctions at which it ends: places in the list of junctions"},
   };
 };
 
@@ -66,12 +66,13 @@ struct VoronoiJunction {
 template <>
 struct Description<VoronoiJunction> {
   static constexpr std::string_view name = "VoronoiJunction";
-  static constexpr std::string_view doc = "A point in which seams meet, or one ends";
+  static constexpr std::string_view doc = "Point in which seams meet, or one ends";
   static constexpr std::tuple members{
-      Member{"vertex", &VoronoiJunction::vertex, "", "of the complex"},
-      Member{"position", &VoronoiJunction::position, "mesh units", "of that vertex: near the point, in a cube at it"},
-      Member{"sites", &VoronoiJunction::sites, "", "of the regions around it"},
-      Member{"seams", &VoronoiJunction::seams, "", "that begin or end there: places in the list of seams"},
+      Member{"vertex", &VoronoiJunction::vertex, "", "vertex of the complex"},
+      Member{"position", &VoronoiJunction::position, "mesh units",
+             "position of that vertex: near the point, in a cube at it"},
+      Member{"sites", &VoronoiJunction::sites, "", "sites of the regions around it"},
+      Member{"seams", &VoronoiJunction::seams, "", "seams that begin or end there: places in the list of seams"},
   };
 };
 
@@ -86,9 +87,9 @@ struct VoronoiGraph {
 template <>
 struct Description<VoronoiGraph> {
   static constexpr std::string_view name = "VoronoiGraph";
-  static constexpr std::string_view doc = "A Voronoi diagram as regions, walls, seams and junctions";
+  static constexpr std::string_view doc = "Voronoi diagram as regions, walls, seams and junctions";
   static constexpr std::tuple members{
-      Member{"regions", &VoronoiGraph::regions, "", "of a complex with its surface; none without"},
+      Member{"regions", &VoronoiGraph::regions, "", "regions of a complex with its surface; none without"},
       Member{"walls", &VoronoiGraph::walls, "", "connected parts of borders between two regions"},
       Member{"seams", &VoronoiGraph::seams, "", "lines in which regions of three or more sites meet"},
       Member{"junctions", &VoronoiGraph::junctions, "", "points in which seams meet or end"},

@@ -21,10 +21,10 @@ struct VoronoiNeighbour {
 template <>
 struct Description<VoronoiNeighbour> {
   static constexpr std::string_view name = "VoronoiNeighbour";
-  static constexpr std::string_view doc = "The wall between a region and another one";
+  static constexpr std::string_view doc = "Wall between a region and another one";
   static constexpr std::tuple members{
-      Member{"site", &VoronoiNeighbour::site, "", "of the other one"},
-      Member{"area", &VoronoiNeighbour::area, "square mesh units", "of the wall"},
+      Member{"site", &VoronoiNeighbour::site, "", "site of the other region"},
+      Member{"area", &VoronoiNeighbour::area, "square mesh units", "area of the wall"},
   };
 };
 
@@ -39,12 +39,12 @@ struct VoronoiRegion {
 template <>
 struct Description<VoronoiRegion> {
   static constexpr std::string_view name = "VoronoiRegion";
-  static constexpr std::string_view doc = "What is closest to a site";
+  static constexpr std::string_view doc = "Region of the points that are closest to a site";
   static constexpr std::tuple members{
-      Member{"site", &VoronoiRegion::site, "", "as site_a and site_b number them"},
-      Member{"volume", &VoronoiRegion::volume, "cubic mesh units", "that its walls and its surface enclose"},
-      Member{"surface_area", &VoronoiRegion::surface_area, "square mesh units", "of its part of the surface"},
-      Member{"neighbours", &VoronoiRegion::neighbours, "", "the regions beyond its walls"},
+      Member{"site", &VoronoiRegion::site, "", "site, numbered as site_a and site_b"},
+      Member{"volume", &VoronoiRegion::volume, "cubic mesh units", "volume enclosed by its walls and its surface"},
+      Member{"surface_area", &VoronoiRegion::surface_area, "square mesh units", "area of its part of the surface"},
+      Member{"neighbours", &VoronoiRegion::neighbours, "", "regions beyond its walls"},
   };
 };
 

@@ -31,11 +31,11 @@ struct VoronoiSite {
 template <>
 struct Description<VoronoiSite> {
   static constexpr std::string_view name = "VoronoiSite";
-  static constexpr std::string_view doc = "A face, reflex edge or reflex vertex of a polyhedron";
+  static constexpr std::string_view doc = "Face, reflex edge or reflex vertex of a polyhedron";
   static constexpr std::tuple members{
       Member{"kind", &VoronoiSite::kind, "", "face, edge or vertex"},
-      Member{"triangles", &VoronoiSite::triangles, "", "of the mesh: those of a face"},
-      Member{"vertices", &VoronoiSite::vertices, "", "of the mesh: both ends of an edge; a vertex"},
+      Member{"triangles", &VoronoiSite::triangles, "", "triangles of a face"},
+      Member{"vertices", &VoronoiSite::vertices, "", "vertices of the mesh: both ends of an edge; a vertex"},
   };
 };
 

@@ -154,10 +154,10 @@ std::string sentence(Proven proven) {
     case Proven::homotopy_type:
       return "the axis is homotopy equivalent to the solid";
     case Proven::homology:
-      return "the way of the axis into the solid is an isomorphism of homology";
+      return "the inclusion of the axis into the solid is an isomorphism of homology";
     case Proven::homology_modulo_2:
-      return "the way of the axis into the solid is an isomorphism of homology modulo 2 (over the integers it was not "
-             "shown)";
+      return "the inclusion of the axis into the solid is an isomorphism of homology modulo 2 (not shown over the "
+             "integers)";
     case Proven::betti_numbers:
       return "the axis has the Betti numbers of the solid";
     default:
@@ -169,27 +169,26 @@ std::string sentence(Proven proven) {
 std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std::string& name) {
   const bool is_short = body.tunnels_met < body.solid[1];
   if (proof.doubtful > 0 && (is_short || !proof.are_triangles_told)) {
-    return "whether loops of the axis run around the " +
-           counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " + name +
-           " cannot be told: " + counted(proof.doubtful, "edge of the axis touches", "edges of the axis touch") +
-           " the surface";
+    return "it is unknown if loops of the axis run around the " +
+           counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " + name + ": " +
+           counted(proof.doubtful, "edge of the axis touches", "edges of the axis touch") + " the surface";
   }
   if (!is_short) return {};
   return "loops of the axis run around " + count_text(static_cast<std::uint64_t>(body.tunnels_met)) + " of the " +
          counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " + name +
-         ": others run around nothing, or around the same";
+         ": the others run around no tunnel, or around the same ones";
 }
 
 /// Returns the mismatch of its closed surfaces; empty if none.
 std::string wrong_surfaces(const BodyCheck& body, const std::optional<Vec3d>& untold, double factor,
                            const std::string& name) {
   if (untold) {
-    return "whether closed surfaces of the axis are around the void at " + verifier::place_text(*untold / factor) +
-           " of " + name + " cannot be told: triangles of the axis go through it";
+    return "it is unknown if closed surfaces of the axis enclose the void at " +
+           verifier::place_text(*untold / factor) + " of " + name + ": triangles of the axis pass through it";
   }
   if (body.voids_met >= body.solid[2]) return {};
-  return "closed surfaces of the axis are around " + count_text(static_cast<std::uint64_t>(body.voids_met)) +
-         " of the " + counted(static_cast<std::size_t>(body.solid[2]), "void", "voids") + " of " + name;
+  return "closed surfaces of the axis enclose " + count_text(static_cast<std::uint64_t>(body.voids_met)) + " of the " +
+         counted(static_cast<std::size_t>(body.solid[2]), "void", "voids") + " of " + name;
 }
 
 /// Records what is proven, and adds mismatches.
@@ -224,8 +223,7 @@ void conclude(HomologyCheck& check, const Found& found, const AxisInSolid& given
   }
   check.shown = sentence(check.proven);
   if (given.untold_edges > 0) {
-    check.shown += ", and no more: whether " + counted(given.untold_edges, "edge crosses", "edges cross") +
-                   " a gap of the solid cannot be told";
+    check.shown += ", and no more: " + counted(given.untold_edges, "edge", "edges") + " may cross a gap of the solid";
   }
   if (!found.is_looked_at && has_tunnels_or_voids) check.shown += ", and no more: it is made of voxels";
   if (check.across > 0) check.shown += ", and no more: triangles span a tunnel of the solid";

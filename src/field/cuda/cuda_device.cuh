@@ -149,7 +149,7 @@ class CudaDevice {
     constexpr std::size_t shared = sizeof(typename Body::Shared);
     check(
         cudaFuncSetAttribute(block_kernel<Body>, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
-        "asking for shared memory");
+        "requesting shared memory");
     block_kernel<Body><<<static_cast<unsigned>(count), Body::threads, shared, stream_>>>(body);
     check(cudaGetLastError(), "launching a kernel");
   }
@@ -197,7 +197,7 @@ class CudaDevice {
   template <class Work>
   void with_scratch(const Work& work) {
     std::size_t bytes = 0;
-    check(work(nullptr, bytes), "asking for scratch memory");
+    check(work(nullptr, bytes), "requesting scratch memory");
     scratch_.resize(bytes == 0 ? 1 : bytes);
     check(work(scratch_.data(), bytes), "a parallel primitive");
   }

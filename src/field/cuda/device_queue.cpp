@@ -11,8 +11,8 @@ int cuda_index(const Device& device) {
   if (device.kind == DeviceKind::cuda) return device.index;
   if (device.kind == DeviceKind::automatic) return 0;
   throw InvalidOption(
-      "memory of a CUDA device is asked for, but the device is the CPU: FieldSolver and distance_transform are for the "
-      "host");
+      "memory of a CUDA device is requested, but the device is the CPU: use FieldSolver or distance_transform() for "
+      "host memory");
 }
 
 }  // namespace blum::cuda

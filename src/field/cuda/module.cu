@@ -118,17 +118,18 @@ struct CudaPlatform {
     int driver = 0;
     if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
       throw DeviceError(
-          "no NVIDIA driver can be seen: is one installed, and do its devices show in a container? nvidia-smi tells");
+          "no NVIDIA driver is visible: install one, or make its devices visible in the container; nvidia-smi lists "
+          "them");
     }
     int count = 0;
     check(cudaGetDeviceCount(&count), "looking for devices");
     if (device < count) return;
     throw DeviceError("there is no CUDA device " + std::to_string(device) + ": " + std::to_string(count) +
-                      " can be seen, counted from 0");
+                      " visible, counted from 0");
   }
   static int device_of(const void* memory) {
     cudaPointerAttributes attributes{};
-    check(cudaPointerGetAttributes(&attributes, memory), "asking whose memory it is");
+    check(cudaPointerGetAttributes(&attributes, memory), "querying the owner of memory");
     const bool is_on_device = attributes.type == cudaMemoryTypeDevice || attributes.type == cudaMemoryTypeManaged;
     return is_on_device ? attributes.device : -1;
   }
@@ -142,7 +143,7 @@ struct CudaPlatform {
   static std::uint64_t memory_of(int device) { return properties_of(device).totalGlobalMem; }
   static cudaDeviceProp properties_of(int device) {
     cudaDeviceProp properties{};
-    check(cudaGetDeviceProperties(&properties, device), "asking what the device is");
+    check(cudaGetDeviceProperties(&properties, device), "querying the device");
     return properties;
   }
   static std::size_t slab_nodes() { return kernels::FieldEngine<CudaDevice>::default_slab_nodes; }

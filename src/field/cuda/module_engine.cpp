@@ -44,8 +44,8 @@ class Reasons {
   void missing(const std::string& place) { missing_ += (missing_.empty() ? "" : ", ") + place; }
   void unusable(const std::string& why) { unusable_ += (unusable_.empty() ? "" : "; ") + why; }
   [[nodiscard]] std::string text() const {
-    const std::string looked = missing_.empty() ? "" : "not there: " + missing_;
-    return "no CUDA module: name its file in BLUM_CUDA_MODULE, or build it, see docs/guide/devices.md (" + looked +
+    const std::string looked = missing_.empty() ? "" : "not found: " + missing_;
+    return "no CUDA module: set BLUM_CUDA_MODULE to its file, or build it, see docs/guide/devices.md (" + looked +
            (looked.empty() || unusable_.empty() ? "" : "; ") + unusable_ + ")";
   }
 
@@ -68,12 +68,12 @@ const Module& find_module() {
     void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
       const char* why = dlerror();
-      is_path ? reasons.unusable(why != nullptr ? why : place) : reasons.missing("where the system looks");
+      is_path ? reasons.unusable(why != nullptr ? why : place) : reasons.missing("in the system's library path");
       continue;
     }
     const auto function = reinterpret_cast<ModuleFunction>(dlsym(library, module_symbol));
     if (function == nullptr) {
-      reasons.unusable(place + ": is no CUDA module of Blum");
+      reasons.unusable(place + ": is not a CUDA module of Blum");
       continue;
     }
     const Module* module = function();

@@ -37,12 +37,12 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
   }
   if (!mesh.segments.empty() || !mesh.points.empty()) {
     throw InvalidMesh(
-        "signs by normals were asked for, but the mesh has free segments or points, which have no sides: use winding");
+        "signs by normals need triangles only; the mesh has free segments or points, which have no sides: use winding");
   }
-  if (facts.outward) return {SignRule::normals, "orientation, as asked for", Method::crossings};
+  if (facts.outward) return {SignRule::normals, "orientation, as requested", Method::crossings};
   Plan plan{SignRule::normals,
-            "orientation, as asked for, of a mesh whose shells cross each other or do not all face away from the "
-            "solid: flip it if the sign looks inverted",
+            "orientation, as requested; shells of the mesh cross or do not all face away from the solid: flip it if "
+            "signs look inverted",
             Method::pseudonormals};
   // An inside-out mesh has winding number -1 in the solid and 0 around it. These signs call the space around it inside.
   if (faces_inwards(mesh)) {
@@ -66,10 +66,10 @@ bool is_balanced(const MeshView& mesh, const SiteTable& sites) {
 }
 
 constexpr const char* no_triangles = "unsigned: there are no triangles, so there is no inside";
-constexpr const char* as_asked_for = "winding number above 1/2, as asked for";
+constexpr const char* as_asked_for = "winding number above 1/2, as requested";
 
 void throw_without_triangles() {
-  throw InvalidOption("a sign was asked for, but the mesh has no triangles, so it has no inside: ask for none");
+  throw InvalidOption("a sign was requested, but the mesh has no triangles, so it has no inside: request none");
 }
 
 Plan unsigned_plan(std::string reason) {
@@ -99,7 +99,7 @@ Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, c
   if (has_flat_triangles(mesh)) return by_winding(winding + "is closed, but has triangles too flat for a normal");
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
   if (search_.finds_any(mesh, quiet)) {
-    return by_winding(winding + "is closed and oriented, but it crosses itself, or touches itself");
+    return by_winding(winding + "is closed and oriented, but it crosses or touches itself");
   }
   if (!facts.outward) return by_winding(winding + "is closed, but its shells do not all face away from the solid");
   return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", Method::crossings, 0,
@@ -107,7 +107,7 @@ Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, c
 }
 
 Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
-  if (mode == SignMode::none) return unsigned_plan("unsigned, as asked for");
+  if (mode == SignMode::none) return unsigned_plan("unsigned, as requested");
   if (mesh.triangles.empty()) {
     if (mode == SignMode::automatic) return unsigned_plan(no_triangles);
     throw_without_triangles();
@@ -121,18 +121,18 @@ Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, 
 Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {
   if (mode == SignMode::normals) {
     throw InvalidOption(
-        "signs by normals need a mesh in the host's memory: ask for automatic, which tells the same sides of closed "
-        "meshes that face outwards");
+        "signs by normals need a mesh in host memory: use automatic, which gives the same signs for closed meshes that "
+        "face outwards");
   }
-  if (mode == SignMode::none) return unsigned_plan("unsigned, as asked for");
+  if (mode == SignMode::none) return unsigned_plan("unsigned, as requested");
   if (triangles > 0) return by_winding(as_asked_for);
   if (mode == SignMode::winding) throw_without_triangles();
   return unsigned_plan(no_triangles);
 }
 
 Plan plan_image_signs(bool is_signed, const std::string& selection) {
-  if (!is_signed) return unsigned_plan("an unsigned field was asked for");
-  return {SignRule::label, "a voxel is inside where its value " + selection};
+  if (!is_signed) return unsigned_plan("unsigned, as requested");
+  return {SignRule::label, "a voxel is inside if its value " + selection};
 }
 
 }  // namespace blum::sign

@@ -51,7 +51,7 @@ BoxBvh::~BoxBvh() = default;
 
 void BoxBvh::refit(std::span<const Box3> boxes, const Context& context) {
   if (boxes.size() != size()) {
-    throw InvalidOption("a hierarchy of " + std::to_string(size()) + " boxes is refitted to " +
+    throw InvalidOption("a hierarchy of " + std::to_string(size()) + " boxes cannot be refitted to " +
                         std::to_string(boxes.size()) + "; build a new one");
   }
   data_->fill(boxes, context);

@@ -270,8 +270,8 @@ Box3 Bvh::Data::bounds_of(std::span<const Vec3d> moved, const Context& context) 
 void Bvh::refit(std::span<const Vec3d> vertices, const Context& context) {
   Data& data = *data_;
   if (vertices.size() != data.vertices) {
-    throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data.vertices) + " vertices is refitted to " +
-                      std::to_string(vertices.size()) + "; build a new one");
+    throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data.vertices) +
+                      " vertices cannot be refitted to " + std::to_string(vertices.size()) + "; build a new one");
   }
   data.bounds = data.bounds_of(vertices, context);
   data.scale = unit_scale(data.bounds);

@@ -307,8 +307,8 @@ OrientedBvh::~OrientedBvh() = default;
 
 void OrientedBvh::refit(std::span<const Vec3d> vertices, const Context& context) {
   if (vertices.size() != data_->vertices) {
-    throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data_->vertices) + " vertices is refitted to " +
-                      std::to_string(vertices.size()) + "; build a new one");
+    throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data_->vertices) +
+                      " vertices cannot be refitted to " + std::to_string(vertices.size()) + "; build a new one");
   }
   data_->fill(vertices, context);
 }

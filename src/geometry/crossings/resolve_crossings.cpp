@@ -220,7 +220,7 @@ class Windings {
         if (const auto winding = front_along_ray(f, random)) return {f, *winding};
       }
     }
-    throw Unresolved("a part of it is too small to tell whether it lies inside of others");
+    throw Unresolved("a part of it is too small to decide if it lies inside others");
   }
 
   /// Returns the winding number in front of a facet, from the crossings of a ray through it. Returns nullopt if
@@ -622,7 +622,7 @@ ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& optio
     rest.least_winding = 1;  // the result of the first round is wound around once
     for (out.counts.rounds = 1;; ++out.counts.rounds) {
       out.obstacle = obstacle_of(out.mesh, facts, own);
-      if (out.obstacle.empty() && genera(facts) != exact) out.obstacle = "rounding changed how its parts hang together";
+      if (out.obstacle.empty() && genera(facts) != exact) out.obstacle = "rounding changed how its parts are connected";
       if (out.obstacle.empty()) {
         out.counts.pinches = pinches(out.mesh, facts);
         out.body_of = body_of_triangles(out.mesh, facts);

@@ -202,11 +202,11 @@ SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const 
                                           const Context& context) {
   throw_if_cancelled(context);
   if (order.size() != mesh.triangles.size()) {
-    throw InvalidOption("the order of " + std::to_string(order.size()) + " triangles is given, of a mesh with " +
+    throw InvalidOption("an order of " + std::to_string(order.size()) + " triangles is given for a mesh with " +
                         std::to_string(mesh.triangles.size()));
   }
   if (corners.size() != mesh.vertices.size()) {
-    throw InvalidOption("the corners of " + std::to_string(corners.size()) + " vertices are given, of a mesh with " +
+    throw InvalidOption("the corners of " + std::to_string(corners.size()) + " vertices are given for a mesh with " +
                         std::to_string(mesh.vertices.size()));
   }
   const double scale = coordinate_scale(bounds(mesh));

@@ -237,7 +237,7 @@ class Cutter {
     for (std::size_t i = 0; i < order.size(); ++i) {
       throw_if_cancelled(context_);
       for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].lower.x <= boxes[order[i]].upper.x; ++j) {
-        if (++looks_ > most_looks) throw Unresolved("too many triangles cross one");
+        if (++looks_ > most_looks) throw Unresolved("too many triangles cross the same one");
         if (overlap(boxes[order[i]], boxes[order[j]])) cross(sheet, order[i], order[j]);
       }
     }
@@ -379,7 +379,7 @@ class Cutter {
     std::sort(points.begin(), points.end(), [&](PointId a, PointId b) { return space_.compare(a, b) < 0; });
     for (const PointId p : points) {
       throw_if_cancelled(context_);
-      if (!plane.insert(p)) throw Unresolved("two points of a triangle are one");
+      if (!plane.insert(p)) throw Unresolved("two points of a triangle coincide");
     }
     std::set<std::array<PointId, 2>> pieces;
     for (const SheetSegment& segment : sheet.segments) add_pieces(sheet, segment, pieces);

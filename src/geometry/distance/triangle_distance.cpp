@@ -364,8 +364,8 @@ bool triangles_meet(const Points& a, const Points& b) {
 std::vector<TriangleDistance> triangle_distances(std::span<const Points> a, std::span<const Points> b,
                                                  const Context& context) {
   if (a.size() != b.size()) {
-    throw InvalidOption("distances of " + std::to_string(a.size()) + " triangles from " + std::to_string(b.size()) +
-                        " are asked for; they must be as many");
+    throw InvalidOption("pairs of triangles need two lists of equal length, not " + std::to_string(a.size()) + " and " +
+                        std::to_string(b.size()) + " triangles");
   }
   for (std::size_t k = 0; k < a.size(); ++k) {
     if (!in_range(a[k]) || !in_range(b[k])) {

@@ -32,12 +32,12 @@ std::string problem_as_solid(const Topology& facts) {
   }
   if (facts.boundary_edges > 0) {
     return head + "is not closed: " + count(facts.boundary_edges, "edge has", "edges have") +
-           " one triangle only; where vertices are doubled, or nearly, welding them closes it (`--weld`, with a "
-           "tolerance)";
+           " only one triangle; if vertices are duplicated, weld the mesh: merge equal vertices, or close ones within "
+           "a tolerance";
   }
   if (!facts.oriented) {
     return head + "is not oriented: at " + count(facts.inconsistent_edges, "edge", "edges") +
-           " both triangles run the same way (oriented_mesh() turns them)";
+           " both triangles run in the same direction (oriented_mesh() reorients them)";
   }
   if (!facts.manifold) {
     return head + "is not manifold: at " + count(facts.nonmanifold_vertices, "vertex", "vertices") +
@@ -45,7 +45,8 @@ std::string problem_as_solid(const Topology& facts) {
   }
   if (!facts.closed) return head + "is not closed";
   if (!facts.faces_outwards) {
-    return head + "does not face outwards: shells of it, or of its voids, face the solid (oriented_mesh() turns them)";
+    return head +
+           "does not face outwards: shells of it, or of its voids, face the solid (oriented_mesh() reorients them)";
   }
   return "";
 }
@@ -59,7 +60,7 @@ std::string problem_of_places(const MeshView& mesh) {
       if (!known) known = v;
       if (*known == v) continue;
       return "the mesh touches itself: vertices " + std::to_string(*known) + " and " + std::to_string(v) +
-             " lie in one place; weld it first";
+             " coincide; weld the mesh first: merge equal vertices";
     }
   }
   return {};
@@ -72,7 +73,7 @@ std::string problem_of_crossings(const MeshView& mesh, const Context& context) {
 std::string problem_of_crossings(const SelfIntersections& found) {
   if (found.pairs.empty()) return {};
   return "the mesh crosses or touches itself: triangles " + std::to_string(found.pairs[0].first.value) + " and " +
-         std::to_string(found.pairs[0].second.value) + ", for one";
+         std::to_string(found.pairs[0].second.value) + ", for example";
 }
 
 namespace mesh_problem {
@@ -84,7 +85,7 @@ std::string obstacles(const Topology& facts) {
   };
   tell(facts.boundary_edges, "it is open", "boundary edge", "boundary edges");
   tell(facts.nonmanifold_edges, "it is not manifold", "edge", "edges");
-  tell(facts.inconsistent_edges, "its triangles do not face one way", "edge", "edges");
+  tell(facts.inconsistent_edges, "its triangles face different ways", "edge", "edges");
   tell(facts.nonmanifold_vertices, "it is not manifold", "vertex", "vertices");
   return text.empty() && !facts.closed ? "its triangles enclose nothing" : text;
 }
@@ -98,15 +99,15 @@ std::string touching(std::size_t pairs, bool is_complete) {
 }
 
 std::string crosses_and_is_resolved(const std::string& how) {
-  return "the mesh crosses or touches itself (" + how + "): give its Solid, whose surface the sites are then of";
+  return "the mesh crosses or touches itself (" + how + "): pass its Solid; sites are then those of its surface";
 }
 
 std::string doubled_corner(std::size_t triangle) {
-  return "triangle " + std::to_string(triangle) + " names a vertex twice; welding the mesh leaves such out";
+  return "triangle " + std::to_string(triangle) + " names a vertex twice; weld the mesh, which removes such triangles";
 }
 
 std::string without_area(std::size_t triangle) {
-  return "triangle " + std::to_string(triangle) + " has no area, and no flip of an edge takes it out";
+  return "triangle " + std::to_string(triangle) + " has no area, and no edge flip removes it";
 }
 
 std::string of_edges(const Orientation& facts) {
@@ -122,22 +123,22 @@ std::string no_triangles_in(const std::string& name) {
 }
 
 std::string faces_inwards(const std::string& name) {
-  return name + " faces inwards: its volume is negative; turn its triangles around";
+  return name + " faces inwards: its volume is negative; reverse its triangles";
 }
 
 std::string not_closed(const std::string& name, std::size_t open, bool is_closed_by_welding) {
   const std::string edges = plural(open, "edge", "edges");
   if (is_closed_by_welding) {
     return name + " is not closed: at " + edges +
-           " its triangles lie side by side, but share no vertices; weld it, which merges equal vertices";
+           " its triangles touch but share no vertices; weld it, which merges equal vertices";
   }
   return name + " is not closed, or its triangles do not all face the same way: at " + edges +
-         " they do not meet in opposite directions; close its holes, turn triangles to face outwards "
-         "(oriented_mesh() does), or weld its vertices within a tolerance";
+         " they do not meet in opposite directions; close its holes, orient it (oriented_mesh()), or weld its vertices "
+         "within a tolerance";
 }
 
 std::string not_resolved(const std::string& name, const std::string& obstacle) {
-  return name + " crosses or touches itself, and what lies in it cannot be told: " + obstacle;
+  return name + " crosses or touches itself, and its interior cannot be determined: " + obstacle;
 }
 
 }  // namespace mesh_problem

@@ -191,8 +191,8 @@ constexpr const char* axis_content = "medial axis";
 /// Footprints lie on the border of the solid, so their ids name voxels that are not selected.
 std::string site_sentence(SiteIds ids) {
   if (ids != SiteIds::voxels) return volume_io::site_sentence(ids);
-  return "site ids: the linear index x + nx * (y + ny * z) of the voxel beside the solid whose face the footprint lies "
-         "on: one that is not selected, or, outside of the image, the image's voxel next to it; -1 none";
+  return "site ids: the linear index x + nx * (y + ny * z) of the unselected voxel whose face the footprint lies on. "
+         "Outside the image, the adjacent voxel of the image counts. -1: none";
 }
 
 std::string numbers_text(const Vec3d& v) {
@@ -261,7 +261,7 @@ class PairReader {
     const auto rows = numbers<double, 9>("grid_direction");
     if (!origin && !spacing && !size && !rows) return std::nullopt;
     if (!origin || !spacing || !size || !rows) {
-      throw FormatError(name_ + ": the metadata tell only a part of the grid's origin, spacing, size and direction");
+      throw FormatError(name_ + ": the metadata give only some of the grid's origin, spacing, size and direction");
     }
     GridSpec grid;
     grid.origin = {(*origin)[0], (*origin)[1], (*origin)[2]};
@@ -326,7 +326,7 @@ MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name) {
   metadata.label = reader.number<std::int64_t>("label");
   metadata.threshold = reader.number("threshold");
   if (metadata.label && metadata.threshold) {
-    throw FormatError(name + ": the metadata say a label and a threshold, but the solid can only be by one of them");
+    throw FormatError(name + ": the metadata give a label and a threshold, but only one of them can select the solid");
   }
   metadata.weld = reader.not_negative("weld");
   metadata.smooth = reader.number<int>("smooth");

@@ -98,13 +98,13 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
   const ComplexFormat format = ComplexFormat::of(path, FileAccess::both);
   check_metadata(metadata);
   if (nested != nullptr && !formats::code_of(format).holds_further) {
-    throw InvalidOption("'" + path.string() + "': axes of all angles are kept in .npz files only");
+    throw InvalidOption("'" + path.string() + "': only .npz files hold axes of all angles");
   }
   const CompleteAxis all(axis);
   static_cast<void>(MedialView(all.get()));  // throws if a column has another type
   if (nested != nullptr) static_cast<void>(MedialLevels(*nested));
   const std::string problem = problem_of_axes(axis, nested, least_theta);
-  if (!problem.empty()) throw InvalidMesh("a medial axis that cannot be written: " + problem);
+  if (!problem.empty()) throw InvalidMesh("the medial axis cannot be written: " + problem);
   throw_if_cancelled(context);
   MedialMetadata told = metadata;
   if (all.is_copy()) told.version.clear();  // only files with all columns name a version; verify() needs them
@@ -181,7 +181,7 @@ void write_stl(const std::filesystem::path& path, const Complex& surface, const 
                const Context& /*context*/) {
   if (surface.triangles.empty()) {
     throw InvalidOption("'" + path.string() +
-                        "': the axis has no triangles, which is all that .stl files hold; use another extension");
+                        "': .stl files hold only triangles, and the axis has none; use another extension");
   }
   write_mesh(path, MeshView{surface.positions, surface.triangles});
 }

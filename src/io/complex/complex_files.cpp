@@ -207,7 +207,7 @@ void refuse_loss(const std::filesystem::path& path, std::string_view format, con
   if (lost.empty()) return;
   const std::string also = kept.empty() ? std::string() : ", the column '" + std::string(kept) + "' of vertices";
   throw InvalidOption("'" + path.string() + "': " + std::string(format) + " files hold positions, edges and triangles" +
-                      also + " only, so that these would be lost: " + lost +
+                      also + " only, so these would be lost: " + lost +
                       "; write .vtp, .ply or .npz, or allow the loss");
 }
 

@@ -50,7 +50,7 @@ void check_complex(const Complex& complex, bool holds_columns) {
   }
   std::string problem = problem_of(complex);
   if (problem.empty() && complex.positions.size() > max_id_count) problem = "there are more than 2^31 - 1 vertices";
-  if (!problem.empty()) throw InvalidMesh("a complex that cannot be written: " + problem);
+  if (!problem.empty()) throw InvalidMesh("the complex cannot be written: " + problem);
 }
 
 void check_metadata(const FileMetadata& metadata) {
@@ -75,8 +75,8 @@ void check_further(const std::filesystem::path& path, ComplexFormat format,
                          f.name != "triangle";
     if (!is_name) {
       throw InvalidOption("'" + f.name +
-                          "' cannot be the name of a complex in a file: up to 256 letters and digits can, but not "
-                          "'vertex', 'edge' and 'triangle'");
+                          "' cannot be the name of a complex in a file: names have up to 256 letters and digits, and "
+                          "are not 'vertex', 'edge' or 'triangle'");
     }
     if (!names.insert(f.name).second) throw InvalidOption("two complexes have the name '" + f.name + "'");
     if (f.complex == nullptr) throw InvalidOption("there is no complex for the name '" + f.name + "'");

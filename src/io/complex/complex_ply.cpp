@@ -223,7 +223,7 @@ class ComplexPlyReader {
     std::vector<PlyProperty> rest;
     for (const PlyProperty& property : element.properties) {
       const std::string shown = "property " + in_quotes(property.name) + " of element " + in_quotes(element.name);
-      if (!names.insert(property.name).second) source_.fail(shown + " is there twice");
+      if (!names.insert(property.name).second) source_.fail(shown + " occurs twice");
       const auto found = std::find(known.begin(), known.end(), property.name);
       if (found != known.end()) {
         layout.uses.push_back({Use::What::known, static_cast<std::size_t>(found - known.begin())});

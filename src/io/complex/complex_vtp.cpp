@@ -354,7 +354,7 @@ class VtpParser {
     // The one array of the points contains their positions, whatever its name is.
     const std::string shown(section_ == "Points" ? "Points" : name);
     const std::string key = std::string(section_) + "/" + shown;
-    if (header_.find(key) != nullptr) fail("the array '" + key + "' is there twice");
+    if (header_.find(key) != nullptr) fail("the array '" + key + "' occurs twice");
     constexpr std::size_t others = 10;  // positions, corners and ends of cells
     if (header_.arrays.size() > 3 * max_file_columns + others) fail("it has too many arrays");
     header_.arrays.push_back({key, shown, volume_io::vtk_array(tag, name_)});
@@ -543,7 +543,7 @@ class VtpReader {
     auto& triangles = file_.complex.triangles;
     triangles.resize(cells.ends.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      if (cells.ends[i] != 3 * (i + 1)) fail("Polys", "polygon " + std::to_string(i) + " is no triangle");
+      if (cells.ends[i] != 3 * (i + 1)) fail("Polys", "polygon " + std::to_string(i) + " is not a triangle");
       for (std::size_t k = 0; k < 3; ++k) triangles[i][k] = cells.corners[3 * i + k];
     }
     file_.complex.triangle_columns =

@@ -79,8 +79,8 @@ Enum from_text(std::string_view text, const std::array<Enum, n>& all, std::strin
 std::string site_sentence(SiteIds ids) {
   switch (ids) {
     case SiteIds::features:
-      return "site ids: [0, V) the vertices in the mesh's order; [V, V+E) the distinct edges in rising order of "
-             "(smaller, larger vertex); [V+E, V+E+F) the triangles in the mesh's order; -1 none";
+      return "site ids: [0, V) the vertices in the mesh's order. [V, V+E) the distinct edges in rising order of "
+             "(smaller, larger vertex). [V+E, V+E+F) the triangles in the mesh's order; -1: none";
     case SiteIds::triangles:
       return "site ids: the smallest triangle, in the mesh's order, that the closest site lies on; -1 none";
     case SiteIds::voxels:

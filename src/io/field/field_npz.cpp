@@ -40,7 +40,7 @@ void check_sites(const Buffer<SiteId>& sites, std::size_t site_count) {
   for (const SiteId site : sites) {
     if (!site.has_value() || site.value < site_count) continue;
     throw InvalidMesh("the field names site " + std::to_string(site.value) + ", but the mesh given with it has only " +
-                      std::to_string(site_count) + ": it is not the mesh that the field is of");
+                      std::to_string(site_count) + ": the field belongs to another mesh");
   }
 }
 

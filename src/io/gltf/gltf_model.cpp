@@ -34,7 +34,7 @@ void check_attributes(const GltfMesh& mesh) {
                          std::all_of(attribute.name.begin(), attribute.name.end(),
                                      [](char c) { return is_letter_or_digit(c) || c == '_' || c == '-' || c == '.'; });
     if (!is_name) throw InvalidOption(what + ": names are made of letters, digits, '_', '-' and '.'");
-    if (!names.insert(attribute.name).second) throw InvalidOption(what + " is there twice");
+    if (!names.insert(attribute.name).second) throw InvalidOption(what + " occurs twice");
     if (attribute.components < 1 || attribute.components > 4) {
       throw InvalidOption(what + " has " + std::to_string(attribute.components) + " components; 1 to 4 are held");
     }
@@ -71,7 +71,7 @@ void check_texture(std::span<const std::byte> texture) {
   if (texture.empty()) return;
   if (texture.size() >= signature.size() && std::memcmp(texture.data(), signature.data(), signature.size()) == 0)
     return;
-  throw InvalidOption("the texture of a glTF file is no PNG file");
+  throw InvalidOption("the texture of a glTF file is not a PNG file");
 }
 
 template <class Cells>
@@ -91,7 +91,7 @@ void check_mesh(const GltfMesh& mesh) {
   check_corners(mesh.triangles, count, "triangle");
   check_corners(mesh.segments, count, "segment");
   for (const std::uint32_t point : mesh.points) {
-    if (point >= count) throw InvalidMesh("vertex " + std::to_string(point) + " is a point, but there is none");
+    if (point >= count) throw InvalidMesh("vertex " + std::to_string(point) + " is a point, but does not exist");
   }
   if (!mesh.normals.empty() && mesh.normals.size() != count) {
     throw InvalidOption("there are " + std::to_string(mesh.normals.size()) + " normals for " + std::to_string(count) +
@@ -135,7 +135,7 @@ gltf_library::Value extras_value(const GltfExtras& extras) {
   for (const auto& extra : extras) {
     const std::string key = volume_io::valid_utf8(extra.first);
     if (key.empty() || object.contains(key)) {
-      throw InvalidOption("the extras of a glTF file need a key for each, and '" + key + "' is empty or there twice");
+      throw InvalidOption("the extras of a glTF file need distinct keys, but '" + key + "' is empty or occurs twice");
     }
     if (const auto* text = std::get_if<std::string>(&extra.second)) object[key] = value_of(*text);
     if (const auto* number = std::get_if<double>(&extra.second)) object[key] = number_value(*number, key);

@@ -143,7 +143,7 @@ class HeaderParser {
   }
 
   void check_magic(std::string_view line) const {
-    if (!line.starts_with("NRRD")) fail("it does not begin with NRRD, so it is no NRRD file");
+    if (!line.starts_with("NRRD")) fail("it does not begin with NRRD, so it is not an NRRD file");
     if (line.size() != 8 || line.substr(4, 3) != "000" || line[7] < '1' || line[7] > '5') {
       fail("'" + std::string(line.substr(0, 16)) + "' is not a known version of NRRD; NRRD0001 to NRRD0005 are");
     }
@@ -215,7 +215,7 @@ class HeaderParser {
       if (!size || *size < 1) fail("'" + std::string(word) + "' in sizes is not a positive whole number");
       sizes_.push_back(*size);
     }
-    if (sizes_.size() != axis_count_) fail("sizes must hold one number for each of the axes that dimension says");
+    if (sizes_.size() != axis_count_) fail("'sizes' must hold one number for each axis that 'dimension' counts");
   }
 
   /// Returns the numbers of a field that has one per axis. They are empty if the field is missing.
@@ -429,7 +429,7 @@ void parse_text_values(std::string_view text, std::span<std::byte> out, const st
     const auto value = parse_number<T>(word);
     if (!value) {
       throw FormatError(name + ": value " + std::to_string(i) + " is '" + std::string(word.substr(0, 40)) +
-                        "', which is no number of its type");
+                        "', which is not a number of its type");
     }
     std::copy_n(reinterpret_cast<const std::byte*>(&*value), sizeof(T), out.data() + i * sizeof(T));
     at = end;

@@ -22,7 +22,7 @@ namespace {
 MeshFormat format_named(const std::filesystem::path& path, FileAccess access) {
   const std::vector<std::string> known = file_extensions(FileContent::mesh, access);
   if (std::find(known.begin(), known.end(), file_extension(path)) != known.end()) return MeshFormat::of(path, access);
-  throw FileError("cannot tell the mesh format of '" + path.string() + "': its name must end in " +
+  throw FileError("unknown mesh format of '" + path.string() + "': its name must end in " +
                   extension_list(FileContent::mesh, access, ", "));
 }
 

@@ -65,8 +65,8 @@ FileMetadata own_metadata(const Request& request) {
     const std::string_view given = find_value(out, key);
     if (given.empty()) out.emplace_back(key, text);
     if (given.empty() || given == text) return;
-    throw InvalidOption("the metadata name '" + std::string(given) + "' as " + std::string(key) +
-                        ", but the map's is '" + std::string(text) + "'; .npz files say what the map is");
+    throw InvalidOption("the metadata give '" + std::string(given) + "' as " + std::string(key) +
+                        ", but the map has '" + std::string(text) + "'; .npz files must agree with the map");
   };
   keep("quantity", to_string(request.map.quantity));
   keep("sign_rule", to_string(request.map.sign_rule));
@@ -143,7 +143,8 @@ class Reader {
 
   void check_archive() const {
     if (!npz_.has("vertex_distance") || !npz_.has("distance")) {
-      throw FormatError(source_.name() + ": it holds no surface map: that has arrays 'distance' and 'vertex_distance'");
+      throw FormatError(source_.name() +
+                        ": it does not hold a surface map, which has the arrays 'distance' and 'vertex_distance'");
     }
     if (npz_.arrays().size() > most_arrays) throw FormatError(source_.name() + ": it has too many arrays");
     // Overlapping entries could exhaust memory.
@@ -174,7 +175,7 @@ class Reader {
   }
   template <class Items>
   Items array_of(const std::string& name, ScalarType type, Shape shape) {
-    if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) fail(name, "there is nothing that it can be of");
+    if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) fail(name, "the file has no elements for it");
     return array<Items>(name, type, shape);
   }
   static std::string wanted_text(const Shape& shape) {
@@ -251,7 +252,8 @@ class Reader {
     if (!npz_.has("triangle_error")) return;
     map.error = array_of<std::vector<float>>("triangle_error", ScalarType::f32, shape);
     for (std::size_t t = 0; t < map.error.size(); ++t) {
-      if (!(map.error[t] >= 0)) fail("triangle_error", "that of triangle " + std::to_string(t) + " is no bound");
+      if (!(map.error[t] >= 0))
+        fail("triangle_error", "that of triangle " + std::to_string(t) + " is not a number of at least 0");
     }
   }
 
@@ -260,14 +262,14 @@ class Reader {
     for (std::size_t i = 0; i < map.distance.size(); ++i) {
       const TriangleId triangle = atlas_->triangle[i];
       const auto refuse = [&](const char* array, const std::string& reason) {
-        fail(array, "of the texel in row " + std::to_string(i / atlas_->width) + ", column " +
+        fail(array, "texel in row " + std::to_string(i / atlas_->width) + ", column " +
                         std::to_string(i % atlas_->width) + ": " + reason);
       };
       if (map.site[i].has_value() && map.site[i].value > max_id_count) refuse("site", "it is neither an index nor -1");
       const Vec3f& v = map.vector[i];
       if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z)) refuse("vector", "it is not finite");
       if (!triangle.has_value()) {
-        if (!std::isnan(map.distance[i])) refuse("distance", "it is a number, but the texel is of no triangle");
+        if (!std::isnan(map.distance[i])) refuse("distance", "it is a number, but the texel belongs to no triangle");
         continue;
       }
       if (triangle.value >= atlas_->corners.size()) {

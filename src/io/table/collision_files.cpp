@@ -59,7 +59,7 @@ struct Contents {
 /// @param object  object that has the mesh, for scenes. @throws InvalidOption if the mesh has no such face.
 void check_face(const MeshView& mesh, TriangleId face, std::optional<ObjectId> object = {}) {
   if (face.value < mesh.triangles.size()) return;
-  throw InvalidOption("a collision is of face " + std::to_string(face.value) +
+  throw InvalidOption("a collision names face " + std::to_string(face.value) +
                       (object ? " of object " + std::to_string(object->value) : "") + ", whose mesh has " +
                       std::to_string(mesh.triangles.size()) + "; give the meshes that the collisions were found on");
 }
@@ -81,7 +81,7 @@ class Objects {
 
   [[nodiscard]] const MeshView& mesh(ObjectId object) const {
     if (object.value < meshes_.size()) return meshes_[object.value].start;
-    throw InvalidOption("a collision is of object " + std::to_string(object.value) + ", but meshes of " +
+    throw InvalidOption("a collision names object " + std::to_string(object.value) + ", but meshes of " +
                         std::to_string(meshes_.size()) + " objects are given; give one for each object");
   }
 
@@ -192,13 +192,14 @@ Table rows_of_text(const Contents& contents) {
 Vec3d position_at(const MeshMotion& mesh, std::uint32_t vertex, double time) {
   const std::span<const Vec3d> start = mesh.start.vertices;
   if (vertex >= start.size()) {
-    throw InvalidOption("a collision is of vertex " + std::to_string(vertex) + " of a mesh that has " +
+    throw InvalidOption("a collision names vertex " + std::to_string(vertex) + " of a mesh that has " +
                         std::to_string(start.size()) + "; give the mesh that the collisions were found on");
   }
   if (mesh.end.empty()) return start[vertex];
   if (mesh.end.size() != start.size()) {
     throw InvalidOption("a mesh has " + std::to_string(start.size()) + " vertices at the start, but " +
-                        std::to_string(mesh.end.size()) + " at the end; give as many, or none where it rests");
+                        std::to_string(mesh.end.size()) +
+                        " at the end; give the same number, or none for a mesh at rest");
   }
   return start[vertex] * (1 - time) + mesh.end[vertex] * time;
 }
@@ -337,7 +338,7 @@ class QueryReader {
     while (next_line()) {
       const Row own = read_row();
       (row < 4 ? points.start[row] : points.end[row - 4]) = own.point;
-      if (row > 0 && own.truth != truth) fail("the answer is not that of the row before, of the same question");
+      if (row > 0 && own.truth != truth) fail("the answer differs from that of the row before, of the same question");
       truth = own.truth;
       if (++row < rows_per_query) continue;
       row = 0;
@@ -382,7 +383,8 @@ class QueryReader {
       rest.remove_prefix(comma + 1);
     }
     ++count;
-    if (count < 6) fail("a row has six or seven columns, parted by commas, but this one has " + std::to_string(count));
+    if (count < 6)
+      fail("a row has six or seven columns, separated by commas, but this one has " + std::to_string(count));
     Row row;
     for (std::size_t axis = 0; axis < 3; ++axis) row.point[axis] = quotient(columns[2 * axis], columns[2 * axis + 1]);
     if (count == most_columns) {
@@ -398,7 +400,7 @@ class QueryReader {
     const double below = integer(denominator);
     int exponent = 0;
     if (!(below > 0) || std::frexp(below, &exponent) != 0.5) {
-      fail("the denominator " + in_quotes(denominator) + " is no power of two, so that the coordinate is no double");
+      fail("the denominator " + in_quotes(denominator) + " is not a power of two, so the coordinate is not a double");
     }
     const double value = std::ldexp(above, 1 - exponent);
     if (std::ldexp(value, exponent - 1) != above) fail("a coordinate is too small for a double");

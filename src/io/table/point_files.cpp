@@ -123,7 +123,7 @@ class RowReader {
     if (row_.empty()) fail("there is no " + coordinate + ": a row has three numbers or more");
     const std::string_view word = take_word();
     const auto value = volume_io::parse_number<double>(word);
-    if (!value) fail(coordinate + " is no number: " + in_quotes(word));
+    if (!value) fail(coordinate + " is not a number: " + in_quotes(word));
     if (!std::isfinite(*value)) fail(coordinate + " is not finite: " + in_quotes(word));
     return *value;
   }
@@ -152,8 +152,7 @@ void write_npz(const std::filesystem::path& path, const Complex& points, const F
                const Context& context) {
   for (const Column& column : points.vertex_columns) {
     if (column.name == "points" || column.name == "metadata") {
-      throw InvalidOption(quoted(path) + ": a column is called '" + column.name +
-                          "', which is what else is in the file");
+      throw InvalidOption(quoted(path) + ": a column has the name '" + column.name + "', which the file uses itself");
     }
   }
   const tables::Table table = table_of(points);

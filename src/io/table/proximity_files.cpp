@@ -74,16 +74,16 @@ class PairColumns {
     }
     for (const Column& column : more) {
       if (std::find(own_names.begin(), own_names.end(), column.name) == own_names.end()) continue;
-      throw InvalidOption("a further column is named '" + column.name + "', as one that files of pairs have anyway");
+      throw InvalidOption("a further column has the name '" + column.name + "', which files of pairs use themselves");
     }
   }
   void check(ObjectId object, std::uint32_t primitive) const {
     if (object.value >= objects_.size()) {
-      throw InvalidOption("a pair is of object " + std::to_string(object.value) + ", but meshes of " +
+      throw InvalidOption("a pair names object " + std::to_string(object.value) + ", but meshes of " +
                           std::to_string(objects_.size()) + " objects are given; give one for each object");
     }
     if (const std::size_t count = primitive_count(objects_[object.value]); primitive >= count) {
-      throw InvalidOption("a pair is of primitive " + std::to_string(primitive) + " of object " +
+      throw InvalidOption("a pair names primitive " + std::to_string(primitive) + " of object " +
                           std::to_string(object.value) + ", whose mesh has " + std::to_string(count) +
                           "; give the meshes that the pairs were found on");
     }

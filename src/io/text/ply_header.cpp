@@ -113,7 +113,7 @@ class HeaderReader {
     if (count < 0) cursor_.fail("element " + in_quotes(element.name) + " has a negative count");
     element.count = static_cast<std::size_t>(count);
     for (const PlyElement& other : header_.elements) {
-      if (other.name == element.name) cursor_.fail("element " + in_quotes(element.name) + " is there twice");
+      if (other.name == element.name) cursor_.fail("element " + in_quotes(element.name) + " occurs twice");
     }
     constexpr std::size_t most = 1000;  // the search above is linear, and real files have far fewer
     if (header_.elements.size() == most) cursor_.fail("the header has more than 1000 elements");

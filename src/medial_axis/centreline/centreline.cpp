@@ -120,8 +120,8 @@ std::vector<LabelBox> boxes(std::span<const T> values, const Place& size, const 
     are_labels = are_labels && are;
   });
   if (!are_labels) {
-    throw InvalidImage("the image has values that are no whole numbers, such as " +
-                       exact_text(static_cast<double>(other)) + ", so that they cannot be labels: give a threshold");
+    throw InvalidImage("the image has values that are not whole numbers, for example " +
+                       exact_text(static_cast<double>(other)) + ", which cannot be labels: give a threshold");
   }
   std::vector<LabelBox> out;
   for (auto& [label, box] : all) {
@@ -234,7 +234,7 @@ void judge_homotopy(Centreline& out) {
   }
   out.homotopy = "the voxels have " + betti_sentence(out.label_betti) + ", the curves " +
                  betti_sentence(out.graph_betti) +
-                 (out.label_betti[2] > 0 ? ": curves hold no voids, so that these were filled" : "");
+                 (out.label_betti[2] > 0 ? ": curves have no voids, so these were filled" : "");
 }
 
 /// Adds voxels of which at least five of the six neighbours beside them are in the set: pits one voxel wide, as noise
@@ -453,8 +453,8 @@ std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpe
   std::vector<Warning> out;
   if (std::count(grid.size.begin(), grid.size.end(), 1) > 0) {
     out.emplace_back(WarningCode::single_layer,
-                     "the image has a single layer, which is a plate as thick as a voxel: lengths and radii are not "
-                     "those of a picture in the plane");
+                     "the image has a single layer, treated as a plate one voxel thick: lengths and radii are not "
+                     "those of a planar picture");
   }
   std::size_t unnamed = 0;
   for (const Centreline& line : lines.labels) {
@@ -468,8 +468,7 @@ std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpe
   if (unnamed > 0) {
     out.emplace_back(WarningCode::other_topology,
                      plural(unnamed, "more label has", "more labels have") +
-                         " no voxels, or another topology than their curves: `homotopy` of "
-                         "each label says more");
+                         " no voxels, or another topology than their curves: see `homotopy` of each label");
   }
   if (lines.labels.empty()) out.emplace_back(WarningCode::nothing_found, "no voxel is selected");
   return out;

@@ -192,7 +192,7 @@ class Assembly {
 
   void push_cells(std::size_t dimension, std::uint32_t count) {
     if (base_ + out_.dimension.size() + count > most_cells) {
-      throw InvalidGrid("the model has more cells than can be counted: use a coarser grid");
+      throw InvalidGrid("the model has more cells than can be numbered: use a coarser grid");
     }
     for (std::uint32_t k = 0; k < count; ++k) out_.dimension.push_back(static_cast<std::uint8_t>(dimension));
   }

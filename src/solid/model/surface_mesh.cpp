@@ -28,7 +28,7 @@ TriangleMesh scaled(TriangleMesh mesh, int exponent) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (given[a] == 0 || std::abs(v[a]) >= least_coordinate) continue;
       throw InvalidMesh("a vertex has the coordinate " + exact_text(given[a]) +
-                        ", too small for exact answers beside others: round it to 0");
+                        ", too small next to the others for exact results: round it to 0");
     }
   }
   return mesh;

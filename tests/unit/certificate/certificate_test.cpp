@@ -284,7 +284,7 @@ TEST_F(FalsifiedAxis, SmallerBall) {
   // Everything agrees with itself, but there is no surface where the footprints are.
   for (Vec3d& foot : axis.vertices[40].footprints) foot = (foot + axis.vertices[40].position) * 0.5;
   axis.vertices[40].radius *= 0.5;
-  expect({"a radius differs", "a footprint lies off the surface by", "off the site that is named for it"});
+  expect({"a radius differs", "a footprint lies off the surface by", "off the site that it names"});
 }
 
 TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
@@ -294,19 +294,19 @@ TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
   Vec3d other = cross(off, vertex.position);
   other = other * (vertex.radius / length(other)) + off * 0.2;
   vertex.footprints[1] = vertex.position + other * (vertex.radius / length(other));
-  expect({"a footprint lies off the surface by", "off the site that is named for it", "a separation angle differs"});
+  expect({"a footprint lies off the surface by", "off the site that it names", "a separation angle differs"});
 }
 
 TEST_F(FalsifiedAxis, FootprintElsewhereOnTheSurface) {
   axis.vertices[3].footprints[0] = axis.vertices[50].footprints[0];
-  expect({"the distance to a footprint differs", "off the site that is named for it", "a separation angle differs"});
+  expect({"the distance to a footprint differs", "off the site that it names", "a separation angle differs"});
 }
 
 TEST_F(FalsifiedAxis, OtherSites) {
   axis.vertices[3].sites[1] = axis.vertices[50].sites[0];
-  expect({"a footprint lies off the site that is named for it by"});
+  expect({"a footprint lies off the site that it names by"});
   axis.vertices[3].sites[1] = SiteId(1U << 30U);
-  expect({"a footprint is said to lie on a site that the solid does not have"});
+  expect({"a footprint names a site that the solid does not have"});
   axis.vertices[3].sites[1] = SiteId::none();
   EXPECT_TRUE(certify(axis, torus, unlabelled).holds());
 }

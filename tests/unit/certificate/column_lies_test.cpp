@@ -93,10 +93,10 @@ TEST(ColumnLies, WhatIsTrueHolds) {
 TEST(ColumnLies, DoubledCells) {
   True lie = bracket();
   lie.axis.triangles.push_back(lie.axis.triangles.front());
-  expect_refused(lie, "cells are there twice");
+  expect_refused(lie, "cells are listed twice");
   lie = bracket();
   lie.axis.edges.push_back(lie.axis.edges.front());
-  expect_refused(lie, "cells are there twice");
+  expect_refused(lie, "cells are listed twice");
 }
 
 TEST(ColumnLies, ShuffledSheets) {
@@ -104,7 +104,7 @@ TEST(ColumnLies, ShuffledSheets) {
   for (std::size_t t = 0; t < lie.axis.triangles.size(); ++t) {
     lie.axis.triangles[t].sheet = static_cast<std::uint32_t>(t % lie.axis.sheet_count);
   }
-  expect_refused(lie, "sheets do not hang together");
+  expect_refused(lie, "sheets are not connected");
 }
 
 TEST(ColumnLies, NumbersOfSheetsWithGaps) {
@@ -112,13 +112,13 @@ TEST(ColumnLies, NumbersOfSheetsWithGaps) {
   ASSERT_GT(lie.axis.sheet_count, 10U);
   for (TriangleRow& triangle : lie.axis.triangles) triangle.sheet += triangle.sheet > 3 ? 1 : 0;
   ++lie.axis.sheet_count;
-  expect_refused(lie, "1 numbers of sheets below the largest are of no sheet");
+  expect_refused(lie, "1 sheet numbers below the largest are not used");
 }
 
 TEST(ColumnLies, OneSheet) {
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.sheet = 0;
-  expect_refused(lie, "sheets do not hang together");
+  expect_refused(lie, "sheets are not connected");
 }
 
 TEST(ColumnLies, ASheetForEachTriangle) {
@@ -126,7 +126,7 @@ TEST(ColumnLies, ASheetForEachTriangle) {
   for (std::size_t t = 0; t < lie.axis.triangles.size(); ++t) {
     lie.axis.triangles[t].sheet = static_cast<std::uint32_t>(t);
   }
-  expect_refused(lie, "away from seams part two sheets");
+  expect_refused(lie, "that are not seams separate two sheets");
 }
 
 TEST(ColumnLies, FalseRoles) {
@@ -157,7 +157,7 @@ TEST(ColumnLies, EdgesInsideOfSheetsAreListed) {
   for (const TriangleRow& triangle : lie.axis.triangles) {
     lie.axis.edges.push_back({{triangle.vertices[0], triangle.vertices[1]}, 0, MedialRole::rim});
   }
-  expect_refused(lie, "that lie inside of sheets");
+  expect_refused(lie, "listed edges lie inside sheets");
 }
 
 TEST(ColumnLies, FalseAnglesOfTriangles) {
@@ -168,7 +168,7 @@ TEST(ColumnLies, FalseAnglesOfTriangles) {
   }
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle = 180;
-  expect_refused(lie, "above what is seen around them");
+  expect_refused(lie, "above all angles found around them");
   lie = bracket();
   shuffle_angles(lie.axis.triangles);
   expect_refused(lie, "a separation angle");
@@ -196,7 +196,7 @@ TEST(ColumnLies, FalseAnglesOfEdges) {
 TEST(ColumnLies, TheAxisOfASmallerAngle) {
   True lie = bracket();
   lie.claims.metadata.theta = 120;
-  expect_refused(lie, "are rims of sheets that nothing sees at more than 120 degrees");
+  expect_refused(lie, "are rims of sheets without any angle above 120 degrees");
 }
 
 TEST(ColumnLies, FiguresThatCannotBe) {

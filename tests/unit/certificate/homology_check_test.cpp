@@ -377,7 +377,7 @@ TEST(HomologyCheck, SurfacesAroundAVoid) {
 
   const Certificate bubble = certify_topology(surface_of(test::moved(sphere, 0.1, middle + Vec3d{0.7, 0.7, 0})), cube);
   EXPECT_TRUE(bubble.topology_holds && bubble.edges.holds);
-  EXPECT_TRUE(mentions(bubble, "closed surfaces of the axis are around 0 of the 1 void"));
+  EXPECT_TRUE(mentions(bubble, "closed surfaces of the axis enclose 0 of the 1 void"));
 
   // A punctured surface around the void, and a bubble on it.
   const Complex small = surface_of(test::moved(sphere, 0.1, middle + Vec3d{0.7, 0.7, 0}));
@@ -392,7 +392,7 @@ TEST(HomologyCheck, SurfacesAroundAVoid) {
   around.edges.push_back({static_cast<std::uint32_t>(near - around.positions.begin()), first});
   const Certificate punctured = certify_topology(around, cube);
   EXPECT_TRUE(punctured.topology_holds && punctured.edges.holds);
-  EXPECT_TRUE(mentions(punctured, "closed surfaces of the axis are around 0 of the 1 void"));
+  EXPECT_TRUE(mentions(punctured, "closed surfaces of the axis enclose 0 of the 1 void"));
 }
 
 /// A tetrahedron with a face through the middle of a void is around half of it.
@@ -412,7 +412,7 @@ TEST(HomologyCheck, ASurfaceThroughAVoidIsNotAroundIt) {
     const Certificate found = certify_topology(complex, mesh);
     EXPECT_TRUE(found.topology_holds && found.edges.holds) << z;
     EXPECT_EQ(found.homology.holds, z < 0) << z;
-    EXPECT_EQ(mentions(found, "closed surfaces of the axis are around 0 of the 1 void"), z >= 0) << z;
+    EXPECT_EQ(mentions(found, "closed surfaces of the axis enclose 0 of the 1 void"), z >= 0) << z;
   }
 }
 

@@ -109,7 +109,7 @@ TEST(Lies, AllVerticesHalfwayToTheWall) {
   for (const True* made : {&bracket(), &box()}) {
     True lie = *made;
     move_honestly(lie, [](const VertexRow& v) { return (v.position + v.footprints[0]) * 0.5; });
-    expect_refused(lie, "middle between two");
+    expect_refused(lie, "of the sheets and curves that should lie between two walls");
   }
 }
 
@@ -127,9 +127,9 @@ TEST(Lies, AllVerticesHalfwayToTheWallOfACoarseGrid) {
       True lie = *made;
       move_honestly(lie, [](const VertexRow& v) { return (v.position + v.footprints[0]) * 0.5; });
       lie.claims.metadata.spacing = bounds(lie.mesh).diagonal() / parts;
-      expect_refused(lie, "the middle between two");
+      expect_refused(lie, "of the sheets and curves that should lie between two walls");
       lie.claims.metadata.deviation = bounds(lie.mesh).diagonal() / 16;
-      expect_refused(lie, "a quarter of the way");
+      expect_refused(lie, "within a quarter of the distance to the walls");
     }
   }
 }
@@ -210,7 +210,7 @@ TEST(Lies, SitesOfOtherFootprints) {
 TEST(Lies, SitesThatThereAreNot) {
   True lie = bracket();
   lie.axis.vertices[3].sites[0] = SiteId(1'000'000);
-  expect_refused(lie, "on a site that the solid does not have");
+  expect_refused(lie, "names a site that the solid does not have");
 }
 
 TEST(Lies, ErasedSites) {
@@ -292,7 +292,7 @@ TEST(Lies, ASmallSheetOffTheMiddle) {
     lie.axis.edges.push_back({ends, 170, MedialRole::rim});
   }
   lie.axis.triangles.push_back({{apex, first, first + 1}, 170, lie.axis.sheet_count++});
-  expect_refused(lie, "are for the most part not in the middle");
+  expect_refused(lie, "are mostly off the middle");
 }
 
 TEST(Lies, ATreeInPlaceOfTheAxis) {

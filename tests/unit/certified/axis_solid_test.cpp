@@ -29,7 +29,7 @@ TEST(AxisSolid, OptionsGoFirstAndContradictionsAreWarnedOf) {
   const auto [used, warnings] = of_image({.threshold = 2.5}, axis);
   EXPECT_FALSE(used.label);
   EXPECT_EQ(used.threshold, 2.5);
-  EXPECT_EQ(warnings.front().text, "the axis was made with label=3; threshold=2.5 is used, as it was given");
+  EXPECT_EQ(warnings.front().text, "the axis was computed with label=3; threshold=2.5 is used, because it was given");
   EXPECT_TRUE(of_image({.label = 3}, axis).warnings.empty());
   EXPECT_TRUE(of_image({.label = 1}, {}).warnings.empty()) << "the axis says nothing";
 }
@@ -49,9 +49,9 @@ TEST(AxisSolid, EachInputIsAskedForItsOwnOptions) {
   EXPECT_EQ(of_image({.weld = 0.0}, axis).selection.label, 3);
   EXPECT_TRUE(solid_of_axis({.label = 1}, false, axis, "a", OptionStyle::python).warnings.empty());
   EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "'a.npz'", OptionStyle::command_line).warnings.front().text,
-            "'a.npz' was made with --weld 1e-06; --weld is used, as it was given");
+            "'a.npz' was computed with --weld 1e-06; --weld is used, because it was given");
   EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "the axis", OptionStyle::python).warnings.front().text,
-            "the axis was made with weld=1e-06; weld=0 is used, as it was given");
+            "the axis was computed with weld=1e-06; weld=0 is used, because it was given");
 }
 
 }  // namespace

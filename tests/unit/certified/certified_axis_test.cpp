@@ -122,13 +122,13 @@ TEST_F(TriedAxes, FormsAreTriedInTurnAndWarningsSayWhatFailed) {
   const CertifiedAxes second = held_from(1);
   const std::vector<Warning> expected{
       {WarningCode::form_not_certified,
-       "at theta 60 borders of sheets stay at the cells of the grid: elsewhere, something is wrong"}};
+       "at theta 60 borders of sheets stay at the cells of the grid, because otherwise something is wrong"}};
   EXPECT_EQ(second.axes.front().warnings, expected);
   expect_same(second.axes.front().axis.axis, decimate(axis->simplify(60), tolerance).axis);
   const CertifiedAxes third = held_from(2);
   EXPECT_EQ(third.axes.front().warnings.size(), 2U);
   EXPECT_EQ(third.axes.front().warnings.back().text,
-            "at theta 60 the axis keeps all vertices: with fewer, something is wrong");
+            "at theta 60 the axis keeps all vertices, because with fewer something is wrong");
   expect_same(third.axes.front().axis.axis, axis->simplify(60));
   for (const CertifiedAxes* const found : {&first, &second, &third}) {
     EXPECT_TRUE(found->holds());
@@ -143,7 +143,7 @@ TEST_F(TriedAxes, GridsAreMovedInTurnWhereNoFormHolds) {
   EXPECT_EQ(third.grid_shift, -0.3);
   EXPECT_TRUE(third.holds());
   const std::vector<Warning> expected{
-      {WarningCode::grid_moved, "the grid was moved by -0.3 voxels: as it was, at theta 60: something is wrong"}};
+      {WarningCode::grid_moved, "the grid was moved by -0.3 voxels; before the move: at theta 60: something is wrong"}};
   EXPECT_EQ(third.warnings, expected);
   const CertifiedAxes none = held_from(1000);
   EXPECT_EQ(shifts.size(), 4U);
@@ -206,7 +206,7 @@ TEST_F(TriedAxes, AComplexIsWrittenWithFewVerticesIfItIsCertifiedSo) {
   EXPECT_EQ(kept.axis.vertices_before, whole.positions.size());
   EXPECT_FALSE(kept.metadata.deviation.has_value());
   EXPECT_EQ(texts_of(kept.warnings),
-            std::vector<std::string>{"at theta 60 the axis keeps all vertices: with fewer, something is wrong"});
+            std::vector<std::string>{"at theta 60 the axis keeps all vertices, because with fewer something is wrong"});
 }
 
 TEST(CertifiedAxes, OfSeveralAnglesAreThoseOfEach) {
@@ -295,10 +295,9 @@ TEST(ModelProblems, NameTheBodyAndTheOption) {
   report.bodies[1].failures = {{.low = {0, 0, 0}, .high = {2, 2, 2}}};
   const std::vector<std::string> problems = model_problems(report, OptionStyle::command_line);
   ASSERT_EQ(problems.size(), 1U);
-  EXPECT_NE(
-      problems.front().find("the model of body 2 at voxels of side 0.5 does not pass in 1 place, the first one at "
-                            "(1, 1, 1)"),
-      std::string::npos)
+  EXPECT_NE(problems.front().find("the model of body 2 at voxels of side 0.5 fails in 1 place, the first one at "
+                                  "(1, 1, 1)"),
+            std::string::npos)
       << problems.front();
   EXPECT_NE(problems.front().find("raise --max-resolution"), std::string::npos) << problems.front();
 }

@@ -37,7 +37,7 @@ TEST(VerifyMedial, FalseClaimsOfAnAxisOfAMeshAreRefused) {
     ASSERT_EQ(mismatches.size(), 1U) << reason;
     EXPECT_NE(mismatches.front().find(reason), std::string::npos) << mismatches.front();
   };
-  refused([](MedialClaims& c) { c.metadata.solid_rule = "winding"; }, "its solid is 'winding', and it is 'polyhedron'");
+  refused([](MedialClaims& c) { c.metadata.solid_rule = "winding"; }, "its solid is 'winding', but it is 'polyhedron'");
   refused([](MedialClaims& c) { c.has_radii = false; }, "holds no radii");
   refused([](MedialClaims& c) { c.metadata.site_ids = SiteIds::voxels; }, "holds no sites of this kind of solid");
   MedialClaims of_others = claims;
@@ -72,7 +72,8 @@ TEST(VerifyMedial, TheGridOfAnOpenMeshIsFineEnoughAndHasTheSpacing) {
   claims.metadata.spacing = 0.5 * claims.metadata.grid->spacing.x;
   const Certificate other = verify(piece, claims, mesh);
   ASSERT_EQ(other.mismatches.size(), 1U);
-  EXPECT_NE(other.mismatches.front().find("and its grid has steps of"), std::string::npos) << other.mismatches.front();
+  EXPECT_NE(other.mismatches.front().find("but its grid has a spacing of"), std::string::npos)
+      << other.mismatches.front();
   // Steps of 1/4 along one side, which the grid covers nonetheless.
   GridSpec& grid = *claims.metadata.grid;
   grid.spacing.x = 0.25;

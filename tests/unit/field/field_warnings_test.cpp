@@ -95,12 +95,12 @@ TEST(FieldWarnings, OfAVoidThatFacesAsItsSolidUnlessShellsCross) {
 
 TEST(FieldWarnings, OfGridsWithoutANodeInside) {
   EXPECT_EQ(text_of(box_between({7, 7, 7}, {8, 8, 8}), WarningCode::nothing_inside),
-            "no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it");
+            "no node is inside: the shape encloses nothing, lies outside the grid, or is too thin for its spacing");
   TriangleMesh fold;
   fold.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   fold.triangles = {{0, 1, 2}, {1, 2, 3}};
   EXPECT_EQ(text_of(fold, WarningCode::nothing_inside),
-            "no node is inside: 1 edge lies between triangles that face different ways, so that their winding numbers "
+            "no node is inside: 1 edge lies between triangles that face different ways, so their winding numbers "
             "cancel; orient the mesh first");
 }
 

@@ -363,10 +363,10 @@ TEST(ComplexOthers, PlyOfOtherPrograms) {
     const std::string told = replaced(text, "1.0\n", "1.0\ncomment blum_column " + std::string(comment) + "\n");
     EXPECT_EQ(parse(told, ComplexFormat("PLY")).complex.vertex_columns.size(), 3U) << comment;
   }
-  EXPECT_NE(refusal(replaced(text, "uchar red", "int64 n_x"), ComplexFormat("PLY")).find("is there twice"),
+  EXPECT_NE(refusal(replaced(text, "uchar red", "int64 n_x"), ComplexFormat("PLY")).find("occurs twice"),
             std::string::npos);
   EXPECT_NE(refusal(replaced(text, "1.0\n", "1.0\ncomment blum_column vertex red 1 id\n"), ComplexFormat("PLY"))
-                .find("there is a column 'id' already"),
+                .find("a column 'id' exists already"),
             std::string::npos);
 }
 

@@ -156,7 +156,7 @@ TEST(Formats, OfRowsGraphsAndMapsAreWrittenByName) {
   EXPECT_TRUE(may_hold_further("a.npz") && !may_hold_further("a.vtp"));
   try {
     (void)GraphFormat::of("a.txt", FileAccess::write, "graphs of medial axes");
-    FAIL() << "of no known kind";
+    FAIL() << "has no known format";
   } catch (const InvalidOption& error) {
     EXPECT_STREQ(error.what(),
                  "'a.txt': graphs of medial axes are written to .json, .graphml files; use one of these extensions");
@@ -171,7 +171,7 @@ TEST(Formats, NamesOfSeveralExtensions) {
   std::ofstream(folder / "what") << "nothing known";
   try {
     (void)content_of(folder / "what");
-    FAIL() << "of no known kind";
+    FAIL() << "has no known format";
   } catch (const FileError& error) {
     for (const char* read : {".off", ".nii", ".vti", ".vtp", ".ma"}) {
       EXPECT_NE(std::string(error.what()).find(read), std::string::npos) << read;

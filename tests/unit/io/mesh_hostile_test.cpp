@@ -117,7 +117,7 @@ std::vector<Hostile> hostile_files() {
       {"ply unknown keyword", ply, "ply\nformat ascii 1.0\nvertices 3\n", "unknown keyword", "line 3:"},
       {"ply property first", ply, "ply\nformat ascii 1.0\nproperty float x\n", "before the first element", "line 3:"},
       {"ply negative count", ply, "ply\nformat ascii 1.0\nelement vertex -1\n", "negative count", "line 3:"},
-      {"ply element twice", ply, "ply\nformat ascii 1.0\nelement a 1\nelement a 1\n", "there twice", "line 4:"},
+      {"ply element twice", ply, "ply\nformat ascii 1.0\nelement a 1\nelement a 1\n", "occurs twice", "line 4:"},
       {"ply float list length", ply, "ply\nformat ascii 1.0\nelement face 1\nproperty list float int vertex_indices\n",
        "length of a list must be of a whole-number type", "line 4:"},
       {"ply float indices", ply,

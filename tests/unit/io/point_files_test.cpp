@@ -44,10 +44,10 @@ TEST(PointRows, HaveAnyForm) {
 
 TEST(PointRows, SayWhereTheyAreWrong) {
   EXPECT_EQ(complaint("1,2,3\n4,5"), "points, line 2: there is no z: a row has three numbers or more");
-  EXPECT_EQ(complaint("1,2,3\nx,y,z\n"), "points, line 2: x is no number: 'x'");
+  EXPECT_EQ(complaint("1,2,3\nx,y,z\n"), "points, line 2: x is not a number: 'x'");
   EXPECT_EQ(complaint("1,inf,3"), "points, line 1: y is not finite: 'inf'");
-  EXPECT_EQ(complaint("\n1,,3"), "points, line 2: y is no number: ''");
-  EXPECT_EQ(complaint("1,2,3e999"), "points, line 1: z is no number: '3e999'");
+  EXPECT_EQ(complaint("\n1,,3"), "points, line 2: y is not a number: ''");
+  EXPECT_EQ(complaint("1,2,3e999"), "points, line 1: z is not a number: '3e999'");
 }
 
 TEST(PointFiles, ReadBackWhatIsWritten) {

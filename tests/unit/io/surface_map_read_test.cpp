@@ -173,7 +173,7 @@ TEST_F(SurfaceMapDamage, NoneIsRead) {
 
 TEST_F(SurfaceMapDamage, OfArraysIsNamed) {
   for (const char* name : {"distance", "vertex_distance"}) {
-    expect_refused("holds no surface map", [&](Arrays& a) { a.erase(name); });
+    expect_refused("does not hold a surface map", [&](Arrays& a) { a.erase(name); });
   }
   for (const char* name : {"vector", "site", "triangle", "corners", "vertices", "triangles", "triangle_smallest",
                            "triangle_largest", "triangle_mean"}) {
@@ -204,7 +204,7 @@ TEST_F(SurfaceMapDamage, OfNumbersIsNamed) {
   expect_refused("texel in row 8, column 8: it is not a number",
                  [&](Arrays& a) { a.put("distance", first_texel, static_cast<float>(nan)); });
   expect_refused("row 0, column 1: it is a number, but", [](Arrays& a) { a.put("distance", 1, 2.0F); });
-  expect_refused("(vector.npy): of the texel in row 0, column 2", [](Arrays& a) { a.put("vector", 7, HUGE_VALF); });
+  expect_refused("(vector.npy): texel in row 0, column 2", [](Arrays& a) { a.put("vector", 7, HUGE_VALF); });
   expect_refused("(site.npy)", [](Arrays& a) { a.put("site", first_texel, std::int32_t{-2}); });
   expect_refused("triangle 12 is named, but there are only 12",
                  [](Arrays& a) { a.put("triangle", first_texel, std::int32_t{12}); });
@@ -220,8 +220,9 @@ TEST_F(SurfaceMapDamage, OfNumbersIsNamed) {
   expect_refused("vertex", [&](Arrays& a) { a.put("vertices", 4, nan); });
   expect_refused("vertex", [](Arrays& a) { a.put("triangles", 3, std::int32_t{8}); });
   expect_refused("vertex", [](Arrays& a) { a.put("triangles", 3, std::int32_t{-1}); });
-  expect_refused("triangle 2 is no bound", [](Arrays& a) { a.put("triangle_error", 2, -1.0F); });
-  expect_refused("triangle 2 is no bound", [&](Arrays& a) { a.put("triangle_error", 2, static_cast<float>(nan)); });
+  expect_refused("triangle 2 is not a number of at least 0", [](Arrays& a) { a.put("triangle_error", 2, -1.0F); });
+  expect_refused("triangle 2 is not a number of at least 0",
+                 [&](Arrays& a) { a.put("triangle_error", 2, static_cast<float>(nan)); });
 }
 
 TEST_F(SurfaceMapDamage, OfMetadataIsNamed) {

@@ -367,7 +367,8 @@ TEST(Penetration, SaysWhichObjectIsOpen) {
   }
   open.triangles.pop_back();
   EXPECT_TRUE(message(open).starts_with("object 1 is not closed, or its triangles do not all face the same way: at 3"));
-  EXPECT_TRUE(message(loose).starts_with("object 1 is not closed: at 36 edges its triangles lie side by side"));
+  EXPECT_TRUE(
+      message(loose).starts_with("object 1 is not closed: at 36 edges its triangles touch but share no vertices"));
   EXPECT_NE(message(loose).find("weld"), std::string::npos);
 }
 

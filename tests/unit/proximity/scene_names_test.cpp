@@ -54,7 +54,7 @@ TEST(SceneOfNames, CallsObjectsByThemInMessages) {
     starts(called + " is not closed", [&] { static_cast<void>(scene.signed_separations()); });
     starts(before + "a coordinate is beyond", [&] { scene.update(second, huge.vertices); });
     starts(before + "a coordinate is beyond", [&] { scene.update(second, huge); });
-    starts(before + "the object has 8 vertices, but is updated with 7",
+    starts(before + "the object has 8 vertices, but the update has 7",
            [&] { scene.update(second, std::span(box.vertices).first(7)); });
     const ObjectMotion far{second, huge.vertices};
     const ObjectMotion rests{second};

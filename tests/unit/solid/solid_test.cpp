@@ -205,7 +205,7 @@ TEST(Solid, ASurfaceOfOneSideIsNoPolyhedron) {
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 2}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
                     {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
-  EXPECT_TRUE(obstacle_of(mesh).starts_with("its triangles do not face one way ("));
+  EXPECT_TRUE(obstacle_of(mesh).starts_with("its triangles face different ways ("));
 }
 
 TEST(Solid, AMeshWhoseCrossingsAreNotResolvedIsNoPolyhedron) {
@@ -371,7 +371,7 @@ TEST(Solid, TheSurfaceOfResolvedCrossingsTellsWhereItIsFrom) {
 TEST(Solid, ProblemsAreToldWithWhatToDo) {
   TriangleMesh open = make_box();
   open.triangles.pop_back();
-  EXPECT_NE(Solid::of(open).problem().find("welding them closes it"), std::string::npos);
+  EXPECT_NE(Solid::of(open).problem().find("weld the mesh"), std::string::npos);
   TriangleMesh touching = make_box();
   append(touching, test::moved(make_box(), 1, {0.25, 0.25, 1}));
   const Solid bodies = Solid::of(touching);
