@@ -10,13 +10,13 @@
 
 namespace blum::cli {
 
-/// What subcommands are added to.
+/// The tool and its arguments, for functions that add a subcommand.
 struct CommandLine {
   const Command& app;
-  std::vector<std::string>& arguments;  ///< first to last; a subcommand may take some of its own out of them
+  std::vector<std::string>& arguments;  ///< first to last; a subcommand may remove some of its own
 };
 
-// Each adds its subcommand to the tool; its work runs when the command line has been read.
+// Each function adds its subcommand to the tool. The subcommand runs once the command line is read.
 void add_field_command(const CommandLine& line);
 void add_slice_command(const CommandLine& line);
 void add_make_command(const CommandLine& line);
@@ -37,7 +37,7 @@ void add_clean_command(const CommandLine& line);
 void add_voronoi_command(const CommandLine& line);
 void add_view_command(const CommandLine& line);
 
-/// All of them, in the order of the help. A new one is a file of its own, a line above and one here, and a test.
+/// All subcommands, in the order of the help. A new one needs its own file, a line above, a line here, and a test.
 inline constexpr std::array commands{
     add_field_command,     add_slice_command,  add_make_command,        add_info_command,    add_formats_command,
     add_medial_command,    add_verify_command, add_reconstruct_command, add_surface_command, add_centreline_command,

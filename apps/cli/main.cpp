@@ -25,17 +25,17 @@ constexpr int exit_usage = 2;
 constexpr int exit_not_certified = 3;
 
 constexpr const char* examples = R"(Examples:
-  blum make torus_knot -o knot.ply                 a shape to start from
-  blum info knot.ply                               what it is
-  blum field knot.ply -o knot.nrrd                 its exact signed distance field
-  blum slice knot.nrrd -o knot.png                 a picture of it
-  blum slice knot.nrrd -o cells.png --show sites   the Voronoi diagram
-  blum medial knot.ply -o axis.vtp                 its medial axis, certified
-  blum view knot.ply knot.nrrd axis.vtp --open     all of it in a browser
+  blum make torus_knot -o knot.ply                 write a sample mesh
+  blum info knot.ply                               report its properties
+  blum field knot.ply -o knot.nrrd                 compute its signed distance field
+  blum slice knot.nrrd -o knot.png                 draw one layer of the field
+  blum slice knot.nrrd -o cells.png --show sites   draw its Voronoi regions
+  blum medial knot.ply -o axis.vtp                 compute its certified medial axis
+  blum view knot.ply knot.nrrd axis.vtp --open     show all three in a browser
 
-`blum COMMAND --help` says more. Exit status: 0 done, 2 bad usage, 3 not certified, 1 any
-other failure; Ctrl-C ends by SIGINT (130 in a shell).
-Existing output files are only ever replaced by complete ones.)";
+`blum COMMAND --help` lists options and examples. Exit status: 0 success, 2 invalid usage,
+3 not certified, 1 any other failure. Ctrl-C ends the process by SIGINT (130 in a shell).
+An output file replaces an existing one only when it is complete.)";
 
 int fail(const std::string& message, int status) {
   std::fflush(stdout);
@@ -72,9 +72,9 @@ int run(std::vector<std::string> arguments) {
   }
 }
 
-/// Each step of the long computations takes and gives back arrays of megabytes. By default, glibc gives these back to
-/// the system at once, which then clears their pages for the next step: a tenth of the time. Kept, they may be a
-/// quarter more.
+/// Long computations allocate and free arrays of megabytes in each step. By default, glibc returns freed memory to the
+/// system at once. The system then clears its pages for the next step, which takes a tenth of the time. Keeping freed
+/// memory may raise the peak by a quarter.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int mebibyte = 1 << 20;

@@ -189,6 +189,7 @@ def test_quiet_is_silent(shapes, tmp_path):
                       ["slice", shapes / "sphere.nrrd", "-o", tmp_path / "q.png"],
                       ["make", "box", "-o", tmp_path / "q.stl"], ["info", shapes / "sphere.ply"]]:
         assert run(*arguments, "--quiet") == ("", "")
+        assert run(*arguments, "--quiet", "--verbose") == ("", "")
 
 
 def test_band_in_units_and_in_voxels(shapes, tmp_path):

@@ -13,7 +13,7 @@ std::uint32_t scramble(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-/// @param row  which lightness and chroma, of palette_rows. @param hue  in degrees.
+/// @param row  index of lightness and chroma, below palette_rows. @param hue  in degrees.
 Color region_color_of(std::uint32_t row, double hue) {
   constexpr std::array<double, 4> lightnesses = {0.66, 0.74, 0.81, 0.87};
   constexpr std::array<double, 4> chromas = {0.070, 0.095, 0.115, 0.085};
@@ -23,7 +23,7 @@ Color region_color_of(std::uint32_t row, double hue) {
 }  // namespace
 
 Color region_color(std::uint32_t id) {
-  const std::uint32_t bits = scramble(id + 0x9e3779b9U);  // the page's shaders do the same
+  const std::uint32_t bits = scramble(id + 0x9e3779b9U);  // as in the shaders of the viewer's page
   return region_color_of(bits & 15, static_cast<double>(bits >> 8) * (360.0 / 16777216.0));
 }
 

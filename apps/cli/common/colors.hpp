@@ -7,10 +7,10 @@
 
 namespace blum::cli {
 
-/// The colour of a site: the same for the same id in every picture, spread over hue and lightness.
+/// Returns the colour of a site. An id has the same colour in every picture. Colours vary in hue and lightness.
 [[nodiscard]] Color region_color(std::uint32_t id);
 
-/// The colours of regions with fewer hues: a row for each lightness and chroma, in which the hue runs.
+/// Palette of region colours with fewer hues: one row for each lightness and chroma, with all hues.
 inline constexpr std::uint32_t palette_rows = 16;
 inline constexpr std::uint32_t palette_hues = 256;
 /// @param place  row * palette_hues + number of the hue.

@@ -60,6 +60,10 @@ void Command::add_flag_function(const std::string& name, std::function<void()> s
   app_->add_flag_callback(name, std::move(set), help);
 }
 
+bool Command::has_option(const std::string& name) const {
+  return app_->get_option_no_throw(name) != nullptr;
+}
+
 void Command::require_subcommand() const {
   app_->require_subcommand(1);
 }
@@ -74,13 +78,13 @@ void Command::callback(std::function<void()> run) const {
 
 namespace {
 
-/// Rejects a word of the command line that is neither an option nor a command, if a command is expected there.
+/// Rejects a word that is neither an option nor a command if a command is expected there.
 void check_command(const CLI::App& app, std::span<const std::string> arguments) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   const bool is_tool = app.get_parent() == nullptr;
   if (names.empty() || (arguments.empty() && is_tool)) return;
-  // The only commands with commands of their own are those of queries.
+  // Only the tool itself and commands with queries have subcommands.
   const std::string kind = is_tool ? "command" : "query";
   const std::string all = std::string("the ") + (is_tool ? "commands" : "queries") + " are " + join_words(names);
   if (arguments.empty()) throw UsageError("a " + kind + " is missing; " + all);
@@ -92,7 +96,7 @@ void check_command(const CLI::App& app, std::span<const std::string> arguments) 
                    all);
 }
 
-/// The command that was given, with the names of those above it.
+/// Returns the command that was given. Appends its name and those of its parents to `name`.
 const CLI::App& used_command(const CLI::App& app, std::string& name) {
   const auto used = app.get_subcommands();
   if (used.empty()) return app;
@@ -100,7 +104,7 @@ const CLI::App& used_command(const CLI::App& app, std::string& name) {
   return used_command(*used.front(), name);
 }
 
-/// What CLI11 could make nothing of, with a hint for a misspelt option; empty where there is nothing.
+/// Describes the first argument that CLI11 did not accept, with a hint for a misspelt option. Empty if none is left.
 std::string leftover_text(const CLI::App& command) {
   const std::vector<std::string> left = command.remaining(true);
   if (left.empty()) return {};
@@ -109,20 +113,20 @@ std::string leftover_text(const CLI::App& command) {
     const CLI::Option* theta = command.get_option_no_throw("--theta");
     const bool is_angle = theta != nullptr && theta->count() == 1 && looks_like_number(word);
     return "'" + left.front() + "' was not expected" +
-           (is_angle ? "; for several angles, --theta " + theta->results().front() + "," + word : "");
+           (is_angle ? "; for several angles, use --theta " + theta->results().front() + "," + word : "");
   }
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
-  if (word.size() == 2) {  // one letter: what begins with it
+  if (word.size() == 2) {  // one letter: options that begin with it
     std::erase_if(names, [&](const std::string& name) { return name[2] != word[1]; });
     return "there is no option " + word + hint(names);
   }
   return "there is no option " + word + hint(similar_words(word, names));
 }
 
-/// CLI11's own exits: help and version, which are no errors, are printed.
+/// Prints help or version if CLI11 ended for these. Throws UsageError for all other errors.
 void finish(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     app.exit(error);
@@ -133,7 +137,7 @@ void finish(const CLI::App& app, const CLI::ParseError& error) {
   while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
   std::string name = "blum";
   const CLI::App& command = used_command(app, name);
-  // A misspelt option leaves what it should have set missing: the first is the cause, and is said first.
+  // A misspelt option also causes the error that its option is missing. So the misspelling is reported first.
   const std::string leftover = leftover_text(command);
   const bool only_leftover = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   if (!leftover.empty()) message = only_leftover ? leftover : leftover + "; also: " + message;
@@ -153,7 +157,7 @@ void run_command_line(const ToolTexts& texts, const std::function<void(const Com
   add_commands(Command(app));
   check_command(app, arguments);
   if (arguments.empty()) arguments.emplace_back("--help");
-  std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+  std::reverse(arguments.begin(), arguments.end());  // CLI11 reads them from the back
   try {
     app.parse(arguments);
   } catch (const CLI::ParseError& error) {

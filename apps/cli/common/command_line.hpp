@@ -13,27 +13,27 @@ class Option;
 
 namespace blum::cli {
 
-/// An option of a command, once it was added. CLI11 holds it, which command_line.cpp alone includes: its header takes
-/// longer to compile than a command.
+/// An option that was added to a command. CLI11 holds it. Only command_line.cpp includes CLI11, because its header
+/// takes longer to compile than a command.
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option& option) : option_(&option) {}
   CommandOption required() const;
-  /// What the help calls the value.
+  /// Sets the name of the value in the help.
   CommandOption type_name(const std::string& name) const;
-  /// One value each time it is given, of an option that may be given several times.
+  /// Makes an option that may be repeated take one value each time.
   CommandOption one_value_each() const;
 
  private:
   CLI::Option* option_;
 };
 
-/// The tool, or a subcommand of it.
+/// The tool or one of its subcommands.
 class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
   [[nodiscard]] Command add_subcommand(const std::string& name, const std::string& help) const;
-  /// @param value  is set when the command line is read, and must live until then.
+  /// @param value  is set when the command line is read. It must live until then.
   CommandOption add_option(const std::string& name, std::string& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::optional<std::string>& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
@@ -41,27 +41,29 @@ class Command {
   CommandOption add_option_function(const std::string& name, const std::function<void(const std::string&)>& set,
                                     const std::string& help) const;
   void add_flag(const std::string& name, bool& value, const std::string& help) const;
-  /// @param set  is called where the flag is given.
+  /// @param set  is called if the flag is given.
   void add_flag_function(const std::string& name, std::function<void()> set, const std::string& help) const;
-  /// One of its own subcommands must be given.
+  /// Returns true if the command has an option or flag of this name, with dashes.
+  [[nodiscard]] bool has_option(const std::string& name) const;
+  /// Makes one of its subcommands mandatory.
   void require_subcommand() const;
-  /// What the help ends with.
+  /// Sets the text at the end of the help.
   void footer(const std::string& text) const;
-  /// What the command does.
+  /// Sets the function that runs the command.
   void callback(std::function<void()> run) const;
 
  private:
   CLI::App* app_;
 };
 
-/// What the tool says of itself.
+/// Texts of the tool's help and version.
 struct ToolTexts {
   std::string name, about, version, footer;
 };
 
-/// Reads a command line and does what it asks for; prints help and version where these are asked for.
-/// @param add_commands  adds the subcommands, and may change the arguments, which are read after it.
-/// @throws UsageError, and what the command throws.
+/// Reads a command line and runs its command. Prints help or version if they are requested.
+/// @param add_commands  adds the subcommands. It may change the arguments, because they are read afterwards.
+/// @throws UsageError for an invalid command line, and all exceptions of the command.
 void run_command_line(const ToolTexts& texts, const std::function<void(const Command&)>& add_commands,
                       std::vector<std::string>& arguments);
 

@@ -16,12 +16,11 @@ void add_weld_option(const Command& command, std::optional<std::string>& weld, c
 }
 
 void add_threads_option(const Command& command, std::optional<std::string>& threads) {
-  add_text_option(command, "--threads", threads, "T", "Number of threads; 0, the default: one per core");
+  add_text_option(command, "--threads", threads, "T", "Number of threads, 0 to 1024 (default 0: one per core)");
 }
 
 void add_device_option(const Command& command, std::optional<std::string>& device) {
-  add_text_option(command, "--device", device, "DEV",
-                  "Where distances are computed: cpu, auto, cuda or cuda:K (default cpu)");
+  add_text_option(command, "--device", device, "DEV", "Device for distances: cpu, auto, cuda or cuda:K (default cpu)");
 }
 
 void add_report_options(const Command& command, ReportOptions& report, const char* json_help) {

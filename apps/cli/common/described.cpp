@@ -102,7 +102,7 @@ double number_in(const std::string& option, const std::string& text, const Range
 }
 
 std::int64_t integer_in(const std::string& option, const std::string& text, const Range& range) {
-  constexpr double widest = 1e9;  // where nothing else is said
+  constexpr double widest = 1e9;  // if the description has no range
   return parse_integer(option, text, static_cast<std::int64_t>(std::isfinite(range.least) ? range.least : -widest),
                        static_cast<std::int64_t>(std::isfinite(range.most) ? range.most : widest));
 }
@@ -111,7 +111,8 @@ double length_in(const std::string& option, const std::string& text, const Range
   const bool in_steps = step && !text.empty() && (text.back() == 'v' || text.back() == 'V');
   if (!in_steps) return number_in(option, text, range);
   const std::string count = text.substr(0, text.size() - 1);
-  if (!looks_like_number(count)) throw UsageError(option + " '" + text + "': is not a number of voxels, such as 3v");
+  if (!looks_like_number(count))
+    throw UsageError(option + " '" + text + "': is not a number of grid steps, for example 3v");
   return number_in(option, count, range) * *step;
 }
 

@@ -26,19 +26,19 @@
 
 namespace blum::cli {
 
-/// Seconds by phase; those of one name are added.
+/// Returns seconds by phase. Phases of one name are added.
 [[nodiscard]] Json to_json(const std::vector<PhaseTime>& phases);
 [[nodiscard]] Json to_json(const Vec3d& v);
-/// null where the box is empty.
+/// Returns null if the box is empty.
 [[nodiscard]] Json to_json(const Box3& box);
 [[nodiscard]] Json to_json(const Mat3& columns);
-/// -1 where there is none.
+/// Returns -1 if the id is empty.
 template <class Tag>
 [[nodiscard]] Json to_json(const Id<Tag>& id) {
   return id.to_file();
 }
 
-/// A value of a described struct, and what it consists of. null where there is no value.
+/// Converts values of described structs and of their members. An empty optional becomes null.
 template <class T>
   requires(DescribedStruct<T> || DescribedEnum<T> || std::is_arithmetic_v<T> || std::same_as<T, std::string>)
 [[nodiscard]] Json to_json(const T& value);
@@ -79,39 +79,39 @@ Json to_json(const std::array<T, count>& values) {
   return json;
 }
 
-/// --site-ids for site_ids.
+/// Returns the option of a member: --site-ids for site_ids.
 [[nodiscard]] std::string option_name(std::string_view member);
-/// Numbers of an option as its description allows them. @throws UsageError.
+/// Reads the number of an option. @throws UsageError if it is outside the range of the description.
 [[nodiscard]] double number_in(const std::string& option, const std::string& text, const Range& range);
 [[nodiscard]] std::int64_t integer_in(const std::string& option, const std::string& text, const Range& range);
-/// `3v` as three steps where there are some, else as number_in(). @throws UsageError.
+/// Reads `3v` as three steps if `step` is given, other texts as number_in(). @throws UsageError.
 [[nodiscard]] double length_in(const std::string& option, const std::string& text, const Range& range,
                                std::optional<double> step);
 
-/// A member of a described struct as an option, whatever its type is.
+/// A member of a described struct as an option.
 struct OptionMember {
   std::string_view name, unit, doc;
   bool is_flag = false;
-  bool is_on = false;    ///< of flags: the default
-  std::string fallback;  ///< of others, as the help tells it
+  bool is_on = false;    ///< default of a flag
+  std::string fallback;  ///< default of other options, for the help
 };
 
-/// What OptionTexts<T> does for any struct.
+/// The part of OptionTexts<T> that does not depend on T.
 class OptionTable {
  public:
-  /// The members as options of a command. It must stay where it is until the command line is read.
-  /// @param prefix  of all help texts.  @param left_out  members that the command sets otherwise.
-  /// @param in_steps  whether lengths may be given in grid steps, too.
+  /// Adds the members as options of a command. The object must keep its address until the command line is read.
+  /// @param prefix  starts all help texts.  @param left_out  members without an option.
+  /// @param in_steps  true if lengths may also be given in grid steps.
   void add_to(const Command& command, std::string_view prefix = {},
               std::initializer_list<std::string_view> left_out = {}, bool in_steps = false);
 
   [[nodiscard]] bool has(std::string_view member) const { return text_of(member) != nullptr; }
-  /// The given options, in their order, with dashes.
+  /// Returns the names of the given options, in the order of the members.
   [[nodiscard]] std::vector<std::string> given() const;
 
  protected:
   explicit OptionTable(std::vector<OptionMember> members) : members_(std::move(members)) {}
-  /// null where it is not given.
+  /// Returns nullptr if the option is not given.
   [[nodiscard]] const std::string* text_of(std::string_view member) const;
 
  private:
@@ -119,14 +119,15 @@ class OptionTable {
   std::map<std::string, std::string, std::less<>> texts_;
 };
 
-/// The members of a described struct as options of a command: words of enumerations, numbers in their range; a flag for
-/// what is true or false, `--no-NAME` where true is the default. A selection of voxels is no part of it.
+/// The members of a described struct as options of a command: words for enumerations, and numbers in their range. A
+/// boolean is a flag, called `--no-NAME` if its default is true. A selection of voxels gets no option.
 template <DescribedStruct T>
 class OptionTexts : public OptionTable {
  public:
   OptionTexts() : OptionTable(members()) {}
 
-  /// The struct; what is not given keeps its default. @param step  of the grid, where lengths may be given in these.
+  /// Returns the struct. Members without a given option keep their default.
+  /// @param step  grid step, if lengths may be given in steps.
   /// @throws UsageError, InvalidOption.
   [[nodiscard]] T read(std::optional<double> step = {}) const {
     T out;

@@ -31,7 +31,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 void check_writable(const fs::path& path) {
   std::error_code error;
-  if (fs::is_directory(path, error)) throw FileError("'" + path.string() + "' is a folder; name a file");
+  if (fs::is_directory(path, error)) throw FileError("'" + path.string() + "' is a folder; give the name of a file");
   const fs::path target = resolved(path);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
@@ -43,7 +43,7 @@ void check_writable(const fs::path& path) {
   }
 }
 
-/// The number behind `key` in a file of lines such as "MemAvailable:  123 kB", or in a file that holds one number.
+/// Reads the number after `key` in a file of lines like "MemAvailable:  123 kB". An empty key reads the first number.
 std::optional<double> number_in(const char* file, std::string_view key) {
   std::ifstream stream(file);
   std::string line;
@@ -80,14 +80,14 @@ InputKind input_kind(const fs::path& path) {
   }
   throw FileError("'" + path.string() +
                   "' is a medial axis; a mesh, an image or a field is needed here (`blum info`, `blum verify` and "
-                  "`blum reconstruct` take axes)");
+                  "`blum reconstruct` read axes)");
 }
 
 void check_may_be_field(const fs::path& path) {
   const InputKind kind = input_kind(path);
   if (may_hold_field(path)) return;
   throw FileError("'" + path.string() + "' is " + (kind == InputKind::mesh ? "a mesh" : "an image") +
-                  ", not a field; make its field first, with `blum field`");
+                  ", not a field; compute its field with `blum field` first");
 }
 
 std::string extensions_help(const std::vector<FileContent>& contents, FileAccess access) {
@@ -115,7 +115,7 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (resolved(outputs[i]) == resolved(outputs[j])) {
-        throw UsageError("two outputs would go to '" + outputs[i].string() + "'; choose different names");
+        throw UsageError("two outputs have the name '" + outputs[i].string() + "'; choose different names");
       }
     }
   }
@@ -131,7 +131,7 @@ void check_extension(std::string_view option, const fs::path& path, const std::v
 void check_memory(double bytes, std::string_view what, std::string_view advice) {
   const double there = available_memory();
   if (bytes <= there) return;
-  throw OutOfMemory(std::string(what) + " needs " + bytes_text(bytes) + " of memory, and " + bytes_text(there) +
+  throw OutOfMemory(std::string(what) + " needs " + bytes_text(bytes) + " of memory, but only " + bytes_text(there) +
                     " are free; " + std::string(advice));
 }
 

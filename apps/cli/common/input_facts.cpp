@@ -43,7 +43,7 @@ bool is_welded_away(const MeshFile& file) {
 
 std::string welded_away_text(const MeshFile& file) {
   return "welding left no triangle of " + plural(file.info.faces, "face", "faces") +
-         ": give --weld a tolerance below " + "the mesh's edges";
+         "; give --weld a tolerance below " + "the edge lengths of the mesh";
 }
 
 Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,

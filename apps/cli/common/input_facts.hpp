@@ -1,4 +1,4 @@
-// Blum: what the commands say of their input. SPDX-License-Identifier: Apache-2.0
+// Blum: summaries of input files. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,26 @@
 
 namespace blum::cli {
 
-/// File, format and counts of a mesh.
+/// Returns file, format and counts of a mesh.
 [[nodiscard]] Json file_json(const std::filesystem::path& path, const MeshFile& file);
 [[nodiscard]] std::string file_text(const MeshFile& file);
 
-/// Whether welding left nothing of a mesh's faces, and what to say then.
+/// Returns true if welding removed all triangles of a mesh, and the text of its warning.
 [[nodiscard]] bool is_welded_away(const MeshFile& file);
 [[nodiscard]] std::string welded_away_text(const MeshFile& file);
 
-/// The same with the cheap facts of its surface.
+/// Returns these with the properties of its surface that are cheap to compute.
 [[nodiscard]] Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                              const Orientation& facts);
 [[nodiscard]] TextTable mesh_table(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                                    const Orientation& facts);
 
-/// File, format, type and grid of an image.
+/// Returns file, format, type and grid of an image.
 [[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image);
 [[nodiscard]] TextTable image_table(const std::filesystem::path& path, const VoxelImage& image);
-/// Whether no voxel holds a number.
+/// Returns true if every voxel is NaN.
 [[nodiscard]] bool has_only_nan(const VoxelImage& image);
-/// "uint8", "float32" and so on.
+/// Returns the name of the value type: "uint8", "float32" and so on.
 [[nodiscard]] std::string type_name(const VoxelImage::Values& values);
 
 }  // namespace blum::cli

@@ -124,7 +124,7 @@ Json& Json::operator[](std::string_view name) {
 
 const Json& Json::operator[](std::string_view name) const {
   if (const Json* found = find(name)) return *found;
-  throw std::out_of_range("no member of that name: " + std::string(name));
+  throw std::out_of_range("no member with this name: " + std::string(name));
 }
 
 void Json::update(const Json& other) {
@@ -135,7 +135,7 @@ void Json::erase(std::string_view name) {
   std::erase_if(std::get<Object>(value_), [&](const auto& member) { return member.first == name; });
 }
 
-/// Makes what nlohmann/json writes.
+/// Converts to a value of nlohmann/json and writes it.
 struct JsonWriter {
   using Written = nlohmann::ordered_json;
 
@@ -160,7 +160,7 @@ struct JsonWriter {
   }
   static Written of_value(const Json::Object& members) {
     Written out = Written::object();
-    // Names differ already.
+    // Names are unique already.
     for (const auto& [name, value] : members) out.get_ref<Written::object_t&>().push_back({name, of(value)});
     return out;
   }

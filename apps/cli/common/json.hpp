@@ -1,4 +1,4 @@
-// Blum: values of JSON, as the commands make them. SPDX-License-Identifier: Apache-2.0
+// Blum: values of JSON. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <concepts>
@@ -17,10 +17,9 @@ namespace blum::cli {
 class JsonItem;
 
 /// A value of JSON: null, true or false, a number, a text, an array, or an object whose members keep their order.
-/// Written by nlohmann/json, which json.cpp alone includes: its header takes longer to compile than a command.
+/// nlohmann/json writes them. Only json.cpp includes it, because its header takes longer to compile than a command.
 ///
-/// Braces make an object where each of their items is a pair of a text and a value, {{"a", 1}, {"b", 2}}, else an
-/// array.
+/// Braces make an object if each item is a pair of a text and a value, {{"a", 1}, {"b", 2}}; else an array.
 // NOLINTBEGIN(google-explicit-constructor): values of JSON are made of what they hold, within braces too
 class Json {
  public:
@@ -41,7 +40,7 @@ class Json {
   Json(const char* text);
   Json(std::string text);
   Json(std::string_view text);
-  /// An array, item by item.
+  /// Makes an array of the items.
   template <class Value>
     requires std::constructible_from<Json, const Value&>
   Json(const std::vector<Value>& values) : Json(array()) {
@@ -56,17 +55,17 @@ class Json {
   ~Json();
 
   [[nodiscard]] static Json array();
-  /// An array whatever its items are.
+  /// Makes an array even if all items are pairs.
   [[nodiscard]] static Json array(std::initializer_list<JsonItem> items);
   [[nodiscard]] static Json object();
 
   [[nodiscard]] bool is_null() const;
   [[nodiscard]] bool is_true() const;
-  /// @throws std::bad_variant_access where it is of another kind, here and below.
+  /// @throws std::bad_variant_access if the value has another kind, here and below.
   [[nodiscard]] double number() const;
   [[nodiscard]] const std::string& text() const;
 
-  // Arrays and objects. What is null becomes the one that is written to.
+  // Arrays and objects. Writing to null turns it into an array or an object.
   [[nodiscard]] bool empty() const { return size() == 0; }
   [[nodiscard]] std::size_t size() const;
   void push_back(Json value);
@@ -75,17 +74,17 @@ class Json {
   [[nodiscard]] Array::const_iterator begin() const;
   [[nodiscard]] Array::const_iterator end() const;
   [[nodiscard]] const Object& members() const;
-  /// The member of that name; null where there is none.
+  /// Returns the member of that name, or nullptr if it does not exist.
   [[nodiscard]] const Json* find(std::string_view name) const;
   [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
-  /// The member of that name, made (null) where there is none.
+  /// Returns the member of that name. Adds it as null if it does not exist.
   [[nodiscard]] Json& operator[](std::string_view name);
   [[nodiscard]] const Json& operator[](std::string_view name) const;
   /// Sets all members of another object.
   void update(const Json& other);
   void erase(std::string_view name);
 
-  /// As text in one line, or with lines indented. What is no UTF-8 in texts is replaced.
+  /// Returns the text, in one line or with indented lines. Invalid UTF-8 is replaced.
   [[nodiscard]] std::string dump() const;
   [[nodiscard]] std::string dump(int indent) const;
 
@@ -100,8 +99,8 @@ class Json {
   std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array, Object> value_;
 };
 
-/// What stands within braces: a value, or braces again. Values are moved out of it, which lists do not allow by
-/// themselves.
+/// An item within braces: a value, or braces again. Values are moved out of it; initializer lists alone do not allow
+/// that.
 class JsonItem {
  public:
   JsonItem(const char* text) : value_(text) {}

@@ -38,7 +38,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-/// The number of single-character insertions, removals and replacements between two words.
+/// Returns the number of single-character insertions, removals and replacements between two words.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -86,7 +86,7 @@ double parse_angle(std::string_view name, std::string_view text) {
 
 namespace {
 
-/// The whole number that text as 1e6 or 2.5e3 stands for: one that doubles hold exactly.
+/// Reads texts like 1e6 or 2.5e3 as a whole number that a double holds exactly.
 std::optional<std::int64_t> scientific_integer(std::string_view digits) {
   constexpr double largest_exact = 9007199254740992;  // 2^53
   double value = 0;
@@ -138,7 +138,7 @@ std::vector<std::int64_t> parse_labels(std::string_view name, const std::vector<
     for (const std::string_view part : split(text, ',')) {
       const std::int64_t label =
           parse_integer(name, part, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
-      if (std::find(labels.begin(), labels.end(), label) != labels.end()) refuse(name, part, "is asked for twice");
+      if (std::find(labels.begin(), labels.end(), label) != labels.end()) refuse(name, part, "is given twice");
       labels.push_back(label);
     }
   }
@@ -191,14 +191,14 @@ void check_spacing(double spacing, const Box3& box) {
   const double nodes = (size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1);
   if (box.is_empty() || nodes <= most) return;
   throw UsageError("--spacing " + rounded_text(spacing) + " is too small for a box of " + vector_text(size) +
-                   ": it would take more than 2^40 steps; raise it");
+                   ": the grid would have more than 2^40 nodes; increase --spacing");
 }
 
 void refuse_given(const std::vector<std::pair<bool, const char*>>& given, const std::filesystem::path& input,
                   const char* kind, const char* applies_to) {
   for (const auto& [is_given, name] : given) {
     if (is_given) {
-      throw UsageError(std::string(name) + " is for " + applies_to + ", and '" + input.string() + "' is " + kind);
+      throw UsageError(std::string(name) + " is for " + applies_to + ", but '" + input.string() + "' is " + kind);
     }
   }
 }

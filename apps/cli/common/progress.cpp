@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// What a signal handler may touch: lock-free atomics and a pipe to the thread that may do more.
+// State for the signal handler: lock-free atomics, and a pipe to a thread that may do more.
 std::atomic<int> signals_seen = 0;
 std::atomic<int> last_signal = 0;
 std::atomic<bool> unattended = false;
@@ -33,7 +33,7 @@ void send(char message) {
   }
 }
 
-/// Ends the process by a signal, so that whoever waits for it sees that: a shell then leaves its loop, too.
+/// Ends the process by a signal, so that its parent sees the signal. A shell then also leaves its loop.
 [[noreturn]] void end_by(int number) {
   signal(number, SIG_DFL);
   sigset_t own;
@@ -41,7 +41,7 @@ void send(char message) {
   sigaddset(&own, number);
   pthread_sigmask(SIG_UNBLOCK, &own, nullptr);
   raise(number);
-  _exit(128 + number);  // where the signal is ignored
+  _exit(128 + number);  // reached if the signal is ignored
 }
 
 extern "C" void on_signal(int number) {
@@ -66,7 +66,7 @@ void watch(std::stop_source& source) {
   }
 }
 
-/// Signals that are ignored stay so: shells start what runs in the background of scripts like that.
+/// Keeps ignored signals ignored, because shells start background jobs of scripts that way.
 void set_handler(void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;

@@ -11,7 +11,7 @@
 
 namespace blum::cli {
 
-/// A progress bar on stderr, only where stderr is a terminal; it appears after a moment and vanishes at the end.
+/// A progress bar on stderr, only if stderr is a terminal. It appears after 0.4 s and disappears at the end.
 class Progress {
  public:
   explicit Progress(bool wanted);
@@ -31,9 +31,9 @@ class Progress {
   Clock::time_point last_ = {};
 };
 
-/// Turns the first Ctrl-C (SIGINT) or SIGTERM into a request to stop, and the second into the end of the process.
-/// While nothing listens to the request (reading files, say) even the first one ends the process at once: see
-/// Unattended. A signal that was ignored when the process started stays so. At most one may exist.
+/// Turns the first Ctrl-C (SIGINT) or SIGTERM into a request to stop, and the second into the end of the process. If no
+/// code polls the request, for example while files are read, Unattended makes the first signal end the process. A
+/// signal that was ignored when the process started stays ignored. At most one object may exist.
 class Interrupt {
  public:
   Interrupt();
@@ -48,11 +48,11 @@ class Interrupt {
   std::thread watcher_;
 };
 
-/// Ends the process by the signal that was caught last, so that whoever waits for it sees SIGINT or SIGTERM; returns
-/// where there was none. For when all is cleaned up.
+/// Ends the process by the signal that was caught last, so that its parent sees SIGINT or SIGTERM. Returns if none was
+/// caught. Call it after all cleaning up.
 void end_by_last_signal();
 
-/// For its lifetime a signal ends the process at once. Only for work that has no output file open.
+/// During its lifetime, a signal ends the process at once. Use it only while no output file is open.
 class Unattended {
  public:
   Unattended();
@@ -61,7 +61,7 @@ class Unattended {
   Unattended& operator=(const Unattended&) = delete;
 };
 
-/// The context of a command: threads, the bar, and cancellation. Both must outlive its use.
+/// Returns the context of a command: threads, progress bar and cancellation. Both references must outlive it.
 [[nodiscard]] Context make_context(int threads, Progress& progress, const Interrupt& interrupt);
 
 }  // namespace blum::cli

@@ -16,24 +16,24 @@
 
 namespace blum::cli {
 
-/// A mesh or an image whose solid is asked for.
+/// A mesh or an image that bounds a solid.
 struct SolidInput {
   InputKind kind = InputKind::mesh;
   MeshFile mesh;
   VoxelImage image;
-  std::optional<WeldFacts> weld;  ///< where vertices within a tolerance above 0 were joined
+  std::optional<WeldFacts> weld;  ///< if vertices within a tolerance above 0 were merged
   Json json;
   TextTable table;
 };
 
-/// @param weld  for meshes.
-/// @throws FileError for fields and for what cannot be read; InvalidMesh, InvalidImage.
+/// @param weld  welding tolerance of meshes, in mesh units; 0 merges equal vertices.
+/// @throws FileError for fields, unreadable files and images with only NaN; InvalidMesh, InvalidImage.
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
 
-/// What there is to say of an input as it was read: how many vertices were joined.
+/// Returns the warnings of an input: a weld tolerance that changed components or Euler number.
 [[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);
 
-/// What make() makes of a file; of a mesh that it does not take, the error names the file. @throws InvalidMesh.
+/// Returns the result of make(), and adds the file's name to its errors. @throws InvalidMesh.
 template <class Make>
 [[nodiscard]] auto of_file(const std::filesystem::path& path, const Make& make) {
   try {
@@ -43,15 +43,14 @@ template <class Make>
   }
 }
 
-/// What --label and --threshold select; all that is not 0 where neither is given. Checked against the kind of the
-/// input.
+/// The voxels that --label and --threshold select. Without either, all voxels that are not 0.
 struct Selections {
   std::vector<std::int64_t> labels;
   std::optional<double> threshold;
   [[nodiscard]] std::vector<LabelSelection> all() const;
 };
 
-/// The values of --label and --threshold. @throws UsageError, InvalidOption.
+/// Reads the values of --label and --threshold. @throws UsageError, InvalidOption.
 [[nodiscard]] Selections parse_selections(const std::vector<std::string>& labels,
                                           const std::optional<std::string>& threshold);
 

@@ -1,4 +1,4 @@
-// Blum: what the commands say, as text and as JSON. SPDX-License-Identifier: Apache-2.0
+// Blum: summaries of commands, as text and as JSON. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@
 
 namespace blum::cli {
 
-/// Seconds since it was made or last asked.
+/// Measures the seconds since it was made or since the last lap.
 class Stopwatch {
  public:
   [[nodiscard]] double lap() {
@@ -34,14 +34,14 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-/// "1.5 GiB".
+/// Returns for example "1.5 GiB".
 [[nodiscard]] std::string bytes_text(double bytes);
 [[nodiscard]] std::string vector_text(const Vec3d& v);
 [[nodiscard]] std::string size_text(const GridSpec& grid);
-/// "1 % below 0.2, 5 % below 0.3, ...".
+/// Returns for example "1 % below 0.2, 5 % below 0.3".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);
 
-/// Lines of text in two columns, label and content. Details are printed with --verbose only.
+/// Lines of text in two columns, label and content. Details appear only with --verbose.
 class TextTable {
  public:
   void add(std::string label, std::string content) { rows_.push_back({std::move(label), std::move(content), false}); }
@@ -57,49 +57,49 @@ class TextTable {
   std::vector<Row> rows_;
 };
 
-/// Duration of the phases of a run. Phases of one name are added.
+/// Durations of the phases of a run. Phases of one name are added.
 struct PhaseSummary {
   Json seconds = Json::object();  ///< by phase
   double total = 0;
   std::string text;    ///< "1.5 s"
   std::string phases;  ///< "read 0.5, write 1", seconds
 
-  /// Adds the duration and the peak memory, and the phases as a detail.
+  /// Adds the duration and the peak memory as a line, and the phases as a detail.
   void add_to(TextTable& table) const;
 };
 [[nodiscard]] PhaseSummary summarize(const std::vector<PhaseTime>& phases);
 
-/// Peak memory of the process in bytes.
+/// Returns the peak memory of the process, in bytes.
 [[nodiscard]] std::uint64_t peak_memory();
 
-/// What a command answers as JSON: Blum's version, the command, then these facts.
+/// Returns the JSON of a command: Blum's version, the command, then these facts.
 [[nodiscard]] Json answer_json(std::string_view command, const Json& facts);
 
-/// Adds what answers end with: how long the run took, its memory and threads, warnings, and the files written.
+/// Adds the end of the JSON: durations, peak memory, threads, warnings and written files.
 void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
                    const std::vector<Warning>& warnings, const Json& outputs);
 
-/// Where a command's summary goes.
+/// Destinations of a command's summary.
 struct ReportOptions {
   std::optional<std::string> json;  ///< a file, or "-" for stdout
   bool quiet = false;
-  bool verbose = false;  ///< details of the summary are printed, too
+  bool verbose = false;  ///< also prints the details of the summary
   [[nodiscard]] bool json_to_stdout() const { return json && *json == "-"; }
-  /// The JSON file among the outputs, for checks; empty or one path.
+  /// Returns the path of the JSON file, for checks of the outputs; empty if none is written.
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
 };
 
-/// Writes the JSON if it was asked for, and the text to stdout unless `quiet` is set or the JSON goes there.
+/// Writes the JSON if requested. Prints the text to stdout unless `quiet` is set or stdout gets the JSON.
 /// @throws FileError.
 void report(const ReportOptions& options, const Json& json, const std::string& text);
 void report(const ReportOptions& options, const Json& json, const TextTable& table);
 
-/// Writes the text of each as a line "blum: warning: ..." to stderr.
+/// Writes each text to stderr as a line "blum: warning: ...".
 void warn(const std::vector<Warning>& warnings);
-/// Likewise what is no fact of a result.
+/// Writes a warning that is not part of a result.
 void warn_of(const std::string& text);
 
-/// @throws FileError when stdout does not take what is written to it.
+/// @throws FileError if stdout cannot be written.
 void print(std::string_view text);
 
 }  // namespace blum::cli

@@ -1,4 +1,4 @@
-// Blum: what welding does to a mesh beyond joining equal vertices. SPDX-License-Identifier: Apache-2.0
+// Blum: effects of welding a mesh within a tolerance. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace blum::cli {
 
-/// A surface, as its triangles tell.
+/// Counts of a surface, from its triangles.
 struct SurfaceFacts {
   std::size_t components = 0;     ///< sets of triangles connected through edges
   std::int64_t euler_number = 0;  ///< vertices - edges + triangles
@@ -19,17 +19,17 @@ struct SurfaceFacts {
 };
 [[nodiscard]] SurfaceFacts surface_facts(const MeshView& mesh);
 
-/// A mesh that was welded within a tolerance, beside the same mesh where only equal vertices were joined.
+/// Compares a mesh that was welded within a tolerance to the same mesh with only equal vertices merged.
 struct WeldFacts {
   double tolerance = 0;      ///< mesh units
-  std::size_t vertices = 0;  ///< with equal ones joined
-  std::size_t lost = 0;      ///< of these
+  std::size_t vertices = 0;  ///< after merging equal ones
+  std::size_t lost = 0;      ///< vertices that the tolerance removed
   SurfaceFacts before, after;
 };
-/// @param exact  where equal vertices alone were joined.
+/// @param exact  the mesh with only equal vertices merged.
 [[nodiscard]] WeldFacts weld_facts(const MeshView& exact, double tolerance, const MeshView& welded);
 
-/// In one sentence.
+/// Returns the facts as one sentence.
 [[nodiscard]] std::string weld_text(const WeldFacts& facts);
 [[nodiscard]] Json weld_json(const WeldFacts& facts);
 

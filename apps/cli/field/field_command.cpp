@@ -34,11 +34,11 @@ constexpr const char* examples = R"(Examples:
   blum field bunny.obj -o bunny.npz --band 3v --json summary.json
   blum field part.stl -o part.vti --weld 1e-6 --sign winding
   blum field parts.ply -o gap.npz --order 2 --second other-object
-  blum field part.ply -o cut.nrrd --bounds -1,-1,0,1,1,0      one layer: a 2D field
-  blum field scan.nii.gz -o organ.nrrd --label 1,3            organ-label1.nrrd and organ-label3.nrrd
+  blum field part.ply -o cut.nrrd --bounds -1,-1,0,1,1,0      2D field of one layer
+  blum field scan.nii.gz -o organ.nrrd --label 1,3            writes organ-label1.nrrd and organ-label3.nrrd
   blum field scan.nrrd -o bone.npz --threshold 300)";
 
-/// The command line as text; values are read in checked order by `resolve`.
+/// The command line as text. parse() reads and checks the values.
 struct Arguments {
   std::string input;
   std::string output;
@@ -56,7 +56,7 @@ struct Request {
   std::optional<Box3> bounds;
   double padding = 0.1;
   OptionTexts<FieldOptions> option_texts;
-  FieldOptions options;  ///< lengths in voxels are known with the grid only
+  FieldOptions options;  ///< lengths in grid steps are final once the grid is known
   Selections selections;
   std::optional<double> weld;
   int threads = 0;
@@ -71,12 +71,14 @@ Request parse(const Arguments& a) {
   check_extension("--output", r.output, file_extensions(FileContent::field, FileAccess::write));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
-  exclude(a.bounds.has_value(), "--bounds", a.padding.has_value(), "--padding", "the bounds are taken as they are");
+  exclude(a.bounds.has_value(), "--bounds", a.padding.has_value(), "--padding",
+          "--bounds sets the box without padding");
   if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
   if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
   if (a.bounds) r.bounds = parse_bounds("--bounds", *a.bounds);
   if (a.padding) r.padding = parse_non_negative("--padding", *a.padding);
-  exclude(a.options.has("site_ids"), "--site-ids", a.options.has("sites"), "--no-sites", "there are none to number");
+  exclude(a.options.has("site_ids"), "--site-ids", a.options.has("sites"), "--no-sites",
+          "a field without sites has no ids");
   r.option_texts = a.options;
   r.options = a.options.read(1);
   if (a.options.has("second") && r.options.order != 2) throw UsageError("--second needs --order 2");
@@ -108,7 +110,7 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
                r.input, "an image", "meshes");
 }
 
-/// What a run gathers for its summary.
+/// Facts of a run, for its summary.
 struct Run {
   Json input;
   TextTable input_table;
@@ -116,11 +118,11 @@ struct Run {
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
   std::vector<fs::path> outputs;
-  std::optional<fs::path> removed;       ///< sites of a field that was replaced by one without
-  std::vector<fs::path> removed_second;  ///< likewise what was of order 2
+  std::optional<fs::path> removed;       ///< sites of the replaced field, if the new one has none
+  std::vector<fs::path> removed_second;  ///< files of order 2 of the replaced field, if the new one has order 1
   std::vector<Warning> warnings;
   TextTable table;
-  bool names_device = false;  ///< one other than the CPU was asked for, which `auto` may be, too
+  bool names_device = false;  ///< --device is not cpu; `auto` may still choose the CPU
   void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
 };
 
@@ -141,7 +143,7 @@ Json sites_json(const Field& field, const FieldStatistics& s) {
 }
 
 std::string sites_text(const Field& field, const FieldStatistics& s) {
-  if (field.site.empty()) return "none, as asked for";
+  if (field.site.empty()) return "none (--no-sites)";
   const SiteIds ids = field.site_ids;
   if (ids == SiteIds::voxels) return count_text(s.all.sites) + " closest voxels";
   if (ids == SiteIds::triangles) return count_text(s.all.sites) + " closest triangles";
@@ -162,7 +164,7 @@ Json second_json(const Field& field, const FieldStatistics& s) {
 }
 
 std::string second_text(const Field& field, const SecondStatistics& s) {
-  std::string text = "no site may be second";
+  std::string text = "no node has a second site";
   if (s.minimum && s.maximum) text = "distance " + rounded_text(*s.minimum) + " to " + rounded_text(*s.maximum);
   if (field.second) text += ", " + std::string(to_string(*field.second));
   if (s.nodes_without > 0) text += "; " + count_text(s.nodes_without) + " nodes have none";
@@ -200,7 +202,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   if (s.second) run.table.add("second", second_text(field, *s.second));
 }
 
-/// The largest spacing along which an image has neighbours.
+/// Returns the largest spacing over the axes with several layers.
 double coarsest_step(const GridSpec& grid) {
   double step = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -253,7 +255,7 @@ GridSpec make_grid(const Request& r, const Box3& box) {
 
 void check_field_memory(const GridSpec& grid, std::size_t fields, double bytes_per_node = 8) {
   check_memory(bytes_per_node * static_cast<double>(grid.node_count()) * static_cast<double>(fields),
-               "a grid of " + size_text(grid) + " nodes", "use a coarser grid, or smaller bounds");
+               "a grid of " + size_text(grid) + " nodes", "use a coarser grid or smaller bounds");
 }
 
 void add_grid_text(Run& run, const GridSpec& grid) {
@@ -292,7 +294,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("input facts", watch.lap());
 
   const GridSpec grid = make_grid(r, bounds(mesh));
-  // The second order needs the sites of both on the way.
+  // Order 2 needs the sites of both orders during the computation.
   check_field_memory(grid, 1, r.options.order == 2 ? 16 : r.options.sites ? 8 : 4);
   add_grid_text(run, grid);
   static_cast<void>(watch.lap());
@@ -373,11 +375,11 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
 void run(const Arguments& arguments) {
   const Request request = parse(arguments);
   const InputKind kind = input_kind(request.input);
-  // The distances of a .nrrd can be read as an image of numbers, but only a threshold makes sense of them.
+  // The distances of a .nrrd field can also be read as an image, but only --threshold can select their voxels.
   const bool is_image = file_extension(request.input) == ".nrrd";
   if (kind == InputKind::field && !(is_image && arguments.threshold)) {
     throw FileError("'" + request.input.string() + "' is a field; a mesh or a voxel image is needed here" +
-                    (is_image ? ", or --threshold, to take it as an image" : ""));
+                    (is_image ? "; --threshold reads it as an image" : ""));
   }
   check_applicable(arguments, request, kind);
   Progress progress(!request.report.quiet);
@@ -393,21 +395,24 @@ void add_field_command(const CommandLine& line) {
   command.add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       .required();
   command
-      .add_option("-o,--output", a->output,
-                  "Field file: .nrrd (and OUT.site.nrrd; of order 2 OUT.distance2.nrrd, OUT.site2.nrrd), .npz or .vti")
+      .add_option(
+          "-o,--output", a->output,
+          "Field file: .nrrd (with OUT.site.nrrd; for order 2 OUT.distance2.nrrd, OUT.site2.nrrd), .npz or .vti")
       .required()
       .type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
     add_text_option(command, name, value, type, help);
   };
-  text("--resolution", a->resolution, "N", "Mesh: nodes along the longest side of the grid (default 256)");
-  text("--spacing", a->spacing, "H", "Mesh: distance between nodes, instead of --resolution");
+  text("--resolution", a->resolution, "N", "Mesh: nodes along the longest side of the grid, 2 to 65536 (default 256)");
+  text("--spacing", a->spacing, "H", "Mesh: distance between nodes, in mesh units, instead of --resolution");
   text("--bounds", a->bounds, "BOX",
-       "Mesh: grid box x0,y0,z0,x1,y1,z1, grown to whole steps; a side of zero gives a 2D field");
-  text("--padding", a->padding, "F", "Mesh: room around the shape, as a part of its longest side (default 0.1)");
+       "Mesh: box of the grid x0,y0,z0,x1,y1,z1, enlarged to whole steps; a side of length 0 gives a 2D field");
+  text("--padding", a->padding, "F", "Mesh: margin around the shape, as a fraction of its longest side (default 0.1)");
   a->options.add_to(command, "", {}, true);
-  add_label_option(command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give a field each");
-  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  add_label_option(command, a->labels,
+                   "Image: select the voxels of value L; several values (1,3 or repeated) give one field each");
+  text("--threshold", a->threshold, "T",
+       "Image: select the voxels of value T or more (default: all voxels that are not 0)");
   add_weld_option(command, a->weld);
   add_threads_option(command, a->threads);
   add_device_option(command, a->device);

@@ -49,7 +49,7 @@ struct Partial {
   std::array<std::uint64_t, 3> kinds{};
 };
 
-/// Ids below the first border are vertices, below the second edges, then faces.
+/// Ids below `edges` are vertices, ids below `faces` are edges, and the rest are faces.
 struct Borders {
   std::size_t edges = std::numeric_limits<std::size_t>::max();
   std::size_t faces = std::numeric_limits<std::size_t>::max();
@@ -89,7 +89,7 @@ void add_range(const Field& field, const WorkRange& range, const Borders& border
   }
 }
 
-/// Whether a node has a second site; of fields without sites, its distance tells.
+/// Returns true if a node has a second site. In fields without sites, its distance decides.
 bool has_second(const Field& field, std::size_t node) {
   if (!field.site2.empty()) return field.site2[node].has_value();
   return field.distance2[node] < (field.band ? static_cast<float>(*field.band) : HUGE_VALF);

@@ -1,4 +1,4 @@
-// Blum: what a field holds, in numbers. SPDX-License-Identifier: Apache-2.0
+// Blum: statistics of a field. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ struct KindCount {
   std::uint64_t sites = 0;  ///< distinct sites that are closest to some node
 };
 
-/// What the second order of a field holds.
+/// Statistics of the second order of a field.
 struct SecondStatistics {
-  std::optional<float> minimum, maximum;  ///< distances, where any node has a second site
+  std::optional<float> minimum, maximum;  ///< distances; unset if no node has a second site
   std::uint64_t nodes_without = 0;        ///< nodes without a second site (or beyond the band)
 };
 
@@ -29,12 +29,12 @@ struct FieldStatistics {
   std::uint64_t inside_nodes = 0;    ///< distance < 0
   std::uint64_t siteless_nodes = 0;  ///< beyond the band
   KindCount all;
-  std::array<KindCount, 3> kinds;  ///< by SiteKind; only where the field's sites are features and `sites` is given
-  std::optional<SecondStatistics> second;  ///< of fields of order 2
+  std::array<KindCount, 3> kinds;          ///< by SiteKind; only if the field's sites are features and `sites` is given
+  std::optional<SecondStatistics> second;  ///< only for fields of order 2
 };
 
-/// @param sites  the mesh's sites, where the field's site values are features; else null.
-/// Cost: one pass over the field; a bit for each site.
+/// @param sites  the mesh's sites if the field's site values are features; else null.
+/// Cost: a few passes over the field, and one bit for each site.
 [[nodiscard]] FieldStatistics field_statistics(const Field& field, const SiteTable* sites, const Context& context);
 
 }  // namespace blum::cli

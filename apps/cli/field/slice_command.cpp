@@ -41,17 +41,17 @@ std::size_t parse_axis(const std::string& text) {
   throw UsageError("--axis '" + text + "': must be x, y or z");
 }
 
-/// The axis with a single layer where there is exactly one such axis, else z.
+/// Returns the axis with a single layer if exactly one axis has one, else z.
 std::size_t default_axis(const GridSpec& grid) {
   if (std::count(grid.size.begin(), grid.size.end(), 1) != 1) return 2;
   return static_cast<std::size_t>(std::find(grid.size.begin(), grid.size.end(), 1) - grid.size.begin());
 }
 
-/// The layer nearest to a place along an axis of the world that the grid's axis runs along, in either direction.
+/// Returns the layer nearest to a place along a world axis. The grid's axis must be parallel to it.
 std::int64_t layer_at(const GridSpec& grid, std::size_t axis, double position) {
   const std::optional<double> along = along_world(grid, axis);
   if (!along)
-    throw UsageError("--position needs layers across an axis of the world, and these are oblique: use --index");
+    throw UsageError("--position needs layers perpendicular to a world axis, but these are oblique; use --index");
   const double first = grid.origin[axis];
   const double last = first + *along * static_cast<double>(grid.size[axis] - 1) * grid.spacing[axis];
   const double layer = std::round((position - first) / (*along * grid.spacing[axis]));
@@ -76,7 +76,7 @@ void run(const Arguments& a) {
   if (a.index) index = parse_integer("--index", *a.index, 0, std::int64_t{1} << 40);
   std::optional<double> position;
   if (a.position) position = parse_number("--position", *a.position);
-  if (index && position) throw UsageError("--index and --position both name the layer: give one");
+  if (index && position) throw UsageError("--index and --position both select the layer; give one");
   std::optional<double> scale;
   if (a.scale) scale = parse_positive("--scale", *a.scale);
   check_outputs({output}, files_of_field(input));
@@ -90,11 +90,11 @@ void run(const Arguments& a) {
   }
   if (position) index = layer_at(field.grid, *axis, *position);
   if (sites && field.site.empty()) {
-    throw FileError("'" + input.string() + "' has no closest sites" +
-                    (file_extension(input) == ".nrrd"
-                         ? ": it was written without them, or '" + files_of_field(input).back().filename().string() +
-                               "' is no longer beside it"
-                         : std::string()));
+    throw FileError(
+        "'" + input.string() + "' has no closest sites" +
+        (file_extension(input) == ".nrrd"
+             ? ": it was written without them, or '" + files_of_field(input).back().filename().string() + "' is missing"
+             : std::string()));
   }
   const Slice slice = take_slice(field, *axis, index.value_or(layers / 2));
   const double pixels = scale.value_or(default_scale(slice));
@@ -113,21 +113,23 @@ void run(const Arguments& a) {
 
 void add_slice_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  const Command command = line.app.add_subcommand("slice", "A picture of one layer of a field");
-  command
-      .add_option("FIELD", a->input,
-                  "Field file: .nrrd, .npz or .vti; also distances of other programs, .nrrd of floats")
+  const Command command = line.app.add_subcommand("slice", "Picture of one layer of a field");
+  command.add_option("FIELD", a->input, "Field file: .nrrd, .npz or .vti; also a .nrrd of floats from another program")
       .required();
   command.add_option("-o,--output", a->output, "Picture").required().type_name("PNG");
-  command.add_option("--axis", a->axis, "Axis that the layer is perpendicular to: x, y or z (default z)")
+  command
+      .add_option("--axis", a->axis, "Axis perpendicular to the layer: x, y or z (default: that of a 2D field, else z)")
       .type_name("AXIS");
-  command.add_option("--index", a->index, "Number of the layer (default: the middle)").type_name("K");
-  command.add_option("--position", a->position, "The layer nearest to this place along the axis, in mesh units")
+  command.add_option("--index", a->index, "Number of the layer, from 0 (default: the middle one)").type_name("K");
+  command.add_option("--position", a->position, "Position along the axis, in mesh units; the nearest layer is drawn")
       .type_name("P");
-  command.add_option("--show", a->show, "distance (with contour lines) or sites (Voronoi regions)").type_name("WHAT");
-  command.add_option("--scale", a->scale, "Pixels for each grid step (default: 800 pixels or more in all)")
+  command
+      .add_option("--show", a->show,
+                  "Values to draw: distance (with contour lines) or sites (Voronoi regions) (default distance)")
+      .type_name("WHAT");
+  command.add_option("--scale", a->scale, "Pixels per grid step (default: 800 to 4096 along the longer side)")
       .type_name("PIXELS");
-  command.add_flag("--quiet", a->quiet, "Say nothing but errors");
+  command.add_flag("--quiet", a->quiet, "Print errors only");
   command.footer(examples);
   command.callback([a] { run(*a); });
 }

@@ -21,7 +21,8 @@ std::array<double, 3> quadratic_weights(double t) {  // t in [-0.5, 0.5] from th
 
 DistanceSampler::DistanceSampler(const Slice& slice)
     : slice_(slice), smooth_(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height)) {
-  // A distance changes by no more than the step; between voxels of two kinds, by two steps (it is -1 and +1 there).
+  // Between neighbours, a distance changes by at most the step. Between voxels of two kinds it changes by two steps,
+  // from -1 to +1.
   const auto close = [](double a, double b, double step) { return std::abs(a - b) <= 2.01 * step; };
   for (std::int64_t j = 0; j < slice.height; ++j) {
     for (std::int64_t i = 0; i < slice.width; ++i) {
@@ -36,7 +37,7 @@ DistanceSampler::DistanceSampler(const Slice& slice)
 }
 
 double DistanceSampler::node(std::int64_t i, std::int64_t j) const {
-  // Beyond the border the values go on as straight lines, so that contours do.
+  // Values beyond the border are extrapolated linearly, so that contours continue as straight lines.
   if (i < 0) return 2 * node(0, j) - node(1, j);
   if (i >= slice_.width) return 2 * node(slice_.width - 1, j) - node(std::max<std::int64_t>(slice_.width - 2, 0), j);
   if (j < 0) return 2 * node(i, 0) - node(i, 1);
@@ -58,7 +59,7 @@ DistanceSampler::Cell DistanceSampler::cell_at(double u, double v) const {
 }
 
 bool DistanceSampler::is_smooth_around(const Cell& cell) const {
-  // In the half step beyond the last nodes, curves go straight on.
+  // The half step beyond the last nodes is extrapolated linearly.
   bool smooth = cell.s >= 0 && cell.s <= 1 && cell.t >= 0 && cell.t <= 1;
   for (std::int64_t dj = -1; dj <= 1; ++dj) {
     for (std::int64_t di = -1; di <= 1; ++di) smooth = smooth && is_smooth(cell.i + di, cell.j + dj);

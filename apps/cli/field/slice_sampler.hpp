@@ -1,4 +1,4 @@
-// Blum: values of a slice between its nodes. SPDX-License-Identifier: Apache-2.0
+// Blum: interpolation of a slice. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,21 @@ struct Sample {
   double value = 0;
   double slope_u = 0;  ///< change of the value for each node step
   double slope_v = 0;
-  bool continuous = true;  ///< false next to a jump of the sign (open meshes): no contours there
+  bool continuous = true;  ///< false next to a jump of the sign (open meshes), where no contour is drawn
 };
 
-/// Distances at any place, in node coordinates, where the field is continuous: linear between the nodes, or a spline
-/// near them.
+/// Interpolates distances, at places in node coordinates. Next to a jump, it returns the nearest node's value.
 class DistanceSampler {
  public:
   explicit DistanceSampler(const Slice& slice);
-  /// Takes the nodes' values there, and is bilinear between them: smoother curves draw ears at the corners of a
-  /// surface.
+  /// Interpolates bilinearly. Smoother curves would overshoot at the corners of a surface.
   [[nodiscard]] Sample at(double u, double v) const;
-  /// A quadratic spline, which rounds ridges within a node step. Any curve through the nodes waves along a ridge that
-  /// is oblique to the grid, and contours of waves are worms.
+  /// Evaluates a quadratic spline, which rounds ridges within a node step. An interpolating curve would oscillate along
+  /// ridges that are oblique to the grid, and its contours would be wavy.
   [[nodiscard]] Sample smoothed(double u, double v) const;
 
  private:
-  /// The cell that a place lies in, the nearest one beyond the border.
+  /// The cell that contains a place, or the nearest cell if the place is outside the slice.
   struct Cell {
     std::int64_t i, j;
     double s, t;  ///< in [0, 1] within the cell
@@ -43,14 +41,14 @@ class DistanceSampler {
   std::vector<bool> smooth_;  ///< per cell
 };
 
-/// The site that a place counts to, and by how much it wins over the next one.
+/// The site of a place, and its margin over the second one.
 struct RegionSample {
   SiteId site;
-  SiteId rival;       ///< the second; none() as well when there is only one site around
-  double margin = 1;  ///< 0 on the border, about 1.5 per node step from it
-  bool alone = true;  ///< no second site around
+  SiteId rival;       ///< the second site; also none() if `alone`
+  double margin = 1;  ///< 0 on the border; rises by about 1.5 per node step
+  bool alone = true;  ///< no second site among the 3 x 3 nodes
 };
-/// Votes of the 3 x 3 nodes around, with weights of a quadratic spline: every node keeps its own site.
+/// Lets the 3 x 3 nearest nodes vote with weights of a quadratic spline. At a node, its own site wins.
 [[nodiscard]] RegionSample region_at(const Slice& slice, double u, double v);
 
 }  // namespace blum::cli

@@ -25,9 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum surface part.nrrd -o part.ply                 the boundary of the shape, from its signed field
-  blum surface part.nrrd -o shell.stl --level 0.5    what is half a unit outside of it; -0.5: inside
-  blum surface scan.nii.gz -o part.ply --smooth      the smooth surface that the voxels of an image sample)";
+  blum surface part.nrrd -o part.ply                 boundary of the shape
+  blum surface part.nrrd -o shell.stl --level 0.5    surface 0.5 outside of it; -0.5: inside
+  blum surface scan.nii.gz -o part.ply --smooth      smooth surface of the voxels of an image)";
 
 struct Arguments {
   std::string input;
@@ -39,28 +39,28 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// Why the surface may not be what was wanted; empty where it is.
+/// Returns the reason why the level may be wrong for this field; empty if it is valid.
 std::string doubt(const Field& field, double level) {
   if (field.band && std::abs(level) >= *field.band) {
-    return "the field holds distances up to " + rounded_text(*field.band) + " only, and the level is beyond them";
+    return "the field contains distances up to " + rounded_text(*field.band) + " only, and the level is beyond them";
   }
   if (field.sign_rule == SignRule::none && level <= 0) {
-    return "the field has no signs, and no surface at a level of 0 or less; give --level";
+    return "the field is unsigned and has no surface at a level of 0 or less; give a positive --level";
   }
   return {};
 }
 
-/// The smooth surface of an image.
+/// Makes the smooth surface of an image.
 void run_smooth(const Arguments& a) {
   const fs::path input = a.input;
   const fs::path output = a.output;
   refuse_given({{a.level.has_value(), "--level"}}, input, "an image (--smooth)", "fields");
   const SmoothSurfaceOptions options = a.options.read();
   const Selections selections = parse_selections(a.labels, a.threshold);
-  if (selections.labels.size() > 1) throw UsageError("--label: a surface is that of one label");
+  if (selections.labels.size() > 1) throw UsageError("--label: a smooth surface takes only one label");
   const int threads = parse_threads(a.threads);
   if (input_kind(input) != InputKind::image) {
-    throw FileError("'" + input.string() + "' is no voxel image, which --smooth is for");
+    throw FileError("'" + input.string() + "' is not a voxel image; --smooth needs one");
   }
   std::vector<fs::path> outputs = a.report.files();
   outputs.push_back(output);
@@ -164,18 +164,18 @@ void run(const Arguments& a) {
 void add_surface_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
-      line.app.add_subcommand("surface", "The surface of a field at a level, or the smooth one of an image, as a mesh");
+      line.app.add_subcommand("surface", "Mesh of a level surface of a field, or of the smooth surface of an image");
   command.add_option("INPUT", a->input, extensions_help({FileContent::field, FileContent::image}, FileAccess::read))
       .required();
   command.add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::write))
       .required()
       .type_name("FILE");
   add_text_option(command, "--level", a->level, "L",
-                  "Where the distance is L, mesh units: outside of the shape, or inside where negative (default 0)");
-  command.add_flag("--smooth", a->smooth, "Image: the smooth surface between voxels that are selected and all others");
-  add_label_option(command, a->labels, "Image: the voxels of value L");
+                  "Signed distance of the surface from the shape, in mesh units; negative lies inside (default 0)");
+  command.add_flag("--smooth", a->smooth, "Image: the smooth surface between the selected voxels and all others");
+  add_label_option(command, a->labels, "Image: select the voxels of value L");
   add_text_option(command, "--threshold", a->threshold, "T",
-                  "Image: the voxels of value T or more (default: all that are not 0)");
+                  "Image: select the voxels of value T or more (default: all voxels that are not 0)");
   a->options.add_to(command, "Image: ");
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 constexpr double least_share = 0.01;  // of the area
 
-/// That with the least low thickness between walls that face each other.
+/// Returns the sheet with the smallest low thickness among those between walls that face each other; nullptr if none.
 const AxisSheet* thinnest_wall(const AxisGraph& graph) {
   const AxisSheet* thinnest = nullptr;
   for (const AxisSheet& sheet : graph.sheets) {

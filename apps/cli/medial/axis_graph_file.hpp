@@ -1,4 +1,4 @@
-// Blum: graphs of medial axes as the tool writes and sums them up. SPDX-License-Identifier: Apache-2.0
+// Blum: files and summaries of graphs of medial axes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,18 @@
 
 namespace blum::cli {
 
-/// --graph.
+/// Adds --graph.
 void add_graph_option(const Command& command, std::optional<std::string>& graph, const std::string& help);
 
-/// The value of --graph. @throws UsageError for another extension than those of graphs.
+/// Returns the value of --graph. @throws UsageError if the extension is not one of graphs.
 [[nodiscard]] std::optional<std::filesystem::path> parse_graph(const std::optional<std::string>& text);
 
-/// "13 sheets, 24 seams, 0 curves, 8 junctions; thinnest wall: sheet 3, 0.5 thick". A wall is a sheet of 1 % of the
-/// area or more whose median separation angle is 150 degrees or more; its thickness is the low one
-/// of its spread: walls of different thickness may be one sheet.
+/// Returns for example "13 sheets, 24 seams, 0 curves, 8 junctions; thinnest wall: sheet 3, 0.5 thick". A wall is the
+/// part of a sheet whose triangles have angles of 150 degrees or more at all corners. Walls with less than 1 % of the
+/// axis's area do not count. The thickness is the low value of the spread in the sheet, because walls of different
+/// thickness may be one sheet.
 [[nodiscard]] std::string graph_text(const AxisGraph& graph);
-/// The same numbers. @param file  its name.
+/// Returns the same numbers as JSON. @param file  its name.
 [[nodiscard]] Json graph_json(const AxisGraph& graph, const std::filesystem::path& file);
 
 }  // namespace blum::cli

@@ -22,7 +22,7 @@ Json or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-/// Theta and what else the axis was made with, as the file tells it.
+/// Returns theta and other parameters of the axis that the file records.
 std::string made_text(const MedialMetadata& m) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
@@ -33,15 +33,15 @@ std::string made_text(const MedialMetadata& m) {
   if (m.threshold) add("threshold " + rounded_text(*m.threshold));
   if (m.smooth) add("smooth surface of " + plural(static_cast<std::size_t>(*m.smooth), "iteration", "iterations"));
   if (m.weld) add(*m.weld > 0 ? "welded within " + rounded_text(*m.weld) : "welded");
-  return text.empty() ? "the file does not tell" : text;
+  return text.empty() ? "not recorded in the file" : text;
 }
 
 std::string source_text(const MedialMetadata& m) {
-  const std::string source = m.source.empty() ? "the file does not tell" : m.source;
+  const std::string source = m.source.empty() ? "not recorded in the file" : m.source;
   return source + (m.solid_rule.empty() ? "" : ", as " + m.solid_rule);
 }
 
-/// @throws InvalidOption where the file holds no radii, or tells no sheets.
+/// @throws InvalidOption if the file contains no radii or no sheets.
 AxisGraph graph_of(const MedialFile& file, const Context& context) {
   const Complex& axis = file.complex;
   if (!file.has_radii && !axis.positions.empty()) {
@@ -65,7 +65,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
   const ShownAxis shown = read_axis_or_walls(path);
   const MedialFile& file = shown.file;
   if (graph && !shown.is_axis)
-    throw FileError("'" + path.string() + "' is a " + shown.content + "; graphs are of medial axes");
+    throw FileError("'" + path.string() + "' is a " + shown.content + "; --graph needs a medial axis");
   const MedialCounts counts = count(file.complex);
   const BettiNumbers betti = homology(file.complex.view(), context);
   Json graph_facts;

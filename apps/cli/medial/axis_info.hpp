@@ -1,4 +1,4 @@
-// Blum: what a file of a medial axis holds. SPDX-License-Identifier: Apache-2.0
+// Blum: report on a file of a medial axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,8 @@
 
 namespace blum::cli {
 
-/// Reads an axis, and reports its counts, its topology and what its file tells of where it came from; writes its graph
-/// where one is asked for.
-/// @throws FileError, FormatError; InvalidOption where the file lacks what the graph needs.
+/// Reads an axis. Reports its counts, topology and recorded origin. Writes its graph if a file is given.
+/// @throws FileError, FormatError; InvalidOption if the file lacks columns that the graph needs.
 void report_axis(const std::filesystem::path& path, const std::optional<std::filesystem::path>& graph,
                  const ReportOptions& options);
 

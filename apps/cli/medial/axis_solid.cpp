@@ -5,7 +5,7 @@
 namespace blum::cli {
 namespace {
 
-/// Whether a file tells how it was made: .obj, .ma and those of other programs do not.
+/// Returns true if a file records its solid. Files .obj, .ma and those of other programs do not.
 bool tells_its_solid(const MedialMetadata& metadata) {
   return !metadata.solid_rule.empty();
 }
@@ -15,7 +15,7 @@ bool tells_its_solid(const MedialMetadata& metadata) {
 SolidSelection parse_solid(const std::vector<std::string>& labels, const std::optional<std::string>& threshold,
                            const std::optional<std::string>& weld) {
   const Selections selections = parse_selections(labels, threshold);
-  if (selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
+  if (selections.labels.size() > 1) throw UsageError("--label: an axis belongs to one label; give only one");
   SolidSelection out;
   if (!selections.labels.empty()) out.label = selections.labels.front();
   out.threshold = selections.threshold;
@@ -42,13 +42,13 @@ std::string missing_options(const SolidSelection& given, InputKind kind, const M
                             bool topology_holds) {
   if (tells_its_solid(metadata)) return {};
   if (kind == InputKind::mesh) {
-    // Welding moves vertices by little, and changes what is closed.
+    // Welding moves vertices only slightly, so a wrong --weld shows in the topology.
     if (given.weld || topology_holds) return {};
-    return "; the file of the axis does not tell how the mesh was read: if --weld was given then, give it here too";
+    return "; the file of the axis does not record how the mesh was read; repeat --weld if that run had it";
   }
   if (given.label || given.threshold) return {};
-  return "; the file of the axis does not tell which voxels it is of: if --label or --threshold was given then, or "
-         "--smooth, give it here too";
+  return "; the file of the axis does not record its voxels; repeat --label, --threshold or --smooth if that run "
+         "had it";
 }
 
 }  // namespace blum::cli

@@ -1,4 +1,4 @@
-// Blum: which solid a file of a medial axis belongs to. SPDX-License-Identifier: Apache-2.0
+// Blum: the solid of a file of a medial axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -12,19 +12,20 @@
 
 namespace blum::cli {
 
-/// The values of --label, --threshold and --weld, for one axis. @throws UsageError, InvalidOption.
+/// Reads the values of --label, --threshold and --weld for one axis. @throws UsageError, InvalidOption.
 [[nodiscard]] SolidSelection parse_solid(const std::vector<std::string>& labels,
                                          const std::optional<std::string>& threshold,
                                          const std::optional<std::string>& weld);
 
-/// blum::solid_of_axis() in the words of the command line. @param axis  its file.
+/// Calls blum::solid_of_axis() with option names of the command line in messages. @param axis  its file.
 [[nodiscard]] AxisSolid solid_of_axis(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                                       const std::filesystem::path& axis);
 
-/// Writes into the metadata of an axis what of the input it is that of.
+/// Records the selection or the weld tolerance of the input in the metadata of an axis.
 void record(const LabelSelection& selection, std::optional<double> weld, InputKind kind, MedialMetadata& metadata);
 
-/// Which options may be missing where a certificate fails; empty where the axis's file tells of them, or none may be.
+/// Returns advice on options that may be missing if a certificate fails. Empty if the axis's file records its solid, or
+/// an option is given.
 [[nodiscard]] std::string missing_options(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                                           bool topology_holds);
 

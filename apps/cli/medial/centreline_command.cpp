@@ -26,9 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum centreline vessels.nii.gz -o vessels.json           each label a graph: nodes, branches, radii
+  blum centreline vessels.nii.gz -o vessels.json           one graph per label: nodes, branches, radii
   blum centreline ct.nrrd -o airways.vtp --threshold 300   one graph, as polylines for ParaView
-  blum centreline cells.nrrd -o cells.csv --label 2,7-9    a row for each branch of four labels)";
+  blum centreline cells.nrrd -o cells.csv --label 2,7-9    one row per branch, for four labels)";
 
 constexpr std::uint64_t most_labels = 1000000;
 
@@ -41,36 +41,36 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// The labels that are asked for.
+/// The requested labels.
 struct Labels {
   std::vector<std::int64_t> all;
-  std::set<std::int64_t> of_ranges;  ///< `7-9`: those of these that the image has
+  std::set<std::int64_t> of_ranges;  ///< from ranges like `7-9`, where absent labels are skipped
 };
 
-/// `7-9` as three labels. @throws UsageError.
+/// Adds one label, or a range: three labels for `7-9`. @throws UsageError.
 void add_labels(std::string_view text, std::set<std::int64_t>& known, Labels& labels) {
   const std::size_t dash = text.find('-', 1);
   constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   const bool is_range = dash != std::string_view::npos;
   if (is_range && dash + 1 == text.size()) {
-    throw UsageError("--label " + std::string(text) + ": a range has a first and a last label, such as 7-9");
+    throw UsageError("--label " + std::string(text) + ": a range needs a first and a last label, for example 7-9");
   }
   const std::int64_t first = parse_integer("--label", text.substr(0, dash), least, most);
   const std::int64_t last = is_range ? parse_integer("--label", text.substr(dash + 1), least, most) : first;
   if (last < first) throw UsageError("--label " + std::string(text) + ": the range ends before it begins");
   if (static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first) >= most_labels) {
-    throw UsageError("--label " + std::string(text) + " names more than a million labels");
+    throw UsageError("--label " + std::string(text) + " contains more than a million labels");
   }
   for (std::int64_t label = first;; ++label) {
-    if (!known.insert(label).second) throw UsageError("--label names " + std::to_string(label) + " twice");
+    if (!known.insert(label).second) throw UsageError("--label contains " + std::to_string(label) + " twice");
     labels.all.push_back(label);
     if (is_range) labels.of_ranges.insert(label);
     if (label == last) break;
   }
 }
 
-/// Unset for `all`. @throws UsageError.
+/// Returns the labels; unset for `all`. @throws UsageError.
 std::optional<Labels> labels_of(const std::vector<std::string>& texts) {
   if (texts.empty() || (texts.size() == 1 && texts[0] == "all")) return std::nullopt;
   Labels labels;
@@ -101,7 +101,7 @@ double length_of(const Centreline& line) {
   return length;
 }
 
-/// All of a label but its points.
+/// Returns the properties of a label except its points.
 Json brief_json(const Centreline& line) {
   return {{"label", to_json(line.label)},
           {"voxels", line.voxels},
@@ -140,7 +140,7 @@ void run(const Arguments& a) {
   if (a.threshold) options.selection = LabelSelection::at_least(parse_number("--threshold", *a.threshold));
   const int threads = parse_threads(a.threads);
   if (input_kind(input) != InputKind::image) {
-    throw FileError("'" + input.string() + "' is no voxel image, which is needed here");
+    throw FileError("'" + input.string() + "' is not a voxel image; `blum centreline` needs one");
   }
   std::vector<fs::path> outputs = a.report.files();
   outputs.push_back(output);
@@ -193,13 +193,14 @@ void add_centreline_command(const CommandLine& line) {
   command.add_option("IMAGE", a->image, extensions_help({FileContent::image}, FileAccess::read)).required();
   command
       .add_option("-o,--output", a->output,
-                  ".json: nodes and branches with their points; .csv: a row for each branch; .swc: trees; .vtp .ply "
+                  ".json: nodes and branches with their points; .csv: one row per branch; .swc: trees; .vtp, .ply, "
                   ".npz: polylines with radii")
       .required()
       .type_name("FILE");
   add_label_option(command, a->labels,
-                   "The voxels of value L, or of A to B; several (1,3-5 or repeated) give a graph each (default: all)");
-  add_text_option(command, "--threshold", a->threshold, "T", "The voxels of value T or more, as one graph");
+                   "Select the voxels of value L or of a range; several values (1,3-5 or repeated) give one graph each "
+                   "(default: all)");
+  add_text_option(command, "--threshold", a->threshold, "T", "Select the voxels of value T or more, as one graph");
   a->options.add_to(command);
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);

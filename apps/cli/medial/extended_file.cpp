@@ -17,9 +17,9 @@ void add_extend_options(const Command& command, std::optional<std::string>& exte
                         std::optional<std::string>& length) {
   const std::string names = extension_list(FileContent::extended_axis, FileAccess::write);
   add_text_option(command, "--extend", extend, "FILE",
-                  "Its sheets, continued to the surface, for meshes of shells (" + names + "); best at --theta 110");
+                  "Write its sheets extended to the surface, for shell meshes (" + names + "); best with --theta 110");
   add_text_option(command, "--extend-length", length, "N",
-                  "With --extend: continue a rim by at most N of its radii (default 4)");
+                  "With --extend: extend a rim by at most N of its radii, above 0 (default 4)");
 }
 
 std::optional<fs::path> parse_extend(const std::optional<std::string>& text) {
@@ -31,7 +31,7 @@ std::optional<fs::path> parse_extend(const std::optional<std::string>& text) {
 ExtendOptions parse_extend_length(const std::optional<std::string>& text, bool has_extend) {
   ExtendOptions options;
   if (!text) return options;
-  if (!has_extend) throw UsageError("--extend-length needs --extend: it says how far rims are continued there");
+  if (!has_extend) throw UsageError("--extend-length needs --extend");
   options.max_length = parse_positive("--extend-length", *text);
   return options;
 }
@@ -43,7 +43,7 @@ std::string extended_text(const ExtendReport& report) {
                      plural(report.rim_vertices, "rim vertex", "rim vertices") + " " +
                      count_text(report.reached_border) + " reach the surface";
   if (report.reached_sheet > 0) text += ", " + count_text(report.reached_sheet) + " another sheet";
-  if (report.at_border > 0) text += ", " + count_text(report.at_border) + " were there";
+  if (report.at_border > 0) text += ", " + count_text(report.at_border) + " were there already";
   if (report.not_reached > 0) text += ", " + count_text(report.not_reached) + " reach nothing";
   return text;
 }

@@ -39,15 +39,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum medial part.stl -o part.vtp                        for ParaView, with all attributes
-  blum medial part.stl -o part.vtp --theta 20,60,120      part-theta20.vtp and so on
+  blum medial part.stl -o part.vtp                        all columns, for ParaView
+  blum medial part.stl -o part.vtp --theta 20,60,120      writes part-theta20.vtp and so on
   blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
-  blum medial part.stl -o part.vtp --graph part.json      its sheets with their thickness, seams, curves, junctions
-  blum medial part.stl -o part.vtp --theta 110 --extend shell.ply   its sheets up to the surface, for shell elements
-  blum medial scan.nii.gz -o vessels.npz --label 1,3      vessels-label1.npz and vessels-label3.npz
-  blum medial scan.nii.gz -o vessels.npz --smooth         of the smooth surface that the voxels sample
+  blum medial part.stl -o part.vtp --graph part.json      also sheets with thickness, seams, curves, junctions
+  blum medial part.stl -o part.vtp --theta 110 --extend shell.ply   also its sheets extended to the surface
+  blum medial scan.nii.gz -o vessels.npz --label 1,3      writes vessels-label1.npz and vessels-label3.npz
+  blum medial scan.nii.gz -o vessels.npz --smooth         axis of the smooth surface of the voxels
 
-Exit status 3: the axis could not be certified, and no file was written.)";
+Exit status 3: an axis is not certified. Only --allow-uncertified writes such an axis.)";
 
 struct Arguments {
   std::string input;
@@ -68,15 +68,15 @@ struct Request {
   std::optional<fs::path> extend;
   ExtendOptions extending;
   MedialAxisOptions options;
-  std::vector<double> thetas{60};  ///< rising where sheets are pruned
+  std::vector<double> thetas{60};  ///< ascending if sheets are pruned
   bool prunes_sheets = false;
-  std::optional<double> decimate;  ///< mesh units; a quarter of a voxel where it is not set
+  std::optional<double> decimate;  ///< mesh units; a quarter of a voxel if unset
   Selections selections;
   std::optional<double> weld;
   bool allow_uncertified = false;
   bool nested = false;
-  bool smooth = false;          ///< images: of their smooth surface
-  bool has_resolution = false;  ///< or a spacing: voxels need not be those of the image
+  bool smooth = false;          ///< images: use their smooth surface
+  bool has_resolution = false;  ///< or a spacing; voxels may differ from those of the image
   int threads = 0;
   ReportOptions report;
 };
@@ -87,7 +87,7 @@ std::vector<double> parse_thetas(const std::string& text) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const double theta = parse_angle("--theta", std::string_view(text).substr(begin, end - begin));
     if (std::find(thetas.begin(), thetas.end(), theta) != thetas.end()) {
-      throw UsageError("--theta names " + rounded_text(theta) + " twice");
+      throw UsageError("--theta contains " + rounded_text(theta) + " twice");
     }
     thetas.push_back(theta);
     begin = end + 1;
@@ -114,19 +114,19 @@ Request parse(const Arguments& a) {
   r.smooth = a.smooth;
   r.has_resolution = a.options.has("resolution") || a.options.has("spacing");
   if (r.nested && !may_hold_further(r.output)) {
-    throw UsageError("--nested needs an output with the extension .npz: the other formats hold the axis of one angle");
+    throw UsageError("--nested needs an output with the extension .npz; other formats store the axis of one angle");
   }
   if (r.nested && r.thetas.size() > 1) {
-    throw UsageError("--nested keeps the axes of all angles from --theta on in one file: give one angle");
+    throw UsageError("--nested stores the axes of all angles from --theta upwards in one file; give one angle");
   }
   if (a.decimate) r.decimate = parse_non_negative("--decimate", *a.decimate);
   if (r.nested && r.decimate.value_or(0) > 0) {
-    throw UsageError("--nested keeps all vertices, as axes of several angles share them: leave --decimate out");
+    throw UsageError("--nested keeps all vertices, because its axes share them; remove --decimate");
   }
   if (r.nested) r.decimate = 0;
-  exclude(r.nested, "--nested", r.prunes_sheets, "--prune", "sheets that go whole have no order to keep");
+  exclude(r.nested, "--nested", r.prunes_sheets, "--prune", "cells of sheets that are removed whole have no order");
   if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
-  // Sheets are pruned whole, so they must be whole first.
+  // Sheets are pruned as a whole, so they must be whole first.
   r.options.least_theta = r.prunes_sheets ? 0 : *std::min_element(r.thetas.begin(), r.thetas.end());
   if (!r.prunes_sheets && !r.nested) r.options.greatest_theta = *std::max_element(r.thetas.begin(), r.thetas.end());
   r.selections = parse_selections(a.labels, a.threshold);
@@ -153,7 +153,7 @@ void check_applicable(const Arguments& a, const fs::path& input, InputKind kind)
                input, "an image", "meshes and images with --smooth");
 }
 
-/// OUT-theta20.vtp for OUT.vtp.
+/// Returns OUT-theta20.vtp for OUT.vtp.
 fs::path with_theta(const fs::path& path, double theta) {
   fs::path name = path.parent_path() / path.stem();
   name += "-theta" + rounded_text(theta);
@@ -161,13 +161,13 @@ fs::path with_theta(const fs::path& path, double theta) {
   return name;
 }
 
-/// The side of a mesh's voxels that the options ask for.
+/// Returns the requested side of a mesh's voxels.
 double asked_spacing(const SolidInput& input, const MedialAxisOptions& options) {
   const Vec3d size = bounds(input.mesh.mesh).size();
   return options.spacing.value_or(std::max({size.x, size.y, size.z}) / options.resolution);
 }
 
-/// How many bodies have finer voxels than were asked for, and why; empty where none has.
+/// Describes the bodies with finer voxels than requested, and the reason; empty if there are none.
 std::string refined_text(const MedialAxisReport& report, double asked) {
   std::size_t finer = 0;
   double finest = asked;
@@ -180,11 +180,11 @@ std::string refined_text(const MedialAxisReport& report, double asked) {
       report.bodies.size() == 1 ? ""
                                 : " for " + count_text(finer) + " of " + count_text(report.bodies.size()) + " bodies";
   return "voxels from side " + rounded_text(asked) + " to " + rounded_text(finest) + of_bodies +
-         (report.rule == SolidRule::polyhedron ? ": with larger ones its model does not pass"
-                                               : ": of larger ones none lies inside");
+         (report.rule == SolidRule::polyhedron ? ": the model does not pass with larger ones"
+                                               : ": no larger voxel lies inside");
 }
 
-/// "0.5", "0.25 to 0.5" for bodies that differ, "(0.5, 1, 2.5)" for an image.
+/// Returns " 0.5", " 0.25 to 0.5" for bodies that differ, "s (0.5, 1, 2.5)" for an image of unequal sides.
 std::string sides_text(const MedialAxisReport& report) {
   const Vec3d& sides = report.grid.spacing;
   if (report.rule == SolidRule::voxels && (sides.x != sides.y || sides.y != sides.z)) return "s " + vector_text(sides);
@@ -204,7 +204,7 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   }
   json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
   json.update(to_json(report));
-  json.erase("seconds");   // those of all solids are told together
+  json.erase("seconds");   // reported once for all solids
   json.erase("warnings");  // likewise
   run.table.detail("solid", betti_text(report.betti) + " (" + report.reason + ")");
   run.table.detail("voxels", count_text(voxels) + " of side" + sides_text(report) +
@@ -213,7 +213,7 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   run.warnings.insert(run.warnings.end(), report.warnings.begin(), report.warnings.end());
 }
 
-/// Writes the graph of an axis, where it is asked for; null where not.
+/// Writes the graph of an axis if --graph is given; else returns null.
 Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
                const MedialMetadata& metadata, const fs::path& name, const Context& context) {
   if (!r.graph) return nullptr;
@@ -229,7 +229,7 @@ Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const 
   return graph_json(graph, run.graphs.back().name());
 }
 
-/// Writes the extended surface of an axis, where it is asked for; null where not.
+/// Writes the extended surface of an axis if --extend is given; else returns null.
 Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
                   const MedialMetadata& metadata, const fs::path& name, const Context& context) {
   if (!r.extend) return nullptr;
@@ -246,7 +246,7 @@ Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, con
   return extended_json(made.report, run.extended.back().name());
 }
 
-/// What a file says of its axis besides how that was made.
+/// Adds the input and the version to the metadata of the construction.
 MedialMetadata for_file(MedialMetadata metadata, const Request& r, const SolidInput& input,
                         const LabelSelection& selection) {
   metadata.source = r.input.filename().string();
@@ -256,23 +256,23 @@ MedialMetadata for_file(MedialMetadata metadata, const Request& r, const SolidIn
   return metadata;
 }
 
-/// A solid whose axes are asked for.
+/// A solid whose axes are computed.
 struct AskedSolid {
   const SolidInput& input;
   const SolidVerifier& verifier;
   const LabelSelection& selection;
   std::optional<std::int64_t> label;
   const fs::path& output;
-  Json smooth;  ///< how its surface was made smooth; null where it was not
+  Json smooth;  ///< report on its smooth surface; null without one
 };
 
-/// Axes in files that have not their names yet. Of each grid its own: the best may not be the last.
+/// Axes in draft files. Each grid position has its own drafts, because the best one may not be the last.
 class AxisDrafts {
  public:
   AxisDrafts(const Request& r, const AskedSolid& solid, const Context& context)
       : r_(r), solid_(solid), context_(context) {}
 
-  /// Writes an axis, reads it again and certifies what was read.
+  /// Writes an axis, reads it back and certifies that.
   Certificate certify(const AxisCandidate& axis) {
     Stopwatch watch;
     const MedialMetadata metadata = for_file(axis.metadata, r_, solid_.input, solid_.selection);
@@ -288,7 +288,7 @@ class AxisDrafts {
     return certificate;
   }
 
-  /// The last one that was certified there.
+  /// Returns the draft of the axis that was certified last for this position and angle.
   Draft& draft_of(double grid_shift, double theta) {
     const fs::path name = r_.thetas.size() == 1 ? solid_.output : with_theta(solid_.output, theta);
     return drafts_.try_emplace({grid_shift, theta}, name).first->second;
@@ -332,7 +332,7 @@ MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, 
   return medial_axis(input.mesh.mesh, options, context);
 }
 
-/// The smooth surface of an image as the input.
+/// Makes the smooth surface of an image, as the input.
 SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSelection& selection,
                         const Context& context) {
   Stopwatch watch;
@@ -349,7 +349,7 @@ SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSele
   return out;
 }
 
-/// The axes of a solid at all angles.
+/// Adds the axes of a solid for all requested angles.
 void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
               const Context& context) {
   const bool is_mesh = solid.input.kind == InputKind::mesh;
@@ -387,7 +387,7 @@ void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const 
   options.selection = selection;
   const SolidInput surface = r.smooth ? smooth_input(run, given, selection, context) : SolidInput{};
   if (r.smooth && !r.has_resolution) {
-    // As fine as the image, where the surface has room for that: it may be smaller than a voxel, or flat.
+    // As fine as the image, within limits: the surface may be smaller than a voxel, or flat.
     const Vec3d& sides = given.image.grid.spacing;
     const Vec3d size = bounds(surface.mesh.mesh).size();
     const double longest = std::max({size.x, size.y, size.z});
@@ -454,13 +454,13 @@ void finish(const Request& r, MedialRun& run, const SolidInput& input, bool is_c
   if (!r.report.quiet) warn(run.warnings);
 }
 
-/// What became of the files of a run in which something is not certified.
+/// Describes the written files of a run in which an axis is not certified.
 std::string written_text(const Request& r, const MedialRun& run) {
   if (r.allow_uncertified) return {};
   const auto kept = std::count(run.is_kept.begin(), run.is_kept.end(), true);
   if (kept == 0) return "; nothing was written";
-  return "; of " + count_text(run.drafts.size()) + " axes the " + count_text(static_cast<std::size_t>(kept)) +
-         " that are certified were written";
+  return "; of " + count_text(run.drafts.size()) + " axes, only the " + count_text(static_cast<std::size_t>(kept)) +
+         " certified ones were written";
 }
 
 void run(const Arguments& arguments) {
@@ -498,7 +498,7 @@ void run(const Arguments& arguments) {
 
 void add_medial_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  const Command command = line.app.add_subcommand("medial", "Medial axis with the topology of the solid, certified");
+  const Command command = line.app.add_subcommand("medial", "Certified medial axis with the topology of the solid");
   command.add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       .required();
   command.add_option("-o,--output", a->output, "Medial axis: " + extension_list(FileContent::complex, FileAccess::both))
@@ -508,21 +508,23 @@ void add_medial_command(const CommandLine& line) {
     add_text_option(command, name, value, type, help);
   };
   text("--theta", a->theta, "DEG",
-       "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) give a "
-       "file each, nested but for what --decimate moves");
+       "Keep separation angles above DEG degrees (default 60), and connecting cells; several angles (20,60) give one "
+       "file each, nested apart from --decimate");
   text("--decimate", a->decimate, "TOL",
-       "Fewer triangles, at most TOL mesh units away (default: a quarter of a voxel); 0 keeps all");
-  text("--prune", a->prune, "sheets", "Drop whole sheets of at most --theta instead of cutting them there");
+       "Reduce triangles, moving the axis by at most TOL mesh units (default: a quarter of a voxel); 0 keeps all");
+  text("--prune", a->prune, "sheets", "Remove only whole sheets, namely those with angles of at most --theta");
   a->options.add_to(command, "", {"least_theta", "greatest_theta"});
-  add_label_option(command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
-  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  add_label_option(command, a->labels,
+                   "Image: select the voxels of value L; several values (1,3 or repeated) give one axis each");
+  text("--threshold", a->threshold, "T",
+       "Image: select the voxels of value T or more (default: all voxels that are not 0)");
   command.add_flag("--smooth", a->smooth,
-                   "Image: the solid is what the smooth surface bounds that the voxels sample, instead of their boxes");
-  add_graph_option(command, a->graph, "Its sheets, seams, curves and junctions as a graph");
+                   "Image: use the solid inside the smooth surface of the voxels, instead of their boxes");
+  add_graph_option(command, a->graph, "Write its sheets, seams, curves and junctions as a graph");
   add_extend_options(command, a->extend, a->extend_length);
   command.add_flag("--nested", a->nested,
-                   "Keep the axes of all angles from --theta on as well (.npz), for `blum view`");
-  command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even where it is not certified");
+                   "Also store the axes of all angles from --theta upwards (.npz), for `blum view`");
+  command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even if it is not certified");
   add_weld_option(command, a->weld);
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);

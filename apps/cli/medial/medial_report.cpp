@@ -21,7 +21,7 @@ std::string against_text(const Certificate& c) {
   return c.voxel ? voxels + " of side " + rounded_text(*c.voxel) : voxels;
 }
 
-/// Which axis a file says that it holds.
+/// Returns the parameters that a file claims for its axis.
 std::string claims_text(const CertificateOptions& said) {
   std::string text;
   const auto add = [&](const std::optional<double>& value, const char* before, const char* after) {
@@ -33,10 +33,10 @@ std::string claims_text(const CertificateOptions& said) {
   return text;
 }
 
-/// Where a mesh bounds no polyhedron, and the axis's file has no metadata.
+/// For a mesh that bounds no polyhedron and a file without metadata.
 constexpr const char* untold_rule =
-    ": its axis is that of voxels, and the file of the axis does not tell which (.obj and .ma name neither rule nor "
-    "grid): verify the .vtp, .ply or .npz of the same run, or give --weld here too if it was given then";
+    "; its axis belongs to voxels that the file does not record (.obj and .ma store neither rule nor grid). "
+    "Verify the .vtp, .ply or .npz file of the same run, or repeat --weld if that run had it";
 
 std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";
@@ -64,7 +64,7 @@ std::string medial_text(const MedialCheck& check) {
          percent(check.missed_share_of_body) + " in one body";
 }
 
-/// Roles, sheets, and the angles of triangles and edges.
+/// Describes the checks of roles, sheets, and angles of triangles and edges.
 std::string labels_text(const Certificate& c) {
   if (!c.checked.labels && !c.checked.angles) return "not checked";
   std::string text;
@@ -77,7 +77,7 @@ std::string labels_text(const Certificate& c) {
          percent(c.angles.above_share) + " a larger one than their surroundings";
 }
 
-/// The share of the axis that is in the middle, and what it misses; empty if neither was checked.
+/// Describes the share of the axis that is in the middle, and the missing share; empty if neither was checked.
 std::string medial_share_text(const Certificate& c) {
   if (!c.checked.medial || c.medial.samples == 0) return "";
   std::string text = "; " + percent(c.medial.medial_share) + " in the middle";
@@ -100,7 +100,7 @@ std::string text_of(const FileMetadata& metadata, std::string_view name) {
   return at == metadata.end() ? "" : at->second;
 }
 
-/// Numbers walls between the same two sites as one sheet.
+/// Gives walls between the same two sites one sheet number.
 void number_walls(Complex& complex) {
   const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
   const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
@@ -125,7 +125,7 @@ std::string walls_text(const ShownAxis& shown) {
 
 namespace {
 
-/// What the metadata of a Voronoi diagram say of its certificate.
+/// Reads the certificate in the metadata of a Voronoi diagram.
 void add_certified(const FileMetadata& metadata, ShownAxis& out) {
   const std::string certified = text_of(metadata, "certified");
   if (certified != "true" && certified != "false") return;
@@ -133,7 +133,7 @@ void add_certified(const FileMetadata& metadata, ShownAxis& out) {
   const std::string bound = text_of(metadata, "hausdorff_bound");
   const std::string cubes = text_of(metadata, "failing_cubes");
   out.certified = *out.is_certified ? "yes" : "NO";
-  if (!bound.empty()) out.certified += "; at most " + bound + " from the exact one, everywhere";
+  if (!bound.empty()) out.certified += "; at most " + bound + " from the exact diagram, everywhere";
   if (!cubes.empty()) out.certified += ": " + cubes + " cubes did not pass";
 }
 
@@ -192,7 +192,7 @@ Certificate SolidVerifier::certificate_of(const std::filesystem::path& written, 
 
 namespace {
 
-/// With names as the text has them.
+/// Lists the columns that a file may lack, with their names in texts, and whether they were checked.
 std::vector<std::pair<bool, const char*>> what_files_may_lack(const Certificate& c) {
   return {{c.checked.radii, "radii"},
           {c.checked.footprints, "footprints"},
@@ -201,23 +201,23 @@ std::vector<std::pair<bool, const char*>> what_files_may_lack(const Certificate&
           {c.checked.labels, "roles and sheets"}};
 }
 
-/// What was not looked at though the file has it, or the solid.
+/// Lists parts of the file or of the solid that were not checked.
 std::vector<std::string> not_looked_at(const Certificate& c, bool has_nested) {
   std::vector<std::string> all;
   const MedialCheck& medial = c.medial;
   if (c.checked.medial && medial.sought_angle == 0) {
-    all.emplace_back("what is missing: its theta is not known");
+    all.emplace_back("missing parts: theta is unknown");
   } else if (c.checked.medial && !medial.judges_missing) {
-    all.push_back("what is missing: " + nothing_seen(medial));
+    all.push_back("missing parts: " + nothing_seen(medial));
   } else if (c.checked.medial && c.bodies.size() > 1 && medial.bodies_unseen > 0) {
-    all.push_back("what is missing in " + count_text(medial.bodies_unseen) + " of " + count_text(c.bodies.size()) +
+    all.push_back("missing parts in " + count_text(medial.bodies_unseen) + " of " + count_text(c.bodies.size()) +
                   " bodies: points beside the surface show too little there");
   }
   if (has_nested) all.emplace_back("nested columns: the axes of other angles");
   return all;
 }
 
-/// What a file may say that no certificate judges.
+/// Lists metadata that no certificate checks.
 std::vector<std::string> taken_as_said(const Certificate& c) {
   std::vector<std::string> all;
   if (c.checked.deviation) all.emplace_back("deviation");
@@ -231,7 +231,7 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
     if (!is_checked) all.push_back(std::string(what) + ": not in the file");
   }
   for (const std::string& what : not_looked_at(c, has_nested)) all.push_back(what);
-  for (const std::string& what : taken_as_said(c)) all.push_back(what + ": taken as said");
+  for (const std::string& what : taken_as_said(c)) all.push_back(what + ": copied from the file");
   return all;
 }
 
@@ -270,7 +270,7 @@ Json certificate_json(const Certificate& c, bool has_nested) {
   const auto wrong =
       std::count_if(c.bodies.begin(), c.bodies.end(), [](const BodyCheck& body) { return body.solid != body.axis; });
   json["bodies"] = {{"count", c.bodies.size()}, {"wrong", wrong}};
-  // What was not looked at is not told.
+  // Omit values that were not checked.
   Json& geometry = json["geometry"];
   if (!c.checked.radii) geometry.erase("radius_error");
   if (!c.checked.footprints) geometry.erase("footprint_off_surface");
@@ -304,7 +304,7 @@ std::string counts_text(const MedialCounts& counts, bool has_labels) {
   const std::string cells =
       plural(counts.vertices, "vertex", "vertices") + ", " + plural(counts.triangles, "triangle", "triangles");
   if (!has_labels) {
-    return cells + ", " + plural(counts.curve_edges, "edge", "edges") + " of curves (the file tells no sheets)";
+    return cells + ", " + plural(counts.curve_edges, "edge", "edges") + " of curves (no sheets in the file)";
   }
   return cells + " in " + plural(counts.sheets, "sheet", "sheets") + "; edges: " + count_text(counts.curve_edges) +
          " of curves, " + count_text(counts.rim_edges) + " of rims, " + count_text(counts.seam_edges) + " of seams; " +
@@ -321,7 +321,7 @@ void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
                                (c.bodies.size() > 1 ? ", in each of " + count_text(c.bodies.size()) + " bodies" : "") +
                                "; inside the solid" + medial_share_text(c));
   } else {
-    // The error says why.
+    // The error message gives the reasons.
     table.add("certified", c.topology_holds ? "NO: the topology is that of the solid, but another check fails"
                                             : "NO: " + betti_text(c.axis) + "; the solid has " + betti_text(c.solid));
   }

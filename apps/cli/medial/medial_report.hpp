@@ -1,4 +1,4 @@
-// Blum: what the commands say of medial axes and their certificates. SPDX-License-Identifier: Apache-2.0
+// Blum: reports on medial axes and their certificates. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -15,35 +15,36 @@
 
 namespace blum::cli {
 
-/// The axis of a file with all columns of MedialView, whatever the file holds (MedialFile::has_radii and so on).
+/// Reads the axis of a file, and adds the columns of MedialView that it lacks (see MedialFile::has_radii and so on).
 [[nodiscard]] MedialFile read_axis(const std::filesystem::path& path);
 
-/// What is shown of a file of a medial axis, or of walls of a Voronoi diagram.
+/// Content of a file with a medial axis, or with walls of a Voronoi diagram.
 struct ShownAxis {
-  MedialFile file;      ///< of a diagram, walls between the same sites have one number as sheets
-  std::string content;  ///< as metadata call it: "medial axis", "Voronoi diagram"
+  MedialFile file;      ///< in diagrams, walls between the same two sites are one sheet
+  std::string content;  ///< name in metadata: "medial axis", "Voronoi diagram"
   bool is_axis = true;
-  std::optional<bool> is_certified;  ///< of a diagram, where the file says so
-  std::string certified;             ///< that in words, with what the file says of it; empty where it does not
+  std::optional<bool> is_certified;  ///< only for diagrams whose file records it
+  std::string certified;             ///< certificate as text; empty if the file has none
 };
-/// read_axis(), and the same of files that `blum voronoi` wrote.
+/// Reads a medial axis as read_axis(), or walls that `blum voronoi` wrote.
 [[nodiscard]] ShownAxis read_axis_or_walls(const std::filesystem::path& path);
 
-/// What walls there are.
+/// Returns the counts of the walls as text.
 [[nodiscard]] std::string walls_text(const ShownAxis& shown);
 
-/// Certifies axes as files hold them against one solid, which is read once.
+/// Certifies axes as stored in files against one solid, which is prepared once.
 class SolidVerifier {
  public:
-  /// @param input  must stay as it is while this lives. @throws InvalidMesh.
+  /// @param input  must outlive this object unchanged. @throws InvalidMesh.
   explicit SolidVerifier(const SolidInput& input);
 
-  /// @param selection  of the voxels, for images.
-  /// @throws InvalidMesh where the solid is known by voxels only, and the file does not say which.
+  /// @param selection  selects the voxels of images.
+  /// @throws InvalidMesh if the solid is defined by voxels only, and the file does not record them.
   [[nodiscard]] Certificate certificate_of(const MedialFile& file, const LabelSelection& selection,
                                            const Context& context) const;
 
-  /// The same of an axis that was just written, as its file has it. @param metadata  of it: .obj and .ma hold none.
+  /// Certifies an axis that was just written, as its file stores it.
+  /// @param metadata  of the axis, because .obj and .ma store none.
   [[nodiscard]] Certificate certificate_of(const std::filesystem::path& written, const MedialMetadata& metadata,
                                            const LabelSelection& selection, const Context& context) const;
 
@@ -52,23 +53,24 @@ class SolidVerifier {
   std::optional<ImageAxisVerifier> image_;
 };
 
-/// What was looked at, and of bodies only how many there are, and how many are wrong.
-/// @param has_nested  whether the file holds axes of other angles, too, which nothing looks at.
+/// Returns the checks of a certificate as JSON. Bodies are only counted: all, and those with wrong numbers.
+/// @param has_nested  true if the file also contains axes of other angles, which are not checked.
 [[nodiscard]] Json certificate_json(const Certificate& certificate, bool has_nested);
-/// Where the file of an axis holds no labels, what they would say is null. Edges are then those of no triangle.
+/// Returns counts as JSON. Without labels in the file, counts that need them are null, and edges are those without
+/// triangles.
 [[nodiscard]] Json counts_json(const MedialCounts& counts, bool has_labels);
-/// "1 component, 5 tunnels, 0 voids".
+/// Returns for example "1 component, 5 tunnels, 0 voids".
 [[nodiscard]] std::string betti_text(const BettiNumbers& betti);
-/// The same as text, without what the file does not tell.
+/// Returns counts as text, without those that need missing labels.
 [[nodiscard]] std::string counts_text(const MedialCounts& counts, bool has_labels);
-/// Which angles a file holds the axes of, where it holds those of all.
+/// Returns the angles of the axes in a file with the axes of all angles.
 [[nodiscard]] std::string angles_text(double least_theta);
-/// From how many vertices an axis was decimated and how far it moved, if it was.
-/// How far the union of the balls is from the solid.
+/// Returns the distances between the solid and the union of the balls.
 [[nodiscard]] std::string balls_text(const BallUnionCheck& balls);
 
+/// Adds the number of vertices before decimation and the largest move, if the axis was decimated.
 void add_decimated(TextTable& table, const CertifiedAxis& made);
-/// Whether it holds, against what, and how precisely. Why not is left to NotCertified.
+/// Adds the result of a certificate, its solid and its errors. The message of NotCertified gives reasons for failure.
 void add_certificate(TextTable& table, const Certificate& certificate, bool has_nested);
 
 }  // namespace blum::cli

@@ -1,4 +1,4 @@
-// Blum: what `blum medial` gathers while it works. SPDX-License-Identifier: Apache-2.0
+// Blum: state of a run of `blum medial`. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace blum::cli {
 
-/// What a run gathers for its summary.
+/// Results of a run, for its files and its summary.
 struct MedialRun {
   Json solids = Json::array();
   std::vector<PhaseTime> phases;
   std::vector<Draft> drafts;
-  std::vector<Draft> graphs;    ///< of each draft, where graphs are asked for
-  std::vector<Draft> extended;  ///< of each draft, where extended axes are asked for
-  std::vector<bool> is_kept;    ///< of each draft: whether it becomes a file
+  std::vector<Draft> graphs;    ///< one for each draft if --graph is given
+  std::vector<Draft> extended;  ///< one for each draft if --extend is given
+  std::vector<bool> is_kept;    ///< for each draft: true if it becomes a file
   std::vector<Warning> warnings;
   std::vector<std::string> mismatches;
   TextTable table;

@@ -29,9 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum reconstruct part.vtp -o part.ply                      what the balls of an axis fill, as a mesh
-  blum reconstruct part.vtp -o part.nrrd --resolution 512    as a signed field
-  blum reconstruct part.vtp -o part.ply --input part.stl     and how far it is from the solid)";
+  blum reconstruct part.vtp -o part.ply                      union of the balls of an axis, as a mesh
+  blum reconstruct part.vtp -o part.nrrd --resolution 512    the same as a signed field
+  blum reconstruct part.vtp -o part.ply --input part.stl     also report its distance from the solid)";
 
 struct Arguments {
   std::string axis;
@@ -52,13 +52,13 @@ struct Request {
   int threads = 0;
 };
 
-/// A field is likely to be given here by those who want its surface.
+/// Rejects fields. Users who pass a field here probably want its surface.
 void check_is_no_field(const fs::path& path) {
   if (!FieldFormat::by_name(path)) return;
   std::error_code ignored;
   if (ComplexFormat::by_name(path) && (!fs::exists(path, ignored) || holds_complex(path))) return;
   throw UsageError("AXIS '" + path.string() +
-                   "' is no medial axis; of a field, `blum surface FIELD --level L -o MESH` makes a mesh");
+                   "' is not a medial axis; for the surface of a field, use `blum surface FIELD --level L -o MESH`");
 }
 
 Request parse(const Arguments& a) {
@@ -86,7 +86,8 @@ Request parse(const Arguments& a) {
   return r;
 }
 
-/// The balls around points at most a step apart, and around all vertices. @param step  infinite for vertices alone.
+/// Returns the balls around points at most a step apart, and around all vertices.
+/// @param step  infinite for vertices only.
 std::vector<Ball> balls_of(const MedialFile& file, double step) {
   std::vector<Ball> balls;
   for (const AxisSample& sample : sample_axis(MedialView(file.complex), step)) {
@@ -98,10 +99,11 @@ std::vector<Ball> balls_of(const MedialFile& file, double step) {
 MedialFile read_balls(const fs::path& path) {
   MedialFile file = read_axis(path);
   if (!file.has_radii) {
-    throw FileError("'" + path.string() + "' holds no radii: take a " + join_words(extensions_with_radii(), "or") +
+    throw FileError("'" + path.string() + "' contains no radii; use a " + join_words(extensions_with_radii(), "or") +
                     " file");
   }
-  if (file.complex.positions.empty()) throw FileError("'" + path.string() + "' holds no vertices, and so no balls");
+  if (file.complex.positions.empty())
+    throw FileError("'" + path.string() + "' contains no vertices and therefore no balls");
   return file;
 }
 
@@ -126,7 +128,7 @@ void run(const Arguments& a) {
   const GridSpec grid = r.spacing ? grid_around_with_spacing(box, *r.spacing) : grid_around(box, r.resolution);
   check_memory(4.0 * static_cast<double>(grid.node_count()), "a grid of " + size_text(grid) + " nodes",
                "use a coarser grid");
-  // Where vertices were taken out, balls between them are interpolated, as fine as the grid can show.
+  // In a decimated axis, balls between vertices are interpolated at the spacing of the grid.
   if (file.metadata.deviation) balls = balls_of(file, std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
   const Field field = ball_union_field(balls, grid, context);
   const double field_seconds = watch.lap();
@@ -137,7 +139,7 @@ void run(const Arguments& a) {
   Json json = answer_json("reconstruct",
                           {{"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}}, {"grid", to_json(grid)}});
   std::vector<Warning> warnings;
-  // Before anything is written, as it may fail.
+  // This may fail, so it runs before anything is written.
   if (r.input) {
     const InputKind kind = input_kind(*r.input);
     const auto [selection, found] = solid_of_axis(r.given, kind, file.metadata, r.axis);
@@ -159,7 +161,7 @@ void run(const Arguments& a) {
     json["removed"] = removed ? Json(removed->string()) : Json(nullptr);
   } else {
     const TriangleMesh surface = zero_surface(field, 0, context);
-    if (surface.triangles.empty()) throw FileError("the balls are smaller than the grid's spacing: use a finer grid");
+    if (surface.triangles.empty()) throw FileError("the balls are smaller than the grid's spacing; use a finer grid");
     write_mesh(r.output, surface);
     json["surface"] = {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}};
     table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
@@ -184,7 +186,7 @@ void run(const Arguments& a) {
 void add_reconstruct_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
-      line.app.add_subcommand("reconstruct", "The union of the balls of a medial axis, as a field or a mesh");
+      line.app.add_subcommand("reconstruct", "Union of the balls of a medial axis, as a field or a mesh");
   command.add_option("AXIS", a->axis, "Medial axis: " + join_words(extensions_with_radii(), "or")).required();
   command
       .add_option("-o,--output", a->output, extensions_help({FileContent::field, FileContent::mesh}, FileAccess::write))
@@ -193,11 +195,11 @@ void add_reconstruct_command(const CommandLine& line) {
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
     add_text_option(command, name, value, type, help);
   };
-  text("--input", a->input, "FILE", "The mesh or image whose axis it is: says how far the balls are from it");
-  text("--resolution", a->resolution, "N", "Nodes along the longest side of the grid (default 256)");
-  text("--spacing", a->spacing, "H", "Distance between nodes, instead of --resolution");
-  add_label_option(command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
-  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: as AXIS tells)");
+  text("--input", a->input, "FILE", "Mesh or image of the solid, to report its distance from the balls");
+  text("--resolution", a->resolution, "N", "Nodes along the longest side of the grid, 2 to 65536 (default 256)");
+  text("--spacing", a->spacing, "H", "Distance between nodes, in mesh units, instead of --resolution");
+  add_label_option(command, a->labels, "Image: select the voxels of value L (default: as recorded in AXIS)");
+  text("--threshold", a->threshold, "T", "Image: select the voxels of value T or more (default: as recorded in AXIS)");
   add_weld_option(command, a->weld, weld_of_axis_help);
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);

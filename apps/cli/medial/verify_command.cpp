@@ -24,10 +24,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
   blum verify part.stl part.vtp
-  blum verify part.stl part-theta20.vtp part-theta60.vtp     all of one run
+  blum verify part.stl part-theta20.vtp part-theta60.vtp     all axes of one run
   blum verify scan.nii.gz vessels.npz --json -
 
-Nothing of what made the axis is used. Exit status 0: all are certified; 3: one is not.
+The checking code is independent of the construction, except for shared parts that
+docs/decisions/0007-certificate.md lists. Exit status: 0 all axes are certified, 3 one is not.
 Several axes give a JSON array.)";
 
 struct Arguments {
@@ -50,12 +51,12 @@ SolidSelection solid_of_options(const Arguments& a, InputKind kind) {
   return given;
 }
 
-/// What is said first of an axis that is not certified: that its file names another solid, where it does. The name is
-/// no proof: files are renamed.
+/// Returns the first message for an axis that is not certified: its file names another solid. This alone proves
+/// nothing, because files may be renamed.
 std::vector<std::string> other_source(const fs::path& input, const MedialMetadata& metadata) {
   const fs::path source = fs::path(metadata.source).filename();
   if (source.empty() || source == input.filename()) return {};
-  return {"the file says that it is the axis of '" + source.string() + "'"};
+  return {"the file names '" + source.string() + "' as its solid"};
 }
 
 /// Certifies one axis after the other.
@@ -72,8 +73,8 @@ class Verifier {
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
     const Certificate certificate = verifier_->certificate_of(file, voxels, context_);
     if (solid.weld && solid.weld->lost > 0) {
-      // Nobody asked here for what the file says.
-      const std::string asked = given_.weld ? std::string() : "as '" + axis.string() + "' asks, ";
+      // Without --weld, the tolerance comes from the file.
+      const std::string asked = given_.weld ? std::string() : "as '" + axis.string() + "' records, ";
       if (!given_.weld || solid.weld->before != solid.weld->after) {
         warnings.emplace_back(WarningCode::other_vertices, asked + weld_text(*solid.weld));
       }
@@ -100,11 +101,11 @@ class Verifier {
     out.add(solid_->table);
     return out;
   }
-  /// An object for one axis, an array for several.
+  /// Returns an object for one axis, an array for several.
   [[nodiscard]] Json json() const { return results_.size() == 1 ? results_.front() : results_; }
   [[nodiscard]] const std::vector<Warning>& warnings() const { return warnings_; }
 
-  /// @throws NotCertified where an axis is not.
+  /// @throws NotCertified if an axis is not certified.
   void check() const {
     if (failures_.empty()) return;
     if (results_.size() == 1) throw NotCertified(failures_.front().mismatches, failures_.front().advice);
@@ -122,7 +123,7 @@ class Verifier {
     std::string advice;
   };
 
-  /// The mesh or image, read again only where another axis is of one that was welded otherwise.
+  /// Returns the mesh or image. Reads it again only if an axis needs another weld tolerance.
   const SolidInput& load(const std::optional<double>& weld) {
     if (!solid_ || weld != weld_) {
       verifier_.reset();
@@ -139,7 +140,7 @@ class Verifier {
   bool smooth_;
   const Context& context_;
   std::optional<SolidInput> solid_;
-  std::optional<SolidVerifier> verifier_;  ///< of this
+  std::optional<SolidVerifier> verifier_;  ///< verifier of solid_
   std::optional<double> weld_;
   TextTable table_;
   Json results_ = Json::array();
@@ -174,15 +175,15 @@ void add_verify_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
       line.app.add_subcommand("verify", "Check medial axes against their solid, from the files alone");
-  command.add_option("INPUT", a->input, "The mesh or image whose axis it is").required();
+  command.add_option("INPUT", a->input, "Mesh or image of the solid").required();
   command
       .add_option("AXIS", a->axes,
                   "Medial axes: " + join_words(file_extensions(FileContent::complex, FileAccess::read), "or"))
       .required();
-  add_label_option(command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
+  add_label_option(command, a->labels, "Image: select the voxels of value L (default: as recorded in AXIS)");
   add_text_option(command, "--threshold", a->threshold, "T",
-                  "Image: the voxels of value T or more (default: as AXIS tells)");
-  command.add_flag("--smooth", a->smooth, "Image: AXIS is that of the smooth surface (default: as AXIS tells)");
+                  "Image: select the voxels of value T or more (default: as recorded in AXIS)");
+  command.add_flag("--smooth", a->smooth, "Image: AXIS belongs to the smooth surface (default: as recorded in AXIS)");
   add_weld_option(command, a->weld, weld_of_axis_help);
   add_threads_option(command, a->threads);
   add_report_options(command, a->report, "Write the certificates as JSON; - is standard output");

@@ -1,4 +1,4 @@
-// Blum: points and what is closest to them, as columns of files. SPDX-License-Identifier: Apache-2.0
+// Blum: points with their closest points, as columns of files. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -9,8 +9,9 @@
 
 namespace blum::cli {
 
-/// The points, with columns `distance`, `gradient` (of length 1, away from the surface outside, towards it inside; not
-/// a number on the surface, and where nothing was found), `closest`, `site` and `triangle` (-1 where there is none).
+/// Returns the points with columns `distance`, `gradient`, `closest`, `site` and `triangle`. The gradient has length 1,
+/// and points away from the surface outside and towards it inside. It is NaN on the surface and if nothing was found.
+/// `site` and `triangle` are -1 if none was found.
 [[nodiscard]] Complex points_with_distances(std::span<const Vec3d> points, std::span<const ClosestPoint> found);
 
 }  // namespace blum::cli

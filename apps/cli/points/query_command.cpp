@@ -30,9 +30,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
   blum query part.stl points.npy -o distances.npz           signed distances, closest points, sites
-  blum query part.ply scan.ply -o deviation.ply             how far each point of a scan is from the part
+  blum query part.ply scan.ply -o deviation.ply             deviation of each point of a scan from the part
   blum query part.obj points.csv -o near.csv --max-distance 2 --sign none
-  blum query part.stl a.ply b.ply c.ply -o deviation.vtp    deviation-a.vtp, deviation-b.vtp, deviation-c.vtp)";
+  blum query part.stl a.ply b.ply c.ply -o deviation.vtp    writes deviation-a.vtp, deviation-b.vtp, deviation-c.vtp)";
 
 struct Arguments {
   std::string mesh, output;
@@ -42,14 +42,14 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// What there is to say of distances.
+/// Statistics of distances.
 struct Facts {
   std::size_t points = 0;
   std::size_t found = 0;
   std::size_t inside = 0;
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();
-  double sum = 0;  ///< without signs
+  double sum = 0;  ///< of magnitudes
   double squares = 0;
 
   void add(const std::vector<ClosestPoint>& all) {
@@ -93,13 +93,13 @@ struct Facts {
   }
 };
 
-/// One of the files of points, and what came of it.
+/// A file of points with its output and statistics.
 struct PointFile {
   fs::path points, output;
   Facts facts;
 };
 
-/// OUT of one file; OUT-NAME of several, by their names.
+/// Returns the files with their outputs: OUT for one file, OUT-NAME for several.
 std::vector<PointFile> files_of(const Arguments& a) {
   const fs::path output = a.output;
   check_extension("--output", output, file_extensions(FileContent::points, FileAccess::write));
@@ -113,7 +113,7 @@ std::vector<PointFile> files_of(const Arguments& a) {
     file.output += "-";
     file.output += file.points.stem();
     file.output += output.extension();
-    // Found late, it would leave the outputs of those before.
+    // Checked first, because a later error would leave the outputs of the files before.
     if (!fs::exists(file.points)) throw FileError("cannot read '" + name + "': there is no such file");
   }
   std::vector<fs::path> outputs = a.report.files();
@@ -126,7 +126,7 @@ std::vector<PointFile> files_of(const Arguments& a) {
   return files;
 }
 
-/// The context of one of several files: the bar tells of all.
+/// Returns the context of one of several files. The progress bar covers all files.
 Context context_of(const Context& context, std::size_t file, std::size_t count) {
   Context out = context;
   if (count == 1 || !context.progress) return out;
@@ -136,7 +136,7 @@ Context context_of(const Context& context, std::size_t file, std::size_t count) 
   return out;
 }
 
-/// Seconds of work on all files, by what was done.
+/// Seconds by phase, for all files.
 struct Spent {
   double read = 0;
   double query = 0;
@@ -238,18 +238,18 @@ void run(const Arguments& a) {
 void add_query_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
-      line.app.add_subcommand("query", "Exact signed distances of any points from a mesh, with the closest points");
+      line.app.add_subcommand("query", "Exact signed distances from points to a mesh, with the closest points");
   command.add_option("MESH", a->mesh, extensions_help({FileContent::mesh}, FileAccess::read)).required();
   command
-      .add_option(
-          "POINTS", a->points,
-          join_words(file_extensions(FileContent::points, FileAccess::read), "or") + "; several give an output each")
+      .add_option("POINTS", a->points,
+                  join_words(file_extensions(FileContent::points, FileAccess::read), "or") +
+                      "; several files give one output each")
       .required();
   command
       .add_option("-o,--output", a->output,
                   extension_list(FileContent::points, FileAccess::write) +
-                      ": the points with columns distance, gradient, closest, site, triangle; of several "
-                      "POINTS files OUT-NAME, by their names")
+                      ": points with columns distance, gradient, closest, site, triangle; several "
+                      "POINTS files give OUT-NAME each")
       .required()
       .type_name("FILE");
   a->options.add_to(command);

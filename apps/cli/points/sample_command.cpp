@@ -25,9 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum sample part.stl -n 100000 -o points.ply                       points of the surface, with normals
-  blum sample part.stl -n 5000 -o even.npz --blue-noise              that keep their distance from each other
-  blum sample part.stl -n 200000 -o near.npz --near --in-box 0.1     points near it, with signed distances)";
+  blum sample part.stl -n 100000 -o points.ply                       points on the surface, with normals
+  blum sample part.stl -n 5000 -o even.npz --blue-noise              evenly spaced points
+  blum sample part.stl -n 200000 -o near.npz --near --in-box 0.1     points near the surface, with signed distances)";
 
 struct Arguments {
   std::string mesh, output;
@@ -39,7 +39,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// @param parts_normals  nx, ny, nz, by which programs know normals in .ply files; else `normal`.
+/// @param parts_normals  true for columns nx, ny, nz, which programs expect in .ply files; else `normal`.
 Complex points_of_surface(const SurfaceSamples& samples, bool parts_normals) {
   Complex out;
   const std::size_t count = samples.points.size();
@@ -59,17 +59,18 @@ Complex points_of_surface(const SurfaceSamples& samples, bool parts_normals) {
   return out;
 }
 
-/// `--seed` is one option for both kinds of points.
+/// Rejects options of the other kind of points. `--seed` is for both kinds.
 void refuse_others(const Arguments& a) {
-  if (a.near && a.options.has("blue_noise")) throw UsageError("--blue-noise is for points of the surface, not --near");
+  if (a.near && a.options.has("blue_noise"))
+    throw UsageError("--blue-noise is for points on the surface, not for --near");
   for (const char* member : {"sigma", "in_box", "sign"}) {
     if (!a.near && a.near_options.has(member)) {
-      throw UsageError(option_name(member) + " is for points near the surface: give --near, too");
+      throw UsageError(option_name(member) + " is for points near the surface; add --near");
     }
   }
 }
 
-/// What is asked for.
+/// The checked options.
 struct Request {
   std::size_t count = 0;
   SampleOptions options;
@@ -139,13 +140,13 @@ void run(const Arguments& a) {
 void add_sample_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
-      line.app.add_subcommand("sample", "Random points of a surface, or near it with signed distances");
+      line.app.add_subcommand("sample", "Random points on a surface, or near it with signed distances");
   command.add_option("MESH", a->mesh, extensions_help({FileContent::mesh}, FileAccess::read)).required();
-  command.add_option("-n,--count", a->count, "How many points").required().type_name("N");
+  command.add_option("-n,--count", a->count, "Number of points, 0 to 2147483647").required().type_name("N");
   command
       .add_option("-o,--output", a->output,
                   extension_list(FileContent::points, FileAccess::write) +
-                      ": the points with columns normal (nx, ny, nz in .ply) and triangle; with --near distance, "
+                      ": points with columns normal (nx, ny, nz in .ply) and triangle; with --near distance, "
                       "gradient, closest, site and triangle")
       .required()
       .type_name("FILE");

@@ -22,12 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum ccd unit-tests/vertex-face/data_0_0.csv        what the library answers, against the file's last column
-  blum ccd */*/*.csv --json -                         of many files, as one table
-  blum ccd queries.csv --kind edge-edge               where the names of file and folder do not tell
+  blum ccd unit-tests/vertex-face/data_0_0.csv        compare results with the file's last column
+  blum ccd */*/*.csv --json -                         many files in one summary
+  blum ccd queries.csv --kind edge-edge               if no name of file or folder contains the kind
 
-A file has eight rows for each question: the four points at the start, then at the end; in each
-row x, y and z as integer numerator and denominator, then 0 or 1, the right answer.)";
+A file has eight rows for each query: the four points at the start, then at the end. A row has
+x, y and z as integer numerators and denominators, then the correct answer, 0 or 1.)";
 
 enum class Kind : std::uint8_t { vertex_face, edge_edge };
 
@@ -38,7 +38,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// What the names of a file and its folder say.
+/// Returns the given kind, or the one in the name of the file or its folder. @throws UsageError.
 Kind kind_of(const fs::path& path, const std::optional<std::string>& given) {
   const auto named = [](const std::string& name) -> std::optional<Kind> {
     const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
@@ -53,17 +53,17 @@ Kind kind_of(const fs::path& path, const std::optional<std::string>& given) {
   }
   if (const auto kind = named(path.stem().string())) return *kind;
   if (const auto kind = named(fs::absolute(path).parent_path().filename().string())) return *kind;
-  throw UsageError("'" + path.string() + "': neither its name nor that of its folder has vertex-face or edge-edge in " +
-                   "it; give --kind");
+  throw UsageError("'" + path.string() +
+                   "': neither its name nor that of its folder contains vertex-face or edge-edge; " + "give --kind");
 }
 
 struct Counts {
   std::size_t queries = 0;
-  std::size_t colliding = 0;  ///< as found
+  std::size_t colliding = 0;  ///< found to collide
   std::size_t without_truth = 0;
   std::size_t false_negatives = 0;
   std::size_t false_positives = 0;
-  std::vector<double> microseconds;  ///< of each query
+  std::vector<double> microseconds;  ///< per query
 };
 
 void ask(const ImpactQueries& queries, Kind kind, const ImpactOptions& options, Counts& counts) {
@@ -100,7 +100,7 @@ void run(const Arguments& a) {
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     ask(read_impact_queries(inputs[k]), kinds[k], options, counts);
   }
-  if (counts.queries == 0) throw FormatError("there are no questions in what was given");
+  if (counts.queries == 0) throw FormatError("the given files contain no queries");
   std::sort(counts.microseconds.begin(), counts.microseconds.end());
   double sum = 0;
   for (const double one : counts.microseconds) sum += one;
@@ -120,13 +120,12 @@ void run(const Arguments& a) {
   TextTable table;
   table.add("queries", count_text(counts.queries) + " in " + plural(inputs.size(), "file", "files") + ", " +
                            count_text(counts.colliding) + " of them collide");
-  table.add("truth",
-            plural(counts.false_negatives, "false negative", "false negatives") + ", " +
-                plural(counts.false_positives, "false positive", "false positives") +
-                (counts.without_truth > 0 ? "; of " + count_text(counts.without_truth) + " the files do not say it"
-                                          : std::string()));
-  table.add("time", rounded_text(mean) + " microseconds a query, " + rounded_text(median) + " the median, " +
-                        rounded_text(p99) + " at most for 99 %");
+  table.add("truth", plural(counts.false_negatives, "false negative", "false negatives") + ", " +
+                         plural(counts.false_positives, "false positive", "false positives") +
+                         (counts.without_truth > 0 ? "; " + count_text(counts.without_truth) + " without a known answer"
+                                                   : std::string()));
+  table.add("time", rounded_text(mean) + " microseconds per query (mean), " + rounded_text(median) + " (median), " +
+                        rounded_text(p99) + " (99th percentile)");
   report(a.report, json, table);
 }
 
@@ -135,10 +134,10 @@ void run(const Arguments& a) {
 void add_ccd_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
-      line.app.add_subcommand("ccd", "Continuous collisions of single pairs of features, against known answers");
-  command.add_option("QUERIES", a->files, "Files of questions (.csv)").required();
+      line.app.add_subcommand("ccd", "Compare collisions of single pairs of moving features with known answers");
+  command.add_option("QUERIES", a->files, "Files of queries (.csv)").required();
   add_text_option(command, "--kind", a->kind, "KIND",
-                  "vertex-face or edge-edge (default: as the file's or its folder's name says)");
+                  "Kind of the queries: vertex-face or edge-edge (default: from the name of the file or its folder)");
   a->options.add_to(command);
   add_report_options(command, a->report);
   command.footer(examples);

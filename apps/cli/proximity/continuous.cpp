@@ -24,16 +24,15 @@ void check(const ProximityArguments& a) {
   if (a.scene.size() != 2) {
     throw UsageError("continuous takes two files, the mesh at the start and at the end of a motion, but " +
                      plural(a.scene.size(), "is", "are") +
-                     " given; for several objects, --to names their files at the end");
+                     " given; for several objects, give their files at the end with --to");
   }
   if (!a.self) {
-    throw UsageError(
-        "one mesh can only meet itself: give --self; if the files are different objects, give --to END...");
+    throw UsageError("one mesh can only meet itself; add --self, or --to END... if the files are different objects");
   }
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
-/// What of a mesh collides between two frames.
+/// Collisions of a mesh between two frames.
 struct Answer {
   MovingMesh mesh;
   ImpactOptions options;
@@ -83,7 +82,7 @@ TextTable table_of(const ProximityArguments& a, const Answer& answer) {
   const auto first = found.earliest();
   const std::size_t count = found.vertex_face.size() + found.edge_edge.size();
   TextTable table;
-  table.add("collisions", plural(found.vertex_face.size(), "vertex and face", "of a vertex and a face") + ", " +
+  table.add("collisions", plural(found.vertex_face.size(), "of a vertex and a face", "of a vertex and a face") + ", " +
                               plural(found.edge_edge.size(), "of two edges", "of two edges") +
                               (first ? "; the first at time " + rounded_text(*first) : "") +
                               (a.output ? limit_text(count, answer.limit) : ""));
@@ -100,7 +99,7 @@ TextTable table_of(const ProximityArguments& a, const Answer& answer) {
 
 std::string difference(const MeshView& start, const MeshView& end) {
   const auto other_count = [](std::size_t one, std::size_t other, const char* what) {
-    return "it has " + count_text(other) + " " + what + ", not " + count_text(one) + " as";
+    return "it has " + count_text(other) + " " + what + ", not " + count_text(one) + " like";
   };
   if (start.vertices.size() != end.vertices.size()) {
     return other_count(start.vertices.size(), end.vertices.size(), "vertices");
@@ -112,7 +111,7 @@ std::string difference(const MeshView& start, const MeshView& end) {
       std::equal(start.triangles.begin(), start.triangles.end(), end.triangles.begin()) &&
       std::equal(start.segments.begin(), start.segments.end(), end.segments.begin(), end.segments.end()) &&
       std::equal(start.points.begin(), start.points.end(), end.points.begin(), end.points.end());
-  return is_same ? "" : "its triangles, segments or points name other vertices than those of";
+  return is_same ? "" : "its triangles, segments or points have other corners than those of";
 }
 
 MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end, std::optional<double> weld) {
@@ -122,7 +121,7 @@ MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end, std::opt
   TriangleMesh last = read_mesh(end, {weld});
   if (const std::string what = difference(mesh.start, last); !what.empty()) {
     throw FormatError("'" + end.string() + "': " + what + " '" + start.string() +
-                      "': frames of one motion have the same vertices and triangles, in the same order");
+                      "': frames of one motion need the same vertices and triangles, in the same order");
   }
   mesh.end = std::move(last.vertices);
   return mesh;

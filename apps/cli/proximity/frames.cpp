@@ -20,9 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 
 void check(const ProximityArguments& a) {
-  if (!a.ends.empty()) throw UsageError("--frames and --to exclude each other: frames are those of one object");
-  if (!a.self) throw UsageError("--frames are those of one object, which can only meet itself: give --self");
-  if (a.scene.size() < 2) throw UsageError("--frames takes at least two files");
+  if (!a.ends.empty()) throw UsageError("--frames and --to exclude each other: frames show one object");
+  if (!a.self) throw UsageError("--frames shows one object, which can only meet itself; add --self");
+  if (a.scene.size() < 2) throw UsageError("--frames needs at least two files");
   if (a.output) check_extension("--output", *a.output, {".json"});
 }
 
@@ -30,12 +30,12 @@ Json pair_json(const std::string& kind, const Vec3d& first, const Vec3d& second,
   return {{"kind", kind}, {"points", {to_json(first), to_json(second)}}, {"distance", distance}};
 }
 
-/// What a frame holds, and what that took.
+/// Results of a frame, and their durations.
 struct Frame {
   Json pairs = Json::array();
-  std::size_t count = 0;  ///< of all pairs, also of those that --limit leaves out
+  std::size_t count = 0;  ///< all pairs, including those beyond --limit
   std::optional<double> earliest;
-  std::string skipped;  ///< why the step to the next frame was; empty where it was not
+  std::string skipped;  ///< why the step to the next frame was skipped; empty if it was not
   std::vector<PhaseTime> phases;
 
   void add(Json pair, std::size_t limit) {
@@ -58,7 +58,7 @@ void tell(const SceneFound& found, std::size_t limit, Frame& out) {
   out.phases.insert(out.phases.end(), phases.begin(), phases.end());
 }
 
-/// Features that meet on the way to the next frame, by the way of one of their vertices until they do.
+/// Adds the features that meet before the next frame. Each pair is the path of one of their vertices until they meet.
 void tell(const SceneCollisions& found, const TriangleMesh& from, std::span<const Vec3d> to, std::size_t limit,
           Frame& out) {
   const auto add = [&](std::uint32_t vertex, double time) {
@@ -76,7 +76,7 @@ void tell(const SceneCollisions& found, const TriangleMesh& from, std::span<cons
   out.phases.insert(out.phases.end(), found.phases.begin(), found.phases.end());
 }
 
-/// One object, frame after frame.
+/// Runs a query for one object, frame by frame.
 class Sequence {
  public:
   Sequence(const ProximityArguments& a, const SceneQuery& query, const Context& context)
@@ -126,7 +126,7 @@ class Sequence {
     }
   }
 
-  /// @throws FormatError where the next frame is another mesh, unless such steps are skipped.
+  /// @throws FormatError if the next frame is a different mesh, unless --skip-changed is given.
   void ask_continuous(std::size_t k, Frame& out) {
     const std::vector<std::string>& files = arguments_.scene;
     next_ = read_mesh(files[k + 1], {weld_});
@@ -134,7 +134,7 @@ class Sequence {
       out.skipped = "'" + files[k + 1] + "': " + what + " '" + files[k] + "'";
       if (arguments_.skip_changed) return;
       throw FormatError(out.skipped +
-                        ": frames of one motion have the same triangles and vertices; --skip-changed skips such steps");
+                        ": frames of one motion need the same triangles and vertices; --skip-changed skips such steps");
     }
     ObjectMotion motion;
     motion.object = object_;
@@ -155,16 +155,16 @@ class Sequence {
   std::optional<TriangleMesh> next_;
 };
 
-/// What is told of all frames.
+/// Results of all frames.
 struct Answer {
   Json frames = Json::array();
   Json counts = Json::array();
   Json earliest = Json::array();
   Json skipped = Json::array();
   std::size_t pairs = 0;
-  std::optional<std::size_t> first;  ///< the first frame behind which something meets on the way to the next
+  std::optional<std::size_t> first;  ///< the first frame with collisions before the next one
   double first_time = 0;
-  std::size_t most = 0;  ///< pairs of one frame
+  std::size_t most = 0;  ///< largest number of pairs of a frame
   std::vector<PhaseTime> phases;
 
   void add(std::size_t k, Frame frame) {

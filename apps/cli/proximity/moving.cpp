@@ -18,27 +18,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows of the table that are printed.
+/// Largest number of rows for pairs of objects in the summary.
 constexpr std::size_t most_rows = 6;
 
 void check(const ProximityArguments& a) {
   if (a.ends.size() != a.scene.size()) {
-    throw UsageError("--to names " + plural(a.ends.size(), "file", "files") + ", but " +
+    throw UsageError("--to has " + plural(a.ends.size(), "file", "files") + ", but " +
                      plural(a.scene.size(), "object is", "objects are") +
-                     " given: name one for each, in the same order; for an object that rests its file again");
+                     " given; give one file for each, in the same order, and repeat that of an object at rest");
   }
   if (a.scene.size() == 1 && !a.self) {
-    throw UsageError("one object can only meet itself: give --self, or the files of more objects");
+    throw UsageError("one object can only meet itself; add --self, or the files of more objects");
   }
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
-/// The objects of a scene, and what of them collides.
+/// The objects of a scene, and their collisions.
 struct Answer {
   std::vector<MovingMesh> meshes;
   ImpactOptions options;
   SceneCollisions found;
-  std::vector<std::string> names;  ///< of the objects
+  std::vector<std::string> names;  ///< names of the objects
   PhaseSummary spent;
   int threads = 0;
   std::size_t limit = 0;
@@ -79,7 +79,7 @@ std::vector<ObjectMotion> motions_of(const std::vector<MovingMesh>& meshes) {
   return motions;
 }
 
-/// How many pairs of features of two objects meet, and when the first of them does.
+/// Numbers of colliding pairs of features of two objects, and the time of the first collision.
 struct PairSummary {
   std::size_t vertex_face = 0;
   std::size_t edge_edge = 0;
@@ -92,7 +92,7 @@ PairSummary summary_of(const ObjectCollisions& pair) {
   return {pair.vertex_face.size() + pair.face_vertex.size(), pair.edge_edge.size(), pair.earliest()};
 }
 
-/// Of all pairs of objects.
+/// Sums over all pairs of objects.
 PairSummary summary_of(const SceneCollisions& found) {
   PairSummary out{0, 0, found.earliest()};
   for (const ObjectCollisions& pair : found.objects) {

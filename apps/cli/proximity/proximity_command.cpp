@@ -20,9 +20,9 @@ constexpr const char* examples = R"(Examples:
 
 void run(const ProximityArguments& a, const SceneQuery& query) {
   if (!a.ends.empty() && a.ends.front().starts_with('-')) {
-    throw UsageError("--to names no file: '" + a.ends.front() + "' follows it; name one for each SCENE");
+    throw UsageError("--to needs a file for each SCENE, but '" + a.ends.front() + "' follows it");
   }
-  if (a.skip_changed && !a.frames) throw UsageError("--skip-changed is for --frames: give --frames, too");
+  if (a.skip_changed && !a.frames) throw UsageError("--skip-changed needs --frames");
   if (a.frames) return run_frames(a, query);
   if (query.ask == nullptr) return run_continuous_query(a);
   run_scene_query(a, query);
@@ -42,31 +42,31 @@ void add_query(const Command& parent, const SceneQuery& query) {
       .required();
   if (moves) {
     command
-        .add_option(
-            "--to", a->ends,
-            "Positions of the objects at the end: one file for each SCENE, in the same order. An object at rest "
-            "is named in both")
+        .add_option("--to", a->ends,
+                    "Positions of the objects at the end: one file for each SCENE, in the same order. Repeat the file "
+                    "of an object at rest")
         .type_name("END");
   }
-  command.add_flag("--self", a->self, "Compare each object with itself, too: primitives without a common vertex");
+  command.add_flag("--self", a->self, "Also compare each object with itself: primitives without a common vertex");
   if (query.takes_frames) {
     command.add_flag(
         "--frames", a->frames,
-        "The files are frames of one moving object; -o PAIRS.json holds the pairs of each frame, for `blum "
+        "The files are frames of one moving object; -o PAIRS.json stores the pairs of each frame for `blum "
         "view --frames --pairs`");
   }
   if (moves) {
     command.add_flag("--skip-changed", a->skip_changed,
-                     "With --frames: skip steps between frames of different triangles or vertices, and list them; "
-                     "default: an error");
+                     "With --frames: skip and list steps between frames of different triangles or vertex counts "
+                     "(default: an error)");
   }
   if (!query.max_distance.empty()) {
     add_text_option(command, "--max-distance", a->max_distance, "D", std::string(query.max_distance));
   }
-  add_text_option(command, "-o,--output", a->output, "FILE", std::string(query.output) + ". Default: only counts");
+  add_text_option(command, "-o,--output", a->output, "FILE",
+                  std::string(query.output) + ". Default: print counts only");
   add_text_option(command, "--limit", a->limit, "N",
-                  query.takes_frames ? "Write at most N pairs (of each frame); all are counted (default: all)"
-                                     : "Write at most N pairs; all are counted (default: all)");
+                  query.takes_frames ? "Write at most N pairs (per frame); counts include all pairs (default: all)"
+                                     : "Write at most N pairs; counts include all pairs (default: all)");
   add_weld_option(command, a->weld);
   if (query.takes_culling) a->culling.add_to(command);
   if (query.takes_depth) a->penetration.add_to(command);
@@ -80,8 +80,8 @@ void add_query(const Command& parent, const SceneQuery& query) {
 }  // namespace
 
 void add_proximity_command(const CommandLine& line) {
-  const Command command =
-      line.app.add_subcommand("proximity", "Exact distances, collisions and overlaps of meshes: one query each");
+  const Command command = line.app.add_subcommand(
+      "proximity", "Exact distances, collisions and overlaps of meshes: one subcommand per query");
   command.require_subcommand();
   for (const SceneQuery& query : scene_queries()) add_query(command, query);
   command.footer(examples);

@@ -25,22 +25,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows of the table that separation prints.
+/// Largest number of rows for pairs or parts in the summary.
 constexpr std::size_t most_rows = 6;
 
 void check(const ProximityArguments& a) {
   if (a.scene.size() == 1 && !a.self) {
-    throw UsageError("one object can only meet itself: give --self, or the files of more objects");
+    throw UsageError("one object can only meet itself; add --self, or the files of more objects");
   }
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
 }
 
-/// The objects of a scene, and what was asked of them.
+/// The objects of a scene, the query and its results.
 struct Answer {
   std::vector<TriangleMesh> meshes;
   SceneQuestion asked;
   ProximityPairs found;
-  std::vector<Penetration> parts;  ///< of `penetration`, a pair of `found` each
+  std::vector<Penetration> parts;  ///< for `penetration`, one for each pair of `found`
   std::string_view kind;           ///< of the pairs
   std::vector<std::string> names;  ///< of the objects
   PhaseSummary spent;
@@ -48,7 +48,7 @@ struct Answer {
   std::size_t limit = 0;
 
   [[nodiscard]] std::vector<MeshView> views() const { return {meshes.begin(), meshes.end()}; }
-  /// Of those equally close the first; nullptr where there is none.
+  /// Returns the closest pair, the first one of equally close pairs; nullptr if no pair was found.
   [[nodiscard]] const PrimitivePair* closest() const {
     const auto& pairs = found.pairs;
     const auto first = std::min_element(pairs.begin(), pairs.end(), [](const PrimitivePair& p, const PrimitivePair& q) {
@@ -139,7 +139,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"outputs", outputs_json(a)}});
 }
 
-/// The largest coordinate, mesh units.
+/// Returns the largest magnitude of a coordinate, mesh units.
 double largest(const std::vector<TriangleMesh>& meshes) {
   double out = 0;
   for (const TriangleMesh& mesh : meshes) {
@@ -160,7 +160,7 @@ std::string distance_text(const PrimitivePair& pair, double size) {
 }
 
 std::string penetration_text(const Penetration& part, double size) {
-  // The direction is the difference of two points that are rounded, by their distance.
+  // The direction is the difference of two rounded points, divided by their distance.
   const double blur = std::clamp(size / part.depth, 1.0, 1e6);
   return "depth " + rounded_text(part.depth) + " (at most " + rounded_text(part.depth_bound) + ") at " +
          point_text(part.deep_point, size) + ", out along " + point_text(part.direction, blur) + "; volume " +
@@ -171,7 +171,7 @@ std::string object_text(const Answer& answer, const PrimitivePair& pair) {
   return objects_text(answer.names, pair.first_object, pair.second_object);
 }
 
-/// A row for each part of what two objects have in common.
+/// Adds a row for each common part of two objects.
 void add_penetrations(const Answer& answer, TextTable& table) {
   const double size = largest(answer.meshes);
   for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {
@@ -182,7 +182,7 @@ void add_penetrations(const Answer& answer, TextTable& table) {
   }
 }
 
-/// A row for each pair of objects.
+/// Adds a row for each pair of objects.
 void add_separations(const Answer& answer, TextTable& table) {
   const double size = largest(answer.meshes);
   const auto& pairs = answer.found.pairs;

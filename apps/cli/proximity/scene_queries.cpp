@@ -40,12 +40,12 @@ SceneFound ask_penetration(const ProximityScene& scene, const SceneQuestion& ask
 }
 
 constexpr std::string_view pairs_output =
-    "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between closest points)";
-constexpr std::string_view within = "Only pairs at most D apart, mesh units (default: all)";
+    "Pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between closest points)";
+constexpr std::string_view within = "Only pairs at most D apart, in mesh units (default: all)";
 
 constexpr std::array queries{
     SceneQuery{.name = "separation",
-               .doc = "Closest pair of primitives of each two objects",
+               .doc = "Closest pair of primitives for each pair of objects",
                .output = pairs_output,
                .examples = R"(  blum proximity separation arm.ply table.ply
   blum proximity separation *.stl -o pairs.csv)",
@@ -54,7 +54,7 @@ constexpr std::array queries{
                .has_rows = true,
                .ask = ask_separation},
     SceneQuery{.name = "signed",
-               .doc = "Distance of each two solids, or minus the depth if they overlap",
+               .doc = "Distance for each pair of solids, or minus the depth if they overlap",
                .output = pairs_output,
                .examples = "  blum proximity signed a.ply b.ply c.ply",
                .takes_culling = true,
@@ -74,21 +74,20 @@ constexpr std::array queries{
                .output = pairs_output,
                .examples = R"(  blum proximity collide a.ply b.ply
   blum proximity collide a.ply b.ply --max-distance 0.01 -o pairs.npz)",
-               .max_distance = "All pairs at most D apart, mesh units (default 0: pairs with a common point)",
+               .max_distance = "All pairs at most D apart, in mesh units (default 0: pairs with a common point)",
                .takes_culling = true,
                .ask = ask_collide},
     SceneQuery{.name = "penetration",
                .doc = "Common parts of solids: depth, direction, area, volume",
-               .output =
-                   "The deepest point of each part and the closest point of the other surface, with the depth as a "
-                   "negative distance: .npz (as pairs, with depth_bound, direction, area, volume), .csv, .json, "
-                   ".vtp",
+               .output = "Deepest point of each part and its closest surface point; the depth is a negative "
+                         "distance. Formats: .npz (also depth_bound, direction, area, volume), .csv, .json, "
+                         ".vtp",
                .examples = "  blum proximity penetration a.ply b.ply --json -",
                .takes_depth = true,
                .ask = ask_penetration},
     SceneQuery{.name = "continuous",
                .doc = "Collisions of moving meshes between two frames",
-               .output = "The collisions: .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
+               .output = "Collisions: .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
                          "vertex_face_object, edge_edge_object), .csv, .json, .vtp (vertices, edges and faces at the "
                          "time of impact)",
                .examples = R"(  blum proximity continuous cloth1.ply cloth2.ply --self -o pairs.npz

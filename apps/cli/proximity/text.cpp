@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The last parts of a path, so many of them.
+/// Returns the last `parts` parts of a path.
 std::string tail_of(const fs::path& path, std::size_t parts) {
   const std::vector<fs::path> all(path.begin(), path.end());
   fs::path out;
@@ -24,7 +24,7 @@ std::string tail_of(const fs::path& path, std::size_t parts) {
   return out.string();
 }
 
-/// Leaves the first entries, as many as `left`, and takes them from it.
+/// Keeps at most `left` first entries, and subtracts their number from `left`.
 template <class T>
 void cut(std::vector<T>& entries, std::size_t& left) {
   if (entries.size() > left) entries.resize(left);
@@ -47,7 +47,7 @@ std::vector<std::string> told_apart(const std::vector<std::string>& files) {
       const auto is_other = [&](std::size_t k) { return files[k] != files[same.second.front()]; };
       if (std::none_of(same.second.begin(), same.second.end(), is_other)) continue;
       for (const std::size_t k : same.second) {
-        if (names[k] == fs::path(files[k]).string()) continue;  // all of it
+        if (names[k] == fs::path(files[k]).string()) continue;  // already the whole path
         ++parts[k];
         is_longer = true;
       }

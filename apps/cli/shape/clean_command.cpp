@@ -22,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum clean part.stl -o part.ply --tolerance 0.001              nowhere moved by more than a thousandth of a unit
-  blum clean part.stl -o clean.ply --tolerance 1e-4 --json -     with what was done, and the bound that holds
-  blum voronoi clean.ply -o diagram.vtp                          quicker than of part.stl)";
+  blum clean part.stl -o part.ply --tolerance 0.001              at most 0.001 mesh units from the input
+  blum clean part.stl -o clean.ply --tolerance 1e-4 --json -     with a report and the reached bound
+  blum voronoi clean.ply -o diagram.vtp                          faster than with part.stl)";
 
 struct Arguments {
   std::string input;
@@ -44,7 +44,8 @@ void run(const Arguments& a) {
   std::vector<fs::path> outputs = a.report.files();
   outputs.push_back(output);
   check_outputs(outputs, {path});
-  if (input_kind(path) != InputKind::mesh) throw FileError("'" + path.string() + "' is no mesh, which cleaning is for");
+  if (input_kind(path) != InputKind::mesh)
+    throw FileError("'" + path.string() + "' is not a mesh; `blum clean` needs one");
   Progress progress(!a.report.quiet);
   const Interrupt interrupt;
   const Context context = make_context(threads, progress, interrupt);
@@ -78,14 +79,14 @@ void run(const Arguments& a) {
 void add_clean_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command = line.app.add_subcommand(
-      "clean", "A closed mesh without needles and needless vertices, within a tolerance that is certain");
+      "clean", "Remove needles and unnecessary vertices from a closed mesh, within a guaranteed tolerance");
   command.add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read)).required();
   command.add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::both))
       .required()
       .type_name("FILE");
   command
       .add_option("--tolerance", a->tolerance,
-                  "The result is nowhere further from the mesh than TOL, nor the mesh from it; mesh units")
+                  "Largest distance between mesh and result, in both directions, in mesh units; above 0")
       .required()
       .type_name("TOL");
   add_weld_option(command, a->weld);

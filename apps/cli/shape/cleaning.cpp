@@ -40,8 +40,8 @@ void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh&
                                    [&](const Vec3d& p) { return is_single(p.x) && is_single(p.y) && is_single(p.z); });
   if (is_kept) return;
   warnings.emplace_back(WarningCode::rounded, "'" + file.string() +
-                                                  "' holds coordinates in single precision, so that what was checked "
-                                                  "need not hold of it: write .ply, .obj or .off");
+                                                  "' stores coordinates in single precision, so the checks may not "
+                                                  "hold for this file; write .ply, .obj or .off");
 }
 
 }  // namespace blum::cli

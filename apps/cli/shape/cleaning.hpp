@@ -1,4 +1,4 @@
-// Blum: what is told of cleaned meshes. SPDX-License-Identifier: Apache-2.0
+// Blum: reports on cleaned meshes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -10,13 +10,13 @@
 
 namespace blum::cli {
 
-/// Adds what was done to a table.
+/// Adds the report to a table.
 void add_cleaning(const CleanReport& done, double tolerance, TextTable& table);
 
-/// The same as JSON.
+/// Returns the report as JSON.
 [[nodiscard]] Json cleaning_json(const CleanReport& done, double tolerance);
 
-/// Warns where a file that holds single precision does not hold a mesh as it was checked.
+/// Adds a warning if a file of single precision (.stl) rounds the vertices of the checked mesh.
 void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh, std::vector<Warning>& warnings);
 
 }  // namespace blum::cli

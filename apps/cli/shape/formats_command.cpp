@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   blum formats
-  blum formats --json -                  the same for programs)";
+  blum formats --json -                  the same as JSON)";
 
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
@@ -21,7 +21,7 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// "read, written", "read", "written", or which of the extensions are written.
+/// Returns "read, written", "read", "written", or the extensions that are written.
 std::string access_text(const FileFormat& format) {
   if (format.written.empty()) return "read";
   if (format.extensions.empty()) return "written";
@@ -52,7 +52,7 @@ void run(const ReportOptions& options) {
 
 void add_formats_command(const CommandLine& line) {
   auto options = std::make_shared<ReportOptions>();
-  const Command command = line.app.add_subcommand("formats", "The file formats that are read and written");
+  const Command command = line.app.add_subcommand("formats", "List the file formats that Blum reads and writes");
   add_report_options(command, *options);
   command.footer(examples);
   command.callback([options] { run(*options); });

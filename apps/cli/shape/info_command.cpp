@@ -37,15 +37,15 @@ constexpr const char* examples = R"(Examples:
   blum info bunny.obj
   blum info part.stl --weld 1e-6 --json part.json
   blum info scan.nii.gz --json - | jq .labels
-  blum info part.stl --model --resolution 32       its topology, proven cell by cell
-  blum info bunny.nrrd                             a field that Blum wrote
+  blum info part.stl --model --resolution 32       its topology, with a proof for each cell
+  blum info bunny.nrrd                             a distance field
   blum info bunny.vtp                              a medial axis
-  blum info bunny.vtp --graph bunny.graphml        and its sheets, seams, curves and junctions)";
+  blum info bunny.vtp --graph bunny.graphml        also write its sheets, seams, curves, junctions)";
 
-constexpr std::size_t contact_limit = 100000;  // looked for
+constexpr std::size_t contact_limit = 100000;  // largest number that the search returns
 constexpr std::size_t pair_limit = 20;         // shown in JSON
-constexpr std::size_t failure_limit = 10;      // of models, shown as text
-constexpr std::size_t label_limit = 20;        // shown, with what takes a pass over the image each
+constexpr std::size_t failure_limit = 10;      // shown as text for a model
+constexpr std::size_t label_limit = 20;        // shown in detail; each takes a pass over the image
 
 struct Arguments {
   std::string input;
@@ -62,12 +62,12 @@ const char* yes_no(bool value) {
 
 // ---- Meshes ----
 
-// Of the mesh as it stands, which topology() and find_self_intersections() tell. Solid::of() calls both, repairs first,
-// copies the bodies, and tells neither what is open nor what crosses: beside these two it would take longer than all of
-// `blum info` (a million triangles: 1.75 s of processor time on 1.35 s), for Betti numbers that are known by then. So
-// it is asked only where they are not, of meshes that may be resolved.
+// topology() and find_self_intersections() describe the mesh as it is. Solid::of() calls both, but repairs the mesh
+// first and copies the bodies. It reports neither boundaries nor crossings. For a million triangles it would add 1.75 s
+// of processor time to the 1.35 s of `blum info`. So it runs only if the Betti numbers are unknown and a repair may
+// work.
 
-/// The solid of a mesh without a boundary that is not one as it stands.
+/// Returns the repaired solid of a mesh without boundary, if the mesh itself does not bound a solid.
 std::optional<Solid> repaired_solid(const MeshView& mesh, const Topology& t, const SelfIntersections& contacts,
                                     const Context& context) {
   const bool is_solid = t.betti && contacts.pairs.empty();
@@ -83,7 +83,7 @@ Json repaired_json(const std::optional<Solid>& solid) {
           {"resolved", solid->resolved() ? to_json(*solid->resolved()) : Json(nullptr)}};
 }
 
-/// What a mesh without a solid has no orientation or volume of is null.
+/// Orientation, volume and genus of a mesh without a solid are null.
 Json topology_json(const Topology& t, const SelfIntersections& contacts) {
   Json json = to_json(t);
   const bool whole = t.closed && t.oriented;
@@ -143,7 +143,7 @@ std::string contacts_text(const SelfIntersections& contacts) {
   const std::string crossing = plural(contacts.crossing, "pair of triangles crosses", "pairs of triangles cross");
   const std::string touching =
       contacts.touching == 0 ? "" : ", " + plural(contacts.touching, "touches or overlaps", "touch or overlap");
-  return crossing + touching + (contacts.complete ? "" : ", and more: the search ended there");
+  return crossing + touching + (contacts.complete ? "" : ", and more: the search reached its limit");
 }
 
 std::string cells_text(const Topology& t) {
@@ -154,7 +154,7 @@ std::string cells_text(const Topology& t) {
   return text + "; " + plural(t.pieces, "piece", "pieces");
 }
 
-/// Everything that a clean closed surface has none of.
+/// Lists the defects of a mesh: everything that a clean closed surface does not have.
 std::string defects_text(const Topology& t, const SelfIntersections& contacts) {
   std::string text;
   const auto add = [&](std::uint64_t count, const char* one, const char* many) {
@@ -208,7 +208,7 @@ TextTable topology_table(const fs::path& path, const MeshFile& file, const Topol
   return table;
 }
 
-/// The cellular model of what a mesh bounds, as JSON and as lines.
+/// Makes the cellular model of the solid that a mesh bounds. Returns its JSON, and adds its lines.
 Json add_model(const Arguments& a, const MeshView& mesh, const Context& context, TextTable& table) {
   const Solid solid = Solid::of(mesh, context);
   const CellularModel model = solid.model(a.model_options.read(), context);
@@ -233,7 +233,7 @@ Json add_model(const Arguments& a, const MeshView& mesh, const Context& context,
     table.add("", std::string(to_string(failure.obstacle)) + " between " + vector_text(failure.low) + " and " +
                       vector_text(failure.high) +
                       (failure.obstacle == ModelObstacle::slanted_needle
-                           ? ": " + count_text(static_cast<std::uint64_t>(failure.cuts)) + " splits would open it"
+                           ? ": " + count_text(static_cast<std::uint64_t>(failure.cuts)) + " splits would resolve it"
                            : ": another --shift may pass"));
   }
   if (facts.failures.size() > failure_limit) {
@@ -268,11 +268,11 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
 // ---- Images ----
 
 std::string labels_text(const ImageValues& values) {
-  if (!values.distinct) return "too many, or values that no label can be, such as above 2^63 - 1; use --threshold";
+  if (!values.distinct) return "too many, or values outside the range of labels (at most 2^63 - 1); use --threshold";
   return plural(*values.distinct, "value", "values");
 }
 
-/// A line for each label, and one for those that are not shown.
+/// Adds a line for each label, and one for the labels that are not shown.
 void add_labels(TextTable& table, const ImageValues& values) {
   table.add("labels", labels_text(values));
   for (const LabelFacts& facts : values.labels) {
@@ -359,12 +359,12 @@ void run_devices(const Arguments& a) {
 }
 
 void run(const Arguments& a) {
-  exclude(a.devices, "--devices", !a.input.empty(), "INPUT", "one asks for what can compute, the other for a file");
-  exclude(a.devices, "--devices", a.graph.has_value(), "--graph", "graphs are of medial axes");
+  exclude(a.devices, "--devices", !a.input.empty(), "INPUT", "--devices reads no file");
+  exclude(a.devices, "--devices", a.graph.has_value(), "--graph", "--graph needs a medial axis");
   if (a.devices) return run_devices(a);
   if (a.input.empty()) throw UsageError("INPUT needs a file name");
   if (!a.model && !a.model_options.given().empty()) {
-    throw UsageError(a.model_options.given().front() + " goes with --model");
+    throw UsageError(a.model_options.given().front() + " needs --model");
   }
   const std::optional<double> weld = parse_weld(a.weld);
   const std::optional<fs::path> graph = parse_graph(a.graph);
@@ -372,15 +372,15 @@ void run(const Arguments& a) {
   if (graph) outputs.push_back(*graph);
   check_outputs(outputs, {a.input});
   if (holds_complex(a.input)) {
-    if (a.model) throw UsageError("--model is for meshes, and '" + a.input + "' is a medial axis");
-    if (weld) throw UsageError("--weld is for meshes, and '" + a.input + "' is a medial axis");
+    if (a.model) throw UsageError("--model is for meshes, but '" + a.input + "' is a medial axis");
+    if (weld) throw UsageError("--weld is for meshes, but '" + a.input + "' is a medial axis");
     return report_axis(a.input, graph, a.report);
   }
-  if (graph) throw UsageError("--graph is for medial axes, and '" + a.input + "' is none");
+  if (graph) throw UsageError("--graph is for medial axes, but '" + a.input + "' is not one");
   const InputKind kind = input_kind(a.input);
   for (const auto& [is_given, name] : {std::pair{weld.has_value(), "--weld"}, {a.model, "--model"}}) {
     if (is_given && kind != InputKind::mesh) {
-      throw UsageError(std::string(name) + " is for meshes, and '" + a.input + "' is none");
+      throw UsageError(std::string(name) + " is for meshes, but '" + a.input + "' is not one");
     }
   }
   switch (kind) {
@@ -397,15 +397,16 @@ void run(const Arguments& a) {
 
 void add_info_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  const Command command = line.app.add_subcommand("info", "What a mesh, an image, a field or a medial axis holds");
+  const Command command =
+      line.app.add_subcommand("info", "Report the properties of a mesh, an image, a field or a medial axis");
   command.add_option("INPUT", a->input, "Mesh, image, field or medial axis");
-  command.add_flag("--devices", a->devices, "Instead of a file: the CUDA devices there are, or why there are none");
+  command.add_flag("--devices", a->devices, "List the CUDA devices, or the reason why none is usable; takes no INPUT");
   command.add_flag("--model", a->model,
-                   "Of a solid: a cellular model with its homotopy type, and whether that is proven");
+                   "Mesh: make a cellular model of its solid, and report if its homotopy type is proven");
   a->model_options.add_to(command, "With --model: ");
   add_weld_option(command, a->weld);
-  add_graph_option(command, a->graph, "Of a medial axis: sheets, seams, curves and junctions as a graph");
-  add_report_options(command, a->report, "Write the facts as JSON; - is standard output");
+  add_graph_option(command, a->graph, "Medial axis: write its sheets, seams, curves and junctions as a graph");
+  add_report_options(command, a->report, "Write the properties as JSON; - is standard output");
   command.footer(examples);
   command.callback([a] { run(*a); });
 }

@@ -28,8 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum make --list                                 every shape with its parameters
-  blum make torus --list                           those of one shape
+  blum make --list                                 list all shapes with their parameters
+  blum make torus --list                           list the parameters of one shape
   blum make torus -o torus.obj --ring-radius 2 --tube-radius 0.5
   blum make sphere -o rough.ply --noise 0.02
   blum make ball -o ball.nrrd)";
@@ -42,7 +42,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// `torus-knot` and `Torus_Knot` are one name.
+/// Returns the name of a shape in the catalog: torus_knot for `torus-knot` and `Torus_Knot`.
 std::string plain_name(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(), [](char c) {
     if (c == '-') return '_';
@@ -51,19 +51,15 @@ std::string plain_name(std::string name) {
   return name;
 }
 
-/// `ring_radius` as an option: --ring-radius.
+/// Returns the option of a parameter: --ring-radius for `ring_radius`.
 std::string option_name(std::string name) {
   std::replace(name.begin(), name.end(), '_', '-');
   return "--" + name;
 }
 
-bool is_own_option(const std::string& name) {
-  constexpr const char* own[] = {"--output", "--list", "--json", "--quiet", "--help"};
-  return std::find(std::begin(own), std::end(own), name) != std::end(own);
-}
-
-/// Takes `--name value` and `--name=value` out of the arguments, unless they are the command's own options.
-std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std::string>& arguments) {
+/// Removes `--name value` and `--name=value` from the arguments, unless they are the command's own options.
+std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std::string>& arguments,
+                                                                 const Command& command) {
   std::vector<std::pair<std::string, std::string>> parameters;
   std::vector<std::string> rest = {"make"};
   for (std::size_t i = 1; i < arguments.size(); ++i) {
@@ -71,7 +67,7 @@ std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std
     const std::size_t equals = argument.find('=');
     const std::string name = argument.substr(0, equals);
     const bool takes_value = argument == "-o" || argument == "--output" || argument == "--json";
-    if (name.size() < 3 || !name.starts_with("--") || is_own_option(name)) {
+    if (name.size() < 3 || !name.starts_with("--") || command.has_option(name)) {
       rest.push_back(argument);
       if (takes_value && i + 1 < arguments.size()) rest.push_back(arguments[++i]);
     } else if (equals != std::string::npos) {
@@ -86,21 +82,21 @@ std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std
   return parameters;
 }
 
-/// A shape of either catalog.
+/// A shape of the catalog of meshes or of images.
 struct Recipe {
   std::string name;
   std::string description;
   std::vector<Parameter> parameters;
   const ShapeInfo* mesh = nullptr;
-  const ImageInfo* image = nullptr;  ///< either this or the other is there
+  const ImageInfo* image = nullptr;  ///< exactly one of the two is set
 };
 
-/// Every mesh can be had with noise: two parameters besides its own.
+/// Every mesh has two further parameters for noise.
 constexpr const char* noise_name = "noise";
 constexpr const char* noise_seed_name = "noise_seed";
 std::vector<Parameter> noise_parameters() {
-  return {{noise_name, "moves each vertex at random by up to this much, in mesh units", 0, 0, 1e6, false},
-          {noise_seed_name, "number that the noise starts from", 1, 0, 1e9, true}};
+  return {{noise_name, "largest random displacement of a vertex, in mesh units", 0, 0, 1e6, false},
+          {noise_seed_name, "seed of the noise", 1, 0, 1e9, true}};
 }
 
 std::vector<Recipe> recipes() {
@@ -115,7 +111,7 @@ std::vector<Recipe> recipes() {
   return all;
 }
 
-/// Images may be named without the end of their names: `ball` for `ball_image`.
+/// Finds a shape by name. The suffix of images may be omitted: `ball` for `ball_image`. @throws UsageError.
 Recipe find(const std::string& given) {
   const std::string name = plain_name(given);
   std::vector<std::string> names;
@@ -124,7 +120,7 @@ Recipe find(const std::string& given) {
     names.push_back(recipe.name);
   }
   const std::vector<std::string> similar = similar_words(name, names);
-  throw UsageError("there is no shape '" + given + "'" + hint(similar) + "; `blum make --list` lists all");
+  throw UsageError("there is no shape '" + given + "'" + hint(similar) + "; `blum make --list` lists all shapes");
 }
 
 double read_parameter(const Parameter& parameter, const std::string& given, const std::string& text) {
@@ -259,7 +255,7 @@ void make(const Arguments& a) {
   const ParameterValues given = read_parameters(recipe, a);
   const bool is_mesh = recipe.mesh != nullptr;
   if (a.output.empty()) {
-    throw UsageError(std::string("--output is required; name ") +
+    throw UsageError(std::string("--output is required; give ") +
                      (is_mesh ? "an .obj, .off, .stl or .ply file" : "an .nrrd or .npy file"));
   }
   check_extension("--output", a.output,
@@ -277,7 +273,7 @@ void run(const Arguments& a) {
     check_outputs(a.report.files(), {});
     return list(a);
   }
-  if (a.shape.empty()) throw UsageError("SHAPE is required; `blum make --list` lists all");
+  if (a.shape.empty()) throw UsageError("SHAPE is required; `blum make --list` lists all shapes");
   make(a);
 }
 
@@ -285,15 +281,16 @@ void run(const Arguments& a) {
 
 void add_make_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  if (!line.arguments.empty() && line.arguments[0] == "make") a->parameters = take_parameters(line.arguments);
-  const Command command = line.app.add_subcommand("make", "Make a shape to test with or to start from");
-  command.add_option("SHAPE", a->shape, "Name of a shape; its parameters are given as --name value");
+  const Command command = line.app.add_subcommand("make", "Make a sample mesh or image");
+  command.add_option("SHAPE", a->shape, "Name of a shape; its parameters follow as --NAME VALUE");
   command
-      .add_option("-o,--output", a->output,
-                  extensions_help({FileContent::mesh, FileContent::image}, FileAccess::write) + ", as the shape is")
+      .add_option(
+          "-o,--output", a->output,
+          extensions_help({FileContent::mesh, FileContent::image}, FileAccess::write) + ", depending on the shape")
       .type_name("FILE");
-  command.add_flag("--list", a->list, "List all shapes, or one, with parameters, defaults and ranges");
-  add_report_options(command, a->report, "Write what was made (or the list) as JSON; - is standard output");
+  command.add_flag("--list", a->list, "List all shapes, or SHAPE alone, with parameters, defaults and ranges");
+  add_report_options(command, a->report, "Write the summary or the list as JSON; - is standard output");
+  if (!line.arguments.empty() && line.arguments[0] == "make") a->parameters = take_parameters(line.arguments, command);
   command.footer(examples);
   command.callback([a] { run(*a); });
 }

@@ -29,9 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum hausdorff scan.ply design.stl                          an interval that holds the distance, means, percentiles
+  blum hausdorff scan.ply design.stl                          interval of the distance, means, percentiles
   blum hausdorff part.obj simplified.obj --tolerance 1e-4 --json -
-  blum hausdorff part.obj simplified.obj --one-sided -o where.vtp    only from part to simplified; the witnesses
+  blum hausdorff part.obj simplified.obj --one-sided -o where.vtp    only from part to simplified; writes witnesses
   blum hausdorff scan.xyz design.stl --one-sided              from the points of a scan to the design)";
 
 struct Arguments {
@@ -44,7 +44,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// One direction.
+/// Results for one direction.
 struct Side {
   DirectedHausdorff distance;
   std::optional<SurfaceDeviation> deviation;
@@ -78,7 +78,7 @@ void add_side(TextTable& table, const std::string& label, const Side& side) {
                        rounded_text(by_area.percentile_error) + ")");
 }
 
-/// The witnesses as a segment for each direction.
+/// Returns the witnesses as one segment for each direction.
 Complex witnesses(const std::vector<Side>& sides) {
   Complex out;
   for (const Side& side : sides) {
@@ -118,7 +118,7 @@ TriangleMesh read_surface(const fs::path& path, std::optional<double> weld) {
   return out;
 }
 
-/// What a mesh or a cloud has most of.
+/// Returns the number of triangles of a mesh, or of points of a cloud.
 std::string size_text(const MeshView& mesh) {
   if (mesh.triangles.empty() && !mesh.points.empty()) return plural(mesh.points.size(), "point", "points");
   return plural(mesh.triangles.size(), "triangle", "triangles");
@@ -127,7 +127,7 @@ std::string size_text(const MeshView& mesh) {
 void run(const Arguments& a) {
   const std::array<fs::path, 2> paths{a.a, a.b};
   if (a.only_distance && !a.deviation.given().empty()) {
-    throw UsageError(a.deviation.given().front() + " is of means by area, which --only-distance leaves out");
+    throw UsageError(a.deviation.given().front() + " applies to means by area, which --only-distance omits");
   }
   const HausdorffOptions options = a.options.read();
   const DeviationOptions deviation = a.deviation.read();
@@ -209,15 +209,15 @@ void run(const Arguments& a) {
 void add_hausdorff_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command = line.app.add_subcommand(
-      "hausdorff", "How far two meshes are from each other at most: an interval that is certain, with means by area");
+      "hausdorff", "Guaranteed interval of the Hausdorff distance of two meshes, with means by area");
   const std::string help = extensions_help({FileContent::mesh}, FileAccess::read) + ", or points (" +
                            join_words(cloud_extensions(), "or") + ")";
   command.add_option("A", a->a, help).required();
   command.add_option("B", a->b, help).required();
   add_text_option(command, "-o,--output", a->output, "FILE",
-                  "The witnesses, a segment for each direction: a complex, such as .vtp or .ply");
-  command.add_flag("--one-sided", a->one_sided, "Only how far A is from B");
-  command.add_flag("--only-distance", a->only_distance, "Without means and percentiles by area");
+                  "Complex with the witnesses, one segment for each direction: for example .vtp or .ply");
+  command.add_flag("--one-sided", a->one_sided, "Only the directed distance from A to B");
+  command.add_flag("--only-distance", a->only_distance, "Omit means and percentiles by area");
   a->options.add_to(command);
   a->deviation.add_to(command, "By area: ");
   add_weld_option(command, a->weld);

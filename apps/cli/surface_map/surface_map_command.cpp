@@ -31,9 +31,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
   blum surface-map part.stl housing.stl -o clearance.glb --units mm      clearance between parts, as a texture
-  blum surface-map scan.ply design.stl -o deviation.png --sign auto      deviation, negative inside of the design
-  blum surface-map part.stl -o thickness.vtp --thickness ray             how thick a solid is, straight inwards
-  blum surface-map cloth.obj -o close.npz --self --max-distance 2              to triangles that share no vertex)";
+  blum surface-map scan.ply design.stl -o deviation.png --sign auto      deviation, negative inside the design
+  blum surface-map part.stl -o thickness.vtp --thickness ray             thickness of a solid, straight inwards
+  blum surface-map cloth.obj -o close.npz --self --max-distance 2        to triangles without a common vertex)";
 
 struct Arguments {
   std::string target;
@@ -44,7 +44,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// What is asked for, checked.
+/// The checked options.
 struct Request {
   SurfaceMapOptions map;
   std::optional<ThicknessOptions> thickness;
@@ -54,7 +54,8 @@ struct Request {
 
 std::pair<double, double> parse_range(const std::string& text) {
   const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) throw UsageError("--range is '" + text + "', but must be two numbers, as in 0,2.5");
+  if (comma == std::string::npos)
+    throw UsageError("--range is '" + text + "', but must be two numbers, for example 0,2.5");
   const double low = parse_number("--range", text.substr(0, comma));
   const double high = parse_number("--range", text.substr(comma + 1));
   if (!(low < high)) throw UsageError("--range is '" + text + "': the first number must be less than the second");
@@ -62,16 +63,16 @@ std::pair<double, double> parse_range(const std::string& text) {
 }
 
 void check_kind(const Arguments& a) {
-  if (a.self && a.thickness) throw UsageError("--self and --thickness are two kinds of maps: give one of them");
+  if (a.self && a.thickness) throw UsageError("--self and --thickness select different kinds of maps; give one");
   if ((a.self || a.thickness) && !a.others.empty()) {
-    throw UsageError(std::string(a.self ? "--self" : "--thickness") + " is of one mesh alone, but '" + a.others[0] +
-                     "' is given, too");
+    throw UsageError(std::string(a.self ? "--self" : "--thickness") + " takes one mesh, but '" + a.others[0] +
+                     "' is also given");
   }
   if (!a.self && !a.thickness && a.others.empty()) {
-    throw UsageError("give another mesh, or --self or --thickness for a map of one mesh alone");
+    throw UsageError("OTHER is missing; give another mesh, or --self or --thickness for a map of one mesh");
   }
   if ((a.self || a.thickness) && a.sign) throw UsageError("--sign is for distances to other meshes");
-  if (a.separation && a.thickness != "ball") throw UsageError("--separation is for --thickness ball");
+  if (a.separation && a.thickness != "ball") throw UsageError("--separation needs --thickness ball");
 }
 
 Request read(const Arguments& a) {
@@ -94,10 +95,10 @@ Request read(const Arguments& a) {
   return out;
 }
 
-/// The other meshes as one.
+/// The other meshes, joined into one.
 struct Joined {
   TriangleMesh mesh;
-  std::vector<std::size_t> ends;  ///< of their vertices
+  std::vector<std::size_t> ends;  ///< ends of their vertex ranges
 
   [[nodiscard]] std::size_t object_of(std::size_t vertex) const {
     return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), vertex) - ends.begin());
@@ -110,7 +111,7 @@ SurfaceMap map_of(const Request& asked, const MeshView& target, const Joined& ot
   return surface_distance_map(target, others.mesh, asked.map, context);
 }
 
-/// A texel as JSON tells of it.
+/// Returns a texel as JSON.
 Json place_json(const SurfaceMap& map, const MeshView& target, std::size_t texel) {
   const Vec3d point = surface_point(target, *map.atlas, texel);
   const Vec3f way = map.vector[texel];
@@ -129,7 +130,7 @@ std::optional<std::size_t> furthest_texel(const SurfaceMap& map) {
   return best;
 }
 
-/// "0.25 at (1, 2, 3)".
+/// Returns for example "0.25 at (1, 2, 3)".
 std::string place_text(const Json& place) {
   const Json& p = place["point"];
   return rounded_text(place["distance"].number()) + " at " + vector_text({p[0].number(), p[1].number(), p[2].number()});
@@ -138,7 +139,7 @@ std::string place_text(const Json& place) {
 /// Facts of a map, for JSON and for the table.
 struct Facts {
   std::size_t texels = 0;
-  std::size_t without = 0;  ///< texels that nothing is found for
+  std::size_t without = 0;  ///< texels without a value
   double largest_error = 0;
   Json smallest = nullptr, largest = nullptr;
 
@@ -245,30 +246,32 @@ void run(const Arguments& a) {
 void add_surface_map_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command = line.app.add_subcommand(
-      "surface-map", "Distances over a surface as a texture: to other meshes, to itself, or how thick a solid is");
+      "surface-map", "Texture of distances over a surface: to other meshes, to itself, or the thickness of a solid");
   const std::string help = extensions_help({FileContent::mesh}, FileAccess::read);
   command.add_option("TARGET", a->target, help).required();
-  command.add_option("OTHER", a->others, "Meshes that distances are measured to");
+  command.add_option("OTHER", a->others, "Meshes to which distances are measured");
   command
       .add_option("-o,--output", a->outputs,
-                  ".npz everything; .png the texture with a bar of colours; .glb for viewers; .ply .vtp values of "
-                  "vertices and triangles. May be given several times")
+                  ".npz: all data; .png: texture with a colour bar; .glb: for viewers; .ply, .vtp: values of "
+                  "vertices and triangles. May be repeated")
       .required()
       .type_name("FILE");
-  command.add_flag("--self", a->self, "Distances to the triangles of TARGET that share no vertex");
-  add_text_option(command, "--thickness", a->thickness, "KIND",
-                  "How thick TARGET is: ray, straight inwards to the far side; ball, diameter of the largest ball "
-                  "inside that touches");
+  command.add_flag("--self", a->self, "Distances to other triangles of TARGET without a common vertex");
+  add_text_option(
+      command, "--thickness", a->thickness, "KIND",
+      "Thickness of TARGET: ray (straight inwards to the far side) or ball (diameter of the largest inner ball "
+      "that touches)");
   add_text_option(command, "--separation", a->separation, "DEGREES",
-                  "Of balls: triangles that are turned by less do not end them (default 30)");
+                  "For balls: ignore triangles whose normals differ by less than this, 0 to 180 degrees (default 30)");
   add_text_option(command, "--texel", a->texel, "H",
                   "Side of a texel on the surface, in mesh units (default: about a million texels)");
-  add_text_option(command, "--max-distance", a->max_distance, "D", "Look for nothing further than this, in mesh units");
+  add_text_option(command, "--max-distance", a->max_distance, "D",
+                  "Largest distance that is searched, in mesh units (default: no limit)");
   add_text_option(command, "--sign", a->sign, "SIGN",
-                  "How signs are found: auto, normals, winding or none (default none); negative inside of OTHER");
+                  "Sign rule: auto, normals, winding or none (default none); negative inside OTHER");
   add_text_option(command, "--range", a->range, "LOW,HIGH",
-                  "Of the colours (default: that of the map, of distances with 0)");
-  command.add_option("--units", a->units, "Of the mesh, such as mm, for the bar of colours and metadata")
+                  "Range of the colours (default: the values of the map; for distances also 0)");
+  command.add_option("--units", a->units, "Unit of the mesh, for example mm, for the colour bar and metadata")
       .type_name("TEXT");
   add_weld_option(command, a->weld);
   add_threads_option(command, a->threads);

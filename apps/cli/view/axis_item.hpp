@@ -1,4 +1,4 @@
-// Blum: what medial axes look like in the viewer. SPDX-License-Identifier: Apache-2.0
+// Blum: medial axes in scenes of the viewer. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace blum::cli {
 
-/// Reads a medial axis and adds what the viewer needs of it. @throws FileError, FormatError, Cancelled.
+/// Reads a medial axis and adds it to a scene. @throws FileError, FormatError, Cancelled.
 [[nodiscard]] Json axis_item(SceneBlob& blob, const std::filesystem::path& path, const Context& context);
 
 }  // namespace blum::cli

@@ -18,12 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_vertices = 40'000'000;  // of all frames: 480 MB, in the browser's memory too
+constexpr std::size_t most_vertices = 40'000'000;  // of all frames: 480 MB, also in the browser's memory
 
 struct Frame {
   std::string name;
   std::vector<Vec3d> vertices;
-  std::size_t mesh = 0;  ///< number of its triangles in Frames::meshes
+  std::size_t mesh = 0;  ///< index of its triangles in Frames::meshes
 };
 
 struct Frames {
@@ -37,7 +37,7 @@ struct Frames {
 
 TriangleMesh read_frame(const fs::path& path, std::optional<double> weld) {
   if (holds_complex(path) || input_kind(path) != InputKind::mesh) {
-    throw FileError("'" + path.string() + "' is no mesh, and the frames of a moving scene are meshes");
+    throw FileError("'" + path.string() + "' is not a mesh; --frames needs meshes");
   }
   TriangleMesh mesh = read_mesh_of_any_name(path, {weld}).mesh;
   try {
@@ -45,7 +45,8 @@ TriangleMesh read_frame(const fs::path& path, std::optional<double> weld) {
   } catch (const InvalidMesh& error) {
     throw FileError("'" + path.string() + "': " + error.what());
   }
-  if (mesh.triangles.empty()) throw FileError("'" + path.string() + "' has no triangles, and frames are made of these");
+  if (mesh.triangles.empty())
+    throw FileError("'" + path.string() + "' has no triangles; --frames needs meshes with triangles");
   return mesh;
 }
 
@@ -53,10 +54,10 @@ void check_sizes(const Frames& all, const fs::path& path) {
   const auto check = [&](std::size_t count, std::size_t most, const char* what) {
     if (count <= most) return;
     throw FileError("with '" + path.string() + "' the frames have " + count_text(count) + " " + what +
-                    ", and the viewer shows at most " + count_text(most) + "; show fewer frames or coarser meshes");
+                    ", but the viewer shows at most " + count_text(most) + "; show fewer frames or coarser meshes");
   };
   check(all.vertices, most_vertices, "vertices");
-  check(all.triangles, most_triangles_shown, "triangles (counted once where frames share them)");
+  check(all.triangles, most_triangles_shown, "triangles (counted once if frames share them)");
 }
 
 void add_frame(const fs::path& path, std::optional<double> weld, Frames& all) {
@@ -74,7 +75,7 @@ void add_frame(const fs::path& path, std::optional<double> weld, Frames& all) {
   all.frames.push_back({path.filename().string(), std::move(mesh.vertices), all.meshes.size() - 1});
 }
 
-/// "1,234", or "12 to 1,234" where frames differ.
+/// Returns "1,234", or "12 to 1,234" if frames differ.
 template <class CountOf>
 std::string counts_text(const Frames& all, CountOf count_of) {
   std::size_t least = count_of(all.frames.front());
@@ -125,7 +126,7 @@ Json item_of(SceneBlob& blob, Frames& all, const FramePairs& pairs) {
   for (const std::vector<Triangle>& triangles : all.meshes) meshes.push_back(add_cells(blob, triangles));
   Json& frames = item["frames"] = Json::array();
   for (Frame& frame : all.frames) {
-    const std::vector<Vec3d> vertices = std::move(frame.vertices);  // which frees them
+    const std::vector<Vec3d> vertices = std::move(frame.vertices);  // frees them after this frame
     frames.push_back({{"name", frame.name}, {"mesh", frame.mesh}, {"positions", add_places(blob, vertices, origin)}});
   }
   if (!pairs.kinds.empty()) item["pairs"] = pairs_json(blob, pairs, origin);
@@ -137,7 +138,7 @@ Json item_of(SceneBlob& blob, Frames& all, const FramePairs& pairs) {
 
 Scene make_frames_scene(const std::vector<fs::path>& frames, const std::optional<fs::path>& pairs,
                         std::optional<double> weld, bool compresses, const Context& context) {
-  // First, as it takes least time to find wrong.
+  // Read first, because errors in it are found fastest.
   const FramePairs close = pairs ? read_frame_pairs(*pairs, frames.size()) : FramePairs{};
   Frames all;
   for (const fs::path& path : frames) {

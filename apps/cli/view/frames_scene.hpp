@@ -10,12 +10,12 @@
 
 namespace blum::cli {
 
-/// Reads meshes as the frames of one scene, in their order: one item. Triangles are there once for frames that follow
-/// each other and have the same.
-/// @param pairs  a file of what is close in each, see read_frame_pairs().
-/// @param weld  of meshes.
-/// @throws FileError where one of the files cannot be read, has no triangle, or where all together are too large to
-/// show; FormatError for pairs; Cancelled.
+/// Reads meshes as the frames of one scene, in their order. They become one item. Consecutive frames with the same
+/// triangles share them.
+/// @param pairs  a file of close pairs, see read_frame_pairs().
+/// @param weld  welding tolerance of the meshes; 0 merges equal vertices.
+/// @throws FileError if a file cannot be read or has no triangle, or if all together are too large to show; FormatError
+/// for pairs; Cancelled.
 [[nodiscard]] Scene make_frames_scene(const std::vector<std::filesystem::path>& frames,
                                       const std::optional<std::filesystem::path>& pairs, std::optional<double> weld,
                                       bool compresses, const Context& context);

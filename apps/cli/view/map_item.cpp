@@ -12,16 +12,16 @@
 namespace blum::cli {
 namespace {
 
-/// A texel takes 24 bytes in the scene, 28 in the browser, and a few when areas are summed.
+/// A texel takes 24 bytes in the scene, 28 in the browser, and a few more while areas are summed.
 constexpr std::size_t most_texels = std::size_t{1} << 25U;
-/// Corners are not shared, as each triangle has a chart.
+/// Triangles do not share corners, because each one has a chart.
 constexpr std::size_t most_charts = 5'000'000;
 
 void check_size(const SurfaceMapFile& file, const std::filesystem::path& path) {
   const auto check = [&](std::size_t count, std::size_t most, const char* what, const char* advice) {
     if (count <= most) return;
     throw FileError("'" + path.string() + "' has " + count_text(count) + " " + what +
-                    ", and the viewer shows at most " + count_text(most) + "; " + advice);
+                    ", but the viewer shows at most " + count_text(most) + "; " + advice);
   };
   check(file.map.atlas->size(), most_texels, "texels", "make a coarser map");
   check(file.mesh.triangles.size(), most_charts, "triangles", "make a map of a coarser mesh");

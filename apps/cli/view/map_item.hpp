@@ -1,4 +1,4 @@
-// Blum: what surface maps look like in the viewer. SPDX-License-Identifier: Apache-2.0
+// Blum: surface maps in scenes of the viewer. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace blum::cli {
 
-/// Reads a surface map and adds what the viewer needs of it: all of it but what is known of vertices and means.
-/// @throws FileError (for more than browsers can hold, too), FormatError.
+/// Reads a surface map and adds it to a scene, without its values at vertices and its means.
+/// @throws FileError (also if the map is too large for browsers), FormatError.
 [[nodiscard]] Json map_item(SceneBlob& blob, const std::filesystem::path& path);
 
 }  // namespace blum::cli

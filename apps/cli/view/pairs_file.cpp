@@ -20,24 +20,24 @@ namespace {
 
 using Read = nlohmann::ordered_json;
 
-constexpr double farthest = 1e30;  // what browsers draw
+constexpr double farthest = 1e30;  // largest coordinate that browsers draw
 
 std::string text_of(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::is_directory(path, error) ? 0 : std::filesystem::file_size(path, error);
   std::ifstream file(path, std::ios::binary);
   if (error || !file || std::filesystem::is_directory(path, error)) {
-    throw FileError("cannot read '" + path.string() + "': it is not there, is no file, or may not be read");
+    throw FileError("cannot read '" + path.string() + "': not found, not a regular file, or not readable");
   }
-  constexpr double bytes_per_character = 6;  // of numbers and names as objects
+  constexpr double bytes_per_character = 6;  // memory for parsed numbers and names
   check_memory(bytes_per_character * static_cast<double>(size), "reading '" + path.string() + "'",
                "give the pairs of fewer frames");
   std::string text(std::istreambuf_iterator<char>(file), {});
-  if (file.bad()) throw FileError("cannot read '" + path.string() + "' to its end");
+  if (file.bad()) throw FileError("cannot read '" + path.string() + "' completely");
   return text;
 }
 
-/// A value of the file with the name of its place: "frames[3].pairs[2].kind".
+/// A value of the file with its path: "frames[3].pairs[2].kind".
 class Value {
  public:
   Value(const Read& json, const std::string& file, std::string place)
@@ -49,7 +49,7 @@ class Value {
   void check_object() const {
     if (!json_.is_object()) fail("must be an object");
   }
-  /// Nothing where the object has no such member.
+  /// Returns nullptr if the object has no such member.
   [[nodiscard]] const Read* find(const char* name) const {
     const auto found = json_.find(name);
     return found == json_.end() ? nullptr : &*found;
@@ -84,7 +84,7 @@ class Value {
 };
 
 std::uint8_t kind_of(const Value& value) {
-  if (!value.json().is_string()) value.fail("must be a text");
+  if (!value.json().is_string()) value.fail("must be a string");
   const auto& name = value.json().get_ref<const std::string&>();
   const auto* const found = std::find(pair_kinds.begin(), pair_kinds.end(), name);
   if (found == pair_kinds.end()) {
@@ -128,7 +128,7 @@ void add_pairs(const Value& frame, FramePairs& out) {
   const Value pairs = frame.of(*found, "pairs");
   const std::size_t count = pairs.array_size();
   if (out.kinds.size() + count > most_pairs) {
-    pairs.fail("brings the pairs of all frames to more than " + count_text(most_pairs) + ", the most that are shown");
+    pairs.fail("raises the number of pairs above " + count_text(most_pairs) + ", the largest number that is shown");
   }
   for (std::size_t i = 0; i < count; ++i) add_pair(pairs[i], out);
 }
@@ -147,7 +147,7 @@ StageSeconds stages_of(const Value& frame, std::vector<std::string>& names) {
     if (seconds < 0) value.fail("is " + rounded_text(seconds) + ", but seconds must not be negative");
     const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
     if (at == names.size()) {
-      if (name.empty()) stages.fail("names a stage \"\"");
+      if (name.empty()) stages.fail("contains a stage with the name \"\"");
       if (at == most_stages) {
         value.fail("is one stage too many: at most " + std::to_string(most_stages) + " are shown");
       }
@@ -162,10 +162,10 @@ Read parsed(const std::filesystem::path& path) {
   try {
     return Read::parse(text_of(path));
   } catch (const Read::parse_error& error) {
-    // Behind the library's own mark: "[json.exception.parse_error.101] parse error at line 1, ..."
+    // Skips the library's own mark: "[json.exception.parse_error.101] parse error at line 1, ..."
     const std::string text = error.what();
     const std::size_t mark = text.find("] ");
-    throw FormatError("'" + path.string() + "' is no JSON: " + text.substr(mark == std::string::npos ? 0 : mark + 2));
+    throw FormatError("'" + path.string() + "' is not JSON: " + text.substr(mark == std::string::npos ? 0 : mark + 2));
   } catch (const Read::exception& error) {  // numbers beyond double
     throw FormatError("'" + path.string() + "' cannot be read: " + error.what());
   }
@@ -181,7 +181,7 @@ FramePairs read_frame_pairs(const std::filesystem::path& path, std::size_t frame
   const Value list = file.member("frames");
   if (const std::size_t count = list.array_size(); count != frames) {
     list.fail("has " + count_text(count) + (count == 1 ? " entry" : " entries") + ", but there are " +
-              count_text(frames) + " meshes: one entry belongs to each");
+              count_text(frames) + " meshes; each mesh needs one entry");
   }
   FramePairs out;
   std::vector<StageSeconds> seconds;

@@ -21,7 +21,7 @@ std::size_t aligned(std::size_t size) {
   return (size + alignment - 1) / alignment * alignment;
 }
 
-/// Neighbours differ little, and so do the bytes of one rank.
+/// Encodes differences, byte by byte. Neighbours differ little, so their bytes of one rank compress well.
 std::vector<std::byte> delta(std::span<const std::byte> bytes) {
   const std::size_t count = bytes.size() / 4;
   std::vector<std::byte> out(bytes.size());
@@ -36,7 +36,7 @@ std::vector<std::byte> delta(std::span<const std::byte> bytes) {
   return out;
 }
 
-/// In zlib's form. The fastest level: the next ones take several times as long for a few per cent.
+/// Compresses bytes with zlib at its fastest level. Other levels take several times as long for a few per cent.
 std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
   z_stream stream = {};
   if (deflateInit(&stream, Z_BEST_SPEED) != Z_OK) throw OutOfMemory("no memory to compress the scene");
@@ -47,7 +47,7 @@ std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
   while (status == Z_OK) {
     const std::size_t in_now = std::min(most_at_once, bytes.size() - read);
     const std::size_t out_now = std::min(most_at_once, out.size() - written);
-    // zlib reads through this pointer only.
+    // zlib only reads through this pointer.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data() + read));  // NOLINT(*-const-cast)
     stream.avail_in = static_cast<uInt>(in_now);
     stream.next_out = reinterpret_cast<Bytef*>(out.data() + written);

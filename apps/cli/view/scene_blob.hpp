@@ -14,23 +14,23 @@
 
 namespace blum::cli {
 
-/// A header of JSON and arrays of numbers:
+/// A header of JSON and arrays of numbers. All numbers are little endian.
 ///
-///   bytes 0-7    "BLUMVIEW"
-///   bytes 8-11   version, 2 (all numbers are little endian)
-///   bytes 12-15  length of the header, a multiple of 8
-///   then         the header, then the arrays, each at a multiple of 8 bytes behind the header
+/// Bytes 0-7: "BLUMVIEW".
+/// Bytes 8-11: version, 2.
+/// Bytes 12-15: length of the header, a multiple of 8.
+/// Then: the header, and the arrays, each at a multiple of 8 bytes after the header.
 ///
-/// The header names an array by {"type": "f4", "count": n, "offset": bytes behind the header, "bytes": as stored,
-/// "coding": c}. Codings are "raw"; "deflate" (zlib); "delta": numbers of 4 bytes as differences of their bit patterns,
-/// the first byte of each, then the second and so on, in zlib's form.
+/// The header describes an array by "type" (for example "f4"), "count", "offset" (bytes after the header), "bytes" (as
+/// stored) and "coding". Codings are "raw", "deflate" (zlib) and "delta". The coding "delta" stores numbers of 4 bytes
+/// as differences of their bit patterns, compressed by zlib. The first byte of each comes first, then the second and
+/// so on.
 class SceneBlob {
  public:
-  /// @param compresses  whether arrays are deflated: for pages that are kept. A server on the same machine is faster
-  /// without.
+  /// @param compresses  true to compress arrays, for pages in files. A server on the same machine is faster without.
   explicit SceneBlob(bool compresses) : compresses_(compresses) {}
 
-  /// Adds an array, and returns what the header says of it.
+  /// Adds an array, and returns its description for the header.
   template <class T>
   [[nodiscard]] Json add(std::span<const T> values) {
     static_assert(std::is_arithmetic_v<T>);
@@ -41,9 +41,9 @@ class SceneBlob {
     return add(std::span<const T>(values));
   }
 
-  /// What a scene begins with.
+  /// Returns the first bytes of a scene, including the header.
   [[nodiscard]] static std::string head(const Json& header);
-  /// What follows it, first to last; as long as nothing is added.
+  /// Returns the arrays that follow it, in order. Valid until an array is added.
   [[nodiscard]] std::vector<std::string_view> arrays() const;
 
  private:
@@ -56,7 +56,7 @@ class SceneBlob {
   Json add_bytes(std::span<const std::byte> bytes, const char* type, std::size_t count, std::size_t width);
 
   bool compresses_;
-  std::vector<std::vector<std::byte>> arrays_;  ///< each filled up to a multiple of 8 bytes
+  std::vector<std::vector<std::byte>> arrays_;  ///< each padded to a multiple of 8 bytes
   std::size_t size_ = 0;
 };
 

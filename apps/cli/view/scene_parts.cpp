@@ -13,7 +13,7 @@
 namespace blum::cli {
 namespace {
 
-/// A table of colours: red, green, blue and opacity in a byte each, as textures want them.
+/// Adds a table of colours: red, green, blue and opacity, one byte each, as in textures.
 template <class ColorAt>
 Json add_colors(SceneBlob& blob, std::uint32_t count, ColorAt color_at) {
   std::vector<std::uint8_t> bytes;
@@ -25,7 +25,7 @@ Json add_colors(SceneBlob& blob, std::uint32_t count, ColorAt color_at) {
   return blob.add(bytes);
 }
 
-/// The colours of the tool's pictures. Ramps run to 1, from -1 where they diverge.
+/// Adds the colours of the tool's pictures. Sequential ramps cover 0 to 1, diverging ones -1 to 1.
 Json colors_json(SceneBlob& blob) {
   constexpr std::uint32_t ramp_colors = 512;
   constexpr std::uint32_t legend_regions = 12;
@@ -78,7 +78,7 @@ void check_extent(const Json& item, std::string_view what) {
   throw FileError(
       std::string(what) + " cannot be drawn: " +
       (farthest > most ? "it reaches to " + rounded_text(farthest) : "its longest side is " + rounded_text(extent)) +
-      ", and browsers draw what is between 1e-12 and 1e30; scale it");
+      ", but browsers draw sizes from 1e-12 to 1e30; scale it");
 }
 
 Json scene_header(SceneBlob& blob, Json items) {

@@ -1,4 +1,4 @@
-// Blum: what scenes of the viewer are made of. SPDX-License-Identifier: Apache-2.0
+// Blum: parts of scenes of the viewer. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@
 
 namespace blum::cli {
 
-/// What a browser can be asked to draw.
+/// Largest number of triangles that the viewer shows.
 inline constexpr std::size_t most_triangles_shown = 20'000'000;
 
-/// Places as single precision keeps them best: as seen from `origin`, the middle of the box around them.
+/// Adds places in single precision, relative to `origin`, the centre of their bounds.
 [[nodiscard]] Json add_places(SceneBlob& blob, std::span<const Vec3d> places, const Vec3d& origin);
 
-/// Corners of triangles or ends of segments, one after the other.
+/// Adds the corners of triangles or the ends of segments, one after the other.
 template <std::size_t corners>
 [[nodiscard]] Json add_cells(SceneBlob& blob, const std::vector<std::array<std::uint32_t, corners>>& cells) {
   std::vector<std::uint32_t> numbers;
@@ -30,14 +30,14 @@ template <std::size_t corners>
   return blob.add(numbers);
 }
 
-/// A line of the page's text.
+/// Returns a line of the page's text.
 [[nodiscard]] Json fact(const char* label, const std::string& text);
 
-/// @throws FileError where an item's "bounds" are smaller or larger than browsers can draw.
-/// @param what  the beginning of the message: "'part.ply'".
+/// @throws FileError if an item's "bounds" are smaller or larger than browsers can draw.
+/// @param what  start of the message: "'part.ply'".
 void check_extent(const Json& item, std::string_view what);
 
-/// The header of a scene: the items, and what the page has from here only.
+/// Returns the header of a scene: items, colours, and the numbers of roles.
 [[nodiscard]] Json scene_header(SceneBlob& blob, Json items);
 
 }  // namespace blum::cli

@@ -23,14 +23,14 @@ namespace blum::cli {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  blum view part.stl                              serves the page until Ctrl-C; its address is printed
-  blum view part.ply part.nrrd axis.npz --open    a mesh, its field and its medial axis, in the browser
-  blum view map.npz other.ply                     a surface map: distances as colours, and the other mesh through them
-  blum view part.ply axis.npz -o part.html        one file, for a browser without a network
-  blum view f*.ply --frames --pairs pairs.json    meshes as the frames of a moving scene, and what is close in each
+  blum view part.stl                              print an address and serve the page until Ctrl-C
+  blum view part.ply part.nrrd axis.npz --open    a mesh, its field and its medial axis, in a browser
+  blum view map.npz other.ply                     a surface map as colours, with the other mesh
+  blum view part.ply axis.npz -o part.html        write one file, for a browser without a network
+  blum view f*.ply --frames --pairs pairs.json    meshes as frames of a moving scene, with close pairs
 
-Files that cannot be read are named in the page. Exit status 1 where none could be read.
-The server answers this machine only, and gives out the page and the named files' contents, nothing else.)";
+The page lists files that cannot be read. Exit status 1: no file could be read.
+The server answers only this machine. It serves only the page and the contents of the given files.)";
 
 struct Arguments {
   std::vector<std::string> inputs;
@@ -44,10 +44,10 @@ void check(const Arguments& a) {
   for (const std::string& input : a.inputs) {
     if (input.empty()) throw UsageError("FILE needs a file name");
   }
-  exclude(a.output.has_value(), "--output", a.port.has_value(), "--port", "the page is written or served");
-  exclude(a.output.has_value(), "--output", a.open, "--open", "only a page that is served is opened");
-  if (a.frames && a.inputs.size() < 2) throw UsageError("--frames needs two meshes at least, in their order");
-  if (a.pairs && !a.frames) throw UsageError("--pairs belongs to frames: give --frames too");
+  exclude(a.output.has_value(), "--output", a.port.has_value(), "--port", "a written page is not served");
+  exclude(a.output.has_value(), "--output", a.open, "--open", "only a served page is opened");
+  if (a.frames && a.inputs.size() < 2) throw UsageError("--frames needs at least two meshes, in their order");
+  if (a.pairs && !a.frames) throw UsageError("--pairs needs --frames");
   if (!a.output) return;
   check_extension("--output", *a.output, {".html", ".htm"});
   std::vector<std::filesystem::path> inputs(a.inputs.begin(), a.inputs.end());
@@ -55,14 +55,14 @@ void check(const Arguments& a) {
   check_outputs({*a.output}, inputs);
 }
 
-/// Shows a page in the desktop's browser; where there is none, its address is on the terminal.
+/// Opens a page in the desktop's browser. Without one, the address on the terminal remains.
 void open_browser(const std::string& url) {
   std::string program = "xdg-open";
   std::string address = url;
   char* const arguments[] = {program.data(), address.data(), nullptr};
   pid_t child = 0;
   if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
-    warn_of("no browser could be opened (xdg-open is not there): open " + url);
+    warn_of("no browser could be opened (xdg-open was not found); open " + url);
   }
 }
 
@@ -91,7 +91,7 @@ void run(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(0, progress, interrupt);
   std::optional<ViewServer> server;
-  if (!a.output) server.emplace(port.value_or(0));  // before the work is done, lest the port is taken
+  if (!a.output) server.emplace(port.value_or(0));  // before the work, because the port may be taken
   const Scene scene = [&] {
     const Unattended reading;
     const std::vector<std::filesystem::path> files(a.inputs.begin(), a.inputs.end());
@@ -106,7 +106,7 @@ void run(const Arguments& a) {
     if (!a.quiet) print("wrote " + *a.output + ": " + shown_text(scene) + "\n");
     return;
   }
-  print("serving " + shown_text(scene) + "\nopen " + server->url() + " in a browser; Ctrl-C ends this\n");
+  print("serving " + shown_text(scene) + "\nopen " + server->url() + " in a browser; Ctrl-C ends the server\n");
   if (a.open) open_browser(server->url());
   server->serve(scene, interrupt.token());
 }
@@ -116,17 +116,18 @@ void run(const Arguments& a) {
 void add_view_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command =
-      line.app.add_subcommand("view", "Shows files in a browser: meshes, images, fields, medial axes, surface maps");
-  command.add_option("FILE", a->inputs, "Meshes, images, fields, medial axes and surface maps (.npz), any mixture")
+      line.app.add_subcommand("view", "Show files in a browser: meshes, images, fields, medial axes, surface maps");
+  command.add_option("FILE", a->inputs, "Meshes, images, fields, medial axes and surface maps (.npz), in any mixture")
       .required();
-  add_text_option(command, "-o,--output", a->output, "HTML", "Write the page to a file, with all that it shows");
-  command.add_flag("--frames", a->frames, "The files are meshes: the frames of one moving scene, in their order");
+  add_text_option(command, "-o,--output", a->output, "HTML",
+                  "Write the page with its data to a file, instead of serving it");
+  command.add_flag("--frames", a->frames, "The files are meshes, the frames of one moving scene in their order");
   add_text_option(command, "--pairs", a->pairs, "JSON",
-                  "With --frames: what is close in each frame, and how long finding it took (docs/guide/viewer.md)");
-  add_text_option(command, "--port", a->port, "P", "Serve the page on this port (default: one that is free)");
+                  "With --frames: close pairs and durations of each frame (docs/guide/viewer.md)");
+  add_text_option(command, "--port", a->port, "P", "Port of the server, 0 to 65535 (default 0: a free port)");
   command.add_flag("--open", a->open, "Open the served page in the desktop's browser");
   add_weld_option(command, a->weld);
-  command.add_flag("--quiet", a->quiet, "Say nothing but errors, and where the page is served");
+  command.add_flag("--quiet", a->quiet, "Print only errors, warnings and the address of the page");
   command.footer(examples);
   command.callback([a] { run(*a); });
 }

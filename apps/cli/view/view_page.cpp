@@ -11,19 +11,19 @@
 
 namespace blum::cli {
 
-// Defined in a file that cmake/embed.cmake writes.
+// Defined in a file that cmake/embed.cmake generates.
 extern const unsigned char viewer_page_bytes[];
 extern const std::size_t viewer_page_size;
 
 namespace {
 
-/// Where the scene goes.
+/// Mark in the page that the scene replaces.
 constexpr std::string_view mark = "<!--scene-->";
 constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-/// Browsers hold texts of half a GiB at most: a scene goes into elements of less. A multiple of 3.
+/// Browsers limit texts to half a GiB, so a scene is split into smaller elements. A multiple of 3.
 constexpr std::size_t most_in_element = std::size_t{48} << 20U;
 
-/// Bytes as base64 in elements of the page.
+/// Writes bytes as base64 into elements of the page.
 class SceneElements {
  public:
   explicit SceneElements(AtomicFile& file) : file_(file) {}
@@ -105,7 +105,7 @@ void write_page(const std::filesystem::path& path, const Scene& scene) {
   const std::string titled = titled_page(scene);
   const std::string_view page = titled;
   const std::size_t at = page.find(mark);
-  if (at == std::string_view::npos) throw Error("the viewer's page has no place for a scene");
+  if (at == std::string_view::npos) throw Error("the viewer's page has no mark for the scene");
   AtomicFile file(path);
   file.write(page.substr(0, at));
   SceneElements elements(file);

@@ -9,13 +9,13 @@
 
 namespace blum::cli {
 
-/// The page as it is built into the tool: apps/viewer/dist/viewer.html. It asks its server for the scene.
+/// Returns the page that is built into the tool: apps/viewer/dist/viewer.html. It requests the scene from its server.
 [[nodiscard]] std::string_view viewer_page();
 
-/// The same, named by what the scene shows: "part.stl and 2 more - Blum".
+/// Returns the page with a title for the scene: "part.stl and 2 more - Blum".
 [[nodiscard]] std::string titled_page(const Scene& scene);
 
-/// Writes the page with the scene in it. @throws FileError.
+/// Writes the page with the scene inside. @throws FileError.
 void write_page(const std::filesystem::path& path, const Scene& scene);
 
 }  // namespace blum::cli

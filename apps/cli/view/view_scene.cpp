@@ -24,12 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a browser can hold as one array, and show before anyone leaves: 512^3.
+/// Largest number of nodes that a browser can store as one array and show in acceptable time: 512^3.
 constexpr std::size_t most_nodes = std::size_t{1} << 27U;
 
 void check_size(std::size_t count, std::size_t most, const char* what, const fs::path& path, const char* advice) {
   if (count <= most) return;
-  throw FileError("'" + path.string() + "' has " + count_text(count) + " " + what + ", and the viewer shows at most " +
+  throw FileError("'" + path.string() + "' has " + count_text(count) + " " + what + ", but the viewer shows at most " +
                   count_text(most) + "; " + advice);
 }
 
@@ -79,7 +79,7 @@ Json grid_json(const GridSpec& grid) {
           {"direction", directions}};
 }
 
-/// The smallest and the largest number; null where there is none.
+/// Returns the smallest and the largest finite number; null if there is none.
 template <class Values>
 Json range_of(const Values& values) {
   double least = std::numeric_limits<double>::infinity();
@@ -106,7 +106,7 @@ Json field_item(SceneBlob& blob, const fs::path& path) {
   item["bounds"] = to_json(bounds(field.grid));
   item["distance"] = blob.add(field.distance.span());
   if (!field.site.empty()) {
-    // Ids are numbers of 32 bits: none() is -1.
+    // Ids have 32 bits; none() is -1.
     item["sites"] = blob.add(std::span(reinterpret_cast<const std::int32_t*>(field.site.data()), field.site.size()));
   }
   item["site_ids"] = to_string(field.site_ids);
@@ -122,8 +122,8 @@ Json field_item(SceneBlob& blob, const fs::path& path) {
   return item;
 }
 
-/// Whether whole numbers name things rather than measure something: there are few of them, or neighbours are alike
-/// where they are not the background.
+/// Returns true if whole numbers are labels and not measurements: few different values, or mostly equal neighbours
+/// outside of the background.
 template <class T>
 bool are_labels(const std::vector<T>& values, std::int64_t row) {
   if constexpr (!std::is_integral_v<T>) return false;
@@ -142,14 +142,14 @@ bool are_labels(const std::vector<T>& values, std::int64_t row) {
   return 2 * alike > pairs;
 }
 
-/// The viewer's numbers are doubles.
+/// Rejects numbers that the viewer's doubles cannot represent.
 template <class T>
 void check_exact(const std::vector<T>& values, const fs::path& path) {
   constexpr std::int64_t most = std::int64_t{1} << 53U;
   for (const T value : values) {
     if (std::cmp_less_equal(value, most) && std::cmp_greater_equal(value, -most)) continue;
-    throw FileError("'" + path.string() + "' holds " + std::to_string(value) +
-                    ": whole numbers beyond 2^53 are not shown, as a browser would round them");
+    throw FileError("'" + path.string() + "' contains " + std::to_string(value) +
+                    "; whole numbers beyond 2^53 are not shown, because a browser would round them");
   }
 }
 
@@ -179,7 +179,7 @@ Json image_item(SceneBlob& blob, const fs::path& path) {
   return item;
 }
 
-/// The sites of a field, as an image of labels: OUT.site.nrrd, which is no field by itself.
+/// Returns true for the sites of a field, OUT.site.nrrd. This file is shown as an image of labels.
 bool is_site_file(const fs::path& path) {
   return file_extension(path) == ".nrrd" && file_extension(path.stem()) == ".site";
 }
@@ -220,8 +220,8 @@ Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld,
       message = error.what();
       if (message.find("'pairs of primitives'") != std::string::npos) {
         message +=
-            "; close pairs are shown with the frames of a moving object: blum proximity FRAME... --frames --self -o "
-            "PAIRS.json, then blum view FRAME... --frames --pairs PAIRS.json";
+            "; pairs are shown with the frames of a moving object: `blum proximity QUERY FRAME... --frames --self -o "
+            "PAIRS.json`, then `blum view FRAME... --frames --pairs PAIRS.json`";
       }
     }
     scene.problems.push_back(message);

@@ -1,4 +1,4 @@
-// Blum: what files look like in the viewer. SPDX-License-Identifier: Apache-2.0
+// Blum: scenes of files for the viewer. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,16 @@
 
 namespace blum::cli {
 
-/// Files as the viewer shows them: one item each, in their order.
+/// Files for the viewer: one item each, in their order.
 struct Scene {
-  Json header;  ///< the items, and what the page has from here only: colours, and the numbers of roles
+  Json header;  ///< items, colours, and the numbers of roles
   SceneBlob blob;
-  std::vector<std::string> problems;  ///< of the files that could not be read
+  std::vector<std::string> problems;  ///< messages of files that could not be read
 };
 
 /// Reads meshes, images, fields, medial axes and surface maps. A file that cannot be read becomes an item with its
 /// message.
-/// @param weld  of meshes.
+/// @param weld  welding tolerance of meshes; 0 merges equal vertices.
 /// @throws Cancelled.
 [[nodiscard]] Scene make_scene(const std::vector<std::filesystem::path>& files, std::optional<double> weld,
                                bool compresses, const Context& context);

@@ -23,13 +23,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr std::size_t longest_request = 16384;  // bytes, without a body: none is read
+constexpr std::size_t longest_request = 16384;  // bytes, without a body, because bodies are not read
 constexpr std::size_t most_connections = 64;
-constexpr auto patience = 10s;                                 // for a request to come in
-constexpr auto reading_patience = 30s;                         // for the other side to take a part of its answer
-constexpr std::size_t most_at_a_time = std::size_t{4} << 20U;  // bytes to one, before the others get theirs
-constexpr int poll_milliseconds = 200;                         // how long Ctrl-C waits at most
-constexpr auto rest = 500ms;                                   // where the system has no descriptor for one more
+constexpr auto patience = 10s;                                 // time for a request to arrive
+constexpr auto reading_patience = 30s;                         // time for the client to read a part of its answer
+constexpr std::size_t most_at_a_time = std::size_t{4} << 20U;  // bytes for one connection before it is the others' turn
+constexpr int poll_milliseconds = 200;                         // longest delay of Ctrl-C
+constexpr auto rest = 500ms;                                   // pause if no descriptor is left
 
 constexpr std::string_view policy =
     "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
@@ -53,11 +53,11 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// The part of a request that is looked at.
+/// The parts of a request that the server uses.
 struct Request {
   std::string method;
-  std::string path;  ///< without what follows a question mark
-  std::string host;  ///< empty where there is none, or more than one
+  std::string path;  ///< without a query after a question mark
+  std::string host;  ///< empty if missing or given more than once
 };
 
 Request parse(std::string_view text) {
@@ -93,15 +93,15 @@ std::string head(std::string_view status, std::string_view type, std::size_t len
          std::string(policy) + "\r\n";
 }
 
-/// One request that comes in, then its answer that goes out. The socket never blocks.
+/// An incoming request, then its outgoing answer. The socket never blocks.
 struct Connection {
   int socket;
-  Clock::time_point until;  ///< it is closed then, if nothing comes or goes
+  Clock::time_point until;  ///< time at which it is closed if nothing is transferred
   std::string received = {};
-  std::string head = {};                      ///< of the answer
-  std::vector<std::string_view> answer = {};  ///< what follows the head
-  std::size_t sent = 0;                       ///< bytes of what goes out now: the head, or a part of the answer
-  std::size_t parts_sent = 0;                 ///< of the answer
+  std::string head = {};                      ///< head of the answer
+  std::vector<std::string_view> answer = {};  ///< parts after the head
+  std::size_t sent = 0;                       ///< bytes sent of the head, or of a part of the answer
+  std::size_t parts_sent = 0;                 ///< number of parts of the answer that were sent
 
   [[nodiscard]] bool is_answered() const { return !head.empty() || parts_sent < answer.size(); }
 };
@@ -120,7 +120,7 @@ class Session {
   Session& operator=(const Session&) = delete;
   ~Session() = default;
 
-  /// Reads or sends what can be now; true where the connection is done with.
+  /// Reads or sends as much as possible now. Returns true if the connection is finished.
   bool advance(Connection& connection) const {
     if (connection.is_answered()) return send_some(connection);
     std::string part(4096, '\0');
@@ -164,7 +164,7 @@ class Session {
     if (is_head) connection.answer.clear();
   }
 
-  /// True where all is sent, or the other side has gone.
+  /// Sends a part of the answer. Returns true if all is sent, or the client has closed.
   static bool send_some(Connection& connection) {
     for (std::size_t budget = most_at_a_time; connection.is_answered() && budget > 0;) {
       const bool is_head = !connection.head.empty();
@@ -196,7 +196,8 @@ class Session {
   std::size_t scene_size_ = 0;
 };
 
-/// Lets the other side read what it got before the connection goes: what nobody read would make it go at once.
+/// Closes a connection after reading the rest of the request. Unread bytes would reset it before the client has read
+/// its answer.
 void close_connection(int socket) {
   shutdown(socket, SHUT_WR);
   std::string unread(longest_request, '\0');
@@ -205,7 +206,7 @@ void close_connection(int socket) {
   close(socket);
 }
 
-/// Those that send no request go first, then those that take nothing.
+/// Closes one connection: first those that send no request, then those that read no answer.
 void make_room(std::vector<Connection>& connections) {
   const auto is_worse = [](const Connection& a, const Connection& b) {
     return a.is_answered() != b.is_answered() ? b.is_answered() : a.until < b.until;
@@ -215,7 +216,7 @@ void make_room(std::vector<Connection>& connections) {
   connections.erase(worst);
 }
 
-/// False where the system has no room for one more.
+/// Accepts a connection. Returns false if the system has no descriptor for another one.
 bool accept_into(std::vector<Connection>& connections, int listener) {
   const int socket = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (socket < 0) return errno == EINTR || errno == EAGAIN || errno == ECONNABORTED;
@@ -227,7 +228,7 @@ bool accept_into(std::vector<Connection>& connections, int listener) {
 }  // namespace
 
 ViewServer::ViewServer(std::uint16_t port) : listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-  if (listener_ < 0) fail("no socket can be made");
+  if (listener_ < 0) fail("cannot make a socket");
   const int yes = 1;
   setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   sockaddr_in address = {};
@@ -240,7 +241,7 @@ ViewServer::ViewServer(std::uint16_t port) : listener_(socket(AF_INET, SOCK_STRE
     const int error = errno;
     close(listener_);
     errno = error;
-    fail("port " + std::to_string(port) + " of this machine cannot be had");
+    fail("port " + std::to_string(port) + " of this machine is not available");
   }
   port_ = ntohs(address.sin_port);
 }
@@ -264,7 +265,7 @@ void ViewServer::serve(const Scene& scene, const std::stop_token& stop) {
       waiting.push_back({c.socket, static_cast<short>(c.is_answered() ? POLLOUT : POLLIN), 0});
     }
     if (poll(waiting.data(), waiting.size(), poll_milliseconds) < 0) {
-      if (errno != EINTR) fail("waiting for requests");
+      if (errno != EINTR) fail("cannot wait for requests");
       continue;
     }
     std::vector<Connection> left;

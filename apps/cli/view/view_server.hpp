@@ -10,19 +10,19 @@
 
 namespace blum::cli {
 
-/// Serves the viewer's page as `/` and a scene as `/scene.bin`, on 127.0.0.1 and to nobody else: other paths do not
-/// exist, and a request that names another host is refused, so that no web page reaches it through a name of its own.
+/// Serves the viewer's page as `/` and a scene as `/scene.bin`, only on 127.0.0.1. Other paths do not exist. Requests
+/// that name another host are rejected, so that no web page reaches the server through its own domain name.
 class ViewServer {
  public:
-  /// @param port  0 for any that is free.  @throws Error where it cannot be had.
+  /// @param port  0 for any free port.  @throws Error if the port is not available.
   explicit ViewServer(std::uint16_t port);
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;
 
-  /// "http://127.0.0.1:PORT/".
+  /// Returns "http://127.0.0.1:PORT/".
   [[nodiscard]] std::string url() const;
-  /// Answers requests until a stop is asked for.
+  /// Answers requests until a stop is requested.
   void serve(const Scene& scene, const std::stop_token& stop);
 
  private:

@@ -18,12 +18,13 @@ namespace blum::cli {
 namespace fs = std::filesystem;
 
 void VoronoiAxisTexts::add_to(const Command& command) {
-  add_text_option(command, "--theta", theta, "DEG",
-                  "With --medial: keep where footprints are seen more than DEG apart (default 1), and what joins that");
+  add_text_option(
+      command, "--theta", theta, "DEG",
+      "With --medial: keep separation angles above DEG degrees, 0 to 180 (default 1), and the cells that connect them");
   add_text_option(command, "--decimate", decimate, "TOL",
-                  "With --medial: fewer triangles, at most TOL mesh units away (default 0: all)");
+                  "With --medial: reduce triangles, moving the axis by at most TOL mesh units (default 0: keep all)");
   add_graph_option(command, graph,
-                   "Its regions, walls, seams and junctions as a graph; with --medial its sheets, seams, curves and "
+                   "Write regions, walls, seams and junctions as a graph; with --medial sheets, seams, curves and "
                    "junctions");
 }
 

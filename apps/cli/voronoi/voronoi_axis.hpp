@@ -1,4 +1,4 @@
-// Blum: medial axes from walls of Voronoi diagrams, as the tool writes them. SPDX-License-Identifier: Apache-2.0
+// Blum: medial axes from walls of Voronoi diagrams, for the tool. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -15,17 +15,17 @@
 
 namespace blum::cli {
 
-/// --theta, --decimate and, for all parts, --graph.
+/// Texts of --theta and --decimate, and of --graph, which is for all parts.
 struct VoronoiAxisTexts {
   std::optional<std::string> theta, decimate, graph;
 
   void add_to(const Command& command);
-  /// The first one that is given and for medial axes alone; empty where none is.
+  /// Returns the first given option that is only for medial axes; empty if none is given.
   [[nodiscard]] std::string given() const;
 };
 
 struct VoronoiAxisOptions {
-  double theta = 1;     ///< degrees; faces bent by rounding to 32 bits are seen at less
+  double theta = 1;     ///< degrees, above the angles of faces that rounding to 32 bits bends
   double decimate = 0;  ///< mesh units; 0 keeps all vertices
   std::optional<std::filesystem::path> graph;
 };
@@ -33,7 +33,7 @@ struct VoronoiAxisOptions {
 /// @throws UsageError.
 [[nodiscard]] VoronoiAxisOptions parse_axis_options(const VoronoiAxisTexts& texts);
 
-/// An axis in a file that has not its name yet, certified from there as `blum verify` does.
+/// An axis in a draft file, read back and certified as `blum verify` does.
 struct VoronoiAxis {
   std::vector<Draft> drafts;  ///< the axis, its graph
   Json json;                  ///< counts, deviation, graph, certificate
@@ -43,8 +43,8 @@ struct VoronoiAxis {
   std::vector<PhaseTime> phases;
 };
 
-/// @param walls   what voronoi_complex() makes for its part medial_axis.
-/// @param source, weld  for the file.
+/// @param walls   result of voronoi_complex() for VoronoiPart::medial_axis.
+/// @param source, weld  metadata of the file.
 [[nodiscard]] VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input,
                                             const VoronoiAxisOptions& options, const std::filesystem::path& source,
                                             const std::optional<double>& weld, const std::filesystem::path& output,

@@ -40,16 +40,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum voronoi part.stl -o part.vtp                for ParaView: walls and surface, with the sites on both sides
-  blum voronoi part.stl -o walls.ply --walls       what lies between regions, without the surface
-  blum voronoi part.stl -o axis.vtp --medial       the medial axis: walls with two footprints
-  blum voronoi part.stl -o axis.vtp --medial --theta 60 --decimate 0.01    where these are 60 degrees apart; fewer triangles
-  blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
-  blum voronoi part.stl -o part.vtp --tolerance 0.1    nowhere more than 0.1 mesh units off the exact walls
-  blum voronoi scan.stl -o scan.vtp --clean 0.001 --cleaned clean.ply    of the mesh without needles, which is written, too
-  blum voronoi part.stl --json -                   only the facts: sites, cubes, whether it can be certified
+  blum voronoi part.stl -o part.vtp                walls and surface with their sites, for ParaView
+  blum voronoi part.stl -o walls.ply --walls       walls between regions, without the surface
+  blum voronoi part.stl -o axis.vtp --medial       medial axis: walls with two footprints
+  blum voronoi part.stl -o axis.vtp --medial --theta 60 --decimate 0.01    angles above 60 degrees; fewer triangles
+  blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: cubes of at most 1/32 of the box
+  blum voronoi part.stl -o part.vtp --tolerance 0.1    at most 0.1 mesh units from the exact walls
+  blum voronoi scan.stl -o scan.vtp --clean 0.001 --cleaned clean.ply    remove needles first, and write that mesh
+  blum voronoi part.stl --json -                   report only: sites, cubes, certificate
 
-Exit status 3: the complex could not be certified, and no file was written.)";
+Exit status 3: the complex is not certified. Only --allow-uncertified writes it.)";
 
 struct Arguments {
   std::string input;
@@ -68,55 +68,55 @@ bool is_wall(std::int32_t site_a) {
 
 SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
   if (input_kind(path) != InputKind::mesh) {
-    throw FileError("'" + path.string() + "' is no mesh; the Voronoi diagram is that of a closed mesh");
+    throw FileError("'" + path.string() + "' is not a mesh; `blum voronoi` needs a closed mesh");
   }
   return load_solid(path, weld);
 }
 
-/// What the complex is, in messages.
+/// Returns the name of the complex in messages.
 std::string subject_of(VoronoiPart part) {
   if (part == VoronoiPart::medial_axis) return "the medial axis";
   return part == VoronoiPart::walls ? "walls" : "walls and surface";
 }
 
-/// What may let more cubes pass.
+/// Returns advice that may let more cubes pass.
 std::string advice(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
   std::vector<std::string> all;
   if (options.depth < VoronoiOptions{}.depth) all.emplace_back("a larger --depth may help");
   if (report.stopped_at_max_cubes) {
-    all.push_back("it stopped at --max-cubes " + count_text(static_cast<std::size_t>(options.max_cubes)) +
+    all.push_back("splitting stopped at --max-cubes " + count_text(static_cast<std::size_t>(options.max_cubes)) +
                   (options.tolerance || options.resolution > VoronoiOptions{}.resolution
-                       ? ", too few for so fine a --resolution or --tolerance"
+                       ? ", too few for this --resolution or --tolerance"
                        : ""));
   }
   if (!is_cleaned && options.depth == VoronoiOptions{}.depth) {
-    all.emplace_back("where coordinates are rounded, as in .stl files, --clean with a small tolerance may help");
+    all.emplace_back("if coordinates are rounded, as in .stl files, --clean with a small tolerance may help");
   }
   std::string out;
   for (const std::string& one : all) out += "; " + one;
   return out;
 }
 
-/// Why a complex is not certified; nothing where it is.
+/// Returns the reasons why a complex is not certified; empty if it is certified.
 std::vector<std::string> mismatches_of(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
   std::vector<std::string> all;
   if (report.certified) return all;
   if (!report.failing.empty()) {
     const FailingVoronoiCell& first = report.failing.front();
     std::string text = report.failing.size() == 1
-                           ? "a cube does not pass, that"
+                           ? "a cube does not pass,"
                            : count_text(report.failing.size()) + " cubes do not pass, the first one";
     text += " from " + vector_text(first.low) + " to " + vector_text(first.high) + " (" +
             std::string(to_string(first.obstacle)) + ")";
     all.push_back(text + advice(report, options, is_cleaned));
   }
   if (report.undecided_lines > 0) {
-    all.push_back("of " + plural(report.undecided_lines, "part of a grid line", "parts of grid lines") +
-                  " it is not known what is closest");
+    all.push_back("on " + plural(report.undecided_lines, "part of a grid line", "parts of grid lines") +
+                  " the closest site is unknown");
   }
   if (report.contradictions > 0) {
-    all.push_back("of " + plural(report.contradictions, "point", "points") +
-                  " of the grid it is not certain what is closest, at none of its places");
+    all.push_back("at " + plural(report.contradictions, "node", "nodes") +
+                  " of the grid the closest site is contradictory, for every grid position that was tried");
   }
   if (report.found != report.expected) {
     all.push_back("the complex has " + betti_text(report.found) + ", but " + subject_of(options.part) +
@@ -125,7 +125,7 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
   return all;
 }
 
-/// Numbers of a complex, as JSON and as text.
+/// Counts of a complex, as JSON and as text.
 struct Counts {
   std::size_t vertices = 0;
   std::size_t walls = 0;    ///< triangles
@@ -186,7 +186,7 @@ struct Request {
   int threads = 0;
 };
 
-/// What ids of triangles, edges and vertices in a file are of.
+/// Returns the mesh file to which ids of triangles, edges and vertices refer.
 fs::path source_of(const Arguments& a) {
   return a.cleaned ? *a.cleaned : a.input;
 }
@@ -204,35 +204,37 @@ FileMetadata metadata_of(const Arguments& a, const Request& r, const VoronoiRepo
 Request parse(const Arguments& a) {
   Request r{a.options.read(), parse_axis_options(a.axis), {}, parse_weld(a.weld), parse_threads(a.threads)};
   if (a.clean) r.clean = parse_positive("--clean", *a.clean);
-  if (a.walls && a.medial) throw UsageError("--walls and --medial are two different parts of the diagram: give one");
+  if (a.walls && a.medial) throw UsageError("--walls and --medial select different parts of the diagram; give one");
   if (a.walls) r.options.part = VoronoiPart::walls;
   if (a.medial) r.options.part = VoronoiPart::medial_axis;
   const std::string of_axis = a.axis.given();
-  if (!of_axis.empty() && !a.medial) throw UsageError(of_axis + " is for medial axes: give --medial, too");
-  if (!of_axis.empty() && !a.output) throw UsageError(of_axis + " is for files: give --output, too");
+  if (!of_axis.empty() && !a.medial) throw UsageError(of_axis + " is for medial axes; add --medial");
+  if (!of_axis.empty() && !a.output) throw UsageError(of_axis + " changes the file; add --output");
   std::vector<fs::path> outputs = a.report.files();
   if (r.axis.graph) {
-    if (a.medial && !a.output) throw UsageError("--graph of a medial axis is for files: give --output, too");
+    if (a.medial && !a.output) throw UsageError("--graph with --medial needs --output");
     outputs.push_back(*r.axis.graph);
   }
   if (a.cleaned) {
     check_extension("--cleaned", *a.cleaned, file_extensions(FileContent::mesh, FileAccess::both));
     outputs.emplace_back(*a.cleaned);
   } else if (a.clean && a.medial && a.output) {
-    throw UsageError("a medial axis is verified against the mesh that it is of: give --cleaned FILE for that, too");
+    throw UsageError(
+        "--clean with --medial needs --cleaned FILE, because the axis is verified against the cleaned mesh");
   }
   if (a.output) {
-    const FileAccess access = a.medial ? FileAccess::both : FileAccess::write;  // axes are read again
+    const FileAccess access = a.medial ? FileAccess::both : FileAccess::write;  // axes are read back
     check_extension("--output", *a.output, file_extensions(FileContent::complex, access));
     outputs.emplace_back(*a.output);
   } else if (a.allow_uncertified) {
-    throw UsageError("--allow-uncertified is for files: give --output, too");
+    throw UsageError("--allow-uncertified needs --output");
   }
   check_outputs(outputs, {a.input});
   return r;
 }
 
-/// The parts of the diagram, where a file of them is asked for. The same that Python's VoronoiComplex.graph() tells.
+/// Makes and writes the graph of the diagram's parts if --graph requests it. Python's VoronoiComplex.graph() returns
+/// the same.
 std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, std::span<const VoronoiSite> sites,
                                        const VoronoiComplex& made, const Context& context) {
   if (a.medial || !r.axis.graph) return std::nullopt;
@@ -247,14 +249,14 @@ std::string graph_text(const VoronoiGraph& graph) {
          ", " + plural(graph.junctions.size(), "junction", "junctions");
 }
 
-/// The solid whose diagram is made.
+/// The solid whose diagram is computed.
 struct Prepared {
   Solid solid;
   std::optional<CleanReport> cleaning;
 };
 
-/// The solid of the mesh that was read, cleaned where that is asked for; its surface takes the mesh's place, and is
-/// written where it has numbers of its own.
+/// Makes the solid of the input mesh, cleaned if --clean is given. Its surface replaces the mesh, and --cleaned writes
+/// it.
 Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<Warning>& warnings,
                  const Context& context) {
   const auto make = [&]() -> Prepared {
@@ -269,11 +271,11 @@ Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::v
   if (out.solid.resolved()) {
     if (a.medial && a.output && !a.cleaned) {
       throw InvalidMesh("'" + a.input +
-                        "': the mesh crosses itself, and a medial axis is verified against the mesh that it is of: "
-                        "give --cleaned FILE for that without the crossings, too");
+                        "': the mesh crosses itself; add --cleaned FILE to write the mesh without crossings, against "
+                        "which the axis is verified");
     }
     for (Warning& warning : crossing_warnings(out.solid)) {
-      if (!a.cleaned) warning.text += ": --cleaned FILE writes it";
+      if (!a.cleaned) warning.text += "; --cleaned FILE writes this surface";
       warnings.push_back(std::move(warning));
     }
   }
@@ -323,7 +325,7 @@ void run(const Arguments& a) {
     warnings.insert(warnings.end(), axis->warnings.begin(), axis->warnings.end());
   } else if (is_written) {
     ComplexWriteOptions how;
-    how.allow_loss = true;  // as the table of formats says
+    how.allow_loss = true;  // as documented in the table of formats
     if (!mismatches.empty()) add_failing_cells(made.complex, found.failing);
     write_complex(*a.output, made.complex, metadata_of(a, r, found), how, context);
     phases.push_back({"write", watch.lap()});
@@ -335,7 +337,7 @@ void run(const Arguments& a) {
   facts["reversed_shells"] = cleaning ? cleaning->reversed_shells : prepared.solid.reversed_shells();
   facts["cleaning"] = cleaning ? cleaning_json(*cleaning, *r.clean) : Json(nullptr);
   facts.update(to_json(found));
-  facts.erase("seconds");  // the run's, below, hold them
+  facts.erase("seconds");  // add_run_facts() adds them below
   facts["certified"] = mismatches.empty();
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
@@ -370,7 +372,7 @@ void run(const Arguments& a) {
   if (!a.report.quiet) warn(warnings);
   if (mismatches.empty()) return;
   const bool is_any_missing = a.output && !is_written;
-  const std::string missing = a.cleaned ? "; of it nothing was written" : "; nothing was written";
+  const std::string missing = a.cleaned ? "; only the cleaned mesh was written" : "; nothing was written";
   throw NotCertified(mismatches, is_any_missing ? missing : "");
 }
 
@@ -379,22 +381,21 @@ void run(const Arguments& a) {
 void add_voronoi_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command = line.app.add_subcommand(
-      "voronoi", "The Voronoi diagram of faces, reflex edges and reflex vertices inside a closed mesh, certified");
+      "voronoi", "Certified Voronoi diagram of faces, reflex edges and reflex vertices inside a closed mesh");
   command.add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read)).required();
   add_text_option(command, "-o,--output", a->output, "FILE",
-                  "Its walls and the surface: a complex, with columns in .vtp, .ply or .npz, without in .obj");
-  command.add_flag("--walls", a->walls, "Walls between regions alone, without the surface");
+                  "Complex of walls and surface: .vtp, .ply or .npz with columns, .obj without");
+  command.add_flag("--walls", a->walls, "Only the walls between regions, without the surface");
   command.add_flag("--medial", a->medial,
-                   "The medial axis: of the walls those with two footprints, none between a face and its own edge");
+                   "Only the medial axis: walls with two footprints, except those between a face and its own edge");
   a->axis.add_to(command);
   a->options.add_to(command, {}, {"part"});
-  add_text_option(
-      command, "--clean", a->clean, "TOL",
-      "Take needles and needless vertices out of the mesh first, as `blum clean` does: nowhere further than "
-      "TOL from it, mesh units");
+  add_text_option(command, "--clean", a->clean, "TOL",
+                  "First remove needles and unnecessary vertices as `blum clean` does, within TOL "
+                  "mesh units");
   add_text_option(command, "--cleaned", a->cleaned, "FILE",
-                  "Write the mesh that ids are of: as --clean makes it, and without crossings");
-  command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even where it is not certified");
+                  "Write the mesh to which ids refer: cleaned by --clean, and without crossings");
+  command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even if it is not certified");
   add_weld_option(command, a->weld);
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);

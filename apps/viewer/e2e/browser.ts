@@ -58,7 +58,7 @@ export async function settled(page: Page): Promise<void> {
   );
 }
 
-/** A number that tells pictures of the canvas apart. */
+/** Returns a hash of the canvas's picture. */
 export async function pixels(page: Page): Promise<number> {
   await settled(page);
   return page.evaluate(() => {
@@ -90,7 +90,7 @@ export async function colorAt(page: Page, at: { x: number; y: number }): Promise
 
 export const fileUrl = (name: string): string => `file://${file(name)}`;
 
-/** Runs the server; `stop` ends it as Ctrl-C does, and tells its status. */
+/** Runs the server. `stop` ends it as Ctrl-C does, and returns its exit status. */
 export async function serve(...args: string[]): Promise<{ url: string; stop: () => Promise<number | null> }> {
   const child = spawn(tool, ["view", ...args], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
   const url = await new Promise<string>((resolve, reject) => {

@@ -1,5 +1,5 @@
-// Proves in a real browser that moving scenes play, scrub and loop, that pairs are drawn and said as their file has them,
-// and that the chart of stages leads to frames.
+// Proves in a real browser that moving scenes play, scrub and loop. Also proves that pairs and their texts agree with
+// the file, and that a click on the chart of stages shows a frame.
 import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";

@@ -1,5 +1,5 @@
-// Proves in a real browser that surface maps show the values of their files: in colours, under a click, in the list of
-// places, below a threshold; that controls change the picture, and places move the view.
+// Proves in a real browser that surface maps show the values of their files: as colours, under a click and in the list
+// of places. A threshold must mark places, controls must change the picture, and places must move the view.
 import { readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";

@@ -1,5 +1,5 @@
-// Proves in a real browser that the page loads without complaints and without a network, that every control changes the
-// picture, that what it says is what the files hold, and that bad files give a message.
+// Proves in a real browser that the page loads without complaints and without a network. Every control must change the
+// picture, texts must agree with the files, and bad files must give a message.
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { request } from "node:http";

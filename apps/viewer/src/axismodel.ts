@@ -1,25 +1,25 @@
-// A medial axis at any angle theta: which triangles, edges and vertices are there.
+// Model of a medial axis: the triangles, edges and vertices that exist at any angle theta.
 import type { AxisItem } from "./scene.ts";
 
 export type AxisCounts = { triangles: number; sheets: number; curves: number; seams: number; rims: number };
 
-/** The part of an axis that is there at an angle. */
+/** The part of an axis that exists at an angle. */
 export type AxisPart = {
   triangles: number; // the first ones of AxisModel.triangles
-  edges: Uint32Array; // numbers of the edges that are there
+  edges: Uint32Array; // numbers of the existing edges
   junctions: Uint32Array; // vertices
   loose: Uint32Array; // vertices of no edge and no triangle
   counts: AxisCounts;
 };
 
 export class AxisModel {
-  /** Triangles with extent, those that stay longest first: at every angle the first ones are there. */
+  /** Triangles with area, by descending `until`, so that the first ones exist at every angle. */
   readonly triangles: Uint32Array;
   readonly until: Float32Array;
-  /** The number of each in the file. */
+  /** The number of each triangle in the file. */
   readonly order: Uint32Array;
   readonly item: AxisItem;
-  /** Edges with length: pairs of vertices, roles, and the angles between which they have them. */
+  /** Numbers of the edges with length. */
   readonly edges: Uint32Array;
   readonly #vertexOnTriangleUntil: Float32Array;
 
@@ -57,7 +57,7 @@ export class AxisModel {
     return this.item.leastTheta !== undefined;
   }
 
-  /** @param theta  degrees; counts only where the file holds all angles. */
+  /** @param theta  degrees; ignored unless the file contains all angles. */
   at(theta: number): AxisPart {
     const item = this.item;
     const angle = this.isNested ? theta : 0;
@@ -67,7 +67,7 @@ export class AxisModel {
     const kinds = [rim, seam, curve];
     const perKind = [0, 0, 0];
     const vertexCount = item.positions.length / 3;
-    const around = new Uint8Array(3 * vertexCount); // of each kind
+    const around = new Uint8Array(3 * vertexCount); // for each kind
     for (const e of this.edges) {
       if (!(item.edgeFrom[e] <= angle && angle < item.edgeUntil[e])) continue;
       const kind = kinds.indexOf(item.edgeRoles[e]);
@@ -111,7 +111,7 @@ export class AxisModel {
     return p[3 * a] === p[3 * b] && p[3 * a + 1] === p[3 * b + 1] && p[3 * a + 2] === p[3 * b + 2];
   }
 
-  /** How many triangles are there: they stay longest first. */
+  /** Returns the number of triangles that exist at an angle. */
   #countAt(theta: number): number {
     let low = 0;
     let high = this.until.length;
@@ -130,7 +130,7 @@ export class AxisModel {
   }
 }
 
-/** As src/medial_axis/label_sheets.cpp has it, but for sheets that only touch. */
+/** The same rule as in src/axis/label_sheets.cpp, except for sheets that only touch. */
 export function isJunctionOf(rims: number, seams: number, curves: number, isOnTriangle: boolean): boolean {
   if (curves === 0 && seams === 0) return rims > 2;
   if (seams === 2 && curves === 0) return rims > 0;

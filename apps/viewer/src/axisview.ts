@@ -20,8 +20,8 @@ import { checkbox, choice, element, Slider, styleChoice } from "./widgets.ts";
 
 type ColorBy = "radius" | "angle" | "sheet";
 const coloringOf = { radius: Coloring.scalar, angle: Coloring.angle, sheet: Coloring.region };
-const firstTheta = 60; // as of blum medial
-const curveReach = 0.012; // how far beside a curve a click still hits it, as a part of the scene's radius
+const firstTheta = 60; // the default of blum medial
+const curveReach = 0.012; // how far beside a curve a click hits it, as a fraction of the scene's radius
 
 export class AxisView implements View {
   readonly item: AxisItem;
@@ -29,8 +29,8 @@ export class AxisView implements View {
   readonly controls = element("div", "controls");
   readonly #around: Surroundings;
   readonly #model: AxisModel;
-  readonly #places: Float32Array; // in the drawn world
-  readonly #corners: Float32Array; // of the model's triangles
+  readonly #places: Float32Array; // in drawn coordinates
+  readonly #corners: Float32Array; // for the model's triangles
   readonly #picker: Picker;
   readonly #surface = surfaceMaterial({ hasCells: true });
   readonly #geometry = new THREE.BufferGeometry();
@@ -205,7 +205,7 @@ export class AxisView implements View {
     curves.uniforms.range.value.set(...this.#radii);
   }
 
-  /** Draws what is there at theta. */
+  /** Draws the part that exists at theta. */
   #showPart(): void {
     this.#geometry.setDrawRange(0, 3 * this.#part.triangles);
     const roles = this.item.roleNumbers;
@@ -248,7 +248,7 @@ export class AxisView implements View {
   #countsText(): string {
     const { triangles, sheets, curves, seams } = this.#part.counts;
     const junctions = this.#part.junctions.length;
-    // Sheets keep their numbers while theta moves, and so are not told apart anew at each angle.
+    // Sheets keep their numbers at all angles, because they are not labelled again.
     const { leastTheta } = this.item;
     const told = leastTheta === undefined ? "" : ` (as they are at ${leastTheta}°)`;
     return (

@@ -1,4 +1,4 @@
-// The chart below a moving scene: the seconds of each stage, stacked, over the frames.
+// The chart below a moving scene: stacked seconds of each stage over the frames.
 import { rounded, roundStep } from "./format.ts";
 import type { Stages } from "./scene.ts";
 
@@ -15,7 +15,7 @@ const units: TimeUnit[] = [
   { name: "µs", seconds: 1e-6 },
 ];
 
-/** The unit in which a time has digits before its point. */
+/** Returns the unit in which a time has digits before the decimal point. */
 export function unitOf(seconds: number): TimeUnit {
   return units.find((unit) => seconds >= unit.seconds) ?? units[seconds > 0 ? 2 : 1];
 }
@@ -24,7 +24,7 @@ export function timeText(seconds: number, unit = unitOf(seconds)): string {
   return Number.isFinite(seconds) ? `${rounded(seconds / unit.seconds, 3)} ${unit.name}` : "–";
 }
 
-/** The seconds of all stages of a frame; stages without a number count as none. */
+/** Returns the seconds of all stages of a frame. Stages without a number count as 0. */
 export function totalOf(stages: Stages, frame: number): number {
   const count = stages.names.length;
   let sum = 0;
@@ -32,7 +32,7 @@ export function totalOf(stages: Stages, frame: number): number {
   return sum;
 }
 
-/** A scale on which the longest frame fits, with about three lines. */
+/** Returns a scale that fits the longest frame, with about three lines. */
 export function chartScale(totals: readonly number[]): ChartScale {
   const most = totals.reduce((a, b) => Math.max(a, b), 0);
   const unit = unitOf(most);
@@ -41,7 +41,7 @@ export function chartScale(totals: readonly number[]): ChartScale {
   return { top: Math.max(most * 1.04, step), step, unit };
 }
 
-/** Frames that are drawn, one for each column: the longest of those that share a pixel. */
+/** Returns the drawn frames, one per column: the longest one of those that share a pixel. */
 export function columnsOf(totals: readonly number[], pixels: number): number[] {
   const count = Math.max(Math.min(totals.length, Math.floor(pixels)), 1);
   const columns: number[] = [];
@@ -54,19 +54,19 @@ export function columnsOf(totals: readonly number[], pixels: number): number[] {
   return columns;
 }
 
-/** The frame under a place of the plot; 0 is its left edge. */
+/** Returns the frame at a place of the plot; x is 0 at its left edge. */
 export function frameAt(x: number, width: number, frames: number): number {
   const frame = Math.floor((x / Math.max(width, 1)) * frames);
   return Math.min(Math.max(frame, 0), frames - 1);
 }
 
-export const plotLeft = 52; // pixels: room for the texts of the lines
+export const plotLeft = 52; // pixels: room for the labels of the lines
 export const plotTop = 6;
 const plotBottom = 4;
 
 export type ChartColors = { stages: string[]; text: string; line: string };
 
-/** Draws the bars and the lines; the mark of the current frame lies above, so that it moves without this. */
+/** Draws the bars and the lines. The mark of the current frame is another element, so it moves without redrawing. */
 export class Chart {
   readonly canvas = document.createElement("canvas");
   readonly #stages: Stages;
@@ -79,7 +79,7 @@ export class Chart {
     this.#scale = chartScale(this.#totals);
   }
 
-  /** The unit of the lines. */
+  /** The unit of the labels. */
   get unit(): TimeUnit {
     return this.#scale.unit;
   }

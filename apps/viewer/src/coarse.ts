@@ -1,20 +1,20 @@
-// Fewer triangles for large surfaces, to show while the view moves and a whole picture would take too long: vertices of
-// a cell of a grid become one of them (vertex clustering; Rossignac, Borrel 1993).
+// Coarse versions of large surfaces, shown while the view moves and whole pictures take too long. All vertices in a
+// cell of a grid become one of them (vertex clustering; Rossignac, Borrel 1993).
 
 export type Coarse = {
-  index: Uint32Array; // three vertices for each triangle that is left
-  kept: Uint32Array; // its number, rising
+  index: Uint32Array; // three vertices for each remaining triangle
+  kept: Uint32Array; // number of each remaining triangle, ascending
 };
 
-/** Below so many triangles, nothing is gained. */
+/** With fewer triangles, coarsening gains nothing. */
 export const worthCoarsening = 100_000;
 const cellsAlong = 80;
 const across = cellsAlong + 1;
 
-/** @param triangles  undefined where corners lie one after the other. */
+/** @param triangles  undefined if `positions` lists the corners of all triangles. */
 export function coarsen(positions: Float32Array, triangles: Uint32Array | undefined, count: number): Coarse {
   const cells = cellsOf(positions);
-  const first = new Int32Array(across ** 3).fill(-1); // vertex of each cell
+  const first = new Int32Array(across ** 3).fill(-1); // representative vertex of each cell
   const vertexIn = (cell: number, v: number): number => {
     if (first[cell] < 0) first[cell] = v;
     return first[cell];
@@ -33,7 +33,7 @@ export function coarsen(positions: Float32Array, triangles: Uint32Array | undefi
   return { index: Uint32Array.from(index), kept: Uint32Array.from(kept) };
 }
 
-/** The cell of each vertex. */
+/** Returns the cell of each vertex. */
 function cellsOf(positions: Float32Array): Int32Array {
   const least = [Infinity, Infinity, Infinity];
   const most = [-Infinity, -Infinity, -Infinity];
@@ -55,7 +55,7 @@ function cellsOf(positions: Float32Array): Int32Array {
   return cells;
 }
 
-/** How many of the first triangles are left: of those with a number below `count`. */
+/** Returns how many triangles with a number below `count` remain. */
 export function keptBelow(coarse: Coarse, count: number): number {
   let low = 0;
   let high = coarse.kept.length;

@@ -1,4 +1,4 @@
-// The key facts of everything on the page, as text: for screen readers, and where nothing can be drawn.
+// The key facts of all items as text, for screen readers and for browsers without WebGL 2.
 import { place } from "./format.ts";
 import type { Fact, Item } from "./scene.ts";
 import { element } from "./widgets.ts";
@@ -31,7 +31,7 @@ function listOf(facts: Fact[]): HTMLElement {
   return list;
 }
 
-/** All facts below each other; `live` has what controls change. */
+/** Returns all facts below each other. `live` returns the facts that controls change. */
 export function factsElement(items: Item[], live: (item: Item) => Fact[]): HTMLElement {
   const root = element("div");
   for (const item of items) {

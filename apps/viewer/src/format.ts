@@ -1,6 +1,6 @@
 // Numbers as text.
 
-/** The shortest text that reads back to the same single-precision number: what a file's float32 is. */
+/** Returns the shortest text that reads back as the same single-precision number, as in a file with float32. */
 export function exactFloat32(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   for (let digits = 1; digits < 9; ++digits) {
@@ -10,7 +10,7 @@ export function exactFloat32(value: number): string {
   return String(Number(value.toPrecision(9)));
 }
 
-/** A few digits, for people. */
+/** Returns a number with few digits, for people. */
 export function rounded(value: number, digits = 6): string {
   return Number.isFinite(value) ? String(Number(value.toPrecision(digits))) : String(value);
 }
@@ -27,11 +27,11 @@ export function place(p: ArrayLike<number>): string {
   return `(${rounded(p[0])}, ${rounded(p[1])}, ${rounded(p[2])})`;
 }
 
-/** 1, 2 or 5 times a power of ten, such that about `wanted` steps fit into a range. */
+/** Returns 1, 2 or 5 times a power of ten, such that about `wanted` steps fit into a range. */
 export function roundStep(range: number, wanted: number): number {
   if (!(range > 0) || !Number.isFinite(range)) return 0;
   const power = 10 ** Math.floor(Math.log10(range / wanted));
   const lead = range / wanted / power;
-  // Powers of ten below 1 are not exact: the text is.
+  // Powers of ten below 1 are not exact, but their texts are.
   return Number((power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10)).toPrecision(3));
 }

@@ -1,7 +1,7 @@
-// What a frame of a moving scene has: its normals, and the pairs of each kind.
+// Normals and pairs of the frames of a moving scene.
 import type { FramesItem, PairTable } from "./scene.ts";
 
-/** Adds up the normals of the triangles at each vertex, by area. Shaders make them as long as they want. */
+/** Sums the normals of the triangles at each vertex, weighted by area. Shaders normalize them. */
 export function vertexNormals(positions: Float32Array, triangles: Uint32Array, out: Float32Array): void {
   out.fill(0, 0, positions.length);
   for (let i = 0; i < triangles.length; i += 3) {
@@ -29,14 +29,14 @@ export function vertexNormals(positions: Float32Array, triangles: Uint32Array, o
   }
 }
 
-/** How many pairs of each kind a frame has. */
+/** Returns the number of pairs of each kind in a frame. */
 export function pairCounts(pairs: PairTable, frame: number): number[] {
   const counts = pairs.kindNames.map(() => 0);
   for (let p = pairs.first[frame]; p < pairs.first[frame + 1]; ++p) ++counts[pairs.kinds[p]];
   return counts;
 }
 
-/** How many pairs of each kind the frame with most of them has. */
+/** Returns, for each kind, the largest number of pairs in a frame. */
 export function mostPairs(pairs: PairTable): number[] {
   const most = pairs.kindNames.map(() => 0);
   for (let frame = 0; frame + 1 < pairs.first.length; ++frame) {
@@ -46,8 +46,8 @@ export function mostPairs(pairs: PairTable): number[] {
 }
 
 /**
- * Copies the ends of a frame's pairs of one kind, and the distance at each end. Returns how many there are; arrays are
- * large enough for that.
+ * Copies the ends of a frame's pairs of one kind, and the distance at each end. Returns the number of pairs. The arrays
+ * must be large enough.
  */
 export function fillPairs(pairs: PairTable, frame: number, kind: number, ends: Float32Array, values: Float32Array): number {
   let count = 0;
@@ -60,7 +60,7 @@ export function fillPairs(pairs: PairTable, frame: number, kind: number, ends: F
   return count;
 }
 
-/** The most vertices and triangles that a frame has: what buffers must hold. */
+/** Returns the largest numbers of vertices and triangles of a frame, for the sizes of buffers. */
 export function capacityOf(item: FramesItem): { vertices: number; triangles: number } {
   const most = (counts: number[]) => counts.reduce((a, b) => Math.max(a, b), 0);
   return {

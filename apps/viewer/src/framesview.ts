@@ -1,4 +1,4 @@
-// A moving scene on the stage: one mesh whose buffers are filled anew for each frame, and the pairs of that.
+// A moving scene on the stage: one mesh whose buffers are refilled for each frame, and the pairs of the frame.
 import * as THREE from "three";
 import { coarsen } from "./coarse.ts";
 import { plural, rounded } from "./format.ts";
@@ -15,8 +15,8 @@ import { checkbox, choice, element, styleChoice } from "./widgets.ts";
 
 const light: Triple = [0.66, 0.72, 0.79];
 const dark: Triple = [0.62, 0.68, 0.76];
-const worthCoarsening = 20_000; // triangles: less than for one mesh, as each frame is a whole picture
-const pairReach = 0.012; // how far beside a pair a click still hits it, as a part of the scene's radius
+const worthCoarsening = 20_000; // triangles: less than for one mesh, because each frame is a whole picture
+const pairReach = 0.012; // how far beside a pair a click hits it, as a fraction of the scene's radius
 
 type ColorBy = "distance" | "kind";
 
@@ -26,16 +26,16 @@ export class FramesView implements View {
   readonly controls = element("div", "controls");
   readonly timeline: Timeline;
   readonly #around: Surroundings;
-  readonly #offset: Triple; // of its own origin in the drawn world
+  readonly #offset: Triple; // of the item's origin in drawn coordinates
   readonly #geometry = new THREE.BufferGeometry();
   readonly #material = surfaceMaterial({ hasNormals: true, hasCreases: true });
   readonly #surface = new THREE.Mesh(this.#geometry, this.#material);
   readonly #pairs: PairsView | undefined;
   readonly #counts = element("p", "counts");
   #picker: { frame: number; of: Picker } | undefined;
-  #mesh = -1; // whose triangles are in the buffer
+  #mesh = -1; // mesh whose triangles are in the buffer
   readonly #coarseGeometry = new THREE.BufferGeometry();
-  #coarseMesh = -1; // whose triangles that has
+  #coarseMesh = -1; // mesh whose triangles it has
   #isMoving = false;
   #style: Style = "solid";
   #colorBy: ColorBy = "kind";
@@ -83,7 +83,7 @@ export class FramesView implements View {
     const surface = surfaceHit(this.#picker.of, { name: this.fileName, origin }, { positions, triangles }, ray, this.#offset);
     const pair = this.#pairs?.pick(own, pairReach * this.#around.radius);
     if (pair === undefined || this.item.pairs === undefined) return surface;
-    // A pair on the surface is meant, also where it lies a little behind.
+    // A click on a pair at the surface selects the pair, even if it lies slightly behind.
     const isHidden = surface !== undefined && surface.t < pair.t - pairReach * this.#around.radius;
     return isHidden && !this.#isThrough ? surface : this.#pairHit(this.item.pairs, pair.pair, pair.t);
   }
@@ -124,7 +124,7 @@ export class FramesView implements View {
     this.#chooseGeometry();
   }
 
-  /** Fewer triangles where pictures take long; which ones is found once for a mesh that deforms. */
+  /** Uses fewer triangles if pictures take long. They are chosen once for all frames of a mesh. */
   #chooseGeometry(): void {
     const { positions, mesh } = this.item.frames[this.timeline.frame];
     const triangles = this.item.meshes[mesh];
@@ -148,7 +148,7 @@ export class FramesView implements View {
     this.#geometry.setIndex(index.setUsage(THREE.DynamicDrawUsage));
   }
 
-  /** Puts a frame into the buffers. */
+  /** Copies a frame into the buffers. */
   #fill(frame: number): void {
     const { positions, mesh } = this.item.frames[frame];
     const triangles = this.item.meshes[mesh];
@@ -170,7 +170,7 @@ export class FramesView implements View {
 
   #show(frame: number): void {
     this.#fill(frame);
-    this.#around.forget(); // which was of the frame before
+    this.#around.forget(); // the hit belongs to the frame before
     this.#around.moved();
     if (!this.timeline.isPlaying) this.#around.changed();
   }
@@ -250,7 +250,7 @@ export class FramesView implements View {
   }
 }
 
-/** Hands the first numbers of a buffer to the graphics card. */
+/** Uploads the first numbers of a buffer to the graphics card. */
 function upload(attribute: THREE.BufferAttribute, count: number): void {
   attribute.clearUpdateRanges();
   attribute.addUpdateRange(0, count);

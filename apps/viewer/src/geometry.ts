@@ -1,7 +1,7 @@
-// Rays and triangles, in plain numbers: what is closest to a point. What a click hits: picker.ts.
+// Rays, triangles and closest points, in plain numbers. For hits of clicks see picker.ts.
 import type { Triple } from "./scene.ts";
 
-export type Ray = { origin: Triple; direction: Triple }; // of length 1
+export type Ray = { origin: Triple; direction: Triple }; // direction of length 1
 
 export const sub = (a: ArrayLike<number>, b: ArrayLike<number>): Triple => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const add = (a: ArrayLike<number>, b: ArrayLike<number>): Triple => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -9,26 +9,26 @@ export const scale = (a: ArrayLike<number>, s: number): Triple => [a[0] * s, a[1
 export const dot = (a: ArrayLike<number>, b: ArrayLike<number>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const distance = (a: ArrayLike<number>, b: ArrayLike<number>): number => Math.hypot(...sub(a, b));
 export const along = (ray: Ray, t: number): Triple => add(ray.origin, scale(ray.direction, t));
-/** Where a ray comes closest to a segment, and how far beside it then is. */
+/** Returns where a ray is closest to a segment, and their distance there. */
 export function raySegment(ray: Ray, a: Triple, b: Triple): { t: number; away: number } {
   const ab = sub(b, a);
   const from = sub(a, ray.origin);
   const cosine = dot(ab, ray.direction);
-  const across = dot(ab, ab) - cosine * cosine; // of the segment as the ray sees it, squared
+  const across = dot(ab, ab) - cosine * cosine; // squared length of the segment across the ray
   const s = across > 0 ? (cosine * dot(from, ray.direction) - dot(ab, from)) / across : 0;
   const at = add(from, scale(ab, Math.min(Math.max(s, 0), 1)));
   const t = Math.max(dot(at, ray.direction), 0);
   return { t, away: distance(at, scale(ray.direction, t)) };
 }
 
-/** One of many triples that lie behind each other. */
+/** Returns a triple of a flat array. */
 export const tripleAt = (numbers: ArrayLike<number>, i: number): Triple => [
   numbers[3 * i],
   numbers[3 * i + 1],
   numbers[3 * i + 2],
 ];
 
-/** The closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5). */
+/** Returns the closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5). */
 export function closestOnTriangle(p: Triple, a: Triple, b: Triple, c: Triple): Triple {
   const ab = sub(b, a);
   const ac = sub(c, a);
@@ -56,7 +56,7 @@ export function closestOnTriangle(p: Triple, a: Triple, b: Triple, c: Triple): T
   return sum === 0 ? a : add(a, add(scale(ab, vb / sum), scale(ac, vc / sum)));
 }
 
-/** The closest point of a mesh, by looking at every triangle. */
+/** Returns the closest point of a mesh, with a pass over all triangles. */
 export function closestOnMesh(p: Triple, positions: ArrayLike<number>, triangles: ArrayLike<number>): Triple | undefined {
   let best: Triple | undefined;
   let least = Infinity;
@@ -65,7 +65,7 @@ export function closestOnMesh(p: Triple, positions: ArrayLike<number>, triangles
     const a = corner(0);
     const b = corner(1);
     const c = corner(2);
-    // A triangle whose box is further than the best point needs no closer look.
+    // A triangle whose box is further away than the best point is skipped.
     let bound = 0;
     for (let x = 0; x < 3; ++x) {
       const below = Math.min(a[x], b[x], c[x]) - p[x];

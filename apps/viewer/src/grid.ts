@@ -1,7 +1,7 @@
-// Nodes of grids: where they lie, and layers of them.
+// Positions of grid nodes, and layers of nodes.
 import type { Grid, Numbers, Triple } from "./scene.ts";
 
-/** The world place of index coordinates. */
+/** Returns the world position of index coordinates. */
 export function toWorld(grid: Grid, at: Triple): Triple {
   const out: Triple = [...grid.origin];
   for (let axis = 0; axis < 3; ++axis) {
@@ -10,7 +10,7 @@ export function toWorld(grid: Grid, at: Triple): Triple {
   return out;
 }
 
-/** The index coordinates of a world place. */
+/** Returns the index coordinates of a world position. */
 export function toIndex(grid: Grid, p: ArrayLike<number>): Triple {
   const out: Triple = [0, 0, 0];
   for (let axis = 0; axis < 3; ++axis) {
@@ -28,12 +28,12 @@ export function nearestNode(grid: Grid, at: Triple): Triple {
   return at.map((value, axis) => Math.min(Math.max(Math.round(value), 0), grid.size[axis] - 1)) as Triple;
 }
 
-/** The axes of a layer: u runs along its rows. */
+/** Returns the axes of a layer; the first one, u, runs along its rows. */
 export function layerAxes(axis: number): [number, number] {
   return axis === 0 ? [1, 2] : axis === 1 ? [0, 2] : [0, 1];
 }
 
-/** Copies the values of a layer, u fastest, into an array that they fit into. */
+/** Copies the values of a layer, u fastest, into an array that is large enough. */
 export function copyLayer(grid: Grid, values: Numbers, axis: number, layer: number, out: Numbers): void {
   const strides = [1, grid.size[0], grid.size[0] * grid.size[1]];
   const [u, v] = layerAxes(axis);

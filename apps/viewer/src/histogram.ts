@@ -1,4 +1,4 @@
-// How values are spread over a surface, as bars in their colours.
+// Histogram of the values over a surface, with bars in their colours.
 import { rounded } from "./format.ts";
 import { element } from "./widgets.ts";
 
@@ -7,9 +7,9 @@ export class Histogram {
   readonly #canvas = element("canvas");
   readonly #from: number;
   readonly #to: number;
-  readonly #parts: Float64Array; // of the area, each
+  readonly #parts: Float64Array; // fractions of the area
 
-  /** @param areas  with values in each of like parts of the range. */
+  /** @param areas  area with values in each bin; bins have equal widths. */
   constructor(title: string, units: string, from: number, to: number, areas: Float64Array) {
     [this.#from, this.#to] = [from, to];
     const whole = areas.reduce((a, b) => a + b, 0) || 1;
@@ -20,7 +20,7 @@ export class Histogram {
     this.root.append(element("figcaption", "", title), this.#canvas, ends);
   }
 
-  /** @param threshold  marked by a line, where there is one. */
+  /** @param threshold  marked by a line if defined. */
   draw(colorOf: (value: number) => string, threshold: number | undefined): void {
     const ratio = Math.min(window.devicePixelRatio, 2);
     const [width, height] = [this.#canvas.clientWidth, this.#canvas.clientHeight];
@@ -44,7 +44,7 @@ export class Histogram {
     context.fillRect(((threshold - this.#from) / (this.#to - this.#from)) * width - 1, 0, 2, height);
   }
 
-  /** For those who do not see it. */
+  /** Returns a summary for screen readers. */
   #summary(units: string): string {
     let sum = 0;
     const bins = this.#parts.length;

@@ -1,8 +1,8 @@
-// Asks a worker for level surfaces: the last one that was asked for counts.
+// Requests level surfaces from a worker. While it is busy, only the last request is kept.
 import type { IsoQuestion } from "./isoworker.ts";
 import type { Surface } from "./surfacenets.ts";
 
-declare const ISO_WORKER: string; // its source, put here by the build
+declare const ISO_WORKER: string; // source of the worker, inserted by the build
 
 export class IsoSurfaces {
   readonly #worker: Worker;

@@ -1,4 +1,5 @@
-// Level surfaces off the main thread. First message: the field; then levels; each is answered by a surface.
+// Worker that extracts level surfaces. The first message is the field. Each further message is a level, answered by a
+// surface.
 import { SurfaceNets } from "./surfacenets.ts";
 
 export type IsoField = { values: Float32Array; size: number[]; spacing: number[] };

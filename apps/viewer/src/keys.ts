@@ -1,4 +1,4 @@
-// What keys do while the picture has the focus, and what a click on it does.
+// Keys while the picture has the focus, and clicks on it.
 import type { Triple } from "./scene.ts";
 import type { Stage } from "./stage.ts";
 
@@ -54,7 +54,7 @@ export const keyHelp: readonly (readonly [keys: string, text: string])[] = [
   ["Enter", "what is in the middle"],
 ];
 
-/** Of pages with a moving scene, see timeline.ts. */
+/** Further keys of pages with a moving scene, see timeline.ts. */
 export const frameKeyHelp: typeof keyHelp = [
   ["Space", "play and pause"],
   [", .", "frame before and after"],

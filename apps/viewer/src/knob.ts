@@ -1,4 +1,4 @@
-// The handle that a slice is dragged by; with the keyboard, arrows move it.
+// The handle for dragging a slice. Arrow keys move it, too.
 import type { Stage } from "./stage.ts";
 import type { VolumeView } from "./volumeview.ts";
 import { element } from "./widgets.ts";
@@ -18,7 +18,7 @@ export class Knob {
     this.root.addEventListener("pointerdown", (event) => this.#onPress(event));
   }
 
-  /** Puts it where the slice is. */
+  /** Moves it to the slice. */
   place(): void {
     const { slice } = this.#view;
     const at = this.#stage.project(slice.handle().at);
@@ -66,7 +66,7 @@ export class Knob {
     const squared = step.x ** 2 + step.y ** 2;
     const first = slice.layer;
     const onMove = (move: PointerEvent) => {
-      // Where layers are seen edge on, up is forward.
+      // If layers are seen edge-on, dragging upwards moves forward.
       const layers =
         squared > 1e-4
           ? ((move.clientX - event.clientX) * step.x + (move.clientY - event.clientY) * step.y) / squared

@@ -1,4 +1,4 @@
-// Legends of what is coloured, with units: on the page, and in saved pictures.
+// Legends of colours with units, on the page and in saved pictures.
 import { cssColor, rampColor, type Colors } from "./colors.ts";
 import { rounded } from "./format.ts";
 import type { Legend } from "./view.ts";
@@ -9,7 +9,7 @@ const digits = 4;
 
 export const titleOf = (legend: Legend): string => (legend.units ? `${legend.title} (${legend.units})` : legend.title);
 
-/** The colours from end to end; those of regions and keys have sharp borders. */
+/** Returns the colours from end to end. Regions and keys have sharp borders. */
 export function colorsOf(legend: Legend, colors: Colors): string[] {
   if (legend.kind === "regions") {
     return Array.from({ length: colors.regions.length / 4 }, (_, i) => cssColor(colors.regions, i));
@@ -32,7 +32,7 @@ function colorAt(legend: Extract<Legend, { kind: "ramp" }>, colors: Colors, t: n
   }
 }
 
-/** Texts below the bar, and where: 0 is its left end, 1 its right. */
+/** Returns the texts below the bar and their positions: 0 is its left end, 1 its right end. */
 export function marksOf(legend: Legend): [text: string, at: number][] {
   if (legend.kind === "regions") return [[legend.note, 0]];
   if (legend.kind === "keys") {

@@ -1,4 +1,4 @@
-// The page: reads the scene, makes a view for each file, and puts controls beside the picture.
+// The page: reads the scene, makes a view for each file, and adds controls beside the picture.
 import { AxisView } from "./axisview.ts";
 import { factsElement, kindName } from "./facts.ts";
 import { FramesView } from "./framesview.ts";
@@ -59,7 +59,7 @@ class Page {
   readonly #marker: Marker;
   readonly #readout = new Readout(() => this.#showHit(undefined));
   readonly #facts = element("div");
-  #hitView: View | undefined; // what the last click hit
+  #hitView: View | undefined; // view that the last click hit
 
   constructor(scene: Scene, stage: Stage) {
     this.#scene = scene;
@@ -115,7 +115,7 @@ class Page {
     return this.#stage;
   }
 
-  /** Shows what is under a place of the page. */
+  /** Shows the item under a place of the page. */
   click(x: number, y: number): void {
     const ray = this.#stage.ray(x, y);
     let best: Hit | undefined;
@@ -149,7 +149,7 @@ class Page {
     return this.#scene.items.filter((item) => item.kind === "mesh");
   }
 
-  /** Saves what is seen, with its legends. */
+  /** Saves the picture with its legends. */
   async savePicture(): Promise<void> {
     this.#stage.drawNow();
     const legends = this.#visible().flatMap((view) => view.legends());
@@ -229,7 +229,7 @@ function errorsElement(messages: string[]): HTMLElement {
   return root;
 }
 
-/** What tests may ask the page. */
+/** Access to the page for tests. */
 type Api = { isReady: boolean; milliseconds: number; page?: Page; scene?: Scene };
 declare global {
   interface Window {

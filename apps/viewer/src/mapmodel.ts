@@ -1,4 +1,4 @@
-// What a surface map says: values at places of its surface, where they are the largest, how they are spread over it.
+// Model of a surface map: values at places of its surface, largest values, and their distribution.
 import { add, closestOnTriangle, distance, dot, scale, sub, tripleAt } from "./geometry.ts";
 import type { MapItem, Triple } from "./scene.ts";
 
@@ -18,19 +18,19 @@ export class MapModel {
     this.item = item;
   }
 
-  /** The corners of a triangle, as seen from the item's origin. */
+  /** Returns the corners of a triangle, relative to the item's origin. */
   cornersOf(triangle: number): [Triple, Triple, Triple] {
     const { positions, triangles } = this.item;
     const at = (k: number): Triple => tripleAt(positions, triangles[3 * triangle + k]);
     return [at(0), at(1), at(2)];
   }
-  /** Where they are in the texture. */
+  /** Returns the places of its corners in the texture. */
   chartOf(triangle: number): [Place, Place, Place] {
     const { corners } = this.item;
     const at = (k: number): Place => [corners[6 * triangle + 2 * k], corners[6 * triangle + 2 * k + 1]];
     return [at(0), at(1), at(2)];
   }
-  /** Of length 1, to where corners are seen counter-clockwise from; zeros where there is none. */
+  /** Returns the unit normal, towards the side that sees the corners counterclockwise; zeros if degenerate. */
   normalOf(triangle: number): Triple {
     const [a, b, c] = this.cornersOf(triangle);
     const [u, v] = [sub(b, a), sub(c, a)];
@@ -38,7 +38,7 @@ export class MapModel {
     return scale(n, 1 / (Math.hypot(...n) || 1));
   }
 
-  /** Where a point of a triangle is in the texture. */
+  /** Returns the place of a point of a triangle in the texture. */
   placeOf(triangle: number, point: Triple): Place {
     const [a, b, c] = this.cornersOf(triangle);
     const [u, v, p] = [sub(b, a), sub(c, a), sub(point, a)];
@@ -50,14 +50,14 @@ export class MapModel {
     return [0, 1].map((k) => q[k] + s * (r[k] - q[k]) + t * (w[k] - q[k])) as Place;
   }
 
-  /** The texel that a place lies in. */
+  /** Returns the texel that contains a place. */
   texelAt([x, y]: Place): number {
     const { width, height } = this.item;
     const inside = (value: number, size: number) => Math.min(Math.max(Math.floor(value), 0), size - 1);
     return inside(y, height) * width + inside(x, width);
   }
 
-  /** What is read at a place, bilinearly; that of its texel where one of the four is none. */
+  /** Returns the value at a place: bilinear, or that of its texel if one of the four values is not finite. */
   valueAt(place: Place): number {
     const { width, height, distance: values } = this.item;
     const [x, y] = [place[0] - 0.5, place[1] - 0.5];
@@ -71,7 +71,7 @@ export class MapModel {
     return (four[0] * (1 - f) + four[1] * f) * (1 - g) + (four[2] * (1 - f) + four[3] * f) * g;
   }
 
-  /** The point of the surface that a texel stands for, as seen from the item's origin. */
+  /** Returns the surface point that a texel represents, relative to the item's origin. */
   pointOf(texel: number): Triple {
     const { width, owners } = this.item;
     const triangle = owners[texel];
@@ -85,7 +85,7 @@ export class MapModel {
     return s >= 0 && t >= 0 && s + t <= 1 ? inPlane : closestOnTriangle(inPlane, a, b, c);
   }
 
-  /** How much of the surface each texel stands for; texels beside their chart for nothing, if others are in it. */
+  /** Returns the surface area of each texel. Texels beside their chart get 0 if other texels lie in it. */
   areas(): Float32Array {
     if (this.#areas !== undefined) return this.#areas;
     const { width, owners, triangles, corners } = this.item;
@@ -117,7 +117,7 @@ export class MapModel {
     return (this.#areas = areas);
   }
 
-  /** The area with values in each of `bins` like parts of a range; finite values beyond it count in none. */
+  /** Returns the area with values in each of `bins` equal parts of a range. Values outside the range do not count. */
   histogram(from: number, to: number, bins: number): Float64Array {
     const areas = this.areas();
     const { distance: values } = this.item;
@@ -125,13 +125,13 @@ export class MapModel {
     const perUnit = bins / (to - from);
     for (let texel = 0; texel < values.length; ++texel) {
       const value = values[texel];
-      if (!(value >= from && value <= to)) continue; // those that are no numbers, too
+      if (!(value >= from && value <= to)) continue; // also skips NaN
       out[Math.min(Math.floor((value - from) * perUnit), bins - 1)] += areas[texel];
     }
     return out;
   }
 
-  /** How many texels have at most this value, and which part of the area of the surface. */
+  /** Returns the number of texels with at most this value, and their fraction of the surface area. */
   below(most: number): { texels: number; part: number } {
     const areas = this.areas();
     const { distance: values, owners } = this.item;
@@ -147,8 +147,8 @@ export class MapModel {
   }
 
   /**
-   * Texels with a larger (or smaller) value than all within `apart` of them, the first one first. Where many are alike,
-   * those that are that far from each other.
+   * Returns up to `count` texels in order of their values, largest (or smallest) first. Each has the best value within
+   * `apart` of it, and no earlier one is closer than `apart`.
    */
   worst(count: number, isLargest: boolean, apart: number): number[] {
     const { distance: values } = this.item;
@@ -171,7 +171,7 @@ export class MapModel {
     return found;
   }
 
-  /** The texel with the largest value times `sign` of each cell of a grid; -1 of those without. */
+  /** Returns the texel with the largest value times `sign` in each cell of a grid; -1 for cells without one. */
   #bestOfCells(sign: number, side: number): { best: Int32Array; around: (cell: number) => number[] } {
     const { positions, owners, width, distance: values } = this.item;
     const lower: Triple = [Infinity, Infinity, Infinity];
@@ -193,7 +193,7 @@ export class MapModel {
         const [q, r, w] = this.chartOf(triangle);
         const whole = turn(q, r, w);
         from = (x, y) => {
-          // As pointOf(), but for borders.
+          // As in pointOf(), except at borders.
           const s = ((x - q[0]) * (w[1] - q[1]) - (w[0] - q[0]) * (y - q[1])) / whole;
           const t = ((r[0] - q[0]) * (y - q[1]) - (x - q[0]) * (r[1] - q[1])) / whole;
           const along = (k: 0 | 1 | 2) => cellAlong(a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]), k);

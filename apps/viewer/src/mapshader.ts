@@ -1,16 +1,16 @@
-// The texture of a surface map on the graphics card: values, so that their colours can be changed in the page.
+// Shader of surface maps. The texture contains values, so that the page can change their colours.
 import * as THREE from "three";
 import type { Color } from "./colors.ts";
 import type { MapItem } from "./scene.ts";
 
-// Rows of the map behind each other, cut into rows of this length: textures may be as long as a map is wide, or not.
+// All texels are stored in rows of this length, because a map may be wider than the largest texture.
 const fold = 4096;
-const none = 3e38; // what stands for texels without a finite value
+const none = 3e38; // marks texels without a finite value
 
-/** What is marked as below the threshold. */
+/** Colour of places below the threshold. */
 export const markColor: Color = [0.93, 0.07, 0.5];
 
-/** The colour at a place of the texture, in texels. Values are interpolated as by LINEAR without mipmaps, clamped. */
+/** Computes the colour at a place in texels. Interpolates values like LINEAR without mipmaps, clamped. */
 export const mapColor = /* glsl */ `
   precision highp sampler2D;
   uniform sampler2D values, diverging;
@@ -51,7 +51,7 @@ export const mapUniforms = (): Record<string, THREE.IUniform> => ({
   threshold: { value: 0 },
 });
 
-/** The values of a map as mapColor reads them. */
+/** Returns the values of a map in the layout of mapColor. */
 export function valueTexture({ distance }: MapItem): THREE.DataTexture {
   const rows = Math.ceil(distance.length / fold);
   const numbers = new Float32Array(rows * fold).fill(none);

@@ -1,4 +1,4 @@
-// A surface map on the stage: the mesh with values on it, how they are spread, and the worst places.
+// A surface map on the stage: the mesh with its values, their histogram, and the worst places.
 import * as THREE from "three";
 import { coarsen, worthCoarsening } from "./coarse.ts";
 import { rampColor } from "./colors.ts";
@@ -16,8 +16,8 @@ import { extremes } from "./volumeview.ts";
 import { button, checkbox, choice, element, Slider, styleChoice } from "./widgets.ts";
 
 const bins = 60;
-const listed = 8; // worst places
-const apartBy = 0.12; // of the radius of the mesh: places closer to each other are one
+const listed = 8; // number of worst places in the list
+const apartBy = 0.12; // fraction of the mesh's radius; closer places count as one
 const mark = `rgb(${markColor.map((c) => Math.round(255 * c)).join(" ")})`;
 const nothing = "rgb(184 184 184)";
 
@@ -32,14 +32,14 @@ export class MapView implements View {
   readonly controls = element("div", "controls");
   readonly model: MapModel;
   readonly #around: Surroundings;
-  readonly #offset: Triple; // of its own origin in the drawn world
+  readonly #offset: Triple; // of the item's origin in drawn coordinates
   readonly #material = surfaceMaterial({ hasMap: true });
   readonly #whole = new THREE.BufferGeometry();
   readonly #surface = new THREE.Mesh(this.#whole, this.#material);
   readonly #title: string;
-  readonly #range: [number, number]; // of the values, never empty
+  readonly #range: [number, number]; // range of the values, never empty
   readonly #hasGaps: boolean;
-  readonly #radius: number; // of the mesh
+  readonly #radius: number; // radius of the mesh
   readonly #worstPlaces = element("ol", "places");
   readonly #share = element("p", "counts");
   #colors: [number, number];
@@ -70,7 +70,7 @@ export class MapView implements View {
     this.#makeControls();
   }
 
-  /** What is seen through does not stand before what is inside. */
+  /** True if clicks prefer items inside. */
   get isSeenThrough(): boolean {
     return this.#style !== "solid";
   }
@@ -111,7 +111,7 @@ export class MapView implements View {
     this.#drawHistogram();
   }
 
-  /** Fewer triangles, each with the places of its own chart. */
+  /** Uses fewer triangles, each with the places of its own chart. */
   setMoving(isMoving: boolean): void {
     const { positions, triangles, corners } = this.item;
     if (triangles.length < 3 * worthCoarsening) return;
@@ -140,7 +140,7 @@ export class MapView implements View {
     this.object.add(this.#surface);
   }
 
-  /** @param value  that is read at the place `at`. */
+  /** @param value  value at the place `at`. */
   #hitAt(texel: number, triangle: number, t: number, value: number, at: Triple): Hit {
     const { item } = this;
     const own = item.distance[texel];
@@ -224,7 +224,7 @@ export class MapView implements View {
     );
     const tables = element("div", "group");
     this.controls.append(...this.#colorControls(), ...this.#thresholdControls(), tables);
-    // Once the picture is there: this looks at each texel.
+    // Runs after the first picture, because it visits each texel.
     setTimeout(() => this.#fill(tables), 0);
   }
 

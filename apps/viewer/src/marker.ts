@@ -1,4 +1,4 @@
-// What a click found, on the stage: the place, lines to its footprints, and the ball that touches them.
+// The result of a click on the stage: the place, lines to its footprints, and the ball that touches them.
 import * as THREE from "three";
 import { sub } from "./geometry.ts";
 import type { Triple } from "./scene.ts";

@@ -16,7 +16,7 @@ export class MeshView implements View {
   readonly item: MeshItem;
   readonly object = new THREE.Group();
   readonly controls: HTMLElement;
-  readonly #offset: Triple; // of its own origin in the drawn world
+  readonly #offset: Triple; // of the item's origin in drawn coordinates
   readonly #material = surfaceMaterial();
   #picker: Picker | undefined;
   readonly #lines = lineMaterial([0.35, 0.4, 0.46], 2);
@@ -26,7 +26,7 @@ export class MeshView implements View {
   #coarse: THREE.BufferGeometry | undefined;
   #style: Style;
 
-  /** @param isAlone  nothing is inside that one would want to see. */
+  /** @param isAlone  true if the mesh is the only item, so that nothing is inside. */
   constructor(item: MeshItem, around: Surroundings, isAlone: boolean) {
     this.item = item;
     this.#offset = sub(item.origin, around.center);
@@ -54,7 +54,7 @@ export class MeshView implements View {
     return surfaceHit(this.#picker, this.item, { positions, triangles }, ray, this.#offset);
   }
 
-  /** What is seen through does not stand before what is inside. */
+  /** True if clicks prefer items inside. */
   get isSeenThrough(): boolean {
     return this.#style !== "solid";
   }
@@ -113,8 +113,8 @@ export class MeshView implements View {
 }
 
 /**
- * What a ray of the drawn world hits of a mesh: its triangle and the nearest vertex.
- * @param offset  of the mesh's origin in the drawn world.
+ * Returns the first hit of a ray and a mesh: the triangle and its nearest vertex.
+ * @param offset  position of the mesh's origin in drawn coordinates.
  */
 export function surfaceHit(
   picker: Picker,

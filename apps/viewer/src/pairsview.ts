@@ -1,4 +1,4 @@
-// The pairs of a moving scene: lines with dots at their ends, one colour for each kind, or lines by distance.
+// The pairs of a moving scene: lines with dots at their ends, coloured by kind or by distance.
 import * as THREE from "three";
 import type { Color } from "./colors.ts";
 import { fillPairs, mostPairs, pairCounts } from "./framesmodel.ts";
@@ -11,7 +11,7 @@ const colors: Color[] = [
   [0.93, 0.5, 0.02], // collision
   [0.5, 0.3, 0.88], // penetration
 ];
-// Around lines, as one end of the ramp would be lost on the ground: the light one on a light ground.
+// Outlines of lines, because one end of the ramp is hard to see on the background.
 const rimOnLight: Color = [0.12, 0.13, 0.17];
 const rimOnDark: Color = [0.82, 0.85, 0.9];
 const lineWidth = 3;
@@ -21,7 +21,7 @@ const faintness = 0.35;
 
 const cssOf = (color: Color): string => `rgb(${color.map((part) => Math.round(255 * part)).join(" ")})`;
 
-/** The pairs of one kind, in buffers that hold those of any frame. */
+/** The pairs of one kind, in buffers that are large enough for any frame. */
 class PairsOfKind {
   readonly object = new THREE.Group();
   isShown = true;
@@ -44,11 +44,11 @@ class PairsOfKind {
     const [line, faintLine] = this.#lineMaterials.map((material) => new THREE.Mesh(this.#lines, material));
     const [dot, faintDot] = dots.map((material) => new THREE.Points(this.#dots, material));
     const rim = new THREE.Mesh(this.#lines, this.#rim);
-    this.#rim.depthWrite = false; // as lines lie at the same depth
+    this.#rim.depthWrite = false; // because the lines lie at the same depth
     this.#faint = [faintLine, faintDot];
     shineThrough(faintLine.material, faintness);
     shineThrough(faintDot.material, faintness);
-    // What shines through lies above surfaces, translucent ones too, and below what is seen directly.
+    // Faint parts are drawn after all surfaces, including translucent ones, and before the visible parts.
     const parts = [faintLine, faintDot, rim, line, dot];
     parts.forEach((part, i) => {
       part.frustumCulled = false;
@@ -95,7 +95,7 @@ export class PairsView {
     this.object.add(...this.#kinds.map((kind) => kind.object));
   }
 
-  /** Numbers of the kinds that any frame has. */
+  /** Numbers of the kinds that occur in a frame. */
   get kinds(): number[] {
     return this.#most.flatMap((most, kind) => (most > 0 ? [kind] : []));
   }
@@ -115,7 +115,7 @@ export class PairsView {
   setTheme(isDark: boolean): void {
     for (const kind of this.#kinds) kind.setTheme(isDark);
   }
-  /** Whether pairs are seen, faintly, where something is before them. */
+  /** Shows hidden pairs faintly, or not at all. */
   setThrough(isOn: boolean): void {
     for (const kind of this.#kinds) kind.setThrough(isOn);
   }
@@ -125,12 +125,12 @@ export class PairsView {
     this.#kinds.forEach((kind, k) => kind.show(this.#pairs, frame, k));
   }
 
-  /** How many of each kind the current frame has. */
+  /** Returns the number of pairs of each kind in the current frame. */
   counts(): number[] {
     return pairCounts(this.#pairs, this.#frame);
   }
 
-  /** The pair of the current frame that a ray passes closest by. @param reach  how far beside it at most. */
+  /** Returns the pair of the current frame that is closest to a ray. @param reach  largest distance. */
   pick(ray: Ray, reach: number): { pair: number; t: number } | undefined {
     const { first, kinds, points } = this.#pairs;
     let best: { pair: number; t: number } | undefined;

@@ -1,21 +1,21 @@
-// What a click hits, among many triangles.
+// Finds the triangle that a click hits.
 import * as THREE from "three";
 import { MeshBVH } from "three-mesh-bvh";
 import type { Ray } from "./geometry.ts";
 
-/** Triangles in a hierarchy, which is built with the first question. The arrays must not change after that. */
+/** Triangles in a hierarchy. The first query builds it; then the arrays must not change. */
 export class Picker {
   readonly #positions: Float32Array;
   readonly #triangles: Uint32Array | undefined;
   #hierarchy: MeshBVH | undefined;
 
-  /** @param triangles  undefined: corners lie one after the other. */
+  /** @param triangles  undefined if `positions` lists the corners of all triangles. */
   constructor(positions: Float32Array, triangles?: Uint32Array) {
     this.#positions = positions;
     this.#triangles = triangles;
   }
 
-  /** The first of the triangles that a ray hits, from either side; of the first `count` of them, where that is given. */
+  /** Returns the first triangle that a ray hits from either side, among the first `count` ones if given. */
   firstHit(ray: Ray, count?: number): { triangle: number; t: number } | undefined {
     const all = (this.#triangles ?? this.#positions).length / (this.#triangles ? 3 : 9);
     const most = count ?? all;
@@ -36,6 +36,6 @@ export class Picker {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(this.#positions, 3));
     if (this.#triangles) geometry.setIndex(new THREE.BufferAttribute(this.#triangles, 1));
-    return new MeshBVH(geometry, { indirect: true }); // which leaves the order of the triangles as it is
+    return new MeshBVH(geometry, { indirect: true }); // keeps the order of the triangles
   }
 }

@@ -1,4 +1,4 @@
-// Pictures to keep: what the stage shows, with its legends.
+// Saved pictures of the stage, with legends.
 import type { Colors } from "./colors.ts";
 import { colorsOf, marksOf, titleOf } from "./legend.ts";
 import type { Legend } from "./view.ts";
@@ -11,7 +11,7 @@ const line = 16;
 const bar = 10;
 const height = 2 * padding + 2 * line + bar + 8;
 
-/** Draws the legends into the lower left corner of a picture, side by side and then above each other. */
+/** Draws the legends into the lower left corner of a picture, side by side, in several rows if needed. */
 export function drawLegends(
   canvas: HTMLCanvasElement,
   legends: Legend[],
@@ -65,7 +65,7 @@ function drawLegend(
   }
 }
 
-/** The stage's picture with legends, as a PNG. */
+/** Returns the stage's picture with legends, as a PNG. */
 export async function pictureWithLegends(
   stage: HTMLCanvasElement,
   legends: Legend[],
@@ -81,6 +81,6 @@ export async function pictureWithLegends(
   });
 }
 
-/** A name for a picture of some files. */
+/** Returns a file name for a picture of some files. */
 export const pictureName = (names: string[]): string =>
   `${names.length > 0 ? names[0].replace(/\.(nii\.gz|[^.]*)$/, "") : "blum"}.png`;

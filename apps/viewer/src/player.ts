@@ -1,4 +1,4 @@
-// The clock of moving scenes: which frame is to be seen when. Frames are left out where drawing takes longer than one.
+// The clock of moving scenes: selects the frame for a time. Frames are skipped if drawing takes longer than a frame.
 
 export class Player {
   readonly count: number;
@@ -6,7 +6,7 @@ export class Player {
   #speed: number;
   #since: { time: number; frame: number } | undefined; // while it plays
 
-  /** @param speed  frames a second. */
+  /** @param speed  frames per second. */
   constructor(count: number, speed: number) {
     this.count = count;
     this.#speed = speed;
@@ -16,7 +16,7 @@ export class Player {
     return this.#since !== undefined;
   }
 
-  /** Goes on from a frame; from the first one, where that is the last and nothing would follow. @param now  in ms. */
+  /** Starts playing at a frame, or at the first one if no frame follows. @param now  in ms. */
   play(frame: number, now: number): void {
     const isOver = !this.isLooping && frame >= this.count - 1;
     this.#since = { time: now, frame: isOver ? 0 : frame };
@@ -31,7 +31,7 @@ export class Player {
     this.#speed = speed;
   }
 
-  /** The frame to be seen now; undefined while nothing plays. Ends playing at the last one, unless it loops. */
+  /** Returns the current frame; undefined if it is not playing. Stops at the last frame, unless it loops. */
   at(now: number): number | undefined {
     if (this.#since === undefined) return undefined;
     const passed = Math.floor((Math.max(now - this.#since.time, 0) / 1000) * this.#speed);

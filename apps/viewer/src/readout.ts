@@ -1,4 +1,4 @@
-// What a click found, as text; and footprints on the meshes of the page.
+// The result of a click as text, and its footprints on the meshes of the page.
 import { place } from "./format.ts";
 import { closestOnMesh, distance, sub } from "./geometry.ts";
 import type { Fact, MeshItem } from "./scene.ts";
@@ -6,7 +6,8 @@ import { siteName } from "./sites.ts";
 import type { Hit } from "./view.ts";
 import { button, element } from "./widgets.ts";
 
-/** A field names its closest sites by number only: where a mesh of the page is as far away, its closest point is it. */
+/** Adds a footprint to a hit of a field. If a mesh has the field's distance there, its closest point is the footprint.
+ * */
 export function withFootprint(hit: Hit, meshes: MeshItem[]): Hit {
   if (hit.reach === undefined) return hit;
   for (const mesh of meshes) {
@@ -22,7 +23,7 @@ export function withFootprint(hit: Hit, meshes: MeshItem[]): Hit {
   return hit;
 }
 
-/** A surface map names sites of another mesh by number only: where one of the page has the closest point on it, it is it. */
+/** Adds a site's name to a hit of a surface map, if the footprint lies on that site of a mesh of the page. */
 export function withSiteName(hit: Hit, meshes: MeshItem[]): Hit {
   if (hit.site === undefined || hit.footprints.length === 0) return hit;
   for (const mesh of meshes) {
@@ -34,7 +35,7 @@ export function withSiteName(hit: Hit, meshes: MeshItem[]): Hit {
   return hit;
 }
 
-/** What a site is: vertices come first, then edges, then faces. */
+/** Returns the name of a site. Numbers count vertices first, then edges, then faces. */
 export function featureName(site: number, mesh: MeshItem): string {
   const { vertices, edges } = mesh.counts;
   if (site < vertices) return `vertex ${site}`;

@@ -1,4 +1,4 @@
-// The scene that `blum view` hands over: a header of JSON, and arrays behind it. apps/cli/view/scene_blob.hpp says how.
+// The scene from `blum view`: a JSON header and arrays, in the format that apps/cli/view/scene_blob.hpp describes.
 import type { Colors } from "./colors.ts";
 
 export type Numbers =
@@ -56,7 +56,7 @@ export type AxisItem = ItemBase & {
   siteIds: string;
   hasLabels: boolean;
   theta: number | null;
-  leastTheta: number | undefined; // where the file holds all angles
+  leastTheta: number | undefined; // if the file contains all angles
   betti: Triple;
   positions: Float64Array;
   roleNumbers: Roles;
@@ -76,30 +76,30 @@ export type AxisItem = ItemBase & {
   sheets: Int32Array;
 };
 
-/** What is close in the frames of a moving scene, frame by frame. */
+/** Close pairs in the frames of a moving scene, frame by frame. */
 export type PairTable = {
   kindNames: string[];
-  first: Uint32Array; // number of the first pair of each frame, and of all pairs
+  first: Uint32Array; // number of the first pair of each frame, then the number of pairs
   kinds: Uint8Array;
-  points: Float32Array; // two of each pair, as seen from the item's origin
+  points: Float32Array; // two for each pair, relative to the item's origin
   distances: Float64Array;
-  times: Float32Array; // from 0 to 1; NaN where there is none
-  range: [number, number]; // of the distances
+  times: Float32Array; // 0 to 1; NaN if the file has none
+  range: [number, number]; // range of the distances
 };
 
-/** How long the stages of each frame took. */
+/** Durations of the stages of each frame. */
 export type Stages = { names: string[]; seconds: Float64Array };
 
 export type FramesItem = ItemBase & {
   kind: "frames";
   origin: Triple;
-  meshes: Uint32Array[]; // triangles; frames share them
+  meshes: Uint32Array[]; // triangles, which frames share
   frames: { name: string; mesh: number; positions: Float32Array }[];
   pairs: PairTable | undefined;
   stages: Stages | undefined;
 };
 
-/** A distance vector field over a surface, as a texture: lists of texels have rows from the top, x fastest. */
+/** A distance vector field over a surface, as a texture. Lists of texels have rows from the top, x fastest. */
 export type MapItem = ItemBase & {
   kind: "map";
   quantity: string;
@@ -107,15 +107,15 @@ export type MapItem = ItemBase & {
   origin: Triple;
   width: number;
   height: number;
-  range: [number, number] | null; // of the finite values
+  range: [number, number] | null; // range of the finite values
   positions: Float32Array;
   triangles: Uint32Array;
-  corners: Float32Array; // of each triangle in the texture: x, y of three places, in texels
-  distance: Float32Array; // infinite where there is nothing, NaN of texels of no triangle
+  corners: Float32Array; // x, y of three places in the texture for each triangle, in texels
+  distance: Float32Array; // infinite if nothing was found, NaN for texels without a triangle
   vectors: Float32Array; // from the surface to the closest point
   sites: Int32Array;
-  owners: Int32Array; // the triangle of each texel
-  errors: Float32Array | undefined; // of triangles
+  owners: Int32Array; // triangle of each texel
+  errors: Float32Array | undefined; // for triangles
 };
 
 /** Numbers of roles in files. */
@@ -148,11 +148,11 @@ const constructors: Partial<Record<string, Constructor>> = {
   u4: Uint32Array,
 };
 
-/** Reads a scene. Throws SceneError where the bytes are none. */
+/** Reads a scene. Throws SceneError if the bytes are not a scene. */
 export async function readScene(bytes: Uint8Array): Promise<Scene> {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (bytes.length < 16 || new TextDecoder().decode(bytes.subarray(0, 8)) !== "BLUMVIEW") {
-    throw new SceneError("this is no scene of blum view");
+    throw new SceneError("this is not a scene of blum view");
   }
   if (view.getUint32(8, true) !== 2) throw new SceneError("the scene is of another version of blum than the page");
   const start = 16 + view.getUint32(12, true);
@@ -175,7 +175,7 @@ export async function readScene(bytes: Uint8Array): Promise<Scene> {
   };
 }
 
-// What the header holds: arrays as entries, and names as C++ has them.
+// The header: entries instead of arrays, and names as in C++.
 // eslint-disable-next-line @typescript-eslint/no-explicit-any
 type Raw = Record<string, any>;
 type Header = { blum: string; items: Raw[]; colors?: Record<keyof Colors, ArrayEntry>; roles?: Roles };
@@ -311,7 +311,7 @@ async function readArray(body: Uint8Array, entry: ArrayEntry): Promise<Numbers> 
   if (make === undefined) throw new SceneError(`the scene holds numbers of an unknown type, '${entry.type}'`);
   let bytes: Uint8Array;
   if (entry.coding === "raw") {
-    // Arrays begin where their type wants them to, if the scene itself does.
+    // Arrays are aligned for their types if the scene itself is aligned.
     const at = body.byteOffset + entry.offset;
     if (at % make.BYTES_PER_ELEMENT === 0) return new make(body.buffer as ArrayBuffer, at, entry.count);
     bytes = stored.slice();
@@ -338,7 +338,7 @@ async function inflate(stored: Uint8Array, size: number): Promise<Uint8Array> {
   return out;
 }
 
-/** Sums up differences of bit patterns that lie as four planes of bytes. */
+/** Decodes "delta": sums differences of bit patterns that are stored as four planes of bytes. */
 export function undoDelta(planes: Uint8Array): Uint8Array {
   const count = planes.length / 4;
   const out = new Uint32Array(count);

@@ -1,4 +1,4 @@
-// What draws surfaces, lines, dots and slices. Colours are what the screen shows: no conversion follows.
+// Shaders of surfaces, lines, dots and slices. Colours are in sRGB and are not converted.
 import * as THREE from "three";
 import type { Color, Colors } from "./colors.ts";
 import { mapColor, mapUniforms } from "./mapshader.ts";
@@ -14,15 +14,15 @@ function colorTexture(table: Uint8Array, width: number, filter: THREE.Magnificat
 type Shared = Record<"diverging" | "sequential" | "palette", { value: THREE.DataTexture | null }>;
 const shared: Shared = { diverging: { value: null }, sequential: { value: null }, palette: { value: null } };
 
-/** Gives all materials the colours of the scene: once, when it has been read. */
+/** Sets the colours of all materials, once after the scene is read. */
 export function useColors({ diverging, sequential, palette }: Colors): void {
   shared.diverging.value = colorTexture(diverging, diverging.length / 4, THREE.LinearFilter);
   shared.sequential.value = colorTexture(sequential, sequential.length / 4, THREE.LinearFilter);
   shared.palette.value = colorTexture(palette, paletteHues, THREE.NearestFilter);
 }
 
-// Where the colour of a region is in the palette, as region_color() in apps/cli/common/colors.cpp scrambles its number: what is
-// there twice, as a graphics card has no table of all numbers.
+// Looks up the colour of a region in the palette. The scrambling of its number is that of region_color() in
+// apps/cli/common/colors.cpp, because a graphics card has no table of all numbers.
 const paletteHues = 256;
 const regionColor = /* glsl */ `
   uniform sampler2D palette;
@@ -35,7 +35,7 @@ const regionColor = /* glsl */ `
   }
 `;
 
-/** How a surface is coloured. */
+/** Ways to colour a surface. */
 export const Coloring = { plain: 0, scalar: 1, angle: 2, region: 3 } as const;
 
 const surfaceVertex = /* glsl */ `
@@ -53,7 +53,7 @@ const surfaceVertex = /* glsl */ `
   #endif
   #ifdef MAP
     in vec2 place; // texels
-    centroid out vec2 vPlace; // never beyond the triangle, where other charts are
+    centroid out vec2 vPlace; // stays within the triangle, because other charts are beside it
   #endif
   out vec3 vView;
   void main() {
@@ -111,8 +111,8 @@ const surfaceFragment = /* glsl */ `
     #ifdef NORMALS
       vec3 n = normalize(vNormal);
       #ifdef CREASES
-        // Where the triangle is turned away from the mean of its neighbours there is an edge, which stays sharp. That
-        // also covers vertices at which triangles of either orientation meet.
+        // An edge stays sharp if the triangle's normal differs much from the mean of its neighbours. This also covers
+        // vertices at which triangles of opposite orientations meet.
         vec3 geometric = normalize(cross(dFdx(vView), dFdy(vView)));
         if (dot(n, geometric) < 0.0) n = -n;
         float agreed = dot(n, geometric);
@@ -131,7 +131,7 @@ const surfaceFragment = /* glsl */ `
     #else
       vec3 lit = base * (0.42 + 0.5 * key + 0.18 * fill) + 0.06 * pow(key, 24.0);
     #endif
-    // What is seen through is denser where it is seen from the side, so that its shape shows.
+    // Translucent surfaces are denser where seen from the side, so that their shape is visible.
     float alpha = opacity < 1.0 ? mix(min(opacity * 3.2, 1.0), opacity, clamp(facing * 1.25, 0.0, 1.0)) : 1.0;
     outColor = vec4(lit, alpha);
   }
@@ -177,11 +177,11 @@ export function setColor(material: THREE.RawShaderMaterial, color: Color): void 
   (material.uniforms.color.value as THREE.Vector3).set(...color);
 }
 
-/** The size of the picture in pixels, halved, and how many of them a line is wide by: set by the stage. */
+/** Half the size of the picture in pixels, and the pixels per unit of line width. The stage sets both. */
 export const viewport = { value: new THREE.Vector2(1, 1) };
 export const pixelRatio = { value: 1 };
 
-// Lines as strips of quads, wide in pixels.
+// Lines as quads, with widths in pixels.
 const lineVertex = /* glsl */ `
   precision highp float;
   uniform mat4 modelViewMatrix, projectionMatrix;
@@ -192,7 +192,7 @@ const lineVertex = /* glsl */ `
   in vec2 values;
   out float vValue;
   void main() {
-    // A little nearer, so that it is before the surface that it lies on: along the view, which moves nothing aside.
+    // Slightly nearer along the view, so that lines are drawn before the surface that contains them.
     vec4 a = projectionMatrix * vec4((modelViewMatrix * vec4(from, 1.0)).xyz * 0.9985, 1.0);
     vec4 b = projectionMatrix * vec4((modelViewMatrix * vec4(to, 1.0)).xyz * 0.9985, 1.0);
     vec2 direction = (b.xy / b.w - a.xy / a.w) * viewport;
@@ -241,7 +241,7 @@ export function lineMaterial(color: Color, width: number): THREE.RawShaderMateri
   });
 }
 
-/** Lines between pairs of places; `values` has one number for each end. */
+/** Returns lines between pairs of places; `values` has one number for each end. */
 export function lineGeometry(ends: Float32Array, values?: Float32Array): THREE.InstancedBufferGeometry {
   const geometry = new THREE.InstancedBufferGeometry();
   const quad = new Float32Array([0, -1, 0, 1, 1, -1, 1, 1]);
@@ -253,7 +253,7 @@ export function lineGeometry(ends: Float32Array, values?: Float32Array): THREE.I
   const count = ends.length / 6;
   geometry.setAttribute("values", new THREE.InstancedBufferAttribute(values ?? new Float32Array(2 * count), 2));
   geometry.instanceCount = count;
-  geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity); // `position` is none
+  geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity); // `position` contains no positions
   return geometry;
 }
 
@@ -289,7 +289,7 @@ export function dotMaterial(color: Color, size: number): THREE.RawShaderMaterial
   });
 }
 
-/** Lets a line or dots shine through what is before them, faintly: for a second drawing below the first. */
+/** Makes a line or dots faint, and visible through surfaces. For a second drawing below the first one. */
 export function shineThrough(material: THREE.RawShaderMaterial, opacity: number): void {
   material.uniforms.opacity.value = opacity;
   material.transparent = true;
@@ -297,7 +297,7 @@ export function shineThrough(material: THREE.RawShaderMaterial, opacity: number)
   material.depthWrite = false;
 }
 
-/** How a slice shows its values. */
+/** Ways to draw the values of a slice. */
 export const SliceMode = { distance: 0, sites: 1, labels: 2, grey: 3 } as const;
 
 const sliceFragment = /* glsl */ `
@@ -310,7 +310,7 @@ const sliceFragment = /* glsl */ `
   uniform ivec2 size;
   uniform int mode;
   uniform bool isLinear, hasSign;
-  uniform vec2 range;     // of the values
+  uniform vec2 range;     // range of the values
   uniform vec2 extremes;  // inside, outside
   uniform float band;     // 0: none
   uniform float contour;  // 0: none
@@ -381,7 +381,7 @@ export function sliceMaterial(): THREE.RawShaderMaterial {
     `,
     fragmentShader: sliceFragment,
     side: THREE.DoubleSide,
-    // Behind what lies in its plane, as sheets of a plate's axis do.
+    // Draws it behind items in its plane, for example sheets of a plate's axis.
     polygonOffset: true,
     polygonOffsetFactor: 2,
     polygonOffsetUnits: 8,

@@ -1,4 +1,4 @@
-// What sites are: vertices come first, then edges in rising order of (smaller, larger vertex), then triangles.
+// Sites by number: vertices first, then edges in ascending order of (smaller, larger vertex), then triangles.
 import { closestOnTriangle, distance, tripleAt } from "./geometry.ts";
 import type { Triple } from "./scene.ts";
 
@@ -6,7 +6,7 @@ type Mesh = { positions: Float32Array; triangles: Uint32Array; segments?: Uint32
 
 const edges = new WeakMap<Mesh, Float64Array>();
 
-/** smaller * vertices + larger, of each edge once, in rising order. */
+/** Returns smaller * vertices + larger for each edge once, ascending. */
 function edgesOf(mesh: Mesh): Float64Array {
   const known = edges.get(mesh);
   if (known !== undefined) return known;
@@ -23,8 +23,8 @@ function edgesOf(mesh: Mesh): Float64Array {
 }
 
 /**
- * The name of a site if it is of this mesh: if the closest point, as seen from the mesh's origin, lies on it. A number
- * alone does not tell which mesh it is of.
+ * Returns the name of a site if the closest point, relative to the mesh's origin, lies on it. A number alone does not
+ * identify the mesh.
  */
 export function siteName(site: number, mesh: Mesh, closest: Triple, slack: number): string | undefined {
   const { positions, triangles } = mesh;

@@ -18,7 +18,7 @@ export class Slice {
   readonly #mesh: THREE.Mesh;
   readonly #border: THREE.Mesh;
 
-  /** @param center  of the drawn world. */
+  /** @param center  origin of drawn coordinates. */
   constructor(grid: Grid, values: Numbers, sites: Int32Array | undefined, center: Triple) {
     this.#grid = grid;
     this.#values = values;
@@ -28,7 +28,7 @@ export class Slice {
     this.#border = new THREE.Mesh(new THREE.BufferGeometry(), this.frame);
     for (const part of [this.#mesh, this.#border]) part.frustumCulled = false;
     this.object.add(this.#mesh, this.#border);
-    // A shader's texture of whole numbers must be one, also where nothing is read from it.
+    // An integer sampler needs an integer texture, even if the shader never reads it.
     this.material.uniforms.sites.value = integers(new Int32Array(1), 1, 1);
     const flat = grid.size.indexOf(1);
     this.show(flat >= 0 ? flat : 2, Math.floor((grid.size[flat >= 0 ? flat : 2] - 1) / 2));
@@ -45,7 +45,7 @@ export class Slice {
     this.#place();
   }
 
-  /** The corner of the layer where its handle is, and the next layer's. */
+  /** Returns the corner of the layer for its handle, and the same corner of the next layer. */
   handle(): { at: Triple; next: Triple } {
     const [u, v] = layerAxes(this.axis);
     const index: Triple = [0, 0, 0];
@@ -57,7 +57,7 @@ export class Slice {
     return { at, next: this.#drawn(index) };
   }
 
-  /** The node under a ray, and how far along the ray it meets the layer. */
+  /** Returns the node under a ray, and the distance along the ray to the layer. */
   pick(ray: Ray): { node: Triple; t: number } | undefined {
     const normal = this.#grid.direction[this.axis];
     const on = this.#drawn(this.axis === 0 ? [this.layer, 0, 0] : this.axis === 1 ? [0, this.layer, 0] : [0, 0, this.layer]);

@@ -1,11 +1,11 @@
-// Where the bytes of the scene come from: elements of the page, or the server that the page came from.
+// Reads the bytes of the scene from elements of the page, or from the page's server.
 import { SceneError } from "./scene.ts";
 
 export async function sceneBytes(): Promise<Uint8Array> {
   const elements = [...document.querySelectorAll<HTMLScriptElement>("script.scene")];
   if (elements.length > 0) {
     const bytes = joined(elements.map((element) => fromBase64(element.textContent)));
-    for (const element of elements) element.remove(); // its text is as large again
+    for (const element of elements) element.remove(); // frees its text, which is even larger
     return bytes;
   }
   if (!location.protocol.startsWith("http")) {

@@ -1,4 +1,4 @@
-// The canvas: renderer, camera and controls. Pictures are drawn when something changed, and not else.
+// The canvas: renderer, camera and controls. A picture is drawn only after a change.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Ray } from "./geometry.ts";
@@ -17,24 +17,24 @@ export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
   readonly canvas: HTMLCanvasElement;
-  /** The box around what is shown; undefined where that is nothing. */
+  /** Returns the box around the shown items; undefined if none is shown. */
   shown: () => Box | undefined = () => undefined;
-  /** Called before a picture is drawn. */
+  /** Called before each picture. */
   onDraw: () => void = () => undefined;
-  /** Called when the view begins to move and when it rests, where whole pictures take long. */
+  /** Called when the view begins to move and when it rests, if whole pictures take long. */
   onMoving: (isMoving: boolean) => void = () => undefined;
   readonly #renderer: THREE.WebGLRenderer;
   readonly #controls: OrbitControls;
   readonly #center: Triple;
   readonly #radius: number;
   readonly #everything: Box;
-  #fitted: Triple | undefined; // the direction of look(), until somebody moves the view
+  #fitted: Triple | undefined; // direction of look(), until the user moves the view
   #flight = 0;
   #isAsked = false;
   #isSlow = false;
   #rest: ReturnType<typeof setTimeout> | undefined;
 
-  /** Throws where the browser has no WebGL 2. */
+  /** Throws if the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, bounds: Box) {
     this.canvas = canvas;
     this.#renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
@@ -56,7 +56,7 @@ export class Stage {
     canvas.addEventListener("webglcontextrestored", () => this.draw());
   }
 
-  /** Everything is drawn as seen from here, as single precision needs. */
+  /** Origin of drawn coordinates. They are relative to it because of single precision. */
   get center(): Triple {
     return this.#center;
   }
@@ -69,7 +69,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Looks at all that is shown from a direction. */
+  /** Looks at all shown items from a direction. */
   look(from: Triple): void {
     ++this.#flight;
     const box = this.shown() ?? this.#everything;
@@ -93,14 +93,15 @@ export class Stage {
   }
 
   /**
-   * Goes to a place of the drawn world and looks at it from a direction; at once where less motion is wanted.
-   * @param size  the radius of what the place is of.
+   * Moves to a place in drawn coordinates and looks at it from a direction. Does not animate if the user prefers
+   * reduced motion.
+   * @param size  radius of the item at the place.
    */
   fly(to: Triple, from: Triple, size: number): void {
     this.#fitted = undefined;
     const away = 1.6 * size;
     const target = new THREE.Vector3(...to);
-    // A little from the side, as what is seen straight from the front looks flat.
+    // Looks slightly from the side, because surfaces look flat from straight ahead.
     const direction = new THREE.Vector3(0.3, -0.42, 0.24).add(new THREE.Vector3(...from)).normalize();
     const position = target.clone().addScaledVector(direction, away);
     const start = { position: this.camera.position.clone(), target: this.#controls.target.clone() };
@@ -108,7 +109,7 @@ export class Stage {
     const length = matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : flightTime;
     const flight = ++this.#flight;
     const step = () => {
-      if (flight !== this.#flight) return; // another one, or somebody took over
+      if (flight !== this.#flight) return; // another flight, or the user moved the view
       const t = length === 0 ? 1 : Math.min((performance.now() - begin) / length, 1);
       const s = t * t * (3 - 2 * t);
       this.camera.position.lerpVectors(start.position, position, s);
@@ -120,7 +121,7 @@ export class Stage {
     step();
   }
 
-  /** Turns the view by angles, as arrow keys do. */
+  /** Turns the view by angles, for arrow keys. */
   turn(around: number, over: number): void {
     this.#fitted = undefined;
     const offset = this.camera.position.clone().sub(this.#controls.target);
@@ -146,19 +147,19 @@ export class Stage {
     this.moved();
   }
 
-  /** Whether dragging turns the view; not while something else is dragged. */
+  /** False while something else is dragged, so that the view does not turn. */
   set isTurnedByDragging(value: boolean) {
     this.#controls.enabled = value;
   }
 
-  /** Asks for a picture. */
+  /** Requests a picture. */
   draw(): void {
     if (this.#isAsked) return;
     this.#isAsked = true;
     requestAnimationFrame(() => this.drawNow());
   }
 
-  /** Draws, and less where whole pictures take long: more changes are about to follow. */
+  /** Requests a picture during a movement. If whole pictures take long, less is drawn until the view rests. */
   moved(): void {
     if (this.#isSlow) {
       if (this.#rest === undefined) this.onMoving(true);
@@ -172,12 +173,12 @@ export class Stage {
     this.draw();
   }
 
-  /** Draws the first picture. Where that takes long, less is drawn while the view moves. */
+  /** Draws the first picture. If it takes long, less is drawn while the view moves. */
   begin(): void {
     this.#isSlow = this.measure() > slowPicture;
   }
 
-  /** Draws a picture and waits for it. Returns how many milliseconds that took. */
+  /** Draws a picture and waits for it. Returns the milliseconds that it took. */
   measure(): number {
     const start = performance.now();
     this.drawNow();
@@ -192,7 +193,7 @@ export class Stage {
     this.#renderer.render(this.scene, this.camera);
   }
 
-  /** The ray under a place of the canvas, in pixels of the page. */
+  /** Returns the ray under a place of the canvas, in pixels of the page. */
   ray(x: number, y: number): Ray {
     const box = this.canvas.getBoundingClientRect();
     const caster = new THREE.Raycaster();
@@ -204,7 +205,7 @@ export class Stage {
     return { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() };
   }
 
-  /** Where a place of the drawn world is on the page; `isBehind` the camera it is nowhere. */
+  /** Returns the position on the page of a place in drawn coordinates; invalid if `isBehind` the camera. */
   project(p: Triple): { x: number; y: number; isBehind: boolean } {
     const box = this.canvas.getBoundingClientRect();
     this.camera.updateMatrixWorld();
@@ -216,7 +217,7 @@ export class Stage {
     };
   }
 
-  /** How far away all corners of the box are in the picture, with some room. */
+  /** Returns the distance from which all corners of the box are in the picture, with a margin. */
   #distanceToSeeAll(direction: THREE.Vector3, box: Box): number {
     const right = new THREE.Vector3().crossVectors(this.camera.up, direction).normalize();
     const up = new THREE.Vector3().crossVectors(direction, right);

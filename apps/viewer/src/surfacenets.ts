@@ -1,11 +1,11 @@
-// Level surfaces of fields by surface nets: a vertex in each cell that the level passes, a quad around each grid edge
-// that it crosses (Gibson 1998). Blocks of cells that the level does not reach are passed over.
+// Level surfaces of fields by surface nets (Gibson 1998). Each cell that the level passes gets a vertex. Each grid edge
+// that it crosses gets a quad. Blocks of cells that the level does not reach are skipped.
 
 export type Surface = { positions: Float32Array; normals: Float32Array; triangles: Uint32Array };
 
 const blockSize = 16;
 
-/** Extracts surfaces of one field at one level after the other. */
+/** Extracts level surfaces of one field. */
 export class SurfaceNets {
   readonly #values: Float32Array;
   readonly #size: readonly number[];
@@ -25,7 +25,7 @@ export class SurfaceNets {
     this.#findRanges();
   }
 
-  /** The surface in the grid's own frame: its first node at 0, its axes along x, y, z, in units of the spacing. */
+  /** Returns the surface in the grid's frame: first node at 0, axes along x, y, z, in units of the spacing. */
   extract(level: number): Surface {
     const [nx, ny] = this.#size;
     const positions: number[] = [];
@@ -88,7 +88,7 @@ export class SurfaceNets {
     }
   }
 
-  /** The mean of where the level crosses the edges of a cell; nothing where it does not. */
+  /** Returns the mean of the level's crossings with the edges of a cell; undefined if there are none. */
   #vertexIn(i: number, j: number, k: number, level: number) {
     const [nx, ny] = this.#size;
     const first = (k * ny + j) * nx + i;

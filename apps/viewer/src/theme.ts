@@ -1,4 +1,4 @@
-// Dark or light: as the system has it, until someone chooses.
+// Dark or light theme: that of the system, until the user chooses one.
 
 const system = matchMedia("(prefers-color-scheme: dark)");
 let chosen: boolean | undefined;

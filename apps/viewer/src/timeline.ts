@@ -1,4 +1,4 @@
-// Below the picture of a moving scene: play, scrub, speed, and the chart of stages.
+// Controls below the picture of a moving scene: play, scrub, speed, and the chart of stages.
 import { Chart, frameAt, plotLeft, timeText, totalOf } from "./chart.ts";
 import { stageColor, type Colors } from "./colors.ts";
 import { Player } from "./player.ts";
@@ -8,7 +8,7 @@ import { button, checkbox, element, select } from "./widgets.ts";
 const speeds = [1, 2, 5, 10, 15, 24, 30, 60];
 const firstSpeed = 15;
 
-/** Where keys mean something else: what is typed, and what the space bar presses. */
+/** Elements with their own use of keys: for typing, and those that the space bar presses. */
 const typesItself = (target: EventTarget | null): boolean =>
   target instanceof HTMLElement && target.matches("input:not([type=range]), select, textarea");
 const isPressed = (target: EventTarget | null): boolean =>
@@ -31,7 +31,7 @@ export class Timeline {
   #frame = 0;
 
   /**
-   * @param onFrame  called when another frame is to be seen.
+   * @param onFrame  called when the frame changes.
    * @param onRest  called when playing ends.
    */
   constructor(item: FramesItem, colors: Colors, onFrame: (frame: number) => void, onRest: () => void) {
@@ -56,7 +56,7 @@ export class Timeline {
     return this.#player.isPlaying;
   }
 
-  /** Goes to a frame, and stays there. */
+  /** Stops at a frame. */
   goTo(frame: number): void {
     this.#rest();
     this.#set(Math.min(Math.max(Math.round(frame), 0), this.#item.frames.length - 1));
@@ -140,7 +140,7 @@ export class Timeline {
     this.#slider.addEventListener("input", () => this.goTo(this.#slider.valueAsNumber - 1));
     this.#field.addEventListener("change", () => {
       if (Number.isFinite(this.#field.valueAsNumber)) this.goTo(this.#field.valueAsNumber - 1);
-      this.#showFrame(); // what was typed may be none
+      this.#showFrame(); // the typed number may be invalid
     });
     const speed = select("Speed", speeds.map((s) => [String(s), `${s} frames/s`]), String(firstSpeed), (value) =>
       this.#player.setSpeed(Number(value), performance.now()),
@@ -172,7 +172,7 @@ export class Timeline {
     return element("div", "chart", chart.canvas, plot);
   }
 
-  /** The legend of the chart, with the numbers of the current frame. */
+  /** Returns the legend of the chart, with the numbers of the current frame. */
   #stageList(): HTMLElement {
     const list = element("dl", "stages");
     const colors = this.#stageColors();

@@ -1,4 +1,4 @@
-// A field or an image on the stage: a slice that moves, and a level surface.
+// A field or an image on the stage: a movable slice and a level surface.
 import * as THREE from "three";
 import { coarsen, worthCoarsening } from "./coarse.ts";
 import { exactFloat32, plural, rounded, roundStep } from "./format.ts";
@@ -28,7 +28,7 @@ export class VolumeView implements View {
   readonly #isoSlider: Slider;
   readonly #iso = new THREE.Mesh(new THREE.BufferGeometry(), surfaceMaterial({ hasNormals: true }));
   #whole = new THREE.BufferGeometry();
-  #picker: Picker | undefined; // of the whole surface
+  #picker: Picker | undefined; // for the whole surface
   #coarse: THREE.BufferGeometry | undefined;
   #surfaces: IsoSurfaces | undefined;
   #show: Show;
@@ -47,7 +47,7 @@ export class VolumeView implements View {
     this.#level = item.kind === "field" ? (least < 0 && most > 0 ? 0 : (least + most) / 2) : (least + most) / 2;
     this.#contour = item.kind === "field" ? roundStep(most - least, 16) : 0;
     this.#iso.frustumCulled = false;
-    // Behind the mesh that the field is of, where it is the same surface.
+    // Drawn behind the field's mesh, where both surfaces coincide.
     this.#iso.material.polygonOffset = true;
     this.#iso.material.polygonOffsetFactor = 1;
     this.#iso.material.polygonOffsetUnits = 4;
@@ -89,7 +89,7 @@ export class VolumeView implements View {
     if (this.#iso.visible) this.#ask();
   }
 
-  /** When the level surface that was asked for last is there. */
+  /** Resolves when the last requested level surface is shown. */
   async surfaceShown(): Promise<void> {
     if (this.#surfaces?.isBusy !== true) return;
     await new Promise<void>((resolve) => (this.#onSurface = resolve));
@@ -163,7 +163,7 @@ export class VolumeView implements View {
     this.#iso.geometry = isMoving ? this.#coarse : this.#whole;
   }
 
-  /** The frame of the grid, in which level surfaces are, in the drawn world. */
+  /** Returns the transform from the frame of level surfaces to drawn coordinates. */
   #frame(): THREE.Matrix4 {
     const { direction, origin } = this.item.grid;
     const [x, y, z] = direction.map((column) => new THREE.Vector3(...column));
@@ -329,7 +329,7 @@ export class VolumeView implements View {
       if (site !== undefined) {
         const name = item.siteIds === "voxels" ? "closest voxel" : item.siteIds === "triangles" ? "closest triangle" : "site";
         facts.push([name, site < 0 ? "none: beyond the band" : String(site)]);
-        // A voxel's number says where it is.
+        // A voxel's number gives its position.
         if (item.siteIds === "voxels" && site >= 0) footprints.push(this.#nodeAt(site));
       }
     }
@@ -344,7 +344,7 @@ export class VolumeView implements View {
     return toWorld(this.item.grid, [index % nx, Math.floor(index / nx) % ny, Math.floor(index / (nx * ny))]);
   }
 
-  /** About where the footprint is: down the slope of the distance. The page asks a mesh where there is one. */
+  /** Estimates the footprint along the slope of the distance. The page replaces it by that on a mesh, if possible. */
   #estimate(node: Triple, index: number): { about?: Triple; reach: number } {
     const { grid, distance } = this.item as FieldItem;
     const strides = [1, grid.size[0], grid.size[0] * grid.size[1]];
@@ -364,7 +364,7 @@ export class VolumeView implements View {
   }
 }
 
-/** Each side has its own scale, but not more than four times the other's: as in pictures of `blum slice`. */
+/** Returns a scale for each side, at most four times the other one, as in pictures of `blum slice`. */
 export function extremes(least: number, most: number): [inside: number, outside: number] {
   const deepest = Math.max(0, -least);
   const farthest = Math.max(0, most);

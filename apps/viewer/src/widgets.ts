@@ -25,7 +25,7 @@ export function checkbox(label: string, value: boolean, onChange: Setter<boolean
   return element("label", "check", input, element("span", "", label));
 }
 
-/** A group of buttons of which one is pressed. */
+/** Returns a group of buttons of which one is pressed. */
 export function choice<T extends string>(
   label: string,
   options: readonly (readonly [value: T, text: string])[],
@@ -48,7 +48,7 @@ export function choice<T extends string>(
   return group;
 }
 
-/** How a surface is drawn. */
+/** Returns the choice of a surface's style. */
 export const styleChoice = (label: string, style: Style, onChange: Setter<Style>): HTMLElement =>
   choice<Style>(
     label,
@@ -61,7 +61,7 @@ export const styleChoice = (label: string, style: Style, onChange: Setter<Style>
     onChange,
   );
 
-/** A list of which one entry is chosen. */
+/** Returns a list for choosing one entry. */
 export function select(
   label: string,
   options: readonly (readonly [value: string, text: string])[],

@@ -1,13 +1,13 @@
-// Proves which part of an axis is there at an angle, and where junctions are.
+// Proves which part of an axis exists at an angle, and where junctions are.
 import { describe, expect, it } from "vitest";
 import { AxisModel, isJunctionOf } from "../src/axismodel.ts";
 import type { AxisItem, Roles } from "../src/scene.ts";
 
-// Not those of files: the scene says which.
+// Other numbers than in files, because the scene defines them.
 const role: Roles = { sheet: 2, rim: 9, seam: 0, curve: 5, junction: 7 };
 
-// Two triangles at a common side, of which the first goes at 30 and the second at 60; then a curve is left until 90, and
-// then a vertex. A third triangle has no extent: two of its corners are at the same place.
+// Two triangles with a common side. The first exists up to 30 degrees, the second up to 60. Then a curve remains up to
+// 90, and then a vertex. A third triangle has no area: two of its corners coincide.
 const item: AxisItem = {
   kind: "axis",
   name: "axis.npz",

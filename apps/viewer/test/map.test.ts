@@ -1,5 +1,5 @@
-// Proves that surface maps read back as the tool lays them out, that values, points and areas of texels are what the
-// texture says, that the worst places are those with the largest values, and that sites are named only where they are.
+// Proves that surface maps read back as the tool writes them. Values, points and areas of texels must agree with the
+// texture. The worst places must have the largest values, and sites must get names only where they are.
 import { describe, expect, it } from "vitest";
 import { MapModel } from "../src/mapmodel.ts";
 import { withSiteName } from "../src/readout.ts";

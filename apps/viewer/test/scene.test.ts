@@ -52,9 +52,9 @@ describe("readScene", () => {
     expect(unknown).toMatchObject({ kind: "error", message: expect.stringContaining("hat") as string });
   });
 
-  it("refuses what is no scene, or is cut off, or of another version", async () => {
-    await expect(readScene(new Uint8Array(4))).rejects.toThrow("no scene");
-    await expect(readScene(new TextEncoder().encode("something else altogether"))).rejects.toThrow("no scene");
+  it("rejects bytes that are not a scene, are cut off, or have another version", async () => {
+    await expect(readScene(new Uint8Array(4))).rejects.toThrow("not a scene");
+    await expect(readScene(new TextEncoder().encode("something else altogether"))).rejects.toThrow("not a scene");
     const bytes = meshScene("delta");
     await expect(readScene(bytes.slice(0, bytes.length - 600))).rejects.toThrow("cut off");
     await expect(readScene(bytes.slice(0, 40))).rejects.toThrow("cut off");
