@@ -3,6 +3,7 @@ what was wrong, and leaves no half-written file."""
 
 import csv
 import json
+import re
 import signal
 import subprocess
 import time
@@ -14,8 +15,24 @@ from tool import BLUM, names, run, run_json
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 blum = pytest.importorskip("blum")
 
-QUERIES = [
-    ("separation", [], lambda scene: scene.separation()),
+#: Queries of solids and of motions, which other files test.
+ELSEWHERE = {"signed", "penetration", "continuous"}
+
+
+def method_of(query):
+    return re.search(r"ProximityScene\.(\w+)\(\)", run("proximity", query, "--help")[0])[1]
+
+
+def all_queries():
+    """Every query of the tool as it is; its help names the method."""
+    if not BLUM:
+        return []
+    listed = run("proximity", "--help")[0].split("Subcommands:")[1].split("Examples:")[0]
+    return [query for query in re.findall(r"^  (\w+)  ", listed, re.M) if query not in ELSEWHERE]
+
+
+QUERIES = [(query, [], lambda scene, query=query: getattr(scene, method_of(query))()) for query in all_queries()]
+QUERIES += [
     ("separation", ["--max-distance", "0.3"], lambda scene: scene.separation(max_distance=0.3)),
     ("closest", ["--self"], lambda scene: scene.closest_primitives()),
     ("closest", ["--max-distance", "0.05"], lambda scene: scene.closest_primitives(0.05)),

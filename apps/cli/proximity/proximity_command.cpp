@@ -73,7 +73,8 @@ void add_query(const Command& parent, const SceneQuery& query) {
   if (moves) a->impact.add_to(command);
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);
-  command.footer("Examples:\n" + std::string(query.examples));
+  command.footer("Examples:\n" + std::string(query.examples) + "\n\nIn C++ and Python: ProximityScene." +
+                 std::string(query.method) + "()");
   command.callback([a, &query] { run(*a, query); });
 }
 

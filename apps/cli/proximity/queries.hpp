@@ -56,6 +56,7 @@ struct SceneQuery {
   std::string_view name;
   std::string_view doc;                ///< for --help
   std::string_view output;             ///< help of --output
+  std::string_view method;             ///< of ProximityScene, in C++ and Python; for --help
   std::string_view examples;           ///< for --help, one per line
   std::string_view max_distance = {};  ///< help of --max-distance; empty if it does not take one
   bool takes_culling = false;

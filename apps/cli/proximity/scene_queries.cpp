@@ -47,6 +47,7 @@ constexpr std::array queries{
     SceneQuery{.name = "separation",
                .doc = "Closest pair of primitives for each pair of objects",
                .output = pairs_output,
+               .method = "separation",
                .examples = R"(  blum proximity separation arm.ply table.ply
   blum proximity separation *.stl -o pairs.csv)",
                .max_distance = within,
@@ -56,6 +57,7 @@ constexpr std::array queries{
     SceneQuery{.name = "signed",
                .doc = "Distance for each pair of solids, or minus the depth if they overlap",
                .output = pairs_output,
+               .method = "signed_separations",
                .examples = "  blum proximity signed a.ply b.ply c.ply",
                .takes_culling = true,
                .takes_depth = true,
@@ -65,6 +67,7 @@ constexpr std::array queries{
     SceneQuery{.name = "closest",
                .doc = "Closest other primitive of each triangle, segment and point",
                .output = pairs_output,
+               .method = "closest_primitives",
                .examples = "  blum proximity closest cloth.ply --self --max-distance 0.01 -o pairs.vtp",
                .max_distance = within,
                .takes_culling = true,
@@ -72,6 +75,7 @@ constexpr std::array queries{
     SceneQuery{.name = "collide",
                .doc = "All pairs of primitives that meet, or are close",
                .output = pairs_output,
+               .method = "collisions",
                .examples = R"(  blum proximity collide a.ply b.ply
   blum proximity collide a.ply b.ply --max-distance 0.01 -o pairs.npz)",
                .max_distance = "All pairs at most D apart, in mesh units (default 0: pairs with a common point)",
@@ -82,6 +86,7 @@ constexpr std::array queries{
                .output = "Deepest point of each part and its closest surface point; the depth is a negative "
                          "distance. Formats: .npz (also depth_bound, direction, area, volume), .csv, .json, "
                          ".vtp",
+               .method = "penetrations",
                .examples = "  blum proximity penetration a.ply b.ply --json -",
                .takes_depth = true,
                .ask = ask_penetration},
@@ -90,6 +95,7 @@ constexpr std::array queries{
                .output = "Collisions: .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
                          "vertex_face_object, edge_edge_object), .csv, .json, .vtp (vertices, edges and faces at the "
                          "time of impact)",
+               .method = "continuous",
                .examples = R"(  blum proximity continuous cloth1.ply cloth2.ply --self -o pairs.npz
   blum proximity continuous ball1.ply plate.ply --to ball2.ply plate.ply
   blum proximity continuous cloth*.ply --frames --self -o pairs.json)"}};
