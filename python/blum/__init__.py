@@ -1,7 +1,7 @@
 """Blum: exact distance fields, Voronoi diagrams and certified medial axes of 3D shapes.
 
-Meshes are anything with vertices and triangles, images are arrays [z, y, x]; lengths have the units of the input, and
-inside is negative. The same verbs as in C++ and on the command line:
+A mesh is any object with vertices and triangles. An image is an array indexed [z, y, x]. Lengths have the units of the
+input, and distances are negative inside. The verbs are those of the C++ library and the command-line tool:
 
     field = blum.distance_field(vertices, triangles, resolution=256)
     found = blum.closest_points(mesh, points)

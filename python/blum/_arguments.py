@@ -1,4 +1,4 @@
-"""Arguments as users give them, turned into what the C++ library takes; errors name the argument."""
+"""Conversion of arguments to the types of the C++ library. Errors name the argument."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._errors import InvalidMesh, InvalidOption
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int32]
 PathLike = str | os.PathLike[str]
-#: Numbers of Python and of NumPy.
+#: Numbers of Python and NumPy.
 Integer = int | np.integer[Any]
 Real = float | np.floating[Any] | np.integer[Any]
 
@@ -24,7 +24,7 @@ _LARGEST_INDEX = np.iinfo(np.int32).max
 
 
 def existing_file(path: PathLike) -> Path:
-    """The path of a file that can be read, or FileNotFoundError, as open() raises it."""
+    """Returns the path of an existing file, or raises FileNotFoundError as open() does."""
     file = Path(os.fspath(path))
     if not file.exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(file))
@@ -32,16 +32,18 @@ def existing_file(path: PathLike) -> Path:
 
 
 def text(value: Any, argument: str) -> str:
-    """A text as the library takes it: UTF-8, without bytes of 0."""
+    """Returns a string as the library takes it: encodable in UTF-8, without null characters."""
     if not isinstance(value, str):
-        raise TypeError(f"{argument} must be a text, not {type(value).__name__}")
+        raise TypeError(f"{argument} must be a string, not {type(value).__name__}")
     if "\0" in value or any("\ud800" <= character <= "\udfff" for character in value):
-        raise InvalidOption(f"{argument} is {value!r}, which UTF-8 cannot hold, or which has a 0 in it")
+        raise InvalidOption(
+            f"{argument} is {value!r}, but must be a string that UTF-8 can encode, without null characters"
+        )
     return value
 
 
 def is_on_device(value: Any) -> bool:
-    """Whether an array says that it is in a CUDA device's memory."""
+    """Returns True if an array states that its memory is on a CUDA device."""
     try:
         if hasattr(value, "__dlpack_device__"):
             return int(value.__dlpack_device__()[0]) in (2, 13)
@@ -51,11 +53,11 @@ def is_on_device(value: Any) -> bool:
 
 
 def as_array(value: Any, name: str) -> npt.NDArray[Any]:
-    """Any array-like on the CPU as a NumPy array, without a copy where that can be."""
+    """Returns an array-like on the CPU as a NumPy array, without a copy if possible."""
     if isinstance(value, np.ma.MaskedArray):
-        raise TypeError(f"{name} is a masked array, and Blum knows no masks: fill it first, with .filled(...)")
+        raise TypeError(f"{name} is a masked array, which Blum does not support: fill it first, with .filled(...)")
     if isinstance(value, np.ndarray):
-        return np.asarray(value)  # subclasses may answer questions for themselves
+        return np.asarray(value)  # Subclasses may override operators.
     if is_on_device(value):
         raise TypeError(
             f"{name} is in a CUDA device's memory: copy it to the host (.cpu(), .get()), or use DeviceFieldSolver or "
@@ -71,7 +73,7 @@ def as_array(value: Any, name: str) -> npt.NDArray[Any]:
 
 
 def float_rows(value: Any, name: str, width: int = 3) -> FloatArray:
-    """An (n, width) array of float64. No copy is made of a C-contiguous one, and one of any other."""
+    """Returns an (n, width) array of float64. A C-contiguous float64 array is not copied; others are copied once."""
     array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
@@ -83,7 +85,7 @@ def float_rows(value: Any, name: str, width: int = 3) -> FloatArray:
 
 
 def points_and_shape(value: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:
-    """Points of the shape (..., 3) as rows, and the shape without the 3."""
+    """Returns points of shape (..., 3) as rows, and their shape without the last axis."""
     array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
@@ -92,7 +94,16 @@ def points_and_shape(value: Any, name: str) -> tuple[FloatArray, tuple[int, ...]
     return np.ascontiguousarray(array.reshape(-1, 3), dtype=np.float64), array.shape[:-1]
 
 
+def check_finite(rows: FloatArray, shape: tuple[int, ...], name: str) -> None:
+    """Raises ValueError for the first of the points of the shape (..., 3) that is not finite."""
+    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+    if len(bad):
+        where = ", ".join(str(int(place)) for place in np.unravel_index(int(bad[0]), shape)) if shape else ""
+        raise ValueError(f"{name}[{where}] is {rows[bad[0]].tolist()}, but must be finite")
+
+
 def float_list(value: Any, name: str) -> FloatArray:
+    """Returns an (n,) array of float64. A C-contiguous float64 array is not copied."""
     array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
@@ -102,9 +113,9 @@ def float_list(value: Any, name: str) -> FloatArray:
 
 
 def indices(value: Any, name: str, width: int | None, count: int | None = None) -> IntArray:
-    """Indices as int32, (n, width) or (n,). No copy is made of C-contiguous int32 and uint32, and one of any other.
+    """Returns indices as int32, (n, width) or (n,). C-contiguous int32 and uint32 are not copied.
 
-    With `count`, they must be below it; the error names the first that is not.
+    Other types are copied once. With `count`, all indices must be below it. The error names the first one that is not.
     """
     array = as_array(value, name)
     wanted = "(n,)" if width is None else f"(n, {width})"
@@ -126,7 +137,7 @@ def indices(value: Any, name: str, width: int | None, count: int | None = None) 
 
 
 def triple(value: Any, name: str) -> tuple[float, float, float]:
-    """Three numbers in x, y, z order; a single number stands for all three."""
+    """Returns three numbers in x, y, z order. A single number stands for all three."""
     array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must be numbers, not {type(value).__name__}")
@@ -138,6 +149,7 @@ def triple(value: Any, name: str) -> tuple[float, float, float]:
 
 
 def matrix(value: Any, name: str) -> FloatArray:
+    """Returns a (3, 3) array of float64."""
     array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must hold numbers, not {array.dtype}")
@@ -147,7 +159,7 @@ def matrix(value: Any, name: str) -> FloatArray:
 
 
 def box(value: Any, name: str) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """A box as (lower, upper)."""
+    """Returns a box as (lower, upper)."""
     if not isinstance(value, (Sequence, np.ndarray)) or isinstance(value, (str, bytes)) or len(value) != 2:
         raise ValueError(f"{name} must be a pair of corners, ((x0, y0, z0), (x1, y1, z1))")
     for place, corner in enumerate(value):
@@ -157,17 +169,17 @@ def box(value: Any, name: str) -> tuple[tuple[float, float, float], tuple[float,
 
 
 def device_name(value: Any) -> str:
-    """A device by its name, which the library reads."""
+    """Returns a device's name, which the library parses. PyTorch devices are accepted."""
     if isinstance(value, str):
         return value
-    kind = getattr(value, "type", None)  # of PyTorch
+    kind = getattr(value, "type", None)  # A torch.device.
     if isinstance(kind, str) and hasattr(value, "index"):
         return kind if value.index is None else f"{kind}:{value.index}"
     raise TypeError(f"device must be a string, not {type(value).__name__}")
 
 
 def integer(value: Any, name: str, bits: int = 32) -> int:
-    """An integer of Python or NumPy that fits the library's bits."""
+    """Returns an integer of Python or NumPy as int. It must fit the library's bits."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
     if not -(2 ** (bits - 1)) <= int(value) < 2 ** (bits - 1):
@@ -176,47 +188,50 @@ def integer(value: Any, name: str, bits: int = 32) -> int:
 
 
 def natural(value: Any, name: str, bits: int = 32) -> int:
-    """An integer of 0 or more that fits the library's bits, of 64 bits at most 2^63 - 1."""
+    """Returns an integer of at least 0 that fits the library's bits. With 64 bits, it is at most 2^63 - 1."""
     if isinstance(value, (int, np.integer)) and int(value) < 0:
         raise InvalidOption(f"{name} is {int(value)}, but must be 0 or more")
     return integer(value, name, min(bits + 1, 64))
 
 
 def truth(value: Any, name: str) -> bool:
-    """True or False of Python or NumPy: nothing else, as the word 'no' would count as true."""
+    """Returns a bool of Python or NumPy as bool. Other types are rejected, because 'no' would count as True."""
     if not isinstance(value, (bool, np.bool_)):
         raise TypeError(f"{name} must be True or False, not {type(value).__name__}")
     return bool(value)
 
 
 def number(value: Any, name: str) -> float:
+    """Returns a real number of Python or NumPy as float."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise TypeError(f"{name} must be a number, not {type(value).__name__}")
     try:
         return float(value)
     except OverflowError:
-        raise InvalidOption(f"{name} is too large") from None
+        raise InvalidOption(f"{name} is too large for a 64-bit float") from None
 
 
 def label_of(value: Any, name: str) -> int:
-    """A value of an image's voxels."""
+    """Returns the value of voxels of an image."""
     return integer(value, name, bits=64)
 
 
 def site_ids(value: Any, name: str, width: int) -> IntArray:
-    """Sites as files have them, (n, width): -1 where there is none."""
+    """Returns site ids as files contain them: (n, width), -1 if there is none."""
     array = as_array(value, name)
     if array.dtype.kind not in "iu" or array.ndim != 2 or array.shape[1] != width:
-        raise ValueError(f"{name} must be integers of the shape (n, {width})")
+        raise ValueError(f"{name} holds {array.dtype} of the shape {array.shape}, but must hold integers (n, {width})")
     if array.size and (int(array.min()) < -1 or int(array.max()) >= _LARGEST_INDEX):
-        raise ValueError(f"{name} must be -1 to {_LARGEST_INDEX - 1}")
+        found = f"{int(array.min())} to {int(array.max())}"
+        raise ValueError(f"{name} holds numbers from {found}, but they must be -1 to {_LARGEST_INDEX - 1}")
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
 def source_name(path: PathLike) -> str:
-    """The name of a file for metadata, which are UTF-8, as names of files need not be."""
+    """Returns a file's name for metadata. Metadata are UTF-8; names of files need not be."""
     return os.fsencode(Path(os.fspath(path)).name).decode("utf-8", "replace")
 
 
 def optional_number(value: Any, name: str) -> float | None:
+    """Returns None, or a real number as float."""
     return None if value is None else number(value, name)

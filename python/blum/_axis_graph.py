@@ -28,15 +28,16 @@ def axis_graph(
     progress: Progress = False,
     **options: Unpack[AxisGraphOptions],
 ) -> AxisGraph:
-    """The sheets, seams, curves and junctions of a medial axis, with their areas, lengths and thicknesses.
+    """Returns the sheets, seams, curves and junctions of a medial axis, with areas, lengths and thicknesses.
 
     Parameters
     ----------
     axis : MedialComplex
-        With radii and sheets; or another complex with these columns.
+        With radii and sheets. Another complex with these columns works, too.
     mesh, triangles
-        That the axis was made of, as for :func:`distance_field`: `patches` are then its smooth parts, and every sheet
-        has the `patch_pairs` that it lies between. Default: the one that is known, where the axis was made here.
+        The mesh of the axis, as for :func:`distance_field`. With it, `patches` are its smooth parts. Every sheet then
+        has the `patch_pairs` on its two sides. Default: the mesh that the axis was made from. Axes from files have
+        none.
     threads, progress
         As for :func:`distance_field`.
     **options
@@ -44,8 +45,8 @@ def axis_graph(
     Returns
     -------
     AxisGraph
-        Numbers of seams, curves, junctions and patches are places in its lists; sheets have the numbers of
-        `triangle_sheet`. `.to_networkx()` makes it a graph of networkx.
+        Numbers of seams, curves, junctions and patches are indices into its lists. Sheets have the numbers of
+        `triangle_sheet`. `.to_networkx()` converts it.
 
     >>> import blum
     >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
@@ -70,7 +71,7 @@ def write_graph(
     triangles: npt.ArrayLike | None,
     options: AxisGraphOptions,
 ) -> None:
-    """Writes the graph of an axis, with what is known of where the axis came from."""
+    """Writes the graph of an axis with the known facts about the axis's origin."""
     own = mesh_of(axis, mesh, triangles)
     origin = getattr(axis, "_origin", None)
     told = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
@@ -79,12 +80,13 @@ def write_graph(
 
 
 def _told(axis: Complex, options: AxisGraphOptions) -> dict[str, Any]:
-    """The options; what is there for homotopy alone is told by theta of the axis, where that is known."""
+    """Returns the options, with the known theta of the axis as the angle up to which cells exist for homotopy alone."""
     theta = getattr(getattr(axis, "_origin", None), "theta", None)
     return ({} if theta is None else {"homotopy_angle": theta}) | dict(options)
 
 
 def mesh_of(axis: Complex, mesh: MeshOrVertices | None, triangles: npt.ArrayLike | None) -> Mesh | None:
+    """Returns the given mesh, or the mesh that the axis was made from, or None."""
     if mesh is not None:
         return as_mesh(mesh, triangles)
     known = getattr(getattr(axis, "_origin", None), "shape", None)
@@ -92,7 +94,7 @@ def mesh_of(axis: Complex, mesh: MeshOrVertices | None, triangles: npt.ArrayLike
 
 
 def to_networkx(graph: AxisGraph) -> Any:
-    """See AxisGraph.to_networkx."""
+    """Returns the graph as a networkx.MultiGraph; see AxisGraph.to_networkx."""
     try:
         import networkx
     except ImportError as error:
@@ -126,7 +128,7 @@ def to_networkx(graph: AxisGraph) -> Any:
 
 
 def _attributes(part: Any, prefix: str = "") -> dict[str, Any]:
-    """The members that are values, by their names; those of parts after theirs."""
+    """Returns the members that are values, by name. Names of nested members follow those of their parents."""
     out: dict[str, Any] = {}
     for field in dataclasses.fields(part):
         value, name = getattr(part, field.name), prefix + field.name

@@ -22,39 +22,64 @@ from ._warn import warn_all
 
 @dataclass(frozen=True, eq=False)
 class CentrelineBranch:
-    """A curve between two nodes, or a closed one without any."""
+    """Curve between two nodes, or a closed curve without nodes.
 
-    nodes: tuple[int, int]  #: its first and last node; -1 for closed curves
-    length: float  #: of its polyline, world units
-    mean_radius: float  #: along its length, outside of the balls of its junctions
-    min_radius: float  #: the smallest, likewise
-    points: FloatArray = field(repr=False)  #: (n, 3): from node to node; of closed curves the first is also the last
-    radii: FloatArray = field(repr=False)  #: (n,): at each point, of the circle with the area of the section there
+    >>> import blum
+    >>> (line,) = blum.centreline(blum.generate("tube_image", nodes=2, pitch=30))
+    >>> branch = line.branches[0]
+    >>> branch.is_closed, branch.points.shape == (len(branch.radii), 3)
+    (False, True)
+    """
+
+    nodes: tuple[int, int]  #: Its first and last node. -1 for closed curves.
+    length: float  #: Length of its polyline, world units.
+    mean_radius: float  #: Mean radius along its length, outside the balls of its junctions.
+    min_radius: float  #: Smallest radius, likewise.
+    #: Points from node to node: (n, 3), world units. Closed curves repeat the first at the end.
+    points: FloatArray = field(repr=False)
+    #: Radius at each point, of the circle with the area of the section there: (n,).
+    radii: FloatArray = field(repr=False)
 
     @property
     def is_closed(self) -> bool:
-        """Whether it has no nodes."""
+        """True for a curve without nodes."""
         return self.nodes[0] < 0
 
 
 @dataclass(frozen=True, eq=False)
 class Centreline:
-    """The centreline of the voxels of one label: a graph of curves."""
+    """Centreline of the voxels of one label: a graph of curves.
 
-    label: int | None  #: their value; None where a threshold selects
-    voxels: int  #: how many there are
-    kinds: tuple[CentrelineNodeKind, ...]  #: of nodes: "end", "junction", or "point", a blob without branches
-    positions: FloatArray = field(repr=False)  #: (n, 3): of nodes, world units
-    radii: FloatArray = field(repr=False)  #: (n,): of the balls of nodes
-    branches: tuple[CentrelineBranch, ...] = field(repr=False)
-    label_betti: Betti  #: components, tunnels, voids of the voxels
-    graph_betti: Betti  #: of nodes and branches
-    homotopy_kept: bool  #: whether these are equal
-    homotopy: str  #: kept, or what differs and why, as a sentence
+    >>> import blum
+    >>> (line,) = blum.centreline(blum.generate("tube_image", nodes=2, pitch=30))
+    >>> line.label, line.label_betti == line.graph_betti, len(line.kinds) == len(line.radii)
+    (1, True, True)
+    """
+
+    label: int | None  #: Value of the voxels. None if a threshold selects them.
+    voxels: int  #: Number of voxels.
+    #: Kind of each node: "end", "junction", or "point" for a part without branches.
+    kinds: tuple[CentrelineNodeKind, ...]
+    positions: FloatArray = field(repr=False)  #: Positions of the nodes: (n, 3), world units.
+    radii: FloatArray = field(repr=False)  #: Radii of the balls of the nodes: (n,).
+    branches: tuple[CentrelineBranch, ...] = field(repr=False)  #: Curves of the graph.
+    label_betti: Betti  #: Components, tunnels and voids of the voxels.
+    graph_betti: Betti  #: Components, tunnels and voids of the nodes and branches.
+    homotopy_kept: bool  #: True if both are equal.
+    homotopy: str  #: One sentence: kept, or the difference and its reason.
 
     def to_networkx(self) -> Any:
-        """A networkx.MultiGraph: nodes with `kind`, `position`, `radius`, edges with the branch's numbers, `points` and
-        `radii`. Closed curves get a node of their own, of the kind "closed"."""
+        """Returns a networkx.MultiGraph.
+
+        Nodes have `kind`, `position` and `radius`. Edges have the branch's numbers, `points` and `radii`. A closed
+        curve gets a node of its own, of kind "closed". Raises ImportError if networkx is missing.
+
+        >>> import blum
+        >>> (line,) = blum.centreline(blum.generate("tube_image", nodes=2, pitch=30))
+        >>> graph = line.to_networkx()
+        >>> graph.number_of_nodes() == len(line.kinds), graph.number_of_edges() == len(line.branches)
+        (True, True)
+        """
         import networkx as nx
 
         graph = nx.MultiGraph()
@@ -78,12 +103,18 @@ class Centreline:
 
 
 class Centrelines(Sequence[Centreline]):
-    """The centrelines of an image, by rising label, or in the order in which labels were given."""
+    """Centrelines of an image, by ascending label, or in the order of the requested labels.
+
+    >>> import blum
+    >>> lines = blum.centreline(blum.generate("balls_image"), labels=[2, 1])
+    >>> [line.label for line in lines]
+    [2, 1]
+    """
 
     def __init__(self, lines: tuple[Centreline, ...], edges: Complex, seconds: dict[str, float]) -> None:
         self._lines = lines
         self._complex = edges
-        #: By phase.
+        #: Wall-clock seconds of each phase.
         self.seconds = seconds
 
     def __getitem__(self, index: Any) -> Any:
@@ -97,8 +128,11 @@ class Centrelines(Sequence[Centreline]):
 
     @property
     def complex(self) -> Complex:
-        """All branches as edges from point to point; columns `radius` of vertices; `label`, `branch`, `length`,
-        `mean_radius` and `min_radius` of edges."""
+        """All branches as edges from point to point.
+
+        Vertices have the column `radius`. Edges have the columns `label`, `branch`, `length`, `mean_radius` and
+        `min_radius`.
+        """
         return self._complex
 
     def __repr__(self) -> str:
@@ -122,17 +156,17 @@ def centreline(
     progress: Progress = False,
     **options: Unpack[CentrelineOptions],
 ) -> Centrelines:
-    """The centreline of each label of an image, as a graph of curves with radii.
+    """Computes the centreline of each label of an image, as a graph of curves with radii.
 
-    Each value that is not zero is a label, unless `labels`, `label` or `threshold` says otherwise. The curves have the
-    components and tunnels of the label, voids are filled first. Radii are those of circles with the areas of the
-    sections across the curves; free ends lie where their ball touches the tip.
+    Each nonzero value is a label, unless `labels`, `label` or `threshold` selects voxels. Voids are filled first. The
+    curves have the components and tunnels of the label. The radius at a point is that of the circle with the area of
+    the section there. A free end lies where its ball touches the tip.
 
     Parameters
     ----------
     image : (z, y, x) array, Image, or path
     labels : integers, optional
-        Only these, in this order.
+        Only these labels, in this order. Excludes `label` and `threshold`.
     spacing, origin, direction
         As for :class:`Image`, in x, y, z order: the reverse of the array's axes.
     **options
@@ -152,7 +186,7 @@ def centreline(
     (('end', 'end'), True, 1.41)
     """
     if labels is not None and options.keys() & {"label", "threshold"}:
-        raise InvalidOption("labels excludes label and threshold: each selects the voxels")
+        raise InvalidOption("labels excludes label and threshold: each of them selects voxels")
     if isinstance(labels, (str, bytes)):
         raise TypeError(f"labels must be a list of integers, not {type(labels).__name__}")
     wanted = None if labels is None else [label_of(label, "labels") for label in labels]

@@ -1,4 +1,8 @@
-"""Certificates: whether an axis has the topology of its solid, checked by code that shares nothing with its making."""
+"""Certificates: checks whether an axis has the topology of its solid.
+
+The checking code is independent of the construction, except for the parts that docs/decisions/0007-certificate.md
+lists.
+"""
 
 from __future__ import annotations
 
@@ -22,26 +26,27 @@ from ._warn import warn_all
 
 @dataclass(frozen=True)
 class Claim:
-    """An axis as its certificate sees it, with what it (or the file that it was read from) says of itself."""
+    """Axis as its certificate sees it, with its own claims or those of the file that it was read from."""
 
-    complex: Complex
-    has: Mapping[str, bool]  #: which attributes are more than fillers: radii, footprints, angles, sites, labels
-    grid: Grid | None  #: of the voxels' centres, where that is known
-    label: int | None  #: of an image: the voxels of this value
-    threshold: float | None  #: of an image: the voxels of this value or more
-    weld: float | None  #: of a mesh: how its vertices were merged
-    rule: str  #: of its solid; empty where it does not say
-    site_ids: str
-    version: str  #: of the Blum that wrote its file; empty otherwise
-    theta: float | None = None  #: degrees
-    lambda_: float | None = None  #: mesh units
-    spacing: float | None = None  #: smallest side of a voxel, mesh units
-    deviation: float | None = None  #: from the axis with all vertices, mesh units
-    smooth: int | None = None  #: of an image: iterations of the smooth surface of its voxels; None: of their boxes
+    complex: Complex  #: The axis.
+    has: Mapping[str, bool]  #: Attributes that exist: radii, footprints, angles, sites, labels. Others are fillers.
+    grid: Grid | None  #: Grid of the voxels' centres, if known.
+    label: int | None  #: Image: voxels of this value.
+    threshold: float | None  #: Image: voxels of this value or more.
+    weld: float | None  #: Mesh: tolerance with which its vertices were merged.
+    rule: str  #: Rule of its solid. Empty if it states none.
+    site_ids: str  #: Kind of its sites.
+    version: str  #: Version of the Blum that wrote its file. Empty otherwise.
+    theta: float | None = None  #: Angle, degrees.
+    lambda_: float | None = None  #: Mesh units.
+    spacing: float | None = None  #: Smallest side of a voxel, mesh units.
+    deviation: float | None = None  #: Deviation from the axis with all vertices, mesh units.
+    #: Image: iterations of the smooth surface of its voxels. None: the surface of their boxes.
+    smooth: int | None = None
 
 
 class ShapeVerifier:
-    """Certifies axes of one mesh or image. What is read of it is read once, so it must not change meanwhile."""
+    """Certifier of axes of one mesh or image. It reads the shape once, so the shape must not change meanwhile."""
 
     def __init__(
         self,
@@ -55,11 +60,11 @@ class ShapeVerifier:
         self._is_image = triangles is None and is_image(shape)
         self._image: _core.ImageAxisVerifier | None = None
         self._mesh: _core.MeshAxisVerifier | None = None
-        self._merged: Real | None = None  # how the vertices of the mesh are
+        self._merged: Real | None = None  # Tolerance with which the vertices of _mesh were merged.
 
     @property
     def kind(self) -> str:
-        """What it is of."""
+        """Kind of the shape: "image" or "mesh"."""
         return "image" if self._is_image else "mesh"
 
     def certified(
@@ -73,7 +78,7 @@ class ShapeVerifier:
         progress: Progress = False,
         **checks: Unpack[CertificateOptions],
     ) -> Certificate:
-        """What `blum.certify` says of an axis."""
+        """Returns the certificate of an axis; see `blum.certify`."""
         if grid is not None and not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
         has = dict(claim.has)
@@ -107,7 +112,7 @@ class ShapeVerifier:
         return self._image
 
     def _of_mesh(self, merged: Real | None) -> _core.MeshAxisVerifier:
-        # Meshes in memory are as they are.
+        # Meshes in memory are not welded again.
         weld = merged if isinstance(self._shape, (str, os.PathLike)) else self._weld
         if self._mesh is None or weld != self._merged:
             self._mesh = _core.MeshAxisVerifier(
@@ -118,7 +123,7 @@ class ShapeVerifier:
 
 
 def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
-    """What an axis says of itself, for the library to check; `sites` where it does not say of what they are."""
+    """Returns the claims of an axis, for the library to check. `sites` is the kind of its sites if it states none."""
     return {
         "version": claim.version,
         "solid_rule": claim.rule,
@@ -143,7 +148,12 @@ def solid_rule(
     threads: int = 0,
     progress: Progress = False,
 ) -> MeshSolidRule:
-    """Whether a mesh bounds a polyhedron, and if not, why.
+    """Returns the rule of a mesh's solid: whether the mesh bounds a polyhedron, and the reason.
+
+    Parameters
+    ----------
+    mesh, triangles, weld, threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> blum.solid_rule(blum.generate("sphere")).rule

@@ -1,4 +1,4 @@
-"""Closed meshes that face outwards, without needles and needless vertices."""
+"""Closed meshes that face outwards, without needles and redundant vertices."""
 
 from __future__ import annotations
 
@@ -18,11 +18,17 @@ from ._warn import warn_all
 
 @dataclass(frozen=True, eq=False)
 class CleanedMesh:
-    """A cleaned mesh: what :func:`clean_mesh` returns."""
+    """Result of :func:`clean_mesh`.
 
-    mesh: Mesh  #: its vertices are some of the input's, in their order
-    vertex_of: npt.NDArray[np.uint32]  #: of each vertex, in the input; 0xffffffff: new
-    report: CleanReport  #: what was done, and the bound that holds
+    >>> import blum
+    >>> found = blum.clean_mesh(blum.generate("box"), 1e-6)
+    >>> found.vertex_of.tolist() == list(range(8)), found.report.collapses
+    (True, 0)
+    """
+
+    mesh: Mesh  #: Its vertices are some of the input's, in their order, then those at which the input crossed itself.
+    vertex_of: npt.NDArray[np.uint32]  #: Index of each vertex in the input. 0xffffffff: a new vertex.
+    report: CleanReport  #: Counts of changes, and the bound on the deviation.
 
 
 def clean_mesh(
@@ -33,20 +39,22 @@ def clean_mesh(
     threads: int = 0,
     progress: Progress = False,
 ) -> CleanedMesh:
-    """A closed mesh without needles and vertices that it can do without: what to do before :func:`voronoi_complex`.
+    """Returns a closed mesh without needles and redundant vertices, for example as input for :func:`voronoi_complex`.
 
-    Vertices are moved onto neighbours and edges of flat triangles are turned, one by one. The surface stays what it is
-    up to homeomorphism, no triangles cross or touch (in exact arithmetic), and the solid keeps its Betti numbers.
+    Vertices are moved onto neighbours, and edges of flat triangles are flipped, one at a time. The surface stays
+    homeomorphic to the input. No triangles of the result cross or touch, in exact arithmetic. The solid keeps its Betti
+    numbers.
 
     Parameters
     ----------
-    mesh : mesh
-        As for :func:`distance_field`, closed; or a :class:`Solid`. It may face any way, and cross itself: the result is
-        then near the surface without the crossings.
+    mesh : mesh or Solid
+        A closed mesh, as for :func:`distance_field`, or a :class:`Solid`. The mesh may face any way and cross itself.
+        The result is then near the surface without the crossings.
     tolerance : float
-        The result is nowhere further from the mesh than this, nor the mesh from it, for certain; mesh units.
+        Guaranteed bound on the deviation, mesh units. No point of the result is further than this from the mesh, and no
+        point of the mesh is further than this from the result.
     weld, threads, progress
-        As for :func:`distance_field`.
+        As for :func:`distance_field`. `weld` is ignored for a :class:`Solid`.
 
     Raises
     ------
@@ -71,24 +79,30 @@ def clean_mesh(
 
 @dataclass(frozen=True, eq=False)
 class OrientedMesh:
-    """A mesh that faces away from the solid: what :func:`oriented_mesh` returns."""
+    """Result of :func:`oriented_mesh`.
 
-    mesh: Mesh  #: the given one, but that the last two corners of some triangles have changed places
-    reversed_triangles: int  #: that faced another way than most of their shell
-    reversed_shells: int  #: that faced the solid, as a whole
+    >>> import blum
+    >>> found = blum.oriented_mesh(blum.generate("box"))
+    >>> found.mesh, found.reversed_triangles, found.reversed_shells
+    (Mesh(8 vertices, 12 triangles), 0, 0)
+    """
+
+    mesh: Mesh  #: The input, in which the last two corners of some triangles are swapped.
+    reversed_triangles: int  #: Triangles that faced another way than most of their shell.
+    reversed_shells: int  #: Shells that faced the solid.
 
 
 def oriented_mesh(
     mesh: MeshLike, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
 ) -> OrientedMesh:
-    """The same triangles, in their order, turned such that all face away from the solid that they bound.
+    """Returns the same triangles in the same order, all facing away from the solid that they bound.
 
-    First those are turned that disagree with most of their shell, then shells that face the solid.
+    Triangles that disagree with most of their shell are reversed first, then shells that face the solid.
 
     Parameters
     ----------
     mesh : mesh
-        As for :func:`distance_field`: closed and manifold.
+        As for :func:`distance_field`. It must be closed and manifold.
     weld, threads, progress
         As for :func:`distance_field`.
 

@@ -1,4 +1,4 @@
-"""Closest points and winding numbers of any points."""
+"""Closest points and winding numbers at arbitrary points."""
 
 from __future__ import annotations
 
@@ -19,27 +19,39 @@ from ._structs import ClosestPointOptions
 
 @dataclass(frozen=True, eq=False)
 class ClosestPoints:
-    """What :func:`closest_points` finds; all arrays have the shape of the queries without the last axis."""
+    """Result of :func:`closest_points`. All arrays have the shape of the queries without the last axis.
 
-    closest: FloatArray  #: (..., 3): on the mesh; the query itself where nothing is within max_distance
-    distance: FloatArray  #: mesh units, negative inside when signed; infinite where nothing is within max_distance
-    site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
-    triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
+    >>> import blum
+    >>> found = blum.closest_points(blum.generate("box"), [0, 0, 2], max_distance=1)
+    >>> float(found.distance), int(found.site), int(found.triangle)
+    (inf, -1, -1)
+    """
+
+    closest: FloatArray  #: Closest point on the mesh: (..., 3). The query itself if nothing lies within max_distance.
+    distance: FloatArray  #: Mesh units, negative inside when signed. Infinite if nothing lies within max_distance.
+    site: IntArray  #: Site of the mesh, see :class:`Sites`. -1 if none.
+    triangle: IntArray  #: Smallest triangle that contains the site. -1 if none.
 
 
 @dataclass(frozen=True, eq=False)
 class NearPrimitives:
-    """What :meth:`ClosestPointQuery.within` and :meth:`ClosestPointQuery.nearest_primitives` find.
+    """Result of :meth:`ClosestPointQuery.within` and :meth:`ClosestPointQuery.nearest_primitives`.
 
-    Entries ``first[q]`` to ``first[q + 1]`` (without) belong to query q, by rising distance, then primitive. Queries
-    count in one row, whatever their shape.
+    Query q has the entries ``first[q]`` to ``first[q + 1] - 1``, by ascending distance, then primitive. Queries are
+    numbered in C order, whatever their shape.
+
+    >>> import blum
+    >>> query = blum.ClosestPointQuery(blum.generate("box"))
+    >>> query.within([[0, 0, 1], [0, 0, 5]], 0.7)
+    NearPrimitives(2 of 2 queries)
     """
 
-    first: npt.NDArray[np.int64]  #: (queries + 1,)
-    primitive: IntArray  #: (n,): the triangles of the mesh, then its segments, then its points, counted in one row
-    site: IntArray  #: (n,): that the closest point of the primitive lies on, see :class:`Sites`
-    distance: FloatArray  #: (n,): mesh units, without sign
-    closest: FloatArray  #: (n, 3): the closest point of the primitive
+    first: npt.NDArray[np.int64]  #: First entry of each query: (queries + 1,).
+    #: Primitives: (n,). The triangles of the mesh are numbered first, then its segments, then its points.
+    primitive: IntArray
+    site: IntArray  #: Site that contains the closest point of the primitive: (n,), see :class:`Sites`.
+    distance: FloatArray  #: Unsigned distance: (n,), mesh units.
+    closest: FloatArray  #: Closest point of the primitive: (n, 3).
 
     def __repr__(self) -> str:
         return f"NearPrimitives({len(self.primitive):,} of {len(self.first) - 1:,} queries)"
@@ -47,11 +59,11 @@ class NearPrimitives:
 
 @takes("ClosestPointOptions")
 class ClosestPointQuery:
-    """Closest-point queries on one mesh, exact; may be called from many threads at once.
+    """Exact closest-point queries on one mesh. They may run on many threads at once, but not during :meth:`refit`.
 
     Parameters
     ----------
-    mesh, triangles, weld
+    mesh, triangles, weld, threads, progress
         As for :func:`distance_field`.
     **options
 
@@ -85,16 +97,28 @@ class ClosestPointQuery:
 
     @property
     def sign_rule(self) -> str:
-        """How signs are found: "normals", "winding" or "none"."""
+        """Rule for signs: "normals", "winding" or "none"."""
         return str(self._query.sign_rule)
 
     @property
     def sign_reason(self) -> str:
-        """Why, in one sentence."""
+        """Reason for this rule, one sentence."""
         return str(self._query.sign_reason)
 
     def __call__(self, points: Any, *, threads: int = 0, progress: Progress = False) -> ClosestPoints:
-        """Queries of the shape (..., 3)."""
+        """Returns the closest points of queries of shape (..., 3).
+
+        Parameters
+        ----------
+        points : array of shape (..., 3)
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> query = blum.ClosestPointQuery(blum.generate("box"))
+        >>> query([[0, 0, 5], [0, 0, 0.4]]).distance.round(6).tolist()
+        [4.5, -0.1]
+        """
         rows, shape = points_and_shape(points, "points")
         with reporting(progress) as report:
             found, distance, site, triangle = self._query.nearest(rows, integer(threads, "threads"), report)
@@ -103,7 +127,15 @@ class ClosestPointQuery:
         )
 
     def within(self, points: Any, distance: Real, *, threads: int = 0, progress: Progress = False) -> NearPrimitives:
-        """All triangles, segments and points of the mesh within a distance of points of the shape (..., 3).
+        """Returns all triangles, segments and points of the mesh within a distance of each query.
+
+        Parameters
+        ----------
+        points : array of shape (..., 3)
+        distance : float
+            Mesh units, not negative. `max_distance` limits it, too.
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> query = blum.ClosestPointQuery(blum.generate("box"))
@@ -119,7 +151,17 @@ class ClosestPointQuery:
     def nearest_primitives(
         self, points: Any, k: Integer, *, threads: int = 0, progress: Progress = False
     ) -> NearPrimitives:
-        """The k closest of them; fewer where there are fewer, or fewer within `max_distance`.
+        """Returns the k closest triangles, segments and points for each query.
+
+        There are fewer if the mesh has fewer, or fewer within `max_distance`.
+
+        Parameters
+        ----------
+        points : array of shape (..., 3)
+        k : int
+            Not negative.
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> query = blum.ClosestPointQuery(blum.generate("box"))
@@ -134,15 +176,17 @@ class ClosestPointQuery:
             return NearPrimitives(*self._query.nearest_primitives(rows, count, integer(threads, "threads"), report))
 
     def refit(self, vertices: Any, *, threads: int = 0, progress: Progress = False) -> None:
-        """Moves the vertices of the mesh: answers are those of a new query, which takes longer to make.
+        """Moves the vertices of the mesh. Results are those of a new query object, which takes longer to make.
 
-        Must not run beside calls. Unsigned it takes some 2 ms for 100,000 triangles on two cores; signs are planned
-        anew, as in a new query.
+        It must not run at the same time as queries. Unsigned, it takes some 2 ms for 100,000 triangles on two cores.
+        Signs are planned again, as in a new query object.
 
         Parameters
         ----------
-        vertices : array (n, 3)
-            As many as the mesh has (after welding).
+        vertices : (n, 3) array
+            As many vertices as the mesh has after welding.
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> box = blum.generate("box")
@@ -166,13 +210,13 @@ def closest_points(
     progress: Progress = False,
     **options: Unpack[ClosestPointOptions],
 ) -> ClosestPoints:
-    """The closest point of a mesh, its distance, site and triangle for every query; exact, not interpolated.
+    """Returns the closest point of a mesh, its distance, site and triangle for every query. Exact, not interpolated.
 
     Parameters
     ----------
     mesh, weld, threads, progress
         As for :func:`distance_field`.
-    points : array of the shape (..., 3)
+    points : array of shape (..., 3)
     **options
 
     >>> import blum
@@ -193,18 +237,19 @@ def winding_number(
     threads: int = 0,
     progress: Progress = False,
 ) -> FloatArray:
-    """The generalized winding number of a mesh at any points, which share what they can; whole for closed meshes.
+    """Returns the generalized winding number of a mesh at many points. It is a whole number for a closed mesh.
 
-    For values one by one, and for sides, see :class:`WindingNumber`.
+    :class:`WindingNumber` returns values and sides one at a time.
 
     Parameters
     ----------
     mesh, weld, threads, progress
         As for :func:`distance_field`.
-    points : array of the shape (..., 3)
+    points : array of shape (..., 3)
     max_error : float
-        Values are off by no more. It matters where the surface has a long boundary: soups of 70,000 triangles take
-        some 30 microseconds a point at 1e-3, 250 at 1e-6; closed meshes and those with some holes 0.2 to 2.
+        Bound on the error of each value; below 2e-11 it counts as 2e-11. It matters if the surface has a long boundary.
+        Soups of 70,000 triangles take some 30 microseconds per point at 1e-3, and 250 at 1e-6. Closed meshes, and
+        meshes with some holes, take 0.2 to 2 microseconds.
 
     >>> import blum
     >>> blum.winding_number(blum.generate("box"), [[0, 0, 0], [5, 5, 5]]).tolist()

@@ -1,4 +1,4 @@
-"""Runs the command-line tool that comes with the package, in place of this process."""
+"""Command-line tool of the package, which replaces this process."""
 
 import os
 import sys
@@ -7,6 +7,7 @@ from typing import NoReturn
 
 
 def main() -> NoReturn:
+    """Replaces this process by the tool, with the same arguments."""
     program = Path(__file__).parent / "_bin" / "blum"
     os.execv(program, [str(program), *sys.argv[1:]])
 

@@ -1,4 +1,4 @@
-"""Complexes of vertices, edges and triangles, with named columns of numbers on each."""
+"""Complexes of vertices, edges and triangles, with named columns of numbers."""
 
 from __future__ import annotations
 
@@ -19,21 +19,25 @@ from ._progress import Progress, reporting
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
 
-#: Named columns: (n,) or (n, components) arrays of float64, float32, int64 or int32.
+#: Named columns: arrays of shape (n,) or (n, components), of float64, float32, int64 or int32.
 ColumnsOf = Mapping[str, npt.NDArray[Any]]
 
 
 class Complex:
-    """Vertices, edges and triangles in space, with named columns on each. Arrays are read-only views of the library's
-    memory. As a space it is made of its vertices, edges and triangles, and of the triangles' own edges.
+    """Vertices, edges and triangles in space, with named columns of numbers on each.
+
+    Arrays are read-only views of the library's memory. As a space, a complex consists of its vertices, edges and
+    triangles, and of the sides of the triangles.
 
     Parameters
     ----------
     vertices : (n, 3) array
-    edges : (e, 2) array, optional
-    triangles : (m, 3) array, optional
+        Positions, mesh units.
+    edges : (e, 2) array of integers, optional
+    triangles : (m, 3) array of integers, optional
     vertex_columns, edge_columns, triangle_columns : mapping of names to arrays, optional
-        (n,) or (n, components) arrays, a row for each vertex, edge or triangle; float64, float32, int64 or int32.
+        (n,) or (n, components) arrays of float64, float32, int64 or int32, with a row for each vertex, edge or
+        triangle.
 
     >>> import blum
     >>> path = blum.Complex([[0, 0, 0], [1, 0, 0], [1, 1, 0]], edges=[[0, 1], [1, 2]], edge_columns={"cost": [1, 2.5]})
@@ -77,19 +81,19 @@ class Complex:
 
     @property
     def vertices(self) -> FloatArray:
-        """(n, 3): positions, mesh units."""
+        """Positions: (n, 3), mesh units."""
         found: FloatArray = self._core.vertices
         return found
 
     @property
     def edges(self) -> IntArray:
-        """(e, 2): those that are listed; not the sides of triangles."""
+        """Vertices of the listed edges: (e, 2). Sides of triangles need not be listed."""
         found: IntArray = self._core.edges
         return found
 
     @property
     def triangles(self) -> IntArray:
-        """(m, 3)."""
+        """Vertices of the triangles: (m, 3)."""
         found: IntArray = self._core.triangles
         return found
 
@@ -100,7 +104,7 @@ class Complex:
 
     @cached_property
     def edge_columns(self) -> ColumnsOf:
-        """Columns with a row for each of `edges`, by name."""
+        """Columns with a row for each listed edge, by name."""
         return MappingProxyType(self._core.edge_columns)
 
     @cached_property
@@ -109,7 +113,12 @@ class Complex:
         return MappingProxyType(self._core.triangle_columns)
 
     def homology(self, *, threads: int = 0, progress: Progress = False) -> Betti:
-        """Betti numbers over Z/2: components, tunnels, voids."""
+        """Returns the Betti numbers over Z/2: components, tunnels, voids.
+
+        >>> import blum
+        >>> blum.Complex([[0, 0, 0], [1, 0, 0], [0, 1, 0]], edges=[[0, 1], [1, 2], [2, 0]]).homology()
+        (1, 1, 0)
+        """
         return homology(len(self.vertices), self.edges, self.triangles, threads=threads, progress=progress)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -121,7 +130,7 @@ class Complex:
 
 
 def core_arguments(axis: Complex) -> tuple[Any, ...]:
-    """Copies of the arrays, in the order of the library's constructor."""
+    """Returns copies of the arrays, in the order of the library's constructor."""
     columns = (axis.vertex_columns, axis.edge_columns, axis.triangle_columns)
     return (
         np.array(axis.vertices),
@@ -150,7 +159,7 @@ def _restored(
 
 
 def _arrays_of(columns: Mapping[str, Any], argument: str) -> dict[str, npt.NDArray[Any]]:
-    """Columns as the library takes them: other numbers become the type that holds all of them."""
+    """Returns columns as the library takes them. Other types become float64 or int64."""
     out = {}
     for name, values in columns.items():
         array = as_array(values, f"{argument}[{name!r}]")
@@ -158,7 +167,9 @@ def _arrays_of(columns: Mapping[str, Any], argument: str) -> dict[str, npt.NDArr
             if array.dtype.kind not in "biuf":
                 raise TypeError(f"{argument}[{name!r}] holds {array.dtype}, but must hold numbers")
             if array.dtype == np.uint64 and array.size > 0 and int(array.max()) > np.iinfo(np.int64).max:
-                raise InvalidOption(f"{argument}[{name!r}] holds numbers above 2^63 - 1")
+                raise InvalidOption(
+                    f"{argument}[{name!r}] holds {int(array.max())}, but numbers must be at most 2^63 - 1"
+                )
             array = array.astype(np.float64 if array.dtype.kind == "f" else np.int64)
         out[text(str(name), f"a name of {argument}")] = np.ascontiguousarray(
             array.astype(array.dtype.newbyteorder("="), copy=False)
@@ -169,7 +180,18 @@ def _arrays_of(columns: Mapping[str, Any], argument: str) -> dict[str, npt.NDArr
 def homology(
     vertex_count: int, edges: Any = (), triangles: Any = (), *, threads: int = 0, progress: Progress = False
 ) -> Betti:
-    """Betti numbers over Z/2 of a complex of vertices, edges, and triangles with their edges.
+    """Returns the Betti numbers over Z/2 of a complex: components, tunnels, voids.
+
+    The complex consists of vertices, edges, triangles and sides of triangles.
+
+    Parameters
+    ----------
+    vertex_count : int
+        Number of vertices, at least 0.
+    edges : (e, 2) array of integers, optional
+    triangles : (m, 3) array of integers, optional
+    threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> blum.homology(4, edges=[[0, 1], [1, 2], [2, 0]])

@@ -16,16 +16,26 @@ from ._complex import Complex
 
 @dataclass(frozen=True, eq=False)
 class ComplexFile:
-    """What a file of a complex holds: what :func:`read_complex` returns."""
+    """Result of :func:`read_complex`: the content of a file.
 
-    complex: Complex
-    metadata: Mapping[str, str]  #: what the file says in words, such as `content` and `certified`
-    further: Mapping[str, Complex]  #: complexes beside the first, by name; of .npz files
+    >>> import blum, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     blum.write_complex(pathlib.Path(folder) / "one.npz", blum.Complex([[0, 0, 0]]))
+    ...     file = blum.read_complex(pathlib.Path(folder) / "one.npz")
+    >>> len(file.complex.vertices), dict(file.metadata), dict(file.further)
+    (1, {}, {})
+    """
+
+    complex: Complex  #: The first complex.
+    metadata: Mapping[str, str]  #: Texts of the file, for example `content` and `certified`.
+    further: Mapping[str, Complex]  #: Complexes beside the first one, by name. Only .npz files hold them.
 
 
 def read_complex(path: PathLike) -> ComplexFile:
-    """Reads any complex: .vtp, .ply and .npz with columns, .obj without, .ma with radii. What ``blum voronoi`` and
-    :meth:`VoronoiComplex.write` write, medial axes as plain complexes, and files of other programs.
+    """Reads any complex: .vtp, .ply and .npz with columns, .obj without columns, .ma with radii.
+
+    It reads the files of ``blum voronoi`` and :meth:`VoronoiComplex.write`, medial axes as plain complexes, and files
+    of other programs.
 
     Raises
     ------
@@ -51,21 +61,23 @@ def write_complex(
     further: Mapping[str, Complex] = MappingProxyType({}),
     allow_loss: bool = False,
 ) -> None:
-    """Writes a complex with all its columns to .vtp, .ply, .npz, .obj, .ma or .glb; the file appears complete or not at
-    all.
+    """Writes a complex with all its columns to .vtp, .ply, .npz, .obj, .ma or .glb.
+
+    The file appears under its name only when it is complete.
 
     Parameters
     ----------
     path : path
-        Its extension tells the format.
+        Its extension selects the format.
     complex : Complex
-        Diagrams and medial axes have a ``write`` of their own, which says what they are and whether that is certified.
-    metadata : mapping of texts to texts, optional
-        What the file is to say in words.
+        A plain complex. Diagrams and medial axes have their own ``write``, which records their kind and certificate.
+    metadata : mapping of strings to strings, optional
+        Texts for the file.
     further : mapping of names to complexes, optional
-        Complexes beside the first, by names of letters and digits, which only .npz files hold.
+        Complexes beside the first one, for .npz files only. Names consist of letters and digits.
     allow_loss : bool
-        Whether columns and metadata that the format cannot hold (.obj: all of them) are left out instead of refused.
+        True: columns and metadata that the format cannot hold (.obj: all of them) are left out. False: they are
+        rejected.
 
     Raises
     ------
@@ -90,16 +102,18 @@ def write_complex(
 
 
 def _check_plain(complex: Any, argument: str) -> None:
+    """Raises TypeError unless the argument is a Complex itself, not an instance of a subclass."""
     if not isinstance(complex, Complex):
-        raise TypeError(f"{argument} must be a complex, not {type(complex).__name__}")
+        raise TypeError(f"{argument} must be a blum.Complex, not {type(complex).__name__}")
     if type(complex) is not Complex:
         raise TypeError(
-            f"{argument} is a {type(complex).__name__}, whose write() says what it is and whether that is certified: "
-            "use that"
+            f"{argument} is a {type(complex).__name__}: use its method write(), which records its kind and whether it "
+            "is certified"
         )
 
 
 def _entries(mapping: Any, argument: str) -> list[tuple[str, Any]]:
+    """Returns the entries of a mapping with checked names."""
     if not isinstance(mapping, Mapping):
-        raise TypeError(f"{argument} must be a mapping with names, not {type(mapping).__name__}")
+        raise TypeError(f"{argument} must be a mapping with names as keys, not {type(mapping).__name__}")
     return [(text(key, f"a name of {argument}"), value) for key, value in mapping.items()]

@@ -16,13 +16,13 @@ from ._grid import Grid
 from ._options import takes
 from ._structs import CudaDevices, DistanceTransformOptions, FieldOptions
 
-_CUDA = 2  # DLPack's numbers of kinds of devices
+_CUDA = 2  # Number of the kind of device in DLPack.
 _MANAGED = 13
-_LEGACY = 1  # the legacy default stream, for CUDA and DLPack alike
+_LEGACY = 1  # The legacy default stream, in CUDA and DLPack.
 
 
 def cuda_devices() -> CudaDevices:
-    """The CUDA devices that `device=` may name, or why there are none.
+    """Returns the CUDA devices that `device=` may name, or the reason why none exists.
 
     >>> import blum
     >>> found = blum.cuda_devices()
@@ -34,16 +34,23 @@ def cuda_devices() -> CudaDevices:
 
 
 class DeviceArray:
-    """An array in a CUDA device's memory, for ``torch.from_dlpack``, ``cupy.from_dlpack`` and their like; not copied.
+    """Array in a CUDA device's memory, for ``torch.from_dlpack``, ``cupy.from_dlpack`` and similar functions.
 
-    It has ``__dlpack__`` and ``__cuda_array_interface__``: whoever takes it by one of them, waits on their own stream
-    for what computes it.
+    It is not copied. It has ``__dlpack__`` and ``__cuda_array_interface__``. The importer waits on its own stream until
+    the array is computed.
+
+    Examples
+    --------
+    ::
+
+        field = blum.DeviceFieldSolver(grid).compute(vertices, triangles)
+        distance = torch.from_dlpack(field.distance)
     """
 
     def __init__(self, core: _core.DeviceArray, solver: _DeviceSolver, pieces: int) -> None:
         self._core = core
-        self._solver = solver  # keeps what the device still reads
-        self._pieces = pieces  # of the solver's work, this array's among them
+        self._solver = solver  # Keeps arrays alive that the device still reads.
+        self._pieces = pieces  # Pieces of the solver's work up to this array's.
 
     def __repr__(self) -> str:
         return f"DeviceArray(shape={self.shape}, dtype={self.dtype}, device='cuda:{self._core.device}')"
@@ -60,12 +67,12 @@ class DeviceArray:
 
     @property
     def address(self) -> int:
-        """Where it begins, on the device."""
+        """Address of the first element on the device."""
         return int(self._core.address)
 
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]:
-        # By way of the legacy default stream, which is always there: streams of others may be gone.
+        # The legacy default stream always exists; a caller's stream may have been destroyed.
         self._solver._solver.follow(self._pieces, _LEGACY)
         return {
             "shape": self.shape,
@@ -77,7 +84,9 @@ class DeviceArray:
         }
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
-        raise TypeError("the array is in a CUDA device's memory: copy it to the host first, with PyTorch or CuPy")
+        raise TypeError(
+            "the array is in a CUDA device's memory: copy it to the host first, for example with PyTorch or CuPy"
+        )
 
     def __dlpack_device__(self) -> tuple[int, int]:
         return _CUDA, int(self._core.device)
@@ -91,17 +100,29 @@ class DeviceArray:
         copy: bool | None = None,
     ) -> Any:
         if dl_device is not None and tuple(dl_device) != self.__dlpack_device__():
-            raise BufferError("the array stays on its device: copy it from there")
+            raise BufferError(
+                f"dl_device is {tuple(dl_device)}, but the array is on {self.__dlpack_device__()}: import "
+                "it there, then copy it"
+            )
         if copy:
-            raise BufferError("the array is not copied: copy what shares it")
+            raise BufferError("copy=True is not supported: import the array without a copy, then copy the result")
         if stream != -1:
             self._solver._solver.follow(self._pieces, stream or _LEGACY)
         return self._core.capsule()
 
 
 class DeviceField:
-    """Distance and closest site at every node of a grid, in a CUDA device's memory; made by
-    :class:`DeviceFieldSolver` and :class:`DeviceDistanceTransform`."""
+    """Distance and closest site at every node of a grid, in a CUDA device's memory.
+
+    :class:`DeviceFieldSolver` and :class:`DeviceDistanceTransform` return it.
+
+    Examples
+    --------
+    ::
+
+        field = blum.DeviceFieldSolver(grid).compute(vertices, triangles)
+        distance, site = torch.from_dlpack(field.distance), torch.from_dlpack(field.site)
+    """
 
     def __init__(self, distance: Any, site: Any, solver: DeviceFieldSolver | DeviceDistanceTransform) -> None:
         self._distance = distance
@@ -117,44 +138,44 @@ class DeviceField:
 
     @property
     def distance(self) -> Any:
-        """Float32 (z, y, x), mesh units, negative inside when signed: a DeviceArray, or what `out` named."""
+        """Distances, negative inside when signed: float32 (z, y, x), mesh units. A DeviceArray, or that of `out`."""
         return self._distance
 
     @property
     def site(self) -> Any:
-        """Closest site, int32 (z, y, x); -1 where there is none. None where no sites were asked for."""
+        """Closest sites, -1 if none: int32 (z, y, x). None if no sites were requested."""
         return self._site
 
     @property
     def grid(self) -> Grid:
-        """Where the nodes are."""
+        """Grid of the nodes."""
         return self._grid
 
     @property
     def band(self) -> float | None:
-        """Half-width of the band, mesh units."""
+        """Half-width of the band, mesh units. None without a band."""
         return self._band
 
     @property
     def site_ids(self) -> str:
-        """What the sites count: "features", "triangles" or "voxels"."""
+        """Numbering of the sites: "features", "triangles" or "voxels"."""
         return self._site_ids
 
     @property
     def sign_rule(self) -> str:
-        """How the sign was found: "winding", "label" or "none"."""
+        """Rule that decided the signs: "winding", "label" or "none"."""
         return self._sign_rule
 
     @property
     def device(self) -> str:
-        """Where it is: "cuda:K"."""
+        """Device that holds the field: "cuda:K"."""
         return self._device
 
 
 class _DeviceSolver:
-    """What the solvers of this module share: arrays of others in and out, and the streams between."""
+    """Common part of the solvers of this module: exchange of arrays, and order between streams."""
 
-    _instead = ""  # what takes arrays of the host
+    _instead = ""  # Functions for arrays in the host's memory.
 
     def __init__(self, grid: Grid, core: Any, site_ids: str) -> None:
         self._solver = core
@@ -169,33 +190,33 @@ class _DeviceSolver:
 
     @property
     def grid(self) -> Grid:
-        """Where the nodes are."""
+        """Grid of the nodes."""
         return self._grid
 
     @property
     def band(self) -> float | None:
-        """Half-width of the band."""
+        """Half-width of the band, mesh units. None without a band."""
         return self._band
 
     @property
     def site_ids(self) -> str:
-        """What the sites count: "features", "triangles" or "voxels"."""
+        """Numbering of the sites: "features", "triangles" or "voxels"."""
         return self._site_ids
 
     @property
     def device(self) -> str:
-        """Where fields are computed: "cuda:K"."""
+        """Device that computes the fields: "cuda:K"."""
         return str(self._solver.device)
 
     def __del__(self) -> None:
-        self.__dict__.pop("_solver", None)  # which waits for the device; only then may the arrays go
+        self.__dict__.pop("_solver", None)  # Waits for the device before the arrays are freed.
 
     def _hold(self, arrays: tuple[_core.DeviceArray | None, ...]) -> None:
-        """Keeps arrays for as long as what is queued uses them: those who gave them may let go of them at once."""
+        """Keeps arrays alive while queued work uses them. Their owners may drop them at once."""
         self._held.append((self._solver.progress()[0], arrays))
 
     def _let_go(self) -> None:
-        """Drops the arrays that the device is done with."""
+        """Drops the arrays of work that the device has finished."""
         _, finished = self._solver.progress()
         while self._held and self._held[0][0] <= finished:
             self._held.popleft()
@@ -211,7 +232,7 @@ class _DeviceSolver:
         if not isinstance(out, (tuple, list)) or len(out) != 2:
             raise TypeError("out must be a pair of arrays on the device, (distance, site)")
         if (out[1] is not None) != self._sites:
-            raise TypeError(f"out[1] must be {'an array' if self._sites else 'None'}, as `sites` is {self._sites}")
+            raise TypeError(f"out[1] must be {'an array' if self._sites else 'None'}, because sites={self._sites}")
         for place, value in enumerate(out):
             interface = getattr(value, "__cuda_array_interface__", None)
             if interface is not None and interface["data"][1]:
@@ -231,7 +252,7 @@ class _DeviceSolver:
     def _take(
         self, value: Any, name: str, shape: tuple[int | None, ...], types: tuple[str, ...], stream: int
     ) -> _core.DeviceArray:
-        """An array of others, checked; what it holds is ready for what is queued on the stream from now on."""
+        """Imports and checks an array. Work queued on the stream from now on sees its content."""
         array = _imported(value, name, self._solver, stream, self._instead)
         if array.type not in types:
             raise TypeError(f"{name} must hold {' or '.join(np.dtype(kind).name for kind in types)}")
@@ -242,7 +263,7 @@ class _DeviceSolver:
             wanted = ", ".join("n" if size is None else str(size) for size in shape)
             raise ValueError(f"{name} has the shape {found}, but must have ({wanted}{',' if len(shape) == 1 else ''})")
         if array.address % np.dtype(array.type).itemsize:
-            raise ValueError(f"{name} does not begin at a multiple of its elements' size")
+            raise ValueError(f"{name} must begin at a multiple of its elements' size")
         if array.device != _index(self._solver):
             raise InvalidOption(f"{name} is on cuda:{array.device}, but fields are computed on {self.device}")
         return array
@@ -250,30 +271,32 @@ class _DeviceSolver:
 
 @takes("FieldOptions")
 class DeviceFieldSolver(_DeviceSolver):
-    """Fields of deforming meshes that are in a CUDA device's memory, as arrays there: no copies, no waiting.
+    """Fields of deforming meshes in a CUDA device's memory, returned as arrays there, without copies.
 
-    Arrays come in by DLPack or ``__cuda_array_interface__`` (PyTorch, CuPy, JAX, Numba, Warp), C-contiguous, and fields
-    go out by the same. See :class:`FieldSolver` for meshes in the host's memory.
+    Arrays come in by DLPack or ``__cuda_array_interface__`` (PyTorch, CuPy, JAX, Numba, Warp) and must be C-contiguous.
+    Fields go out by the same protocols. :class:`FieldSolver` takes meshes in the host's memory.
 
     Parameters
     ----------
     grid : Grid
     device : "cuda" or "cuda:K"
     **options
-        Of signs, "auto" and "winding" are both the winding number; the sides of closed meshes that face outwards are
-        those of "normals", which itself needs a mesh in the host's memory.
+        For `sign`, "auto" and "winding" both use the winding number. For closed meshes that face outwards, it gives the
+        same sides as "normals". "normals" itself needs a mesh in the host's memory. `order` must be 1.
 
     Examples
     --------
     ::
 
         solver = blum.DeviceFieldSolver(blum.Grid((-1.3, -1.3, -1.3), 0.02, (128, 128, 128)))
+
         field = solver.compute(vertices, triangles)           # tensors of PyTorch on the device
         distance = torch.from_dlpack(field.distance)
+
         field = solver.compute(vertices + step)               # the same triangles
     """
 
-    _instead = "distance_field and FieldSolver take meshes of the host's"
+    _instead = "distance_field and FieldSolver take meshes in the host's memory"
 
     def __init__(
         self,
@@ -289,7 +312,7 @@ class DeviceFieldSolver(_DeviceSolver):
 
     @property
     def sign_rule(self) -> str:
-        """How the signs of fields are found with the current triangles: "winding" or "none"."""
+        """Rule for the signs of fields with the current triangles: "winding" or "none"."""
         return str(self._solver.sign_rule)
 
     def compute(
@@ -302,23 +325,33 @@ class DeviceFieldSolver(_DeviceSolver):
         out: tuple[Any, Any] | None = None,
         stream: Any = None,
     ) -> DeviceField:
-        """Queues the field of a mesh.
+        """Queues the field of a mesh and returns it. It does not wait for the device.
+
+        There are two exceptions: New triangles, segments or points wait for the device. The oldest call is waited for
+        when 64 calls are in flight.
 
         Parameters
         ----------
         vertices : (n, 3) of float32 or float64, on the device
-            Where one is not finite, every distance becomes NaN: no error is raised, as nothing waits for the device.
+            If a vertex is not finite, every distance becomes NaN. No error is raised, because nothing waits for the
+            device.
         triangles, segments, points : (m, 3), (m, 2), (m,) of int32, uint32 or int64, on the device
-            Without any, those of the last call, which saves finding the edges, and waiting for it.
+            If none of them is given, those of the last call are used. This saves the search for edges and its wait.
         out : (distance, site), optional
-            Arrays on the device to write to: float32 and int32 or uint32, of the grid's shape. Without sites, None is
-            the second.
-        stream : int, or a stream of PyTorch or CuPy
-            What to queue on; default: the legacy default stream.
+            Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape. Without sites, the
+            second is None.
+        stream : int, or a stream of PyTorch, CuPy or Warp
+            Stream of the work. Default: the legacy default stream.
 
         Raises
         ------
         InvalidMesh, InvalidOption, InvalidGrid (all ValueError), TypeError, OutOfMemory, DeviceError
+
+        Examples
+        --------
+        ::
+
+            field = solver.compute(vertices, triangles, stream=torch.cuda.current_stream())
         """
         queue = _stream_address(stream)
         self._let_go()
@@ -342,15 +375,15 @@ class DeviceFieldSolver(_DeviceSolver):
 
 @takes("DistanceTransformOptions")
 class DeviceDistanceTransform(_DeviceSolver):
-    """Distance transforms of images that are in a CUDA device's memory: no copies, no waiting.
+    """Distance transforms of images in a CUDA device's memory, returned as arrays there, without copies.
 
-    Arrays come in and fields go out as with :class:`DeviceFieldSolver`; see :func:`distance_transform` for images in
-    the host's memory.
+    Arrays are exchanged as with :class:`DeviceFieldSolver`. :func:`distance_transform` takes images in the host's
+    memory.
 
     Parameters
     ----------
     grid : Grid
-        Of the images: spacing, and where they are.
+        Grid of the images' voxel centres.
     device : "cuda" or "cuda:K"
     **options
 
@@ -362,7 +395,7 @@ class DeviceDistanceTransform(_DeviceSolver):
         distance = cupy.from_dlpack(transform.compute(mask).distance)     # mask: (z, y, x) on the device
     """
 
-    _instead = "distance_transform takes images of the host's"
+    _instead = "distance_transform takes images in the host's memory"
 
     def __init__(
         self,
@@ -379,25 +412,33 @@ class DeviceDistanceTransform(_DeviceSolver):
 
     @property
     def sign_rule(self) -> str:
-        """How the sign is found: "label" or "none"."""
+        """Rule for signs: "label" or "none"."""
         return self._sign_rule
 
     def compute(self, values: Any, *, out: tuple[Any, Any] | None = None, stream: Any = None) -> DeviceField:
-        """Queues the transform of an image.
+        """Queues the transform of an image and returns it. It does not wait for the device.
+
+        There is one exception: the oldest call is waited for when 64 calls are in flight.
 
         Parameters
         ----------
         values : (z, y, x) of booleans or numbers, on the device
-            Where no voxel is selected, or in a signed transform every one, distances are infinite (or the band's) and
-            there are no sites: no error is raised, as nothing waits for the device.
+            If no voxel is selected, or in a signed transform every voxel, distances are infinite (or the band's),
+            without sites. No error is raised, because nothing waits for the device.
         out : (distance, site), optional
-            Arrays on the device to write to: float32 and int32 or uint32, of the grid's shape.
-        stream : int, or a stream of PyTorch or CuPy
-            What to queue on; default: the legacy default stream.
+            Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape.
+        stream : int, or a stream of PyTorch, CuPy or Warp
+            Stream of the work. Default: the legacy default stream.
 
         Raises
         ------
         InvalidOption (a ValueError), ValueError, TypeError, OutOfMemory, DeviceError
+
+        Examples
+        --------
+        ::
+
+            field = transform.compute(mask, stream=cupy.cuda.get_current_stream())
         """
         queue = _stream_address(stream)
         self._let_go()
@@ -420,19 +461,19 @@ def _index(solver: Any) -> int:
 
 
 def _stream_address(stream: Any) -> int:
-    """A stream as CUDA's runtime and DLPack both have it."""
+    """Returns a stream's address, as the CUDA runtime and DLPack use it."""
     if stream is None:
         return _LEGACY
     protocol = getattr(stream, "__cuda_stream__", None)
     if protocol is not None:
         stream = protocol()[1] if callable(protocol) else protocol[1]
-    for attribute in ("cuda_stream", "ptr"):  # PyTorch and Warp, CuPy
+    for attribute in ("cuda_stream", "ptr"):  # PyTorch and Warp; CuPy.
         stream = getattr(stream, attribute, stream)
     if not isinstance(stream, (int, np.integer)):
         raise TypeError(f"stream must be an integer, or a stream of PyTorch, CuPy or Warp, not {type(stream).__name__}")
     address = integer(stream, "stream", bits=65)
     if address < 0:
-        raise InvalidOption(f"stream is {address}, which is no stream")
+        raise InvalidOption(f"stream is {address}, but must be 0 or more")
     return address or _LEGACY
 
 
@@ -452,7 +493,7 @@ def _imported(value: Any, name: str, solver: Any, stream: int, instead: str) -> 
 
 def _of_interface(value: Any, interface: dict[str, Any], solver: Any, stream: int) -> _core.DeviceArray:
     if interface.get("mask") is not None:
-        raise ValueError("it has a mask, and Blum knows no masks")
+        raise ValueError("it has a mask, which Blum does not support")
     kind = np.dtype(interface["typestr"])
     shape = [int(size) for size in interface["shape"]]
     address = int(interface["data"][0])
@@ -460,7 +501,7 @@ def _of_interface(value: Any, interface: dict[str, Any], solver: Any, stream: in
     if 0 not in shape:
         owner = solver.device_of(address)
         if owner is None:
-            raise ValueError("its memory is not that of a device")
+            raise ValueError("its memory is not on a CUDA device")
         device = owner
     before = interface.get("stream")
     if before is not None and int(before) != stream:

@@ -1,54 +1,147 @@
-"""What Blum raises. Each class is also the built-in one that a caller would expect."""
+"""Exceptions and warnings of Blum. Each exception also derives from the built-in one that fits."""
 
 
 class Error(Exception):
-    """Base of everything that Blum raises on purpose; its text says what was wrong, where, and what to do."""
+    """Base class of all exceptions that Blum raises on purpose. Messages state the problem, its place and a remedy.
+
+    >>> import blum
+    >>> try:
+    ...     blum.distance_field([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 7]])
+    ... except blum.Error as error:
+    ...     print(error)
+    triangles[0, 2] is 7, but must be 0 to 2
+    """
 
 
 class InputWarning(UserWarning):
-    """An input that can be used, but looks as if something else were meant: `warnings.filterwarnings` silences it."""
+    """Warning about an input that can be used, but probably means something else.
+
+    `warnings.filterwarnings` silences it. `code` identifies the kind of warning.
+
+    >>> import blum, warnings
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     _ = blum.thickness(blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    >>> [warning.message.code for warning in caught]
+    ['open-mesh']
+    """
 
     def __init__(self, text: str = "", code: str = "") -> None:
         super().__init__(text)
-        #: What it is about, in one word that stays while texts change, such as "facing"; empty where it has none.
+        #: Kind of warning, for example "facing". Codes stay the same when texts change. Empty if it has none.
         self.code = code
 
 
 class InvalidMesh(Error, ValueError):
-    """A mesh that cannot be used: nothing in it, coordinates that are not finite, indices out of range."""
+    """Error for a mesh that cannot be used: empty, with non-finite coordinates, or with indices out of range.
+
+    >>> import blum
+    >>> try:
+    ...     blum.Mesh([[0, 0, 0]], [[0, 1, 2]])
+    ... except blum.InvalidMesh as error:
+    ...     print(error)
+    triangles[0, 1] is 1, but must be 0 to 0
+    """
 
 
 class InvalidGrid(Error, ValueError):
-    """A grid that cannot be used: spacing that is not positive, no nodes, too many nodes."""
+    """Error for a grid that cannot be used: with a spacing that is not positive, without nodes, or with too many nodes.
+
+    >>> import blum
+    >>> try:
+    ...     blum.Grid(origin=(0, 0, 0), spacing=0, size=(2, 2, 2))
+    ... except blum.InvalidGrid:
+    ...     print("the spacing must be positive")
+    the spacing must be positive
+    """
 
 
 class InvalidImage(Error, ValueError):
-    """An image that cannot be used, or in which nothing is selected."""
+    """Error for an image that cannot be used, or in which no voxel is selected.
+
+    >>> import blum, numpy as np
+    >>> try:
+    ...     blum.distance_transform(np.zeros((2, 2, 2), dtype=bool))
+    ... except blum.InvalidImage:
+    ...     print("no voxel is selected")
+    no voxel is selected
+    """
 
 
 class InvalidOption(Error, ValueError):
-    """An argument out of its range, or arguments that exclude each other."""
+    """Error for an argument out of range, or for arguments that exclude each other.
+
+    >>> import blum
+    >>> try:
+    ...     blum.distance_field(blum.generate("box"), resolution=1)
+    ... except blum.InvalidOption:
+    ...     print("the resolution must be at least 2")
+    the resolution must be at least 2
+    """
 
 
 class NotCertified(Error, RuntimeError):
-    """An axis that is not certified, where one that is was asked for; the text says all that does not hold."""
+    """Error for an axis that is not certified, although a certified one was requested. The message lists all failed
+    checks.
+
+    >>> import blum
+    >>> issubclass(blum.NotCertified, RuntimeError)
+    True
+    """
 
 
 class OutOfMemory(Error, MemoryError):
-    """The memory that a call needs is not there; the text says how much it asked for."""
+    """Error for a call that needs more memory than is available. The message states the amount.
+
+    >>> import blum
+    >>> issubclass(blum.OutOfMemory, MemoryError)
+    True
+    """
 
 
 class DeviceError(Error, RuntimeError):
-    """A device that was asked for is not there, or failed; the text says which and what to do."""
+    """Error for a requested device that does not exist or failed. The message names the device and a remedy.
+
+    >>> import blum
+    >>> try:
+    ...     blum.distance_field(blum.generate("box"), resolution=8, device="cuda:1000")
+    ... except blum.DeviceError:
+    ...     print("no such device")
+    no such device
+    """
 
 
 class Cancelled(Error):
-    """The call was asked to stop."""
+    """Error for a call that was asked to stop.
+
+    >>> import blum
+    >>> issubclass(blum.Cancelled, blum.Error)
+    True
+    """
 
 
 class FileError(Error, OSError):
-    """A file that cannot be opened, read or written."""
+    """Error for a file that cannot be opened, read or written.
+
+    >>> import blum
+    >>> try:
+    ...     blum.generate("box").write("no such folder/box.ply")
+    ... except blum.FileError:
+    ...     print("not written")
+    not written
+    """
 
 
 class FormatError(FileError, ValueError):
-    """A file whose content is not what its format asks for."""
+    """Error for a file whose content violates its format.
+
+    >>> import blum, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "part.off"
+    ...     _ = path.write_text("not a mesh")
+    ...     try:
+    ...         blum.read_mesh(path)
+    ...     except blum.FormatError:
+    ...         print("not an OFF file")
+    not an OFF file
+    """

@@ -25,11 +25,19 @@ _CoreComplex = _core.Complex
 
 
 class ExtendedAxis(Complex):
-    """A medial axis whose sheets reach the surface: the vertices and triangles of the axis in their order, the new ones
-    behind them, and the curves of the axis as edges. What :func:`extend_axis` returns.
+    """Medial axis whose sheets reach the surface; the result of :func:`extend_axis`.
+
+    It has the vertices and triangles of the axis in their order, then the new ones. Its edges are the curves of the
+    axis.
+
+    >>> import blum
+    >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
+    >>> shell = blum.medial_axis(plate, resolution=24).simplify(120).extend()
+    >>> bool(shell.triangle_extended.any()), shell.thickness.shape == (len(shell.vertices),)
+    (True, True)
     """
 
-    #: What became of the rims.
+    #: Outcome for the rims, with counts and lengths.
     report: ExtendReport
     _told: dict[str, Any]
 
@@ -43,28 +51,45 @@ class ExtendedAxis(Complex):
 
     @property
     def thickness(self) -> FloatArray:
-        """(n,): twice the radius of the axis at each vertex; at new ones, that of the rim that they extend."""
+        """Twice the radius of the axis at each vertex: (n,), mesh units. New vertices have the value of their rim."""
         found: FloatArray = self.vertex_columns["thickness"]
         return found
 
     @property
     def triangle_sheet(self) -> IntArray:
-        """(m,): the sheet of the axis that each triangle is of, or extends."""
+        """Sheet of the axis that each triangle belongs to or extends: (m,)."""
         found: IntArray = self.triangle_columns["sheet"]
         return found
 
     @property
     def triangle_extended(self) -> IntArray:
-        """(m,): 1 for new triangles, 0 for those of the axis."""
+        """1 for new triangles, 0 for those of the axis: (m,)."""
         found: IntArray = self.triangle_columns["extended"]
         return found
 
     def write(self, path: PathLike) -> None:
-        """Writes .vtp, .ply, .obj, .npz or .stl (triangles alone); the file appears complete or not at all."""
+        """Writes .vtp, .ply, .obj, .npz or .stl (triangles only). The file appears under its name only when it is
+        complete.
+
+        >>> import blum, pathlib, tempfile
+        >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
+        >>> shell = blum.medial_axis(plate, resolution=24).simplify(120).extend()
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     shell.write(pathlib.Path(folder) / "shell.vtp")
+        ...     (pathlib.Path(folder) / "shell.vtp").stat().st_size > 1000
+        True
+        """
         _core.write_extended(Path(os.fspath(path)), self._core, self._told)
 
     def to_mesh(self) -> Mesh:
-        """The triangles alone."""
+        """Returns the vertices and triangles as a mesh, without the curves.
+
+        >>> import blum
+        >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
+        >>> shell = blum.medial_axis(plate, resolution=24).simplify(120).extend()
+        >>> len(shell.to_mesh().triangles) == len(shell.triangles)
+        True
+        """
         return Mesh(np.array(self.vertices), np.array(self.triangles))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -88,18 +113,19 @@ def extend_axis(
     progress: Progress = False,
     **options: Unpack[ExtendOptions],
 ) -> ExtendedAxis:
-    """The sheets of a medial axis, continued from their rims to the surface: for meshes of shell elements.
+    """Returns the sheets of a medial axis, extended from their rims to the surface: a mesh for shell elements.
 
-    Take an axis of 100 to 120 degrees: less has sheets into edges, more has gaps where walls meet. What meets another
-    sheet first ends there, without sharing vertices with it. The topology is that of the axis.
+    Use an axis of 100 to 120 degrees. A smaller angle adds sheets that run into edges; a larger one leaves gaps where
+    walls meet. A rim that meets another sheet first ends there, without sharing vertices with it. The topology is that
+    of the axis.
 
     Parameters
     ----------
     axis : MedialComplex
-        With radii and sheets; or another complex with these columns.
+        With radii and sheets. Another complex with these columns works, too.
     mesh, triangles
-        That the axis was made of, as for :func:`distance_field`. Default: the one that is known, where the axis was
-        made here.
+        The mesh of the axis, as for :func:`distance_field`. Default: the mesh that the axis was made from. Axes from
+        files have none.
     threads, progress
         As for :func:`distance_field`.
     **options
@@ -107,7 +133,8 @@ def extend_axis(
     Returns
     -------
     ExtendedAxis
-        Triangles with `thickness`, `triangle_sheet` and `triangle_extended`; `.report` tells what became of the rims.
+        Triangles with `thickness`, `triangle_sheet` and `triangle_extended`. `.report` contains the outcome for the
+        rims.
 
     >>> import blum
     >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.25)
@@ -119,7 +146,7 @@ def extend_axis(
         raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
     own = mesh_of(axis, mesh, triangles)
     if own is None:
-        raise InvalidOption("what this axis was made from is no mesh that is known here: use extend_axis(axis, mesh)")
+        raise InvalidOption("the mesh of this axis is not known here: pass it, as in extend_axis(axis, mesh)")
     with reporting(progress) as report:
         core, told, found = _core.extend_axis(
             axis._core, own._arrays, dict(options), integer(threads, "threads"), report

@@ -1,4 +1,4 @@
-"""Which vertices and faces, and which edges of a mesh are close."""
+"""Pairs of close features of a mesh: of a vertex and a face, and of two edges."""
 
 from __future__ import annotations
 
@@ -12,22 +12,27 @@ from ._progress import Progress
 from ._proximity_results import ProximityPairs
 from ._proximity_scene import ProximityScene
 
-_VERTICES, _FACES, _EDGES = 1, 2, 4  # layers
+_VERTICES, _FACES, _EDGES = 1, 2, 4  # Layers of the scene.
 
 
 @dataclass(frozen=True, eq=False)
 class FeaturePairs:
-    """Vertices and faces, and edges of a mesh that are close, as arrays."""
+    """Pairs of close features of a mesh, as arrays; the result of :func:`close_features`.
 
-    vertex_face: IntArray  #: (n, 2): a vertex, and a triangle that it is no corner of; rising
-    vertex_face_distance: FloatArray  #: (n,): mesh units
-    edge_edge: IntArray  #: (m, 2): two rows of `edges` that share no vertex, the smaller first; rising
-    edge_edge_distance: FloatArray  #: (m,)
-    edges: IntArray  #: (k, 2): all edges of triangles, and segments, each once: the smaller vertex first; rising
+    >>> import blum
+    >>> blum.close_features(blum.generate("box"), 0.5)
+    FeaturePairs(0 vertex_face, 0 edge_edge)
+    """
+
+    vertex_face: IntArray  #: A vertex, and a triangle of which it is not a corner: (n, 2), ascending.
+    vertex_face_distance: FloatArray  #: Distances of these pairs: (n,), mesh units.
+    edge_edge: IntArray  #: Two rows of `edges` that share no vertex, the smaller first: (m, 2), ascending.
+    edge_edge_distance: FloatArray  #: Distances of these pairs: (m,), mesh units.
+    edges: IntArray  #: All sides of triangles, and segments, each once: (k, 2), ascending, the smaller vertex first.
 
     @property
     def min_distance(self) -> float | None:
-        """The smallest distance; None where there is no pair."""
+        """Smallest distance of all pairs, mesh units. None without pairs."""
         every = np.concatenate([self.vertex_face_distance, self.edge_edge_distance])
         return float(every.min()) if len(every) else None
 
@@ -36,17 +41,19 @@ class FeaturePairs:
 
 
 def close_features(mesh: MeshLike, distance: Real, *, threads: int = 0, progress: Progress = False) -> FeaturePairs:
-    """All pairs of a vertex and a triangle, and of two edges, of a mesh that share no vertex and are no further apart
-    than `distance`; exact. They are what contact potentials of simulations take.
+    """Returns all close pairs of a vertex and a triangle, and of two edges, that share no vertex. The answer is exact.
 
-    Vertices in one place are one vertex. Edges are those of triangles and the segments of the mesh, vertices those that
-    any of its triangles, segments and points name.
+    Contact potentials of simulations need these pairs. Vertices in one place are one vertex. Edges are the sides of
+    triangles and the segments of the mesh. Vertices are those of its triangles, segments and points.
 
     Parameters
     ----------
-    mesh : anything that stands for a mesh
+    mesh : mesh
+        As for :func:`distance_field`.
     distance : float
-        In mesh units, not negative.
+        Largest distance of a pair, mesh units, not negative.
+    threads, progress
+        As for :func:`distance_field`.
 
     Returns
     -------
@@ -76,26 +83,27 @@ def close_features(mesh: MeshLike, distance: Real, *, threads: int = 0, progress
 
 
 def _named_vertices(mesh: Mesh) -> IntArray:
+    """Returns the vertices that triangles, segments or points name."""
     named = np.concatenate([mesh.triangles.ravel(), mesh.segments.ravel(), mesh.points])
     return np.unique(named).astype(np.int32)
 
 
 def _edges(mesh: Mesh) -> IntArray:
-    """Each once; without those that have one vertex as both ends."""
+    """Returns each edge once, without those whose ends are one vertex."""
     ends = np.concatenate(
         [mesh.triangles[:, [0, 1]], mesh.triangles[:, [1, 2]], mesh.triangles[:, [2, 0]], mesh.segments]
     )
     ends = np.sort(ends.astype(np.int64), axis=1)
     ends = ends[ends[:, 0] < ends[:, 1]]
     count = len(mesh.vertices)
-    keys = np.unique(ends[:, 0] * count + ends[:, 1])  # faster than unique rows
+    keys = np.unique(ends[:, 0] * count + ends[:, 1])  # Faster than np.unique with axis=0.
     return np.column_stack([keys // count, keys % count]).astype(np.int32)
 
 
 def _vertex_face(
     mesh: Mesh, found: ProximityPairs, chosen: np.ndarray[tuple[int], np.dtype[np.bool_]], vertices: IntArray
 ) -> tuple[IntArray, FloatArray]:
-    """The pairs of a vertex and a face whose corners are elsewhere."""
+    """Returns the pairs of a vertex and a face whose corners lie elsewhere."""
     pairs = found.primitive[chosen]
     distance = found.distance[chosen]
     pairs = np.column_stack([vertices[pairs[:, 0]], pairs[:, 1]]).astype(np.int32)

@@ -37,9 +37,23 @@ from ._warn import warn_all
 
 
 class Field:
-    """Distance and closest site at every node of a grid; made by :func:`distance_field` and its kin.
+    """Distance and closest site at every node of a grid; the result of :func:`distance_field` and similar functions.
 
-    ``Field(distance, grid)`` makes one of an array (z, y, x) of float32 (copied), to take level surfaces of, say.
+    ``Field(distance, grid)`` makes one from an array (z, y, x) of float32, which is copied, for example to extract
+    surfaces.
+
+    Parameters
+    ----------
+    distance : (z, y, x) array
+        Real numbers, mesh units. They become float32.
+    grid : Grid
+        Its shape must be that of `distance`.
+
+    >>> import blum, numpy as np
+    >>> grid = blum.Grid((-1, -1, -1), 0.25, (9, 9, 9))
+    >>> ball = blum.Field(np.linalg.norm(grid.positions(), axis=-1) - 0.6, grid)
+    >>> blum.topology(ball.zero_surface()).betti
+    (1, 0, 0)
     """
 
     def __init__(self, distance: Any, grid: Grid) -> None:
@@ -62,15 +76,15 @@ class Field:
     def _take(self, core: _core.Field, mesh: Mesh | None = None, source: str = "", space: str = "") -> None:
         self._core = core
         self._space = space
-        #: The mesh that the field is of, if that is known.
+        #: Mesh of the field, if known.
         self.mesh = mesh
-        #: Where the shape came from, for the metadata of files.
+        #: Name of the shape's file, for the metadata of files.
         self.source = source
         self._distance: npt.NDArray[np.float32] = core.distance
         self._site = cast("IntArray | None", core.site)
         self._distance2 = cast("npt.NDArray[np.float32] | None", core.distance2)
         self._site2 = cast("IntArray | None", core.site2)
-        # Now rather than when they are asked for: a solver that reuses its field may be writing it then.
+        # Read now, because a solver that reuses its field may be writing it later.
         self._grid = Grid._of(core.grid)
         self._seconds = dict(core.seconds)
         self._device, self._device_reason = str(core.device), str(core.device_reason)
@@ -83,36 +97,36 @@ class Field:
 
     @property
     def distance(self) -> npt.NDArray[np.float32]:
-        """float32 (z, y, x): distance in mesh units, negative inside when signed; +-band beyond a band."""
+        """Distance, negative inside when signed: float32 (z, y, x), mesh units. Beyond a band it is +-band."""
         return self._distance
 
     @property
     def site(self) -> IntArray | None:
-        """int32 (z, y, x): the closest site, -1 where there is none; None for a field without sites."""
+        """Closest site, -1 if none: int32 (z, y, x). None for a field without sites."""
         return self._site
 
     @property
     def distance2(self) -> npt.NDArray[np.float32] | None:
-        """float32 (z, y, x): distance to the second site, mesh units, never negative; None for a field of order 1.
+        """Distance to the second site, never negative: float32 (z, y, x), mesh units. None for a field of order 1.
 
-        Where no site may be second: infinity, with a band the band's half-width.
+        If no site may be second, it is infinite, or with a band the band's half-width.
         """
         return self._distance2
 
     @property
     def site2(self) -> IntArray | None:
-        """int32 (z, y, x): the second site, -1 where there is none; None for a field of order 1 or without sites."""
+        """Second site, -1 if none: int32 (z, y, x). None for a field of order 1 or without sites."""
         return self._site2
 
     @property
     def second(self) -> str | None:
-        """Which sites may be second: "no-common-vertex" or "other-object"; None for a field of order 1."""
+        """Rule for second sites: "no-common-vertex" or "other-object". None for a field of order 1."""
         found: str | None = self._core.second
         return found
 
     @property
     def grid(self) -> Grid:
-        """Where the nodes lie."""
+        """Grid of the nodes."""
         return self._grid
 
     @property
@@ -122,38 +136,38 @@ class Field:
 
     @property
     def spacing(self) -> tuple[float, float, float]:
-        """Distance between nodes, in x, y, z order."""
+        """Distance between neighbouring nodes, in x, y, z order."""
         return self.grid.spacing
 
     @property
     def site_ids(self) -> str:
-        """What the sites count: "features" (see :class:`Sites`), "triangles" or "voxels" (flat indices)."""
+        """Numbering of the sites: "features" (see :class:`Sites`), "triangles" or "voxels" (flat indices)."""
         return str(self._core.site_ids)
 
     @property
     def band(self) -> float | None:
-        """Half-width of the band, mesh units."""
+        """Half-width of the band, mesh units. None without a band."""
         found: float | None = self._core.band
         return found
 
     @property
     def sign_rule(self) -> str:
-        """How signs were found: "normals", "winding", "label", "balls" or "none"."""
+        """Rule that decided the signs: "normals", "winding", "label", "balls" or "none"."""
         return self._sign_rule
 
     @property
     def device(self) -> str:
-        """Where the field was computed: "cpu" or "cuda:K"."""
+        """Device that computed the field: "cpu" or "cuda:K"."""
         return self._device
 
     @property
     def device_reason(self) -> str:
-        """Why on the CPU, in one sentence, where the device "auto" was asked for; else empty."""
+        """Reason for the CPU, one sentence, if `device="auto"` was requested. Otherwise empty."""
         return self._device_reason
 
     @property
     def sign_reason(self) -> str:
-        """Why, in one sentence."""
+        """Reason for the sign rule, one sentence."""
         return self._sign_reason
 
     @property
@@ -172,10 +186,18 @@ class Field:
     def interpolate(
         self, points: Any, *, gradient: bool = False, threads: int = 0, progress: Progress = False
     ) -> FloatArray | tuple[FloatArray, FloatArray]:
-        """The distance at points of the shape (..., 3), trilinear between nodes; NaN outside of the grid.
+        """Returns the distance at points of shape (..., 3), trilinear between nodes. It is NaN outside the grid.
 
-        Not exact, as :func:`closest_points` is: off by up to about half a cell's diagonal next to edges and bisectors.
-        With `gradient` also the gradient of what is trilinear, of the shape (..., 3).
+        It is not exact: next to edges and bisectors it is off by up to about half a cell's diagonal.
+        :func:`closest_points` is exact.
+
+        Parameters
+        ----------
+        points : array of shape (..., 3)
+        gradient : bool
+            True: also returns the gradient of the trilinear interpolant, of shape (..., 3).
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> field = blum.distance_field(blum.generate("sphere"), resolution=64)
@@ -195,7 +217,14 @@ class Field:
         return only.reshape(shape)
 
     def zero_surface(self, level: Real = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
-        """The surface where the distance equals `level` (mesh units), facing larger values.
+        """Returns the surface at which the distance equals a level. Its triangles face larger values.
+
+        Parameters
+        ----------
+        level : float
+            Mesh units.
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> field = blum.distance_field(blum.generate("torus"), resolution=32)
@@ -206,21 +235,32 @@ class Field:
             return mesh_of_arrays(self._core.zero_surface(number(level, "level"), integer(threads, "threads"), report))
 
     def write(self, path: PathLike, *, progress: Progress = False) -> None:
-        """Writes .nrrd (sites beside it), .npz or .vti; the files appear complete or not at all.
+        """Writes .nrrd (with files for sites and order 2 beside it), .npz or .vti.
 
-        Written without sites over a field with, .nrrd loses the file of the old sites, too.
+        Files appear under their names only when they are complete. If a field without sites replaces a field with sites
+        as .nrrd, the file of the old sites is removed.
+
+        >>> import blum, pathlib, tempfile
+        >>> field = blum.distance_field(blum.generate("box"), resolution=8)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     field.write(pathlib.Path(folder) / "box.nrrd")
+        ...     sorted(path.name for path in pathlib.Path(folder).iterdir())
+        ['box.nrrd', 'box.site.nrrd']
         """
         with reporting(progress) as report:
             arrays = None if self.mesh is None else self.mesh._arrays
             _core.write_field(Path(os.fspath(path)), self._core, arrays, self.source, self._space, 0, report)
 
     def to_pyvista(self) -> Any:
-        """A pyvista.ImageData with the point data `distance` and `site`; a dict of arrays where PyVista is missing.
+        """Returns a pyvista.ImageData with the point data `distance` and `site`; without PyVista, a dict of arrays.
 
-        Of order 2 also `distance2` and `site2`.
+        A field of order 2 also has `distance2` and `site2`. The point data are copies, because VTK would hold the
+        library's memory until after Python's end, which then reports a leak.
 
-        The point data are copies: VTK would hold on to the library's memory beyond Python's end, which then tells of a
-        leak.
+        >>> import blum
+        >>> image = blum.distance_field(blum.generate("box"), resolution=8).to_pyvista()
+        >>> type(image).__name__ in ("ImageData", "dict")
+        True
         """
         try:
             import pyvista
@@ -271,12 +311,12 @@ def _restored(
 
 
 def _objects_array(objects: Any) -> npt.NDArray[np.uint32] | None:
-    """One small number per object, whatever whole numbers name them."""
+    """Returns the object of each vertex as numbers from 0, for any integers that name objects."""
     if objects is None:
         return None
     labels = as_array(objects, "objects")
     if labels.ndim != 1 or labels.dtype.kind not in "iub":
-        raise ValueError(f"objects must be whole numbers (n,), not {labels.dtype} {labels.shape}")
+        raise ValueError(f"objects must be integers of the shape (n,), not {labels.dtype} {labels.shape}")
     return np.ascontiguousarray(np.unique(labels, return_inverse=True)[1].reshape(-1), dtype=np.uint32)
 
 
@@ -297,31 +337,32 @@ def distance_field(
     progress: Progress = False,
     **options: Unpack[FieldOptions],
 ) -> Field:
-    """Exact distance and closest site at every node of a grid; of order 2 also the second site.
+    """Computes the exact distance and closest site at every node of a grid. For order 2, also the second site.
 
     Parameters
     ----------
     mesh, triangles
-        Vertices (n, 3) and triangles (m, 3); or one argument: a :class:`Mesh`, a path, an object of trimesh, Open3D,
-        meshio or PyVista. Any soup will do.
+        Vertices (n, 3) and triangles (m, 3). Or one argument: a :class:`Mesh`, a path, a pair (vertices, triangles), or
+        an object of trimesh, Open3D, meshio or PyVista. Any soup is valid.
     resolution : int
         Nodes along the longest side of the padded box around the mesh.
     spacing : float, optional
-        Distance between nodes, mesh units; instead of `resolution`.
+        Distance between nodes, mesh units. Replaces `resolution`.
     padding : float
-        Added to the box on each side, as a fraction of its longest side.
+        Padding of the box on each side, as a fraction of its longest side.
     bounds : ((x0, y0, z0), (x1, y1, z1)), optional
-        The grid covers exactly this box instead.
+        Box that the grid covers, without padding; see :meth:`Grid.within`.
     grid : Grid, optional
-        The grid itself.
+        The grid itself. Excludes `bounds` and `spacing`.
     weld : float, optional
-        Merge vertices closer than this first, mesh units; 0: equal ones. Default: as :func:`read_mesh` has it.
-    objects : (n,) of whole numbers, optional
-        For ``order=2, second="other-object"``: which object each vertex belongs to. Default: the connected parts.
+        Merges vertices at most this far apart first, mesh units. 0 merges equal ones. Default: as for
+        :func:`read_mesh`.
+    objects : (n,) of integers, optional
+        The object of each vertex, for ``order=2, second="other-object"``. Default: the connected parts of the mesh.
     threads : int
         0: all cores. Results do not depend on it.
     device : "cpu", "auto", "cuda" or "cuda:K"
-        Where distances are computed; "auto": on the first CUDA device if that works, else on the CPU.
+        Device that computes distances. "auto" uses the first CUDA device if that works, otherwise the CPU.
     progress : bool or function
         True: a bar of tqdm. A function is called with (fraction, phase).
     **options
@@ -329,7 +370,8 @@ def distance_field(
     Returns
     -------
     Field
-        Distances within 1e-6 of the diagonal of mesh and grid of exact, as float32.
+        float32 distances. They differ from the exact ones by at most 1e-6 of the diagonal of the box around mesh and
+        grid.
 
     Raises
     ------
@@ -369,8 +411,8 @@ class FieldSolver:
     device
         As for :func:`distance_field`.
     reuse : bool
-        Write every frame into the same arrays: faster, but a frame's arrays then change with the next one. Without it
-        each frame has its own.
+        True: every frame is written into the same arrays. This is faster, but the next frame overwrites them. False:
+        each frame has its own arrays.
     **options
 
     >>> import numpy as np, blum
@@ -399,7 +441,7 @@ class FieldSolver:
         self._grid = grid
         self._reuse = bool(reuse)
         self._busy = threading.Lock()
-        self._owner: int | None = None  # the thread that computes
+        self._owner: int | None = None  # Thread that computes.
 
     def __repr__(self) -> str:
         return f"FieldSolver({self._grid!r}{', reuse=True' if self._reuse else ''})"
@@ -414,16 +456,28 @@ class FieldSolver:
         threads: int = 0,
         progress: Progress = False,
     ) -> Field:
-        """The field of this frame's mesh. Threads that share a solver wait for each other.
+        """Returns the field of this frame's mesh. Threads that share a solver wait for each other.
 
-        `objects` are those of this frame, as for :func:`distance_field`.
+        Parameters
+        ----------
+        mesh, triangles, weld, threads, progress
+            As for :func:`distance_field`.
+        objects : (n,) of integers, optional
+            The object of each vertex in this frame, as for :func:`distance_field`.
+
+        >>> import blum
+        >>> solver = blum.FieldSolver(blum.Grid((-1, -1, -1), 0.5, (5, 5, 5)))
+        >>> solver.compute(blum.generate("box")).distance.shape
+        (5, 5, 5)
         """
         shape = as_mesh(mesh, triangles, weld=weld)
         labels = _objects_array(objects)
         compute = self._solver.compute_in_place if self._reuse else self._solver.compute
         count = integer(threads, "threads")
         if self._owner == threading.get_ident():
-            raise RuntimeError("this solver is computing: its progress and signal handlers cannot ask it for a field")
+            raise RuntimeError(
+                "this solver is computing: its progress callback and signal handlers must not call compute()"
+            )
         with self._busy, reporting(progress) as report:
             self._owner = threading.get_ident()
             try:
@@ -441,7 +495,22 @@ def selected_voxels(
     threads: int = 0,
     progress: Progress = False,
 ) -> npt.NDArray[np.bool_]:
-    """The mask of the voxels that are not zero, of a label, or of at least a threshold."""
+    """Returns the mask [z, y, x] of the voxels of a label or of at least a threshold. Default: nonzero voxels.
+
+    Parameters
+    ----------
+    image : (z, y, x) array, Image, or path
+    label : int, optional
+        Selects the voxels of this value.
+    threshold : float, optional
+        Selects the voxels of at least this value. Excludes `label`.
+    threads, progress
+        As for :func:`distance_field`.
+
+    >>> import blum, numpy as np
+    >>> blum.selected_voxels(np.array([[[0, 1, 2, 3]]]), threshold=2).tolist()
+    [[[False, False, True, True]]]
+    """
     with reporting(progress) as report:
         mask: npt.NDArray[np.uint8] = _core.selected_voxels(
             as_image(image)._arrays,
@@ -454,7 +523,7 @@ def selected_voxels(
 
 
 def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -> VoxelTopology:
-    """Betti numbers of the voxels of a mask [z, y, x].
+    """Returns the Betti numbers and the Euler characteristic of the voxels of a mask [z, y, x].
 
     >>> import blum
     >>> blum.voxel_topology(blum.generate("tube_image", nodes=2).values).betti
@@ -466,5 +535,13 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
 
 
 def read_field(path: PathLike) -> Field:
-    """Reads a field of .nrrd (sites beside it), .npz or .vti."""
+    """Reads a field from .nrrd (with the sites beside it), .npz or .vti.
+
+    >>> import blum, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "box.npz"
+    ...     blum.distance_field(blum.generate("box"), resolution=8).write(path)
+    ...     blum.read_field(path).distance.shape
+    (8, 8, 8)
+    """
     return Field._of(_core.read_field(existing_file(path)), None, source_name(path))

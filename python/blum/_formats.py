@@ -1,4 +1,4 @@
-"""The table of file formats."""
+"""File formats."""
 
 from __future__ import annotations
 
@@ -7,7 +7,12 @@ from ._structs import FileFormat
 
 
 def file_formats(content: str | None = None) -> list[FileFormat]:
-    """All formats that are read and written, or those of one content.
+    """Returns all file formats that Blum reads or writes, or those for one content.
+
+    Parameters
+    ----------
+    content : str, optional
+        For example "mesh", "image", "field", "complex" or "surface map". Default: all contents.
 
     >>> import blum
     >>> [one.name for one in blum.file_formats("mesh")][:2]
@@ -18,5 +23,5 @@ def file_formats(content: str | None = None) -> list[FileFormat]:
 
 
 def extensions(content: str) -> tuple[str, ...]:
-    """Those that are read as this content."""
+    """Returns the extensions of the formats that are read as this content."""
     return tuple(end for row in file_formats(content) for end in row.extensions)

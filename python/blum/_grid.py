@@ -1,4 +1,4 @@
-"""Grids: where the nodes of a field lie."""
+"""Grids of nodes."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from ._structs import Bounds
 
 
 class Grid:
-    """A regular grid. Node (i, j, k) lies at ``origin + direction @ ((i, j, k) * spacing)``.
+    """Regular grid of nodes. Node (i, j, k) lies at ``origin + direction @ ((i, j, k) * spacing)``.
 
-    Arrays on a grid are indexed [z, y, x], C order: their shape is ``shape``, the reverse of ``size``.
+    Arrays on a grid are C-ordered and indexed [z, y, x]. They have the shape ``shape``, the reverse of ``size``.
 
     Parameters
     ----------
     origin, spacing : three numbers
-        Position of node (0, 0, 0), and the distance between neighbours, both in x, y, z order and mesh units. A single
+        Position of node (0, 0, 0), and distance between neighbouring nodes, in x, y, z order and mesh units. A single
         number stands for all three.
     size : three integers
-        Nodes along x, y, z.
+        Number of nodes along x, y, z.
     direction : (3, 3) array, optional
-        Orthonormal; column a is the direction of index axis a.
+        Orthonormal. Column a is the direction of index axis a.
 
     >>> import blum
     >>> grid = blum.Grid(origin=(0, 0, 0), spacing=0.5, size=(5, 3, 2))
@@ -40,7 +40,7 @@ class Grid:
     def __init__(self, origin: Any, spacing: Any, size: Any, direction: Any = None) -> None:
         counts = as_array(size, "size")
         if counts.ndim != 1 or counts.size != 3 or counts.dtype.kind not in "iu":
-            raise ValueError("size must be three integers, the nodes along x, y, z")
+            raise ValueError("size must be three integers, the numbers of nodes along x, y, z")
         columns = np.eye(3) if direction is None else matrix(direction, "direction")
         self._spec = _core.GridSpec(
             triple(origin, "origin"), triple(spacing, "spacing"), [int(count) for count in counts], columns.T.tolist()
@@ -50,16 +50,22 @@ class Grid:
     def around(
         cls, shape: MeshLike | Bounds, *, resolution: Integer = 256, spacing: Real | None = None, padding: Real = 0.1
     ) -> Grid:
-        """The default grid around a mesh, or a pair of corners of a box.
+        """Returns the default grid around a mesh or a box.
 
         Parameters
         ----------
+        shape : mesh, or ((x0, y0, z0), (x1, y1, z1))
+            Mesh as for :func:`distance_field`, or the corners of a box.
         resolution : int
             Nodes along the longest padded side, 2 to 65536.
         spacing : float, optional
-            Distance between nodes, mesh units; instead of `resolution`.
+            Distance between nodes, mesh units. Replaces `resolution`.
         padding : float
-            Added on each side, as a fraction of the longest side.
+            Padding on each side, as a fraction of the longest side.
+
+        >>> import blum
+        >>> blum.Grid.around(((0, 0, 0), (1, 1, 2)), resolution=9, padding=0.5).size
+        (7, 7, 9)
         """
         lower, upper = bounds_of(shape)
         margin = number(padding, "padding")
@@ -69,7 +75,23 @@ class Grid:
 
     @classmethod
     def within(cls, bounds: Any, *, resolution: Integer = 256, spacing: Real | None = None) -> Grid:
-        """A grid over exactly a box, given as a pair of corners, without padding."""
+        """Returns a grid over a box, without padding.
+
+        A side that is not a whole number of steps long grows to the next whole number, centred. The grid then extends
+        beyond the box by less than half a step at each end.
+
+        Parameters
+        ----------
+        bounds : ((x0, y0, z0), (x1, y1, z1))
+        resolution : int
+            Nodes along the longest side, 2 to 65536.
+        spacing : float, optional
+            Distance between nodes, mesh units. Replaces `resolution`.
+
+        >>> import blum
+        >>> blum.Grid.within(((0, 0, 0), (1, 1, 2)), spacing=0.5)
+        Grid(origin=(0, 0, 0), spacing=(0.5, 0.5, 0.5), size=(3, 3, 5))
+        """
         lower, upper = box(bounds, "bounds")
         if spacing is None:
             return cls._of(_core.grid_in(lower, upper, integer(resolution, "resolution")))
@@ -86,49 +108,59 @@ class Grid:
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """Position of node (0, 0, 0): x, y, z."""
+        """Position of node (0, 0, 0): x, y, z, mesh units."""
         x, y, z = self._spec.origin
         return x, y, z
 
     @property
     def spacing(self) -> tuple[float, float, float]:
-        """Between neighbours along the index axes x, y, z."""
+        """Distance between neighbouring nodes along the index axes x, y, z, mesh units."""
         x, y, z = self._spec.spacing
         return x, y, z
 
     @property
     def size(self) -> tuple[int, int, int]:
-        """Nodes along x, y, z."""
+        """Number of nodes along x, y, z."""
         x, y, z = self._spec.size
         return x, y, z
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """The shape of arrays on the grid: (z, y, x)."""
+        """Shape of arrays on the grid: (z, y, x)."""
         x, y, z = self.size
         return z, y, x
 
     @property
     def direction(self) -> FloatArray:
-        """(3, 3): column a is the direction of index axis a (0: x)."""
+        """Directions of the index axes: (3, 3). Column a is the direction of index axis a (0: x)."""
         return np.array(self._spec.columns).T
 
     @property
     def bounds(self) -> Bounds:
-        """The box around the nodes, along the axes of the world."""
+        """Box around the nodes as (lower, upper), aligned with the axes of the world."""
         ends = np.array(self.size) - 1
         corners = self.positions_of(np.array(np.meshgrid(*([0, end] for end in ends))).reshape(3, -1).T)
         lower, upper = corners.min(axis=0), corners.max(axis=0)
         return (float(lower[0]), float(lower[1]), float(lower[2])), (float(upper[0]), float(upper[1]), float(upper[2]))
 
     def positions_of(self, nodes: Any) -> FloatArray:
-        """(..., 3): where nodes (i, j, k) lie, in x, y, z order; fractions lie between nodes."""
+        """Returns the positions of nodes (i, j, k) as (..., 3), in x, y, z order. Fractions lie between nodes.
+
+        >>> import blum
+        >>> blum.Grid((1, 0, 0), 0.5, (3, 3, 3)).positions_of([2, 0, 0.5]).tolist()
+        [2.0, 0.0, 0.25]
+        """
         steps = np.asarray(nodes, dtype=np.float64) * self.spacing
         found: FloatArray = steps @ self.direction.T + self.origin
         return found
 
     def positions(self) -> FloatArray:
-        """(z, y, x, 3): where all nodes lie."""
+        """Returns the positions of all nodes: (z, y, x, 3).
+
+        >>> import blum
+        >>> blum.Grid((0, 0, 0), 1, (4, 3, 2)).positions().shape
+        (2, 3, 4, 3)
+        """
         i, j, k = (np.arange(count, dtype=np.float64) for count in self.size)
         z, y, x = np.meshgrid(k, j, i, indexing="ij")
         return self.positions_of(np.stack([x, y, z], axis=-1))
@@ -153,7 +185,7 @@ def _short(values: tuple[float, float, float]) -> str:
 
 
 def bounds_of(shape: MeshLike | Bounds) -> Bounds:
-    """The box of a mesh, or the box that a pair of corners is."""
+    """Returns the box of a mesh, or the given box."""
     if isinstance(shape, (tuple, list)) and len(shape) == 2 and np.asarray(shape[0], dtype=object).ndim == 1:
         return box(shape, "bounds")
     return as_mesh(shape).bounds
@@ -167,12 +199,12 @@ def grid_for(
     spacing: Real | None,
     padding: Real,
 ) -> Grid:
-    """The grid that the arguments of a field ask for; with `grid` or `bounds` there need not be a shape."""
+    """Returns the grid that a field's arguments request. With `grid` or `bounds`, no shape is needed."""
     if grid is not None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
         if bounds is not None or spacing is not None:
-            raise InvalidOption("grid excludes bounds and spacing: it says where all nodes lie")
+            raise InvalidOption("grid excludes bounds and spacing: it defines all nodes")
         return grid
     if bounds is not None:
         return Grid.within(bounds, resolution=resolution, spacing=spacing)
@@ -180,15 +212,15 @@ def grid_for(
 
 
 def image_grid(shape: tuple[int, ...], spacing: Any, origin: Any, direction: Any) -> Grid:
-    """The grid of an image's voxel centres. @param shape  (z, y, x)."""
+    """Returns the grid of an image's voxel centres. `shape` is (z, y, x)."""
     return Grid(origin, spacing, tuple(reversed(shape)), direction)
 
 
 def mask_array(value: Any, name: str) -> npt.NDArray[np.uint8]:
-    """A mask [z, y, x] as bytes, without a copy where it is one already."""
+    """Returns a mask [z, y, x] as bytes, without a copy if it has one byte per voxel."""
     array = as_array(value, name)
     if array.dtype.kind not in "biu":
-        raise TypeError(f"{name} must hold booleans, not {array.dtype}")
+        raise TypeError(f"{name} must hold booleans or integers, not {array.dtype}")
     if array.ndim != 3:
         raise ValueError(f"{name} has {array.ndim} axes, but must have 3: [z, y, x]")
     if array.dtype not in (np.bool_, np.uint8):

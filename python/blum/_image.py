@@ -1,4 +1,4 @@
-"""Voxel images: what Blum takes as one."""
+"""Voxel images."""
 
 from __future__ import annotations
 
@@ -21,17 +21,19 @@ _EXTENSIONS = extensions("image")
 
 
 class Image:
-    """A 3D image of numbers, and where its voxel centres lie.
+    """3D image of numbers, with the positions of its voxel centres.
 
     Parameters
     ----------
     values : (z, y, x) array
-        Booleans, integers or floats. C-contiguous arrays are used as they are, without a copy. A picture of two
-        axes is one layer, ``picture[None]``.
+        Booleans, integers or floats. C-contiguous arrays are not copied. A picture with two axes is one layer:
+        ``picture[None]``.
     spacing, origin : three numbers, optional
         In x, y, z order: the reverse of the array's axes. A single number stands for all three.
     direction : (3, 3) array, optional
-        Orthonormal; column a is the direction of index axis a (0: x, the array's last axis).
+        Orthonormal. Column a is the direction of index axis a (0: x, the array's last axis).
+    space : str
+        Name of the world axes in NRRD files. See :attr:`space`.
 
     >>> import numpy as np, blum
     >>> blum.Image(np.zeros((4, 5, 6), dtype=np.uint8), spacing=(0.5, 0.5, 2)).grid.size
@@ -49,7 +51,7 @@ class Image:
                 raise TypeError(f"image must hold numbers or booleans, not {array.dtype}")
             array = array.astype(np.float32)
         if array.dtype.kind == "f" and array.dtype.itemsize > 8:
-            raise TypeError(f"image must hold at most 64 bits a voxel, not {array.dtype}")
+            raise TypeError(f"image must hold at most 64 bits per voxel, not {array.dtype}")
         if array.ndim != 3:
             layer = "; one layer is image[None]" if array.ndim == 2 else ""
             raise ValueError(f"image has {array.ndim} axes, but must have 3: [z, y, x]{layer}")
@@ -59,7 +61,7 @@ class Image:
         self._values: npt.NDArray[Any] = array
         self._grid = image_grid(array.shape, spacing, origin, direction)
         self._space = space
-        #: Where the image came from, for the metadata of files.
+        #: Name of the image's file, for the metadata of files.
         self.source: str = ""
         self._arrays = _core.ImageArrays(
             array.view(np.uint8) if array.dtype == np.bool_ else array, self._grid._spec, space
@@ -67,16 +69,23 @@ class Image:
 
     @property
     def values(self) -> npt.NDArray[Any]:
-        """The voxels, [z, y, x]. They may be changed in place between calls; another array makes another Image."""
+        """Voxels: (z, y, x). They may change in place between calls. Another array needs another Image."""
         return self._values
 
     @property
     def grid(self) -> Grid:
-        """Where the voxels' centres lie."""
+        """Grid of the voxels' centres."""
         return self._grid
 
     def labels(self, most: int = 20, *, threads: int = 0, progress: Progress = False) -> ImageValues:
-        """Which values the image holds, and voxels, volume and Betti numbers of its most frequent labels.
+        """Returns the range of the values, and voxels, volume and Betti numbers of the most frequent labels.
+
+        Parameters
+        ----------
+        most : int
+            Largest number of labels.
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> [(each.label, each.betti) for each in blum.generate("ball_image", size=12).labels().labels]
@@ -90,7 +99,7 @@ class Image:
 
     @property
     def space(self) -> str:
-        """What the world axes are, as NRRD names it: "left-posterior-superior", ...; empty where that is not known."""
+        """Name of the world axes, as in NRRD files: "left-posterior-superior", ... Empty if unknown."""
         return self._space
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -98,11 +107,19 @@ class Image:
 
     @property
     def spacing(self) -> tuple[float, float, float]:
-        """Between voxel centres, in x, y, z order."""
+        """Distance between voxel centres, in x, y, z order."""
         return self.grid.spacing
 
     def write(self, path: PathLike) -> None:
-        """Writes .nrrd (with the grid) or .npy (values only)."""
+        """Writes .nrrd (with the grid) or .npy (values only).
+
+        >>> import blum, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = pathlib.Path(folder) / "ball.nrrd"
+        ...     blum.generate("ball_image", size=12).write(path)
+        ...     blum.read_image(path).values.shape
+        (12, 12, 12)
+        """
         _core.write_image(Path(os.fspath(path)), self._arrays)
 
     def __repr__(self) -> str:
@@ -110,7 +127,19 @@ class Image:
 
 
 def read_image(path: PathLike) -> Image:
-    """Reads an image in any of `file_formats("image")`; spacing, origin and direction are the file's."""
+    """Reads an image in any format of `file_formats("image")`. Spacing, origin and direction are those of the file.
+
+    Raises
+    ------
+    FileNotFoundError, FileError, FormatError, InvalidOption
+
+    >>> import blum, numpy as np, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "mask.npy"
+    ...     np.save(path, np.ones((2, 3, 4), dtype=np.uint8))
+    ...     blum.read_image(path).grid.size
+    (4, 3, 2)
+    """
     image = image_of_parts(*_core.read_image(existing_file(path)))
     image.source = source_name(path)
     return image
@@ -123,28 +152,29 @@ def _restored(values: npt.NDArray[Any], grid: Grid, space: str, source: str) -> 
 
 
 def image_of_parts(values: npt.NDArray[Any], spec: _core.GridSpec, space: str) -> Image:
-    """An image of what the library hands over."""
+    """Returns an image from the library's arrays."""
     grid = Grid._of(spec)
     return Image(values, grid.spacing, grid.origin, grid.direction, space=space)
 
 
 def refuse_selection(label: Any, threshold: Any) -> None:
-    """Where the shape is no image."""
+    """Raises InvalidOption if voxels are selected, but the shape is a mesh."""
     if label is not None or threshold is not None:
-        raise InvalidOption("label and threshold select voxels of an image, and shape is a mesh")
+        raise InvalidOption("label and threshold select voxels of an image, but shape is a mesh")
 
 
 def is_image_path(value: Any) -> bool:
+    """Returns True if a path has the extension of an image."""
     return isinstance(value, (str, os.PathLike)) and os.fspath(value).lower().endswith(_EXTENSIONS)
 
 
 def is_image(value: Any) -> bool:
-    """Whether something stands for an image rather than for a mesh."""
+    """Returns True for an image, a path of one, or an array with three axes; False for a mesh."""
     return isinstance(value, Image) or is_image_path(value) or (hasattr(value, "ndim") and value.ndim == 3)
 
 
 def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any = None) -> Image:
-    """Anything that stands for an image: an Image, a path, an array [z, y, x]."""
+    """Returns an Image, a path of one or an array [z, y, x] as an Image."""
     told = [
         name
         for name, value in (("spacing", spacing), ("origin", origin), ("direction", direction))
@@ -154,6 +184,6 @@ def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any
         image = read_image(image)
     if isinstance(image, Image):
         if told:
-            raise InvalidOption(f"{told[0]} is given, but the image has its own")
+            raise InvalidOption(f"{told[0]} is given, but the image has its own: leave it out, or pass an array")
         return image
     return Image(image, 1.0 if spacing is None else spacing, 0.0 if origin is None else origin, direction)

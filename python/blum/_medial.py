@@ -23,7 +23,7 @@ from ._warn import warn, warn_all
 
 
 class MedialAxis:
-    """The medial axis of a solid for all angles theta at once; made by :func:`medial_axis`.
+    """Medial axis of a solid for all angles theta at once; the result of :func:`medial_axis`.
 
     >>> import blum
     >>> axis = blum.medial_axis(blum.generate("box"), resolution=32)
@@ -34,23 +34,39 @@ class MedialAxis:
     def __init__(self, core: _core.MedialAxis, origin: Origin, options: dict[str, Any] | None = None) -> None:
         self._core = core
         self._origin = origin
-        self._options = {} if options is None else options  # of a mesh: to make it again on another grid
-        #: The smallest angle that can be asked for, degrees.
+        self._options = {} if options is None else options  # For another grid of the same mesh.
+        #: Smallest valid theta, degrees.
         self.least_theta: float = core.least_theta
-        #: The largest angle that can be asked for, degrees.
+        #: Largest valid theta, degrees.
         self.greatest_theta: float = core.greatest_theta
 
     @cached_property
     def report(self) -> MedialAxisReport:
-        """What was taken as the solid, and what became of it."""
+        """Rule of the solid, facts of its bodies, and whether the axis has its topology."""
         found: MedialAxisReport = self._core.report
         return found
 
     def simplify(self, theta: Real = 60.0, *, fit: bool = False) -> MedialComplex:
-        """The part where two footprints are seen at more than theta degrees apart, and what homotopy needs to join it.
+        """Returns the part of the axis with a separation angle above theta, and the cells that connect it.
 
-        What a larger theta gives is part of what a smaller one gives, unless `fit` moves its borders to their places:
-        seams to where three walls are equally far, rims to where the angle is theta. Cost: linear in the result.
+        The homotopy type is the same for every theta. The result for a larger theta is part of that for a smaller one,
+        unless `fit` moves borders. The cost is linear in the result.
+
+        Parameters
+        ----------
+        theta : float
+            Degrees, `least_theta` to `greatest_theta`.
+        fit : bool
+            True: moves seams to where three walls are equally far, and rims to where the separation angle is theta.
+
+        Raises
+        ------
+        InvalidOption, TypeError
+
+        >>> import blum
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=16)
+        >>> axis.simplify(60).sheet_count, axis.simplify(120).sheet_count
+        (13, 1)
         """
         angle = number(theta, "theta")
         cut = self._core.fitted if fit else self._core.simplify
@@ -68,25 +84,28 @@ class MedialAxis:
         threads: int = 0,
         progress: Progress = False,
     ) -> MedialComplex:
-        """The axis at theta as `blum medial` writes it: with its certificate, which holds.
+        """Returns the axis at theta with a certificate that holds, as `blum medial` writes it.
 
-        With its borders where they belong and few vertices; where that is not certified, simpler: with borders at the
-        cells of the grid, then with all vertices; then on a grid that is moved a little. A warning says what failed.
-        The mesh or image must be as it was. With another `least_theta`, sheets may end elsewhere within a voxel.
+        Up to three forms are tried. The first has fitted borders and few vertices. The second has borders at the cells
+        of the grid. The third has all vertices. If none is certified, they are tried on a grid that is shifted by part
+        of a voxel. A warning names the checks that failed. The mesh or image must be unchanged. With another
+        `least_theta`, sheets may end elsewhere within a voxel.
 
         Parameters
         ----------
         theta : float
             As for :meth:`simplify`.
         tolerance : float, optional
-            As for :meth:`MedialComplex.decimate`; 0 keeps all vertices, and borders at the cells.
+            As for :meth:`MedialComplex.decimate`. 0 keeps all vertices, and borders at the cells.
         allow_uncertified : bool
-            Give the best axis even where it is not certified, with a warning: look at `.certificate`.
+            True: returns the best axis even if it is not certified, with a warning. Check `.certificate` then.
+        threads, progress
+            As for :func:`distance_field`.
 
         Raises
         ------
         NotCertified
-            Where no form is certified.
+            If no form is certified.
 
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).certified(60)
@@ -95,7 +114,7 @@ class MedialAxis:
         """
         angle, most = number(theta, "theta"), optional_number(tolerance, "tolerance")
         shape = self._origin.shape
-        assert shape is not None  # medial_axis() says what it is of
+        assert shape is not None  # Set by medial_axis().
         count = integer(threads, "threads")
         verifier = ShapeVerifier(shape)
         with reporting(progress) as report:
@@ -124,27 +143,44 @@ class MedialAxis:
 
     @takes("AxisGraphOptions")
     def graph(self, theta: Real = 60.0, **options: Unpack[AxisGraphOptions]) -> AxisGraph:
-        """The graph of the axis at theta degrees; see :func:`axis_graph`.
+        """Returns the graph of the axis at theta degrees; see :func:`axis_graph`.
 
         Parameters
         ----------
         theta : float
             As for :meth:`simplify`.
         **options
+
+        >>> import blum
+        >>> axis = blum.medial_axis(blum.generate("box", size_x=3, size_y=2, size_z=0.5), resolution=24)
+        >>> [round(sheet.thickness.median, 6) for sheet in axis.graph(120).sheets]
+        [0.5]
         """
         return self.simplify(theta).graph(**options)
 
     def nested(self) -> NestedComplex:
-        """What simplify() gives for all angles from `least_theta` on, in one complex: the data of a slider.
+        """Returns the results of simplify() for all angles from `least_theta` on, in one complex.
 
-        Cost: near-linear in the axis at the least angle.
+        It serves sliders, for example. The cost is near-linear in the axis at the least angle. Raises InvalidOption
+        unless `greatest_theta` is 180.
+
+        >>> import blum
+        >>> blum.medial_axis(blum.generate("box"), resolution=16, least_theta=60).nested().least_theta
+        60.0
         """
         return NestedComplex(self._core.nested(), self.least_theta)
 
     def write(self, path: PathLike) -> None:
-        """Writes the axis at the least angle with those of all larger ones, as `blum medial --nested` does: .npz.
+        """Writes the axis at the least angle with those of all larger angles to .npz, as `blum medial --nested` does.
 
-        `blum view` and :func:`view` then have a slider for theta.
+        `blum view` and :func:`view` show such a file with a slider for theta.
+
+        >>> import blum, pathlib, tempfile
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=16, least_theta=60)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     axis.write(pathlib.Path(folder) / "box.npz")
+        ...     blum.read_medial(pathlib.Path(folder) / "box.npz").nested.least_theta
+        60.0
         """
         write_complex(path, self.simplify(self.least_theta), self.nested())
 
@@ -154,6 +190,7 @@ class MedialAxis:
 
 
 def _origin_of(origin: Origin, report: MedialAxisReport, angle: float) -> Origin:
+    """Returns the origin of the axis at one angle."""
     return replace(
         origin,
         theta=angle,
@@ -175,14 +212,14 @@ def medial_axis(
     progress: Progress = False,
     **options: Unpack[MedialAxisOptions],
 ) -> MedialAxis:
-    """The medial axis of the solid that a mesh or an image bounds, with the topology of that solid.
+    """Computes the medial axis of the solid that a mesh or an image bounds. It has the topology of that solid.
 
     Parameters
     ----------
     shape, triangles
-        A mesh, as for :func:`distance_field`; or an image: an array [z, y, x], an :class:`Image`, a path.
+        A mesh, as for :func:`distance_field`, or an image: an array [z, y, x], an :class:`Image` or a path.
     spacing : float; images: three numbers, optional
-        Meshes: side of a voxel, instead of `resolution`. Images: size of a voxel in x, y, z order.
+        Meshes: side of a voxel, mesh units; replaces `resolution`. Images: size of a voxel in x, y, z order.
     weld : float, optional
         Meshes: as for :func:`distance_field`.
     threads, progress
@@ -192,8 +229,8 @@ def medial_axis(
     Returns
     -------
     MedialAxis
-        `.certified(theta)` gives the best complex at an angle that is certified, with few triangles; `.simplify(theta)`
-        that of the cells, and `.simplify(theta).certificate` what is certain of it.
+        `.certified(theta)` returns the best certified complex at an angle, with few triangles. `.simplify(theta)`
+        returns the complex of the cells, and `.simplify(theta).certificate` its certificate.
 
     Raises
     ------

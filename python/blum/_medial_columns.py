@@ -1,4 +1,4 @@
-"""The columns of medial axes as arrays, and the axes of all angles in one complex."""
+"""Columns of medial axes as arrays, and axes of all angles in one complex."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._options import takes
 from ._progress import Progress
 from ._structs import AxisGraph, AxisGraphOptions
 
-#: What the numbers in `MedialComplex.role` and `edge_role` stand for.
+#: Names of the roles. `MedialComplex.role` and `edge_role` hold indices into them.
 ROLES: tuple[str, ...] = _core.enums["MedialRole"]
 
 # A class that has a member `_core` cannot name the module in its annotations.
@@ -26,11 +26,19 @@ _CoreComplex = _core.Complex
 
 
 class MedialColumns(Complex):
-    """What axes of one angle and of all have in common: the columns of a medial axis as properties. One that is
-    missing, as in files that do not hold it, is an :class:`InvalidOption` that says so."""
+    """Columns of a medial axis as properties, for axes of one angle and of all angles.
+
+    A property raises :class:`InvalidOption` if the axis lacks its column, for example because its file does not hold
+    it.
+
+    >>> import blum
+    >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
+    >>> axis.radius.shape == axis.role.shape == (len(axis.vertices),)
+    True
+    """
 
     def _needed(self, kind: str, name: str) -> npt.NDArray[Any]:
-        """A column of "vertices", "edges" or "triangles"."""
+        """Returns a column of "vertices", "edges" or "triangles"."""
         of_kind = {"vertices": self.vertex_columns, "edges": self.edge_columns, "triangles": self.triangle_columns}
         column = of_kind[kind].get(name)
         if column is None:
@@ -47,16 +55,22 @@ class MedialColumns(Complex):
         progress: Progress = False,
         **options: Unpack[AxisGraphOptions],
     ) -> AxisGraph:
-        """Its sheets, seams, curves and junctions, with areas, lengths and thicknesses; see :func:`axis_graph`. Of axes
-        of all angles those at the least one.
+        """Returns the sheets, seams, curves and junctions, with areas, lengths and thicknesses; see :func:`axis_graph`.
+
+        For axes of all angles, they are those at the least angle.
 
         Parameters
         ----------
         mesh, triangles
-            That the axis was made of. Default: the one that is known, where it was made here.
+            The mesh of the axis. Default: the mesh that the axis was made from. Axes from files have none.
         threads, progress
             As for :func:`distance_field`.
         **options
+
+        >>> import blum
+        >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
+        >>> len(blum.medial_axis(plate, resolution=24).simplify(120).graph().sheets)
+        1
         """
         return axis_graph(self, mesh, triangles, threads=threads, progress=progress, **options)
 
@@ -64,7 +78,9 @@ class MedialColumns(Complex):
     def write_graph(
         self, path: PathLike, mesh: Any = None, triangles: Any = None, **options: Unpack[AxisGraphOptions]
     ) -> None:
-        """Writes what :meth:`graph` tells as .json, or as .graphml; the file appears complete or not at all.
+        """Writes the result of :meth:`graph` as .json or .graphml.
+
+        The file appears under its name only when it is complete.
 
         Parameters
         ----------
@@ -72,87 +88,104 @@ class MedialColumns(Complex):
         mesh, triangles
             As for :meth:`graph`.
         **options
+
+        >>> import blum, pathlib, tempfile
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     axis.write_graph(pathlib.Path(folder) / "box.json")
+        ...     "sheets" in (pathlib.Path(folder) / "box.json").read_text()
+        True
         """
         write_graph(path, self, mesh, triangles, options)
 
     @property
     def radius(self) -> FloatArray:
-        """(n,): exact distance from each vertex to the surface, mesh units."""
+        """Exact distance from each vertex to the surface: (n,), mesh units."""
         found: FloatArray = self._needed("vertices", "radius")
         return found
 
     @cached_property
     def footprints(self) -> FloatArray:
-        """(n, 2, 3): the closest point of the surface, and that of the other wall; a copy of two columns."""
+        """Closest point of the surface, and that of the other wall: (n, 2, 3). A copy of two columns."""
         return _stacked(self._needed("vertices", "footprint_0"), self._needed("vertices", "footprint_1"))
 
     @cached_property
     def sites(self) -> IntArray:
-        """(n, 2): the sites that the footprints lie on: of the mesh (:class:`Sites`), or flat indices of voxels; a copy
-        of two columns."""
+        """Sites of the mesh (:class:`Sites`), or flat indices of voxels, that contain the footprints: (n, 2).
+
+        They are a copy of two columns.
+        """
         return _stacked(self._needed("vertices", "site_0"), self._needed("vertices", "site_1"))
 
     @property
     def separation_angle(self) -> FloatArray:
-        """(n,): between the footprints as the vertex sees them, degrees."""
+        """Angle between the footprints, seen from the vertex: (n,), degrees."""
         found: FloatArray = self._needed("vertices", "separation_angle")
         return found
 
     @property
     def role(self) -> IntArray:
-        """(n,): see ROLES."""
+        """Role of each vertex, an index into ROLES: (n,)."""
         found: IntArray = self._needed("vertices", "role")
         return found
 
     @property
     def edge_angle(self) -> npt.NDArray[np.float32]:
-        """(e,): degrees; 0 where only homotopy keeps an edge."""
+        """Separation angle of each edge: (e,), degrees. 0 if only homotopy keeps the edge."""
         found: npt.NDArray[np.float32] = self._needed("edges", "separation_angle")
         return found
 
     @property
     def edge_role(self) -> IntArray:
-        """(e,): rim, seam or curve, see ROLES."""
+        """Role of each edge (rim, seam or curve), an index into ROLES: (e,)."""
         found: IntArray = self._needed("edges", "role")
         return found
 
     @property
     def triangle_angle(self) -> npt.NDArray[np.float32]:
-        """(m,): degrees; 0 where only homotopy keeps a triangle."""
+        """Separation angle of each triangle: (m,), degrees. 0 if only homotopy keeps the triangle."""
         found: npt.NDArray[np.float32] = self._needed("triangles", "separation_angle")
         return found
 
     @property
     def triangle_sheet(self) -> IntArray:
-        """(m,): the sheet that each triangle is part of, 0 to sheet_count - 1.
+        """Sheet of each triangle: (m,), 0 to sheet_count - 1.
 
-        Of a mesh, the same sheet has the same number wherever the part lies and however fine the grid is, as long as
-        that shows the same sheets: numbers follow from the faces that sheets lie between.
+        For a mesh, numbers follow from the faces on both sides of a sheet. A sheet has the same number wherever the
+        mesh lies, and on every grid that shows the same sheets.
         """
         found: IntArray = self._needed("triangles", "sheet")
         return found
 
     @property
     def sheet_count(self) -> int:
-        """How many sheets there are."""
+        """Number of sheets."""
         return int(_core.sheet_count(self._core))
 
 
 @dataclass(frozen=True, eq=False)
 class Present:
-    """What of a :class:`NestedComplex` is there at an angle: True or False for each."""
+    """Parts of a :class:`NestedComplex` that exist at an angle: True or False for each.
 
-    vertices: npt.NDArray[np.bool_]  #: (n,)
-    edges: npt.NDArray[np.bool_]  #: (e,)
-    triangles: npt.NDArray[np.bool_]  #: (m,)
+    >>> import blum
+    >>> nested = blum.medial_axis(blum.generate("box"), resolution=16).nested()
+    >>> present = nested.at(80)
+    >>> present.triangles.shape == (len(nested.triangles),)
+    True
+    """
+
+    vertices: npt.NDArray[np.bool_]  #: Shape (n,).
+    edges: npt.NDArray[np.bool_]  #: Shape (e,).
+    triangles: npt.NDArray[np.bool_]  #: Shape (m,).
 
 
 class NestedComplex(MedialColumns):
-    """The medial axes of one solid at all angles from `least_theta` on, as sets of points: to show, and to cut at any
-    angle without computing anything again. Made by :meth:`MedialAxis.nested`.
+    """Medial axes of one solid at all angles from `least_theta` on, as sets of points.
 
-    Vertices at the same place are one, and pieces without extent are left out: its topology need not be that of the
-    solid. Roles and sheets are those at the least angle; an edge that has several roles is there several times.
+    :meth:`MedialAxis.nested` returns it. It serves to show axes, and to cut them at any angle without further
+    computation. Vertices at the same place are one, and parts without extent are left out. So its topology may differ
+    from that of the solid. Roles of vertices and sheets are those at the least angle. An edge with several roles is
+    listed several times.
 
     >>> import blum
     >>> nested = blum.medial_axis(blum.generate("box"), resolution=32).nested()
@@ -163,7 +196,7 @@ class NestedComplex(MedialColumns):
 
     def __init__(self, core: _CoreComplex, least_theta: float) -> None:
         self._core = core
-        #: Degrees.
+        #: Least angle, degrees.
         self.least_theta = least_theta
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -171,30 +204,41 @@ class NestedComplex(MedialColumns):
 
     @property
     def vertex_until(self) -> npt.NDArray[np.float32]:
-        """(n,): degrees; a vertex is there where theta is less."""
+        """Angle up to which each vertex exists: (n,), degrees. It exists if theta is less."""
         found: npt.NDArray[np.float32] = self.vertex_columns["until"]
         return found
 
     @property
     def edge_from(self) -> npt.NDArray[np.float32]:
-        """(e,): degrees; an edge has its role where edge_from <= theta < edge_until."""
+        """Angle from which each edge has its role: (e,), degrees. It has it if edge_from <= theta < edge_until."""
         found: npt.NDArray[np.float32] = self.edge_columns["from"]
         return found
 
     @property
     def edge_until(self) -> npt.NDArray[np.float32]:
-        """(e,): degrees."""
+        """Angle up to which each edge has its role: (e,), degrees."""
         found: npt.NDArray[np.float32] = self.edge_columns["until"]
         return found
 
     @property
     def triangle_until(self) -> npt.NDArray[np.float32]:
-        """(m,): degrees; a triangle is there where theta is less."""
+        """Angle up to which each triangle exists: (m,), degrees. It exists if theta is less."""
         found: npt.NDArray[np.float32] = self.triangle_columns["until"]
         return found
 
     def at(self, theta: Real) -> Present:
-        """What is there at an angle, degrees, `least_theta` to 180: it covers what simplify(theta) gives."""
+        """Returns the parts that exist at an angle. They cover the result of simplify(theta).
+
+        Parameters
+        ----------
+        theta : float
+            Degrees, `least_theta` to 180.
+
+        >>> import blum
+        >>> nested = blum.medial_axis(blum.generate("box"), resolution=16).nested()
+        >>> bool(nested.at(60).triangles.sum() >= nested.at(120).triangles.sum())
+        True
+        """
         angle = number(theta, "theta")
         if not self.least_theta <= angle <= 180:
             raise InvalidOption(f"theta is {angle:g}, but must be {self.least_theta:g} to 180")
@@ -216,6 +260,7 @@ def _restored_nested(arguments: tuple[Any, ...], least_theta: float) -> NestedCo
 
 
 def _stacked(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Returns two columns as one read-only array."""
     both = np.stack([a, b], axis=1)
     both.flags.writeable = False
     return both

@@ -45,7 +45,7 @@ EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, 
 
 @dataclass(frozen=True)
 class Origin:
-    """What a complex was made from, for its certificate and its files."""
+    """Origin of a complex, for its certificate and its files."""
 
     shape: Mesh | Image | None = None
     label: int | None = None
@@ -60,7 +60,7 @@ class Origin:
     weld: float | None = None
     smooth: int | None = None
     site_ids: str = "features"
-    version: str = ""  #: of Blum, where a file that it wrote was read
+    version: str = ""  #: Version of the Blum that wrote the file from which the complex was read.
 
 
 # A class that has a member `_core` cannot name the module in its annotations.
@@ -68,10 +68,27 @@ _CoreComplex = _core.Complex
 
 
 class MedialComplex(MedialColumns):
-    """A medial axis as vertices, edges and triangles. Arrays are read-only views of the library's memory.
+    """Medial axis as vertices, edges and triangles. Arrays are read-only views of the library's memory.
 
-    Made by :meth:`MedialAxis.simplify`, :func:`read_medial`, or from arrays: ``MedialComplex(vertices, radius=...,
-    edges=..., triangles=...)``.
+    :meth:`MedialAxis.simplify` and :func:`read_medial` return it. It can also be made from arrays, of which only the
+    vertices are required.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+    radius : (n,) array, optional
+        Distance from each vertex to the surface, mesh units.
+    footprints : (n, 2, 3) array, optional
+    sites : (n, 2) array of integers, optional
+        -1 if unknown.
+    separation_angle : (n,) array, optional
+        Degrees.
+    role : (n,) array of integers, optional
+        Indices into ROLES.
+    edges : (e, 2) array of integers, optional
+    edge_angle, edge_role : (e,) arrays, optional
+    triangles : (m, 3) array of integers, optional
+    triangle_angle, triangle_sheet : (m,) arrays, optional
 
     >>> import blum
     >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).simplify(60)
@@ -153,9 +170,9 @@ class MedialComplex(MedialColumns):
     def _take(self, core: _CoreComplex, has: dict[str, bool], origin: Origin) -> None:
         self._core = core
         self._origin = origin
-        #: Which attributes the complex has: radii, footprints, angles, sites, labels (roles and sheets).
+        #: Attributes that the complex has: radii, footprints, angles, sites, labels (roles and sheets).
         self.has = dict(has)
-        #: The axes of all angles, where a file that was read holds them (:meth:`MedialAxis.write`).
+        #: Axes of all angles, if the axis was read from a file that holds them (:meth:`MedialAxis.write`).
         self.nested: NestedComplex | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -163,8 +180,11 @@ class MedialComplex(MedialColumns):
 
     @property
     def counts(self) -> dict[str, Any]:
-        """Vertices, triangles, sheets, curve, rim and seam edges, junctions; None for what only roles and sheets tell,
-        where the axis has none. Edges are then those of no triangle."""
+        """Numbers of vertices, triangles, sheets, curve edges, rim edges, seam edges and junctions.
+
+        Without roles and sheets, `sheets`, `rim_edges`, `seam_edges` and `junctions` are None. `curve_edges` then
+        counts the edges of no triangle.
+        """
         counts: dict[str, int | None] = dict(_core.medial_counts(self._core))
         if not self.has["labels"]:
             counts |= dict.fromkeys(("sheets", "rim_edges", "seam_edges", "junctions"))
@@ -172,30 +192,47 @@ class MedialComplex(MedialColumns):
 
     @property
     def theta(self) -> float | None:
-        """Degrees, if known."""
+        """Angle of the axis, degrees. None if unknown."""
         return self._origin.theta
 
     @property
     def grid(self) -> Grid | None:
-        """Voxel centres: of the first body, or of the image; None where that is not known."""
+        """Grid of the voxel centres, of the first body or of the image. None if unknown."""
         return self._origin.grid
 
     @property
     def deviation(self) -> float | None:
-        """How far it is at most from the axis with all vertices, mesh units; None where none were taken out."""
+        """Bound on the distance from the axis with all vertices, mesh units. None if none were removed."""
         return self._origin.deviation
 
     @cached_property
     def certificate(self) -> Certificate:
-        """The certificate against the shape that the axis was made from; see :func:`certify`."""
+        """Certificate against the shape that the axis was made from; see :func:`certify`."""
         shape = self._origin.shape
         if shape is None:
-            raise InvalidOption("what this axis was made from is not known here: use blum.certify(axis, shape)")
+            raise InvalidOption(
+                "the shape that this axis was made from is not known here: use blum.certify(axis, shape)"
+            )
         verifier = ShapeVerifier(shape)
         return verifier.certified(claim_of(self), label=self._origin.label, threshold=self._origin.threshold)
 
     def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
-        """Drops whole sheets whose largest separation angle is at most theta (degrees), smallest first."""
+        """Returns the axis without the sheets whose largest separation angle is at most theta.
+
+        Sheets are removed as a whole, the smallest angle first. A sheet is removed only if that keeps the topology.
+
+        Parameters
+        ----------
+        theta : float
+            Degrees.
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> axis = blum.medial_axis(blum.generate("box", size_x=2), resolution=16).simplify(20)
+        >>> axis.sheet_count, axis.prune_sheets(90).sheet_count
+        (13, 1)
+        """
         with reporting(progress) as report:
             angle = number(theta, "theta")
             core = _core.prune_sheets(self._core, angle, integer(threads, "threads"), report)
@@ -203,16 +240,18 @@ class MedialComplex(MedialColumns):
         return MedialComplex._of(core, self.has, replace(self._origin, theta=None if own is None else max(own, angle)))
 
     def decimate(self, tolerance: Real | None = None, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
-        """The same axis with fewer vertices and triangles, as `blum medial` writes it.
+        """Returns the same axis with fewer vertices and triangles, as `blum medial` writes it.
 
-        Sheets, seams, rims and curves move by at most the tolerance, and radii that are interpolated linearly change by
-        no more; :attr:`deviation` tells by how much. Vertices that stay keep their places and attributes. The topology
-        stays; what joins sheets, seams and curves, too.
+        Sheets, seams, rims and curves move by at most the tolerance. Radii, interpolated linearly, change by at most as
+        much. :attr:`deviation` contains the bound that holds. Remaining vertices keep their positions and attributes.
+        The topology and the connections of sheets, seams and curves stay the same.
 
         Parameters
         ----------
         tolerance : float, optional
             Mesh units, >= 0. Default: a quarter of a voxel.
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=64).simplify(60)
@@ -222,7 +261,7 @@ class MedialComplex(MedialColumns):
         """
         if tolerance is None:
             if self._origin.spacing is None:
-                raise InvalidOption("the side of the axis's voxels is not known: give a tolerance")
+                raise InvalidOption("the voxel size of this axis is not known: pass a tolerance, in mesh units")
             tolerance = 0.25 * self._origin.spacing
         with reporting(progress) as report:
             most = number(tolerance, "tolerance")
@@ -240,15 +279,20 @@ class MedialComplex(MedialColumns):
         progress: Progress = False,
         **options: Unpack[ExtendOptions],
     ) -> ExtendedAxis:
-        """Its sheets, continued from their rims to the surface: a mesh for shell elements; see :func:`extend_axis`.
+        """Returns the sheets, extended from their rims to the surface, for shell elements; see :func:`extend_axis`.
 
         Parameters
         ----------
         mesh, triangles
-            That the axis was made of. Default: the one that is known, where it was made here.
+            The mesh of the axis. Default: the mesh that the axis was made from. Axes from files have none.
         threads, progress
             As for :func:`distance_field`.
         **options
+
+        >>> import blum
+        >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
+        >>> blum.medial_axis(plate, resolution=24).simplify(120).extend().report.not_reached
+        0
         """
         return extend_axis(self, mesh, triangles, threads=threads, progress=progress, **options)
 
@@ -263,9 +307,14 @@ class MedialComplex(MedialColumns):
         threads: int = 0,
         progress: Progress = False,
     ) -> Field:
-        """The union of the medial balls as a signed field; `.zero_surface()` is its boundary.
+        """Returns the union of the medial balls as a signed field. Its `.zero_surface()` is the boundary of the union.
 
-        Of an axis that was decimated, balls between vertices are interpolated linearly, as fine as the grid.
+        For a decimated axis, balls between vertices are interpolated linearly, at the resolution of the grid.
+
+        Parameters
+        ----------
+        resolution, spacing, padding, bounds, grid, threads, progress
+            As for :func:`distance_field`, around the balls.
 
         >>> import blum
         >>> ball = blum.medial_axis(blum.generate("sphere"), resolution=32).simplify(60).reconstruct(resolution=32)
@@ -275,7 +324,7 @@ class MedialComplex(MedialColumns):
         box: Bounds | None = None
         if grid is None and bounds is None:
             if len(self.vertices) == 0:
-                raise InvalidOption("the axis has no vertices, so there are no balls")
+                raise InvalidOption("the axis has no vertices, so it has no balls")
             lower = (self.vertices - self.radius[:, None]).min(axis=0)
             upper = (self.vertices + self.radius[:, None]).max(axis=0)
             box = (tuple(map(float, lower)), tuple(map(float, upper)))  # type: ignore[assignment]
@@ -286,15 +335,28 @@ class MedialComplex(MedialColumns):
         return ball_union_field(centres, radii, wanted, threads=threads, progress=progress)
 
     def write(self, path: PathLike) -> None:
-        """Writes .vtp, .ply, .obj, .ma or .npz; the file appears complete or not at all.
+        """Writes .vtp, .ply, .obj, .ma or .npz. The file appears under its name only when it is complete.
 
-        .npz files keep the axes of all angles, `nested`, where there are any.
+        .npz files also hold the axes of all angles, `nested`, if they exist.
+
+        >>> import blum, pathlib, tempfile
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     axis.write(pathlib.Path(folder) / "box.vtp")
+        ...     (pathlib.Path(folder) / "box.vtp").stat().st_size > 1000
+        True
         """
         is_npz = os.fspath(path).lower().endswith(".npz")
         write_complex(path, self, self.nested if is_npz else None)
 
     def to_trimesh(self) -> Any:
-        """A trimesh.Trimesh of the triangles with vertex attributes; (vertices, triangles) where it is missing."""
+        """Returns a trimesh.Trimesh with vertex attributes; without trimesh, the pair (vertices, triangles).
+
+        >>> import blum
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
+        >>> type(axis.to_trimesh()).__name__ in ("Trimesh", "tuple")
+        True
+        """
         vertices, triangles = np.ascontiguousarray(self.vertices), np.ascontiguousarray(self.triangles)
         try:
             import trimesh
@@ -312,12 +374,15 @@ class MedialComplex(MedialColumns):
         )
 
     def to_pyvista(self) -> Any:
-        """A pyvista.PolyData of triangles and edges, with all columns of vertices, and angles, roles, sheets of cells.
+        """Returns a pyvista.PolyData of triangles and edges. Without PyVista, returns a dict of arrays.
 
-        Where PyVista is missing: a dict of arrays.
+        It has all columns of vertices, and the angles, roles and sheets of cells. Cell data list the edges before the
+        triangles, as PolyData does. `sheet` and `role` are -1 for cells without one.
 
-        Cell data list the edges before the triangles, as PolyData does; `sheet` is -1 and `role` -1 where they do not
-        apply.
+        >>> import blum
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
+        >>> type(axis.to_pyvista()).__name__ in ("PolyData", "dict")
+        True
         """
         try:
             import pyvista
@@ -329,7 +394,7 @@ class MedialComplex(MedialColumns):
         from ._mesh import _padded
 
         out = pyvista.PolyData(
-            np.array(self.vertices),  # VTK would hold on to the library's memory beyond Python's end
+            np.array(self.vertices),  # A copy, because VTK would hold the library's memory beyond Python's end.
             faces=_padded(np.ascontiguousarray(self.triangles)),
             lines=_padded(np.ascontiguousarray(self.edges)),
         )
@@ -359,7 +424,7 @@ def _restored(
 
 
 def claim_of(axis: MedialComplex) -> Claim:
-    """An axis as its certificate sees it."""
+    """Returns an axis as its certificate sees it."""
     if not isinstance(axis, MedialComplex):
         raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
     origin = axis._origin
@@ -382,16 +447,18 @@ def claim_of(axis: MedialComplex) -> Claim:
 
 
 def _given(**columns: npt.NDArray[Any] | None) -> dict[str, npt.NDArray[Any]]:
-    """The columns that there are."""
+    """Returns the columns that exist."""
     return {name: np.ascontiguousarray(column) for name, column in columns.items() if column is not None}
 
 
 def _check_length(name: str, array: npt.NDArray[Any] | None, wanted: int) -> None:
+    """Raises InvalidOption if a column has another number of rows."""
     if array is not None and len(array) != wanted:
         raise InvalidOption(f"{name} has {len(array)} entries, but must have {wanted}")
 
 
 def _numbers(value: Any, name: str, count: int, dtype: type = np.float64) -> npt.NDArray[Any] | None:
+    """Returns a column of real numbers. Without a value: None, or an empty column for no rows."""
     if value is None:
         return None if count > 0 else np.zeros(0, dtype)
     array: npt.NDArray[Any] = float_list(value, name).astype(dtype, copy=False)
@@ -400,6 +467,7 @@ def _numbers(value: Any, name: str, count: int, dtype: type = np.float64) -> npt
 
 
 def _numbers_below(limit: int, value: Any, name: str, count: int) -> IntArray | None:
+    """Returns a column of integers below a limit. Without a value: None, or an empty column for no rows."""
     if value is None:
         return None if count > 0 else np.zeros(0, np.int32)
     array = indices(value, name, None, limit)
@@ -408,6 +476,7 @@ def _numbers_below(limit: int, value: Any, name: str, count: int) -> IntArray | 
 
 
 def _footprint_rows(value: Any, count: int) -> FloatArray:
+    """Returns footprints as (n, 2, 3)."""
     array = as_array(value, "footprints")
     if array.ndim != 3 or array.shape[1:] != (2, 3):
         raise ValueError(f"footprints has the shape {array.shape}, but must have (n, 2, 3)")
@@ -429,17 +498,19 @@ def certify(
     progress: Progress = False,
     **checks: Unpack[CertificateOptions],
 ) -> Certificate:
-    """Checks an axis against the mesh or image whose solid it is said to have.
+    """Checks an axis against the mesh or image whose solid it claims to have, and returns a certificate.
 
-    Betti numbers are compared body by body; against polyhedra, loops and closed surfaces must be around the tunnels
-    and voids of their body, by linking numbers (``homology``). Vertices, radii, footprints, sites and angles are
-    checked with exact searches; edges must lie in the solid. Points of sheets and curves must be in the middle between
-    two walls, and what is there in the solid at well more than theta must not be missing: see :class:`MedialCheck`.
-    Roles, sheets and the angles of triangles and edges must be those of their places: see :class:`LabelCheck` and
-    :class:`AngleCheck`.
-    Nothing of what made the axis is used. What the axis (or the file that it was read from)
-    says of itself is checked as `blum verify` does it: the rule of its solid, its voxels' sides, which attributes
-    it has.
+    Betti numbers are compared body by body. For polyhedra, loops and closed surfaces must enclose the tunnels and voids
+    of their body, by linking numbers (``homology``). Vertices, radii, footprints, sites and angles are checked with
+    exact searches. Edges must lie in the solid. Points of sheets and curves must be in the middle between two walls.
+    Parts at well more than theta must not be missing; see :class:`MedialCheck`. Roles and sheets must fit the
+    triangles; see :class:`LabelCheck`. Angles of triangles and edges must fit their places; see :class:`AngleCheck`.
+
+    The claims of the axis, or of its file, are checked as `blum verify` does. They are the rule of its solid, the sides
+    of its voxels, and its attributes.
+
+    The checking code is independent of the construction, except for a list of shared parts
+    (docs/decisions/0007-certificate.md).
 
     Parameters
     ----------
@@ -447,17 +518,17 @@ def certify(
     shape, triangles
         The mesh, as for :func:`distance_field`, or the image, as for :func:`distance_transform`.
     label, threshold
-        Of an image: which voxels are the solid. Default: those that the axis says, else all that are not zero.
+        Images: voxels of the solid. Default: those that the axis names, otherwise the nonzero voxels.
     grid : Grid, optional
-        Of a mesh that bounds no polyhedron: of the centres of the voxels that are the solid. Default: the axis's own.
+        Meshes that do not bound a polyhedron: grid of the centres of the solid's voxels. Default: that of the axis.
     weld : float, optional
-        Of a mesh: as for :func:`distance_field`; default for a path: as the file of the axis says.
+        Meshes: as for :func:`distance_field`. Default for a path: the value in the file of the axis.
     threads, progress
         As for :func:`distance_field`.
     **options
-        What is not said: all that the axis has.
+        An option that is not given is checked if the axis has the attribute.
 
-    For several axes of one shape, :class:`AxisVerifier` reads it once.
+    :class:`AxisVerifier` reads the shape once for several axes.
 
     >>> import blum
     >>> torus = blum.generate("torus")
@@ -471,13 +542,25 @@ def certify(
 
 
 def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, progress: Progress = False) -> Field:
-    """The smallest distance to any of some balls at every node of a grid, negative inside.
+    """Returns the smallest signed distance to any of the balls at every node of a grid, negative inside.
+
+    Outside the union, values are distances to the union. Inside, their magnitudes are lower bounds of the distance to
+    its boundary.
 
     Parameters
     ----------
     centres : (n, 3) array
+        At least one, mesh units.
     radii : (n,) array
         Mesh units, >= 0.
+    grid : Grid
+    threads, progress
+        As for :func:`distance_field`.
+
+    >>> import blum
+    >>> grid = blum.Grid((-1, -1, -1), 0.5, (5, 5, 5))
+    >>> blum.ball_union_field([[0, 0, 0]], [0.5], grid).distance[2, 2].tolist()
+    [0.5, 0.0, -0.5, 0.0, 0.5]
     """
     if not isinstance(grid, Grid):
         raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
@@ -494,14 +577,29 @@ def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, 
 
 
 def write_complex(path: PathLike, complex: MedialComplex, nested: NestedComplex | None) -> None:
+    """Writes a medial axis with its metadata, and with the axes of all angles if given."""
     told = {name: value for name, value in vars(complex._origin).items() if name not in ("shape", "version")}
     inner, least = (None, 0.0) if nested is None else (nested._core, nested.least_theta)
     _core.write_medial(Path(os.fspath(path)), complex._core, inner, least, told)
 
 
 def read_medial(path: PathLike) -> MedialComplex:
-    """Reads an axis of .vtp, .ply, .obj, .ma or .npz; `.has` tells which attributes the file holds, and `.nested`
-    has the axes of all angles where it holds them."""
+    """Reads a medial axis from .vtp, .ply, .obj, .ma or .npz.
+
+    `.has` lists the attributes that the file holds. `.nested` contains the axes of all angles if the file holds them.
+
+    Raises
+    ------
+    FileNotFoundError, FileError, FormatError, InvalidOption
+
+    >>> import blum, pathlib, tempfile
+    >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     axis.write(pathlib.Path(folder) / "box.ma")
+    ...     again = blum.read_medial(pathlib.Path(folder) / "box.ma")
+    >>> again.has["radii"], again.has["footprints"]
+    (True, False)
+    """
     core, nested, least_theta, metadata, has = _core.read_medial(existing_file(path))
     inner = None if nested is None else NestedComplex(nested, least_theta)
     return MedialComplex._of(core, has, Origin(None, **metadata), inner)

@@ -1,4 +1,4 @@
-"""Meshes: what Blum takes as one, and what is asked of it."""
+"""Meshes, their topology and their sites."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ._arguments import (
     PathLike,
     Real,
     as_array,
+    check_finite,
     existing_file,
     float_rows,
     indices,
@@ -38,26 +39,27 @@ Betti = tuple[int, int, int]
 
 
 def betti_of(values: Sequence[int]) -> Betti:
-    """Betti numbers of what the library hands over."""
+    """Returns Betti numbers from the library's numbers."""
     components, tunnels, voids = values
     return int(components), int(tunnels), int(voids)
 
 
 class Mesh:
-    """A set of triangles, segments and points over shared vertices; nothing is assumed of it.
+    """Triangles, segments and points over shared vertices. Any soup is valid.
 
     Parameters
     ----------
     vertices : (n, 3) array
-        Positions, in mesh units. C-contiguous float64 is used as it is, without a copy; anything else is converted.
+        Positions, mesh units. C-contiguous float64 is not copied; other types are converted.
     triangles : (m, 3) array of integers, optional
-        Vertices of each triangle, counter-clockwise as seen from outside. C-contiguous int32 and uint32 are used as
-        they are; int64 is converted.
+        Vertices of each triangle, counter-clockwise as seen from outside. C-contiguous int32 and uint32 are not copied;
+        int64 is converted.
     segments : (s, 2) array of integers, optional
+        Vertices of free segments.
     points : (p,) array of integers, optional
-        Vertices that are part of the shape by themselves. Without triangles, segments and points, all are.
+        Vertices that belong to the shape by themselves. Without triangles, segments and points, all vertices do.
 
-    The arrays must not change while a call runs; between calls they may (see :class:`FieldSolver`).
+    Arrays must not change during a call. They may change between calls (see :class:`FieldSolver`).
 
     >>> import blum
     >>> tetrahedron = blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -78,31 +80,31 @@ class Mesh:
         self._triangles = indices(none if triangles is None else triangles, "triangles", 3, count)
         self._segments = indices(none if segments is None else segments, "segments", 2, count)
         self._points = indices(none if points is None else points, "points", None, count)
-        #: Facts of the file that the mesh was read from: format, counts before Blum changed anything, what was welded.
+        #: Facts of the mesh's file: format, counts before any change, and what was welded.
         self.file_info: dict[str, Any] = {}
-        #: Where the mesh came from, for the metadata of files.
+        #: Name of the mesh's file, for the metadata of files.
         self.source: str = ""
         self._weld: float | None = None
         self._arrays = _core.MeshArrays(self._vertices, self._triangles, self._segments, self._points)
 
     @property
     def vertices(self) -> FloatArray:
-        """(n, 3): positions. Their numbers may be changed in place between calls; other arrays make another Mesh."""
+        """Positions: (n, 3), mesh units. They may change in place between calls. Another array needs another Mesh."""
         return self._vertices
 
     @property
     def triangles(self) -> IntArray:
-        """(m, 3): indices of vertices."""
+        """Vertices of the triangles: (m, 3)."""
         return self._triangles
 
     @property
     def segments(self) -> IntArray:
-        """(k, 2): free segments, as indices of vertices."""
+        """Vertices of the free segments: (s, 2)."""
         return self._segments
 
     @property
     def points(self) -> IntArray:
-        """(l,): free points, as indices of vertices."""
+        """Vertices that are free points: (p,)."""
         return self._points
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -111,15 +113,27 @@ class Mesh:
 
     @property
     def bounds(self) -> Bounds:
-        """The box around all vertices that are named, as (lower, upper)."""
+        """Box around the vertices of triangles, segments and points, as (lower, upper)."""
         return cast(Bounds, self._arrays.bounds())
 
     def write(self, path: PathLike) -> None:
-        """Writes .obj, .off, .stl, .ply or .glb; the file appears complete or not at all."""
+        """Writes .obj, .off, .stl, .ply or .glb. The file appears under its name only when it is complete.
+
+        >>> import blum, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     blum.generate("box").write(pathlib.Path(folder) / "box.stl")
+        ...     blum.read_mesh(pathlib.Path(folder) / "box.stl")
+        Mesh(8 vertices, 12 triangles)
+        """
         _core.write_mesh(Path(os.fspath(path)), self._arrays)
 
     def to_trimesh(self) -> Any:
-        """A trimesh.Trimesh of the triangles, unprocessed; (vertices, triangles) where trimesh is not installed."""
+        """Returns a trimesh.Trimesh of the triangles, unprocessed. Without trimesh, returns (vertices, triangles).
+
+        >>> import blum
+        >>> type(blum.generate("box").to_trimesh()).__name__ in ("Trimesh", "tuple")
+        True
+        """
         try:
             import trimesh
         except ImportError:
@@ -127,7 +141,12 @@ class Mesh:
         return trimesh.Trimesh(self.vertices, self.triangles, process=False)
 
     def to_pyvista(self) -> Any:
-        """A pyvista.PolyData of triangles, segments and points; a dict of the arrays where PyVista is not installed."""
+        """Returns a pyvista.PolyData of triangles, segments and points. Without PyVista, returns a dict of arrays.
+
+        >>> import blum
+        >>> type(blum.generate("box").to_pyvista()).__name__ in ("PolyData", "dict")
+        True
+        """
         try:
             import pyvista
         except ImportError:
@@ -153,7 +172,7 @@ class Mesh:
 
 
 def _padded(cells: IntArray) -> npt.NDArray[Any] | None:
-    """Cells as VTK lists them, each after its number of corners; None where there are none."""
+    """Returns cells as VTK lists them, each after its number of corners. None without cells."""
     if len(cells) == 0:
         return None
     width = np.full((len(cells), 1), cells.shape[1], dtype=np.int64)
@@ -161,13 +180,13 @@ def _padded(cells: IntArray) -> npt.NDArray[Any] | None:
 
 
 def mesh_of_arrays(arrays: tuple[Any, Any, Any, Any]) -> Mesh:
-    """A mesh of what the library hands over."""
+    """Returns a mesh from the library's arrays."""
     vertices, triangles, segments, points = arrays
     return Mesh(vertices, triangles, segments, points)
 
 
-#: What functions take as a mesh: one of Blum's, a path, a pair (vertices, triangles), a mesh of trimesh, Open3D (legacy
-#: or of tensors), meshio or PyVista.
+#: Mesh argument of functions: a Mesh, a path, a pair (vertices, triangles), or a mesh of another package. These are
+#: trimesh, Open3D (legacy or tensors), meshio and PyVista.
 MeshLike = (
     Mesh
     | str
@@ -179,7 +198,7 @@ MeshLike = (
     | MeshioLike
     | PyVistaLike
 )
-#: The same, or vertices where triangles are an argument of their own.
+#: The same, or vertices if triangles are a separate argument.
 MeshOrVertices = MeshLike | npt.ArrayLike
 
 
@@ -190,10 +209,10 @@ def as_mesh(
     *,
     weld: Real | None = None,
 ) -> Mesh:
-    """Anything that stands for a mesh, as a Mesh, its vertices merged where `weld` is given.
+    """Returns any mesh-like object as a Mesh. With `weld`, its vertices are merged.
 
-    All functions and methods that take a mesh call it. Of meshio's cells the triangles, quads, lines and vertices
-    count; of PyVista's datasets the surface.
+    All functions and methods that take a mesh call this. From meshio, triangles, quads, lines and vertices are used;
+    from PyVista's datasets, the surface.
     """
     if weld is None:
         own = _converted(mesh, triangles, name)
@@ -210,9 +229,9 @@ def as_mesh(
 
 
 def end_vertices(end: MeshOrVertices, name: str, triangles: IntArray | None = None) -> FloatArray:
-    """Where vertices are at the end of a motion: an (n, 3) array, or what stands for the mesh there.
+    """Returns the vertices at the end of a motion, from an (n, 3) array or a mesh.
 
-    With `triangles`, a mesh must have the same ones.
+    With `triangles`, a mesh must have the same triangles.
     """
     words = ("vertices", "vertex", "extract_surface", "points")
     if not (_is_pair(end) or isinstance(end, (str, os.PathLike)) or any(hasattr(end, word) for word in words)):
@@ -224,20 +243,24 @@ def end_vertices(end: MeshOrVertices, name: str, triangles: IntArray | None = No
 
 
 def _is_pair(mesh: Any) -> bool:
-    """Whether this is vertices with triangles."""
+    """Returns True for a pair of vertices and triangles."""
     return isinstance(mesh, (tuple, list)) and len(mesh) == 2 and np.ndim(mesh[0]) == 2
 
 
 def _tell_of_seams(mesh: Mesh, name: str) -> None:
-    """Other packages keep a vertex for each texture coordinate at it: the mesh is then open along seams."""
+    """Warns about a mesh of another package that is open only along seams.
+
+    Other packages keep a vertex for each of its texture coordinates, so the mesh is open along texture seams.
+    """
     welded = weld(mesh)
     if len(welded.vertices) == len(mesh.vertices) or topology(mesh).closed or not topology(welded).closed:
         return
-    text = f"the {name} is open only where equal vertices are apart, as along texture seams: weld=0 merges them"
+    text = f"the {name} is open only along seams where equal vertices are separate, as in textures: weld=0 merges them"
     warn(text, "other-vertices")
 
 
 def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:
+    """Returns any mesh-like object as a Mesh, without welding, except that of its file format."""
     if triangles is not None:
         return Mesh(mesh, triangles)
     if isinstance(mesh, Mesh):
@@ -263,16 +286,16 @@ def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:
 
 
 def _advice(given: Any) -> str:
-    """What to do about something that is no mesh, where that can be told."""
-    if hasattr(given, "geometry") and hasattr(given, "to_mesh"):  # a trimesh.Scene
-        return ": .to_mesh() makes one of it"
+    """Returns advice on how to make a mesh from an object, or an empty string."""
+    if hasattr(given, "geometry") and hasattr(given, "to_mesh"):  # A trimesh.Scene.
+        return ": its method to_mesh() makes one"
     if hasattr(given, "points") or (isinstance(given, np.ndarray) and given.ndim == 2 and given.shape[1] == 3):
         return ": blum.Mesh(points) makes one of points alone"
     return ""
 
 
 def _of_open3d_tensors(mesh: Any, name: str) -> Mesh:
-    """An open3d.t.geometry.TriangleMesh."""
+    """Returns an open3d.t.geometry.TriangleMesh as a Mesh."""
 
     def array(values: Any) -> npt.NDArray[Any]:
         return np.asarray(values.cpu().numpy() if hasattr(values, "cpu") else values)
@@ -285,6 +308,7 @@ def _of_open3d_tensors(mesh: Any, name: str) -> Mesh:
 
 
 def _of_meshio(mesh: Any) -> Mesh:
+    """Returns a meshio.Mesh as a Mesh. Quads become two triangles, and missing z coordinates 0."""
     cells: Mapping[str, Any] = mesh.cells_dict
     triangles = [np.asarray(cells["triangle"])] if "triangle" in cells else []
     if "quad" in cells:
@@ -303,18 +327,19 @@ def _of_meshio(mesh: Any) -> Mesh:
 
 
 def _of_pyvista(mesh: Any) -> Mesh:
+    """Returns the surface of a PyVista dataset as a Mesh."""
     surface = mesh
     if not hasattr(mesh, "is_all_triangles"):
         try:
             surface = mesh.extract_surface(algorithm=None)
-        except TypeError:  # PyVista before 0.47
+        except TypeError:  # PyVista before 0.47.
             surface = mesh.extract_surface()
     if not surface.is_all_triangles:
         surface = surface.triangulate()
     lines = np.asarray(surface.lines).ravel()
     segments: list[tuple[int, int]] = []
     at = 0
-    while at < len(lines):  # each line is its number of points, then these
+    while at < len(lines):  # Each line is its number of points, then the points.
         line = lines[at + 1 : at + 1 + lines[at]]
         segments += [(int(a), int(b)) for a, b in pairwise(line)]
         at += 1 + int(lines[at])
@@ -330,12 +355,20 @@ def read_mesh(path: PathLike, *, weld: Real | None = None) -> Mesh:
     ----------
     path : path
     weld : float, optional
-        Merge vertices closer than this (mesh units); 0: equal ones. Default: equal ones for .stl, none for the others.
+        Merges vertices at most this far apart, mesh units. 0 merges equal ones. Default: 0 for .stl, no merging for
+        others.
 
     Raises
     ------
     FileNotFoundError, FileError, FormatError
-        The latter two name the file and where it is wrong.
+        FileError and FormatError name the file and the place of the problem.
+
+    >>> import blum, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "box.ply"
+    ...     blum.generate("box").write(path)
+    ...     blum.read_mesh(path, weld=1e-6)
+    Mesh(8 vertices, 12 triangles)
     """
     tolerance = optional_number(weld, "weld")
     arrays, info = _core.read_mesh(existing_file(path), tolerance)
@@ -347,7 +380,14 @@ def read_mesh(path: PathLike, *, weld: Real | None = None) -> Mesh:
 
 
 def weld(mesh: MeshLike, tolerance: Real = 0.0) -> Mesh:
-    """Merges vertices at the same place, or that steps no longer than `tolerance` (mesh units) join.
+    """Returns the mesh with merged vertices: those in one place, or joined by steps of at most a tolerance.
+
+    Parameters
+    ----------
+    mesh : mesh
+        As for :func:`distance_field`.
+    tolerance : float
+        Longest step, mesh units. A chain of steps becomes one vertex, however long it is.
 
     >>> import blum
     >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -358,7 +398,12 @@ def weld(mesh: MeshLike, tolerance: Real = 0.0) -> Mesh:
 
 
 def weld_clusters(vertices: Any, tolerance: Real = 0.0) -> IntArray:
-    """For each of (n, 3) vertices, the smallest index of those that :func:`weld` would merge it with."""
+    """Returns, for each of (n, 3) vertices, the smallest index of the vertices that :func:`weld` merges with it: (n,).
+
+    >>> import blum
+    >>> blum.weld_clusters([[0, 0, 0], [1, 0, 0], [0, 0, 0]]).tolist()
+    [0, 1, 0]
+    """
     found: IntArray = _core.weld_clusters(float_rows(vertices, "vertices"), number(tolerance, "tolerance"))
     return found
 
@@ -371,7 +416,14 @@ def topology(
     threads: int = 0,
     progress: Progress = False,
 ) -> Topology:
-    """What a mesh is as a surface and as a solid. Crossings are not looked for: :func:`self_intersections`.
+    """Returns the facts of a mesh as a surface and as a solid.
+
+    It does not search for crossings; :func:`self_intersections` does.
+
+    Parameters
+    ----------
+    mesh, triangles, weld, threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> blum.topology(blum.generate("torus")).betti
@@ -386,11 +438,18 @@ def topology(
 
 @dataclass(frozen=True, eq=False)
 class SelfIntersections:
-    """Pairs of triangles that have more in common than a corner or an edge."""
+    """Pairs of triangles that share more than a corner or an edge; the result of :func:`self_intersections`.
 
-    pairs: IntArray  #: (n, 2), the smaller triangle first, rising
-    crosses: npt.NDArray[np.bool_]  #: (n,): whether they cross; else they touch
-    complete: bool  #: False where there are more than the limit
+    >>> import blum
+    >>> cross = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1]]
+    >>> found = blum.self_intersections(cross, [[0, 1, 2], [3, 4, 5]])
+    >>> found.pairs.tolist(), found.crosses.tolist(), found.complete
+    ([[0, 1]], [True], True)
+    """
+
+    pairs: IntArray  #: Triangles of each pair, the smaller first: (n, 2), ascending.
+    crosses: npt.NDArray[np.bool_]  #: True if the pair crosses, False if it only touches: (n,).
+    complete: bool  #: False if more pairs than the limit exist.
 
 
 def self_intersections(
@@ -402,7 +461,16 @@ def self_intersections(
     threads: int = 0,
     progress: Progress = False,
 ) -> SelfIntersections:
-    """Where a mesh crosses or touches itself; exact for the coordinates as they are.
+    """Returns the pairs of triangles that cross or touch beyond shared corners and edges.
+
+    The answer is exact for the given coordinates.
+
+    Parameters
+    ----------
+    mesh, triangles, weld, threads, progress
+        As for :func:`distance_field`.
+    limit : int
+        Largest number of pairs, at least 0. The search ends when it finds more.
 
     >>> import blum
     >>> len(blum.self_intersections(blum.generate("sphere")).pairs)
@@ -419,10 +487,15 @@ def self_intersections(
 
 
 class Sites:
-    """The vertices, open edges and open faces of a mesh, numbered as the sites of its fields are.
+    """Vertices, open edges and open faces of a mesh, numbered as the sites of its fields.
 
-    Ids [0, V) are the vertices, [V, V + E) the distinct edges in rising order of (smaller, larger vertex), and
-    [V + E, V + E + F) the triangles.
+    With V vertices, E distinct edges and F triangles, ids [0, V) are the vertices. Ids [V, V + E) are the edges of
+    triangles and segments, ascending by (smaller, larger vertex). Ids [V + E, V + E + F) are the triangles.
+
+    Parameters
+    ----------
+    mesh, triangles, weld, threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> sites = blum.Sites(blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
@@ -452,18 +525,18 @@ class Sites:
 
     @property
     def vertex_count(self) -> int:
-        """How many of the ids are vertices: the first ones."""
+        """Number of vertices, which have the first ids."""
         return int(self._table.vertex_count)
 
     @property
     def edges(self) -> IntArray:
-        """(E, 2): the vertices of each edge, the smaller one first."""
+        """Vertices of each edge: (E, 2), the smaller one first."""
         found: IntArray = self._table.edges
         return found
 
     @property
     def triangle_edges(self) -> IntArray:
-        """(F, 3): entry k is the edge between corners k and (k + 1) % 3, counted among the edges."""
+        """Edges of each triangle: (F, 3). Entry k is the index of the edge between corners k and (k + 1) % 3."""
         found: IntArray = self._table.triangle_edges
         return found
 
@@ -471,13 +544,23 @@ class Sites:
         return self.vertex_count + len(self.edges) + int(self._table.face_count)
 
     def kind(self, ids: Any) -> npt.NDArray[np.str_]:
-        """'vertex', 'edge' or 'face' for each id."""
+        """Returns 'vertex', 'edge' or 'face' for each id.
+
+        >>> import blum
+        >>> blum.Sites(blum.generate("box")).kind([7, 8, 37]).tolist()
+        ['vertex', 'edge', 'face']
+        """
         found = self._checked(ids)
         names = np.array(["vertex", "edge", "face"])
         return names[np.searchsorted([self.vertex_count, self.vertex_count + len(self.edges)], found, side="right")]
 
     def index(self, ids: Any) -> IntArray:
-        """What each id counts within its kind: the vertex, the edge, the triangle."""
+        """Returns the index of each id within its kind: of the vertex, the edge or the triangle.
+
+        >>> import blum
+        >>> blum.Sites(blum.generate("box")).index([7, 8, 37]).tolist()
+        [7, 0, 11]
+        """
         found = self._checked(ids)
         edges_from, faces_from = self.vertex_count, self.vertex_count + len(self.edges)
         return np.where(
@@ -485,12 +568,22 @@ class Sites:
         ).astype(np.int32)
 
     def vertices(self, ids: Any) -> IntArray:
-        """(n, 3): the one, two or three vertices of each site, padded with -1."""
+        """Returns the one, two or three vertices of each site, padded with -1: (n, 3).
+
+        >>> import blum
+        >>> blum.Sites([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).vertices([1, 5, 6]).tolist()
+        [[1, -1, -1], [1, 2, -1], [0, 1, 2]]
+        """
         found: IntArray = self._table.vertices(self._checked(ids))
         return found
 
     def triangles(self, ids: Any) -> IntArray:
-        """(n,): the smallest triangle that each site lies on; -1 where there is none."""
+        """Returns the smallest triangle that contains each site, -1 if none: (n,).
+
+        >>> import blum
+        >>> blum.Sites([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).triangles([0, 3, 6]).tolist()
+        [0, 0, 0]
+        """
         found: IntArray = self._table.triangles(self._checked(ids))
         return found
 
@@ -506,7 +599,17 @@ def pseudonormals(
     threads: int = 0,
     progress: Progress = False,
 ) -> FloatArray:
-    """(sites, 3): angle-weighted normals of all sites, not normalised; zero where a site lies on no triangle."""
+    """Returns the angle-weighted normals of all sites: (sites, 3), not normalised; zero for sites on no triangle.
+
+    Parameters
+    ----------
+    mesh, triangles, weld, threads, progress
+        As for :func:`distance_field`.
+
+    >>> import blum
+    >>> blum.pseudonormals([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])[6].round(6).tolist()
+    [0.0, 0.0, 1.0]
+    """
     with reporting(progress) as report:
         found: FloatArray = _core.pseudonormals(
             as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report
@@ -515,7 +618,12 @@ def pseudonormals(
 
 
 class WindingNumber:
-    """The generalized winding number of the triangles of a mesh: 1 inside of a closed surface, 0 outside.
+    """Generalized winding number of the triangles of a mesh: 1 inside a closed surface that faces outwards, 0 outside.
+
+    Parameters
+    ----------
+    mesh, triangles, weld, threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> inside = blum.WindingNumber(blum.generate("box"))
@@ -542,29 +650,41 @@ class WindingNumber:
     def __call__(
         self, points: Any, *, approximate: Real | None = None, threads: int = 0, progress: Progress = False
     ) -> FloatArray:
-        """The number at points of the shape (..., 3).
+        """Returns the winding number at points of shape (..., 3).
 
         Parameters
         ----------
+        points : array of shape (..., 3)
+            Finite.
         approximate : float, optional
-            Above 1: replace triangles further away than this many times the size of their cluster by a series; 2 gives
-            errors of about 1e-3. Default: the full sum, good to about 1e-12.
+            Above 1. Clusters of triangles further away than this many times their size are replaced by a series; 2
+            gives errors of about 1e-3. Default: the full sum, with an error of about 1e-12.
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> winding = blum.WindingNumber(blum.generate("sphere"))
+        >>> round(float(winding([0, 0, 0], approximate=2)), 2)
+        1.0
         """
         beta = -1.0 if approximate is None else number(approximate, "approximate")
         if approximate is not None and not 1 < beta < float("inf"):
-            raise ValueError(f"approximate is {beta}, but must be above 1, and finite")
+            raise ValueError(f"approximate is {beta}, but must be above 1 and finite")
         rows, shape = points_and_shape(points, "points")
-        if not np.isfinite(rows).all():
-            raise ValueError("points must be finite")
+        check_finite(rows, shape, "points")
         with reporting(progress) as report:
             values: FloatArray = self._winding.values(rows, beta, integer(threads, "threads"), report)
         return values.reshape(shape)
 
     def is_inside(self, points: Any, *, threads: int = 0, progress: Progress = False) -> npt.NDArray[np.bool_]:
-        """Whether the number is above 1/2 at points of the shape (..., 3), as the full sum decides it."""
+        """Returns True for each of the points (..., 3) whose winding number is above 1/2, as the full sum decides it.
+
+        >>> import blum
+        >>> blum.WindingNumber(blum.generate("box")).is_inside([[0, 0, 0], [5, 5, 5]]).tolist()
+        [True, False]
+        """
         rows, shape = points_and_shape(points, "points")
-        if not np.isfinite(rows).all():
-            raise ValueError("points must be finite")
+        check_finite(rows, shape, "points")
         with reporting(progress) as report:
             inside: npt.NDArray[np.uint8] = self._winding.is_inside(rows, integer(threads, "threads"), report)
         return inside.view(np.bool_).reshape(shape)

@@ -1,11 +1,11 @@
-"""What the meshes of other packages have, as types: none of these packages needs to be there."""
+"""Attributes of other packages' meshes, as types. None of these packages need be installed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-# Members are Any: each package has array types of its own, all of which NumPy converts.
+# Members are Any, because each package has its own array types. NumPy converts all of them.
 
 
 class TrimeshLike(Protocol):
@@ -27,7 +27,7 @@ class Open3DLike(Protocol):
 
 
 class Open3DTensorLike(Protocol):
-    """An open3d.t.geometry.TriangleMesh, whose arrays are vertex.positions and triangle.indices."""
+    """An open3d.t.geometry.TriangleMesh, with the arrays vertex.positions and triangle.indices."""
 
     @property
     def vertex(self) -> Any: ...
@@ -36,7 +36,7 @@ class Open3DTensorLike(Protocol):
 
 
 class MeshioLike(Protocol):
-    """A meshio.Mesh: its triangles, quads, lines and vertices count."""
+    """A meshio.Mesh, of which triangles, quads, lines and vertices are used."""
 
     @property
     def points(self) -> Any: ...
@@ -45,7 +45,7 @@ class MeshioLike(Protocol):
 
 
 class PyVistaLike(Protocol):
-    """A pyvista.PolyData, or another dataset of PyVista, whose surface counts."""
+    """A pyvista.PolyData, or another dataset of PyVista, of which the surface is used."""
 
     @property
     def points(self) -> Any: ...

@@ -1,4 +1,4 @@
-"""Options that functions take as the library describes them."""
+"""Options of functions, as the library describes them."""
 
 from __future__ import annotations
 
@@ -14,14 +14,17 @@ _Taker = TypeVar("_Taker", bound=Callable[..., Any])
 
 
 def default_of(options: str, option: str) -> Any:
-    """What the library takes where an option is not given."""
+    """Returns the library's default of an option."""
     return next(default for name, _, default, _, _ in _core.described[options]["members"] if name == option)
 
 
 def takes(options: str, *left_out: str) -> Callable[[_Taker], _Taker]:
-    """For functions and classes that take **options: their signature names each option with its default, and a line
-    ``**options`` in their docstring becomes the documentation of all of them. For type checkers the annotation
-    ``Unpack[...]`` of blum._structs says the same."""
+    """Returns a decorator for functions and classes that take **options.
+
+    Their signature then names each option with its default. A line ``**options`` in their docstring becomes the
+    documentation of all options. For type checkers, the annotation ``Unpack[...]`` of blum._structs lists the same
+    options.
+    """
     members = [member for member in _core.described[options]["members"] if member[0] not in left_out]
 
     def documented(taker: _Taker) -> _Taker:
@@ -43,11 +46,12 @@ def takes(options: str, *left_out: str) -> Callable[[_Taker], _Taker]:
 
 
 def _type(kind: str) -> Any:
-    """The type that the library names so."""
+    """Returns the type of a name that the library uses."""
     return eval(kind, {**vars(_arguments), **vars(_structs)})
 
 
 def _documented(name: str, kind: str, default: Any, unit: str, doc: str) -> str:
+    """Returns the documentation of one option."""
     text = f"{doc}{f', {unit}' if unit else ''}. Default: {default!r}."
     lines = textwrap.fill(text[0].upper() + text[1:], 110, initial_indent=8 * " ", subsequent_indent=8 * " ")
     return f"    {name} : {_core.enums.get(kind, kind)}\n{lines}\n"

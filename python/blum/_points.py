@@ -1,4 +1,4 @@
-"""Any points: signed distances, samples of surfaces and near them."""
+"""Signed distances at arbitrary points, and samples of surfaces and of points near them."""
 
 from __future__ import annotations
 
@@ -21,22 +21,30 @@ from ._warn import warn_all
 
 @dataclass(frozen=True, eq=False)
 class SignedDistances:
-    """What :func:`signed_distance` finds; all arrays have the shape of the queries without the last axis."""
+    """Result of :func:`signed_distance`. All arrays have the shape of the queries without the last axis.
 
-    distance: FloatArray  #: mesh units, negative inside; infinite where nothing is within max_distance
-    #: (..., 3): where the distance grows, of length 1: away from the surface outside, towards it inside. Not a number
-    #: on the surface, where rounding would tell, and where nothing is within max_distance. On the medial axis one of
-    #: several directions.
+    >>> import blum
+    >>> found = blum.signed_distance(blum.generate("box"), [0.1, 0, 2])
+    >>> round(float(found.distance), 6), float(found.gradient[2])
+    (1.5, 1.0)
+    """
+
+    distance: FloatArray  #: Mesh units, negative inside. Infinite if nothing lies within max_distance.
+    #: Unit vector in which the distance grows: (..., 3). It points away from the surface outside, and towards it
+    #: inside. NaN on the surface, within rounding, and if nothing lies within max_distance. On the medial axis it is
+    #: one of several directions.
     gradient: FloatArray
-    closest: FloatArray  #: (..., 3): the closest point of the mesh
-    site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
-    triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
+    closest: FloatArray  #: Closest point of the mesh: (..., 3).
+    site: IntArray  #: Site of the mesh, see :class:`Sites`. -1 if none.
+    triangle: IntArray  #: Smallest triangle that contains the site. -1 if none.
     _mesh: Mesh = field(repr=False)
 
     @cached_property
     def barycentric(self) -> FloatArray:
-        """(..., 3): weights of the triangle's corners, of which the closest point is the mean; not a number where there
-        is no triangle. Computed when first asked for, with the mesh's vertices as they are then."""
+        """Weights of the triangle's corners, whose weighted mean is the closest point: (..., 3).
+
+        They are NaN without a triangle. They are computed at the first access, from the mesh's vertices at that time.
+        """
         rows, shape = points_and_shape(self.closest, "points")
         site, triangle = (np.ascontiguousarray(ids.reshape(-1)) for ids in (self.site, self.triangle))
         weights: FloatArray = _core.barycentric(self._mesh._arrays, rows, site, triangle)
@@ -53,15 +61,15 @@ def signed_distance(
     progress: Progress = False,
     **options: Unpack[ClosestPointOptions],
 ) -> SignedDistances:
-    """Exact signed distances of any points, with their gradients, closest points, sites and triangles.
+    """Returns exact signed distances at any points, with gradients, closest points, sites and triangles.
 
-    For many calls with one mesh see :class:`ClosestPointQuery`.
+    :class:`ClosestPointQuery` is faster for many calls with one mesh.
 
     Parameters
     ----------
     mesh, weld, threads, progress
         As for :func:`distance_field`.
-    points : array of the shape (..., 3)
+    points : array of shape (..., 3)
     **options
 
     >>> import blum
@@ -90,11 +98,17 @@ def signed_distance(
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSamples:
-    """What :func:`sample_surface` makes; row k of each array belongs to point k."""
+    """Result of :func:`sample_surface`. Row k of each array belongs to point k.
 
-    points: FloatArray  #: (n, 3): mesh units
-    normals: FloatArray  #: (n, 3): of the triangle, of length 1
-    triangle: IntArray  #: (n,): that the point lies on
+    >>> import blum
+    >>> found = blum.sample_surface(blum.generate("box"), 10)
+    >>> found.points.shape, found.normals.shape, found.triangle.shape
+    ((10, 3), (10, 3), (10,))
+    """
+
+    points: FloatArray  #: Positions: (n, 3), mesh units.
+    normals: FloatArray  #: Unit normals of the triangles: (n, 3).
+    triangle: IntArray  #: Triangles that contain the points: (n,).
 
     def __repr__(self) -> str:
         return f"SurfaceSamples({len(self.points):,} points)"
@@ -110,14 +124,14 @@ def sample_surface(
     progress: Progress = False,
     **options: Unpack[SampleOptions],
 ) -> SurfaceSamples:
-    """Random points of a surface, uniform by area: the same for the same mesh and seed.
+    """Returns random points of a surface, uniform by area. They are the same for the same mesh and seed.
 
     Parameters
     ----------
     mesh, weld, threads, progress
         As for :func:`distance_field`.
     count : int
-        Of points.
+        Number of points, not negative.
     **options
 
     >>> import blum
@@ -134,13 +148,19 @@ def sample_surface(
 
 @dataclass(frozen=True, eq=False)
 class NearSamples:
-    """What :func:`sample_near` makes; row k of each array belongs to point k."""
+    """Result of :func:`sample_near`. Row k of each array belongs to point k.
 
-    points: FloatArray  #: (n, 3): mesh units
-    distance: FloatArray  #: (n,): exact, negative inside
-    closest: FloatArray  #: (n, 3): the closest point of the mesh
-    site: IntArray  #: (n,)
-    triangle: IntArray  #: (n,)
+    >>> import blum
+    >>> found = blum.sample_near(blum.generate("box"), 10)
+    >>> found.points.shape, found.distance.shape
+    ((10, 3), (10,))
+    """
+
+    points: FloatArray  #: Positions: (n, 3), mesh units.
+    distance: FloatArray  #: Exact distances, negative inside: (n,), mesh units.
+    closest: FloatArray  #: Closest points of the mesh: (n, 3).
+    site: IntArray  #: Sites that contain them: (n,), see :class:`Sites`.
+    triangle: IntArray  #: Smallest triangles that contain the sites: (n,). -1 if none.
 
     def __repr__(self) -> str:
         return f"NearSamples({len(self.points):,} points)"
@@ -156,15 +176,16 @@ def sample_near(
     progress: Progress = False,
     **options: Unpack[NearSampleOptions],
 ) -> NearSamples:
-    """Points near a surface with their exact signed distances: what learning signed distances needs. First come those
-    near the surface, then those in the box.
+    """Returns random points near a surface with their exact signed distances, for example to train networks.
+
+    The points near the surface come first, then those in the box (`in_box`).
 
     Parameters
     ----------
     mesh, weld, threads, progress
         As for :func:`distance_field`.
     count : int
-        Of points.
+        Number of points, not negative.
     **options
 
     >>> import blum
@@ -182,6 +203,7 @@ def sample_near(
 
 
 def _count(value: Integer) -> int:
+    """Returns a number of points, which must not be negative."""
     count = integer(value, "count", 64)
     if count < 0:
         raise InvalidOption(f"count is {count}, but must be 0 or more")

@@ -12,7 +12,10 @@ Progress = bool | ProgressCallback
 
 @contextmanager
 def reporting(progress: Progress) -> Iterator[ProgressCallback | None]:
-    """What the library calls with (fraction, phase): a bar of tqdm for True, nothing for False, or the caller's own."""
+    """Returns a context with the callback that the library calls with (fraction, phase).
+
+    It is a tqdm bar for True, None for False, or the given function.
+    """
     if progress is False or progress is None:
         yield None
     elif progress is True:
@@ -25,7 +28,7 @@ def reporting(progress: Progress) -> Iterator[ProgressCallback | None]:
 
 
 class _Bar:
-    """A bar of tqdm that starts again with each phase."""
+    """Bar of tqdm that starts again with each phase."""
 
     def __init__(self) -> None:
         try:

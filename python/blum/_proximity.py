@@ -19,19 +19,26 @@ from ._structs import ImpactOptions
 
 @dataclass(frozen=True, eq=False)
 class ContinuousCollisions:
-    """What of a mesh meets something else of it between two frames."""
+    """Pairs of features of a mesh that meet between two frames; the result of :func:`continuous_collisions`.
 
-    vertex_face: IntArray  #: (n, 4): a vertex, then the corners of the triangle that it meets; rising
-    face: IntArray  #: (n,): the triangle
-    vertex_face_time: FloatArray  #: (n,): when they meet first, 0 to 1
-    edge_edge: IntArray  #: (m, 4): the ends of one edge, then those of the other; rising
-    edge_edge_time: FloatArray  #: (m,)
-    box_pairs: int  #: pairs of features whose moving boxes touch
-    exact_tests: int  #: pairs that were tested
+    >>> import blum
+    >>> box = blum.generate("box")
+    >>> found = blum.continuous_collisions(box, box.vertices + [1, 0, 0])
+    >>> found, found.earliest
+    (ContinuousCollisions(0 vertex_face, 0 edge_edge), None)
+    """
+
+    vertex_face: IntArray  #: A vertex, then the corners of the triangle that it meets: (n, 4), ascending.
+    face: IntArray  #: Triangles that are met: (n,).
+    vertex_face_time: FloatArray  #: Times of first contact, 0 to 1: (n,).
+    edge_edge: IntArray  #: Ends of one edge, then those of the other: (m, 4), ascending.
+    edge_edge_time: FloatArray  #: Times of first contact, 0 to 1: (m,).
+    box_pairs: int  #: Number of pairs of features whose moving boxes touch.
+    exact_tests: int  #: Number of pairs that were tested.
 
     @property
     def earliest(self) -> float | None:
-        """The first time at which anything meets; None where nothing does."""
+        """Earliest time of all pairs, 0 to 1. None without pairs."""
         return earliest_of(self.vertex_face_time, self.edge_edge_time)
 
     def __repr__(self) -> str:
@@ -47,18 +54,19 @@ def continuous_collisions(
     progress: Progress = False,
     **options: Unpack[ImpactOptions],
 ) -> ContinuousCollisions:
-    """All pairs of a vertex and a triangle, and of two edges, of a mesh that meet while its vertices move along
-    straight lines; exact for the coordinates as they are.
+    """Returns all pairs of a vertex and a triangle, and of two edges, of a mesh that meet while its vertices move.
 
-    Pairs that share a vertex are left out; vertices in one place at both ends are one vertex.
+    Vertices move along straight lines. The set of pairs is exact for the given coordinates. Pairs that share a vertex
+    are left out. Vertices in one place at both ends are one vertex.
 
     Parameters
     ----------
-    mesh : anything that stands for a mesh
-        At time 0.
-    end : (n, 3) array, or anything that stands for a mesh
-        Its vertices at time 1, or the mesh then, with the same triangles. Arrays of doubles are used as they are,
-        without a copy.
+    mesh : mesh
+        The mesh at time 0, as for :func:`distance_field`.
+    end : (n, 3) array, or mesh
+        Its vertices at time 1, or the mesh at time 1 with the same triangles. C-contiguous float64 is not copied.
+    threads, progress
+        As for :func:`distance_field`.
     **options
 
     Returns
@@ -83,18 +91,22 @@ def continuous_collisions(
 def vertex_face_impacts(
     start: Any, end: Any, *, threads: int = 0, progress: Progress = False, **options: Unpack[ImpactOptions]
 ) -> FloatArray:
-    """When moving vertices meet moving triangles for the first time; exact for the coordinates as they are.
+    """Returns the first time at which each moving vertex meets a moving triangle.
+
+    The existence of a contact is exact for the given coordinates.
 
     Parameters
     ----------
     start, end : (n, 4, 3) arrays
-        For each question the vertex, then the corners of the triangle, at time 0 and at time 1.
+        For each query the vertex, then the corners of the triangle, at time 0 and at time 1.
+    threads, progress
+        As for :func:`distance_field`.
     **options
 
     Returns
     -------
     (n,) array
-        Times from 0 to 1, never late; NaN where they do not meet.
+        Times from 0 to 1, never after the contact; NaN if they do not meet.
 
     >>> import blum
     >>> triangle = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
@@ -108,27 +120,44 @@ def vertex_face_impacts(
 def edge_edge_impacts(
     start: Any, end: Any, *, threads: int = 0, progress: Progress = False, **options: Unpack[ImpactOptions]
 ) -> FloatArray:
-    """When moving edges meet for the first time; as :func:`vertex_face_impacts`, of the ends of one edge, then those of
-    the other.
+    """Returns the first time at which two moving edges meet.
+
+    The existence of a contact is exact for the given coordinates.
 
     Parameters
     ----------
     start, end : (n, 4, 3) arrays
+        For each query the ends of one edge, then those of the other, at time 0 and at time 1.
+    threads, progress
+        As for :func:`distance_field`.
     **options
+
+    Returns
+    -------
+    (n,) array
+        As for :func:`vertex_face_impacts`.
+
+    >>> import blum
+    >>> edge = [[-1, 0, 0], [1, 0, 0]]
+    >>> start, end = [[*edge, [0, -1, 1], [0, 1, 1]]], [[*edge, [0, -1, -1], [0, 1, -1]]]
+    >>> blum.edge_edge_impacts(start, end).round(4).tolist()
+    [0.5]
     """
     return _impacts(_core.edge_edge_impacts, start, end, options, threads, progress)
 
 
 def _impacts(answer: Any, start: Any, end: Any, options: Any, threads: int, progress: Progress) -> FloatArray:
+    """Returns the times of impact of many queries."""
     first, last = _four_points(start, "start"), _four_points(end, "end")
     if len(first) != len(last):
-        raise InvalidMesh(f"start has {len(first)} questions, and end {len(last)}; they must be as many")
+        raise InvalidMesh(f"start has {len(first)} queries, but end has {len(last)}: give equal numbers")
     with reporting(progress) as report:
         times: FloatArray = answer(first, last, dict(options), integer(threads, "threads"), report)
     return times
 
 
 def _four_points(value: Any, name: str) -> FloatArray:
+    """Returns an (n, 4, 3) array of float64."""
     array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must hold real numbers, not {array.dtype}")

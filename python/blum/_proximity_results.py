@@ -1,4 +1,4 @@
-"""What scenes answer."""
+"""Results of proximity queries."""
 
 from __future__ import annotations
 
@@ -12,39 +12,56 @@ from ._arguments import FloatArray, IntArray, Integer, integer
 
 
 def earliest_of(*times: FloatArray) -> float | None:
-    """The first of some times; None where there is none."""
+    """Returns the smallest of some times. None without times."""
     every = np.concatenate(times)
     return float(every.min()) if len(every) else None
 
 
 @dataclass(frozen=True, eq=False)
 class PrimitivePair:
-    """Two primitives and their closest points. Primitives of a mesh are its triangles, then its segments, then its
-    points."""
+    """Two primitives and their closest points.
 
-    object: tuple[int, int]  #: of the scene
-    primitive: tuple[int, int]  #: of each object
-    distance: float  #: mesh units; 0 just where they meet
-    point: FloatArray  #: (2, 3): of each primitive; where they meet, a point near both
-    feature: IntArray  #: (2, 3): the one, two or three vertices that each point lies on, padded with -1
+    Primitives of a mesh are its triangles, then its segments, then its points.
+
+    >>> import blum
+    >>> box = blum.generate("box")
+    >>> found = blum.separation(box, (box.vertices + [3, 0, 0], box.triangles))
+    >>> found.object, found.distance
+    ((0, 1), 2.0)
+    """
+
+    object: tuple[int, int]  #: Objects of the scene.
+    primitive: tuple[int, int]  #: Primitive of each object.
+    distance: float  #: Mesh units. 0 if and only if they meet.
+    point: FloatArray  #: Closest point of each primitive: (2, 3). If they meet, a point near both.
+    #: The one, two or three vertices of the feature that contains each point: (2, 3), padded with -1.
+    feature: IntArray
 
 
 @dataclass(frozen=True, eq=False)
 class ProximityPairs:
-    """Pairs of primitives and their closest points, as arrays; `pairs[k]` is one, `pairs[1:5]` are some, and false is
-    what has none."""
+    """Pairs of primitives and their closest points, as arrays.
 
-    object: IntArray  #: (n, 2): the objects
-    primitive: IntArray  #: (n, 2): the primitive of each: a triangle, or behind these a segment, then a point
-    distance: FloatArray  #: (n,): mesh units; 0 just where they meet; negative in signed separations
-    point: FloatArray  #: (n, 2, 3): the closest points; where they meet, a point near both
-    feature: IntArray  #: (n, 2, 3): the one, two or three vertices of each mesh that the point lies on, padded with -1
-    culling: str  #: what left out pairs that cannot count: "bvh" or "voronoi"
-    cells: int  #: of Voronoi culling
-    left_over: int  #: primitives that Voronoi culling left to the hierarchy
-    object_pairs: int  #: pairs of objects that were compared
-    candidates: int  #: pairs of primitives that culling left over
-    exact_tests: int  #: pairs whose distance was computed
+    `pairs[k]` is one pair, and `pairs[1:5]` is a part. Without pairs, it is false.
+
+    >>> import blum
+    >>> pairs = blum.closest_primitives(blum.generate("box"))
+    >>> len(pairs), pairs[0].primitive, len(pairs[1:5])
+    (12, (0, 11), 4)
+    """
+
+    object: IntArray  #: Objects: (n, 2).
+    primitive: IntArray  #: Primitives: (n, 2). Triangles are numbered first, then segments, then points.
+    distance: FloatArray  #: Distances: (n,), mesh units. 0 if and only if they meet; negative in signed separations.
+    point: FloatArray  #: Closest points: (n, 2, 3). If they meet, a point near both.
+    #: The one, two or three vertices of the feature that contains each point: (n, 2, 3), padded with -1.
+    feature: IntArray
+    culling: str  #: Method that excluded pairs: "bvh" or "voronoi".
+    cells: int  #: Number of cells of Voronoi culling.
+    left_over: int  #: Number of primitives that Voronoi culling left to the hierarchy.
+    object_pairs: int  #: Number of compared pairs of objects.
+    candidates: int  #: Number of pairs of primitives that culling did not exclude.
+    exact_tests: int  #: Number of pairs whose distance was computed.
 
     def __len__(self) -> int:
         return len(self.distance)
@@ -59,7 +76,7 @@ class ProximityPairs:
             return replace(self, **{name: getattr(self, name)[index] for name in columns})
         number = integer(index, "the number of a pair")
         if not -len(self) <= number < len(self):
-            raise IndexError(f"there is no pair {number}: these are {self!r}, which count from 0")
+            raise IndexError(f"pair {number} does not exist: there are {len(self):,} pairs, counted from 0")
         k = number % len(self)
         (first_object, second_object), (first, second) = self.object[k].tolist(), self.primitive[k].tolist()
         return PrimitivePair(
@@ -71,7 +88,7 @@ class ProximityPairs:
 
     @property
     def closest(self) -> PrimitivePair | None:
-        """The pair with the smallest distance, the first of those equally close; None where there is none."""
+        """Pair with the smallest distance; the first of equal ones. None without pairs."""
         return self[int(np.argmin(self.distance))] if len(self) else None
 
     def __repr__(self) -> str:
@@ -80,20 +97,30 @@ class ProximityPairs:
 
 @dataclass(frozen=True, eq=False)
 class Penetration:
-    """A connected part of what two solids have in common."""
+    """Connected part of the overlap of two solids.
 
-    object: tuple[int, int]  #: the two solids; twice the same of one that is compared with itself
-    depth: float  #: mesh units: the distance of deep_point from surface_point
-    depth_bound: float  #: what the depth is at most, for certain but for rounding
-    direction: FloatArray  #: (3,): where the first object is to be moved by the depth, to bring deep_point out
-    deep_point: FloatArray  #: (3,): the deepest point of the surface of one object in the other one
-    surface_point: FloatArray  #: (3,): the closest one to it of the surface of that
-    is_first_deep: bool  #: whether deep_point is one of the first object
-    deep_triangle: int  #: that deep_point lies on, in its object
-    surface_triangle: int  #: that surface_point lies on, in the other one
-    area: tuple[float, float]  #: of the parts of both surfaces that bound it; of one object, all in the first
-    volume: float  #: cubic mesh units
-    curves: list[FloatArray]  #: (n, 3) each: where the surfaces cross, closed
+    >>> import blum
+    >>> scene, box = blum.ProximityScene(), blum.generate("box")
+    >>> a, b = scene.add(box), scene.add((box.vertices + [0.75, 0, 0], box.triangles))
+    >>> (part,) = scene.penetration(a, b)
+    >>> part
+    Penetration(depth 0.25, volume 0.25)
+    """
+
+    object: tuple[int, int]  #: The two solids. Twice the same one if it is compared with itself.
+    depth: float  #: Distance of deep_point and surface_point, mesh units.
+    depth_bound: float  #: Upper bound on the true depth, proven except for rounding.
+    #: Unit vector: (3,). Moving the first object by the depth in this direction brings deep_point to the surface.
+    direction: FloatArray
+    deep_point: FloatArray  #: Deepest point of the surface of one object in the other: (3,).
+    surface_point: FloatArray  #: Closest point to it on the surface of the other object: (3,).
+    is_first_deep: bool  #: True if deep_point belongs to the first object.
+    deep_triangle: int  #: Triangle of its object that contains deep_point.
+    surface_triangle: int  #: Triangle of the other object that contains surface_point.
+    #: Areas of the parts of both surfaces that bound it. For one object, the first contains both.
+    area: tuple[float, float]
+    volume: float  #: Cubic mesh units.
+    curves: list[FloatArray]  #: Closed curves in which the surfaces cross: (n, 3) each.
 
     def __repr__(self) -> str:
         return f"Penetration(depth {self.depth:.6g}, volume {self.volume:.6g})"
@@ -101,18 +128,25 @@ class Penetration:
 
 @dataclass(frozen=True, eq=False)
 class SceneCollisions:
-    """What of the objects of a scene meets while they move."""
+    """Pairs of features of a scene's objects that meet while the objects move; see :meth:`ProximityScene.continuous`.
 
-    vertex_face: IntArray  #: (n, 4): the object of a vertex, the vertex, the object of the face, the face
-    vertex_face_time: FloatArray  #: (n,): when they meet first, 0 to 1
-    edge_edge: IntArray  #: (m, 6): an object and the ends of an edge of it, then another one, or the same one
-    edge_edge_time: FloatArray  #: (m,)
-    box_pairs: int  #: pairs of features whose moving boxes touch
-    exact_tests: int  #: pairs that were tested
+    >>> import blum
+    >>> scene, box = blum.ProximityScene(), blum.generate("box")
+    >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
+    >>> scene.continuous({b: box.vertices + [2, 0, 0]})
+    SceneCollisions(0 vertex_face, 0 edge_edge)
+    """
+
+    vertex_face: IntArray  #: Object of a vertex, the vertex, object of a face, the face: (n, 4).
+    vertex_face_time: FloatArray  #: Times of first contact, 0 to 1: (n,).
+    edge_edge: IntArray  #: An object and the ends of an edge of it, then the same for the other edge: (m, 6).
+    edge_edge_time: FloatArray  #: Times of first contact, 0 to 1: (m,).
+    box_pairs: int  #: Number of pairs of features whose moving boxes touch.
+    exact_tests: int  #: Number of pairs that were tested.
 
     @property
     def earliest(self) -> float | None:
-        """The first time at which anything meets; None where nothing does."""
+        """Earliest time of all pairs, 0 to 1. None without pairs."""
         return earliest_of(self.vertex_face_time, self.edge_edge_time)
 
     def __repr__(self) -> str:

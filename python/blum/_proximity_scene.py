@@ -37,11 +37,11 @@ _ALL_LAYERS = 0xFFFFFFFF
 
 @takes("SceneOptions")
 class ProximityScene:
-    """Meshes that move, deform and change, and what is close among them; exact for the coordinates as they are.
+    """Meshes that move, deform and change, with queries of proximity among them. Exact for the given coordinates.
 
-    A scene keeps copies of its meshes. Answers do not depend on the number of threads, and after any updates are those
-    of a scene made anew. Of pairs that are equally far apart, the one with the smallest (object, primitive) of the
-    first, then of the second, is told. Threads that share a scene wait for each other.
+    A scene keeps copies of its meshes. Results do not depend on the number of threads. After any updates, they are
+    those of a new scene. If pairs are equally far apart, the pair with the smallest (object, primitive) of the first,
+    then of the second, is returned. Threads that share a scene wait for each other.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class ProximityScene:
         self._scene = _core.ProximityScene(dict(options))
         self._count = 0
         self._busy = threading.Lock()
-        self._owner: int | None = None  # the thread that asks or changes
+        self._owner: int | None = None  # Thread that uses the scene.
 
     def __repr__(self) -> str:
         return f"ProximityScene({self._count} {'object' if self._count == 1 else 'objects'})"
@@ -79,21 +79,31 @@ class ProximityScene:
         threads: int = 0,
         progress: Progress = False,
     ) -> int:
-        """Adds a mesh, and tells its number.
+        """Adds a mesh and returns its number.
 
         Parameters
         ----------
-        mesh : anything that stands for a mesh
+        mesh : mesh
+            As for :func:`distance_field`.
         layers : int
-            The layers that the object is in, a bit for each.
+            Layers that contain the object, one bit for each.
         meets : int
-            The layers whose objects it is compared with. Two objects are compared where each is in a layer that the
-            other one meets.
+            Layers whose objects it is compared with. Two objects are compared if each is in a layer that the other one
+            meets.
         compare_self : bool
-            Whether it is compared with itself: primitives that share no vertex. (In C++ `ObjectOptions::self`.)
+            True: the object is compared with itself, except primitives that share a vertex. (In C++
+            `ObjectOptions::self`.)
         name : str
-            What messages call it. Without one they say "object 3".
-        transform : see :meth:`update`
+            Name in messages. Without one, they contain "object 3".
+        transform
+            See :meth:`update`.
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> scene = blum.ProximityScene()
+        >>> scene.add(blum.generate("box"), name="table"), scene.add(blum.generate("sphere"))
+        (0, 1)
         """
         own = as_mesh(mesh)
         options = _layers(layers, "layers"), _layers(meets, "meets"), truth(compare_self, "compare_self")
@@ -106,14 +116,26 @@ class ProximityScene:
         return added
 
     def remove(self, index: Integer) -> None:
-        """Removes an object; the others keep their numbers."""
+        """Removes an object. The others keep their numbers.
+
+        >>> import blum
+        >>> scene = blum.ProximityScene()
+        >>> scene.remove(scene.add(blum.generate("box")))
+        >>> scene
+        ProximityScene(0 objects)
+        """
         which = _object(index, "index")
         with self._alone():
             self._scene.remove(which)
             self._count -= 1
 
     def rename(self, index: Integer, name: str) -> None:
-        """Gives an object another name, by which messages call it."""
+        """Changes the name of an object in messages.
+
+        >>> import blum
+        >>> scene = blum.ProximityScene()
+        >>> scene.rename(scene.add(blum.generate("box")), "table")
+        """
         which, called = _object(index, "index"), text(name, "name")
         with self._alone():
             self._scene.rename(which, called)
@@ -128,22 +150,31 @@ class ProximityScene:
         threads: int = 0,
         progress: Progress = False,
     ) -> None:
-        """Changes an object: where its vertices are, where the whole is, or what it is.
+        """Changes an object: the positions of its vertices, its transform, or its mesh.
 
         Parameters
         ----------
         index : int
-            The object.
+            Number of the object.
         vertices : (n, 3) array, optional
-            New positions before the transform, as many as there are.
+            New positions before the transform, as many as the object has.
         transform : (4, 4) or (3, 4) array, or a pair (rotation (3, 3), translation (3,)), optional
-            Where the object is, from the positions of its vertices: not relative to where it was. Rigid to 1e-9, so in
-            doubles: of others :func:`closest_rotation`.
-        mesh : anything that stands for a mesh, optional
-            Another mesh for the object. It stays where it is, and is compared with what it was.
+            Pose of the object, applied to the positions of its vertices. It is absolute, not relative to the last pose.
+            It must be rigid to 1e-9, so in double precision. :func:`closest_rotation` converts others.
+        mesh : mesh, optional
+            Another mesh for the object, whose transform and comparisons stay. Excludes `vertices`.
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> fixed, moving = scene.add(box), scene.add(box)
+        >>> scene.update(moving, transform=([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [3, 0, 0]))
+        >>> scene.separation(fixed, moving).distance
+        2.0
         """
         if vertices is not None and mesh is not None:
-            raise InvalidOption("mesh excludes vertices: a mesh brings its own")
+            raise InvalidOption("mesh excludes vertices: a mesh has its own")
         if vertices is None and transform is None and mesh is None:
             raise InvalidOption("there is nothing to update: give vertices, transform or mesh")
         which = _object(index, "index")
@@ -153,7 +184,7 @@ class ProximityScene:
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             if place is not None:
-                self._scene.check_place(place)  # before anything has changed
+                self._scene.check_place(place)  # Before anything changes.
             if rows is not None:
                 self._scene.set_vertices(which, rows, count, report)
             if own is not None:
@@ -162,7 +193,16 @@ class ProximityScene:
                 self._scene.set_place(which, place)
 
     def exclude(self, a: Integer, b: Integer, excluded: bool = True) -> None:
-        """Leaves out a pair of objects, or an object with itself, whatever their layers; or takes that back."""
+        """Excludes a pair of objects, or an object with itself, whatever their layers; or includes it again.
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add(box)
+        >>> before = len(scene.collisions())
+        >>> scene.exclude(a, b)
+        >>> before > 0, len(scene.collisions())
+        (True, 0)
+        """
         first, second = _object(a, "a"), _object(b, "b")
         with self._alone():
             self._scene.exclude(first, second, truth(excluded, "excluded"))
@@ -190,10 +230,31 @@ class ProximityScene:
         threads: int = 0,
         progress: Progress = False,
     ) -> ProximityPairs | PrimitivePair | None:
-        """The closest pair of primitives of two objects, whatever their layers, or of one with itself; None where there
-        is none within `max_distance`. Without `a` and `b`, that of each two objects that are compared."""
+        """Returns the closest pair of primitives of two objects, whatever their layers, or of one object with itself.
+
+        Without `a` and `b`, returns the closest pair of each compared pair of objects.
+
+        Parameters
+        ----------
+        a, b : int, optional
+            Numbers of objects: both or neither.
+        max_distance : float
+            Largest distance of a pair, mesh units.
+        threads, progress
+            As for :func:`distance_field`.
+
+        Returns
+        -------
+        PrimitivePair, or None if no pair lies within `max_distance`. ProximityPairs without `a` and `b`.
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
+        >>> scene.separation(a, b).distance, scene.separation(a, b, max_distance=1), len(scene.separation())
+        (2.0, None, 1)
+        """
         if (a is None) != (b is None):
-            raise InvalidOption("separation takes two objects, or none for all pairs")
+            raise InvalidOption("separation() takes both a and b, or neither for all pairs")
         most, count = number(max_distance, "max_distance"), integer(threads, "threads")
         if a is None or b is None:
             with self._alone(progress) as report:
@@ -205,21 +266,59 @@ class ProximityScene:
     def closest_primitives(
         self, max_distance: Real = np.inf, *, threads: int = 0, progress: Progress = False
     ) -> ProximityPairs:
-        """For each primitive of the scene the closest one that it is compared with, where there is one within
-        `max_distance`; by rising object and primitive of the first."""
+        """Returns, for each primitive of the scene, the closest one that it is compared with.
+
+        Primitives without another one within the distance are left out. Pairs are sorted by ascending object, then
+        primitive, of the first.
+
+        Parameters
+        ----------
+        max_distance : float
+            Mesh units.
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
+        >>> len(scene.closest_primitives()), len(scene.closest_primitives(1))
+        (24, 0)
+        """
         most, count = number(max_distance, "max_distance"), integer(threads, "threads")
         with self._alone(progress) as report:
             return ProximityPairs(*self._scene.closest_primitives(most, count, report))
 
     def closer_than(self, distance: Real, *, threads: int = 0, progress: Progress = False) -> ProximityPairs:
-        """All pairs of primitives that are compared and no further apart than `distance`, each once."""
+        """Returns all compared pairs of primitives that are at most a distance apart, each once.
+
+        Parameters
+        ----------
+        distance : float
+            Mesh units, not negative.
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
+        >>> len(scene.closer_than(2)) > 0, len(scene.closer_than(1.9))
+        (True, 0)
+        """
         most, count = number(distance, "distance"), integer(threads, "threads")
         with self._alone(progress) as report:
             return ProximityPairs(*self._scene.closer_than(most, count, report))
 
     def collisions(self, *, threads: int = 0, progress: Progress = False) -> ProximityPairs:
-        """All pairs of primitives that have a point in common. Of one object also those that share a vertex, and have
-        more in common than the corner or edge that they share."""
+        """Returns all compared pairs of primitives that have a point in common.
+
+        For one object, this includes pairs that share a vertex and have more in common than the shared corner or edge.
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add((box.vertices + [0.5, 0.25, 0.25], box.triangles))
+        >>> bool(scene.collisions())
+        True
+        """
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             return ProximityPairs(*self._scene.collisions(count, report))
@@ -234,13 +333,16 @@ class ProximityScene:
         progress: Progress = False,
         **options: Unpack[PenetrationOptions],
     ) -> list[Penetration]:
-        """What two solids have in common, in its connected parts, the deepest first; none where they only touch. With
-        one object twice, what lies in two parts of it.
+        """Returns the connected parts of the overlap of two solids, the deepest first.
+
+        The list is empty if they only touch. For one object twice, returns the overlaps of its parts.
 
         Parameters
         ----------
         a, b : int
-            Objects: closed, facing outwards.
+            Numbers of objects, which must be closed and face outwards.
+        threads, progress
+            As for :func:`distance_field`.
         **options
 
         >>> import blum
@@ -266,14 +368,25 @@ class ProximityScene:
         progress: Progress = False,
         **options: Unpack[PenetrationOptions],
     ) -> float:
-        """The distance of two solids where they are apart, 0 where they touch, less the largest depth where they have
-        more in common. The depth is that of :meth:`penetration`, how far points of one surface lie in the other solid,
-        and not the least way apart that GJK with EPA tells of convex shapes.
+        """Returns the signed distance of two solids, mesh units.
+
+        It is their distance if they are apart, 0 if they touch, and minus the largest depth if they overlap. The depth
+        is that of :meth:`penetration`: how far points of one surface lie in the other solid. It is not the shortest
+        separating translation that GJK with EPA computes for convex shapes.
 
         Parameters
         ----------
         a, b : int
+            As for :meth:`penetration`.
+        threads, progress
+            As for :func:`distance_field`.
         **options
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add((box.vertices + [0.75, 0, 0], box.triangles))
+        >>> scene.signed_separation(a, b)
+        -0.25
         """
         first, second, count = _object(a, "a"), _object(b, "b"), integer(threads, "threads")
         with self._alone(progress) as report:
@@ -284,11 +397,14 @@ class ProximityScene:
     def penetrations(
         self, *, threads: int = 0, progress: Progress = False, **options: Unpack[PenetrationOptions]
     ) -> list[Penetration]:
-        """What each two solids that are compared have in common: the parts that :meth:`penetration` tells of each pair,
-        by rising pair of objects. What makes an object a solid is looked at once.
+        """Returns the overlaps of all compared pairs of solids, by ascending pair of objects.
+
+        The parts of each pair are those of :meth:`penetration`. Each object is checked once.
 
         Parameters
         ----------
+        threads, progress
+            As for :func:`distance_field`.
         **options
 
         >>> import blum
@@ -309,13 +425,23 @@ class ProximityScene:
     def signed_separations(
         self, *, threads: int = 0, progress: Progress = False, **options: Unpack[PenetrationOptions]
     ) -> ProximityPairs:
-        """How far each two solids that are compared are apart, or less the depth where they have something in common:
-        the pairs of :meth:`separation`, of which those that overlap are the deepest point of their deepest part and the
-        closest one to it of the other surface, with a negative distance. Its `closest` is then the deepest.
+        """Returns the signed distances of all compared pairs of solids.
+
+        They are the pairs of :meth:`separation`. For solids that overlap, the pair has a negative distance. Its points
+        are the deepest point of the deepest part and the closest point of the other surface. `closest` is then the
+        deepest pair.
 
         Parameters
         ----------
+        threads, progress
+            As for :func:`distance_field`.
         **options
+
+        >>> import blum
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
+        >>> a, b = scene.add(box), scene.add((box.vertices + [0.75, 0, 0], box.triangles))
+        >>> scene.signed_separations().closest.distance
+        -0.25
         """
         count = integer(threads, "threads")
         with self._alone(progress) as report:
@@ -330,15 +456,18 @@ class ProximityScene:
         progress: Progress = False,
         **options: Unpack[ImpactOptions],
     ) -> SceneCollisions:
-        """All pairs of a vertex and a face, and of two edges, of objects that are compared, that meet while objects
-        move: their vertices along straight lines. The scene stays as it is.
+        """Returns all pairs of a vertex and a face, and of two edges, of compared objects that meet while objects move.
+
+        Vertices move along straight lines. The scene is not changed. Objects without a motion rest.
 
         Parameters
         ----------
         motions : dict
-            For each object that moves where it is at the end: vertices (n, 3) before its transform, a transform, or
-            ``{"vertices": ..., "transform": ...}`` with either or both, as :meth:`update` takes them. In place of
-            vertices also what stands for the mesh at the end, with as many.
+            The end of the motion of each moving object: vertices (n, 3) before its transform, or a transform, or
+            ``{"vertices": ..., "transform": ...}``. Both have the forms of :meth:`update`. A mesh with as many vertices
+            may replace the vertices.
+        threads, progress
+            As for :func:`distance_field`.
         **options
 
         >>> import blum
@@ -356,9 +485,9 @@ class ProximityScene:
 
     @contextmanager
     def _alone(self, progress: Progress = False) -> Iterator[ProgressCallback | None]:
-        """What the library calls with progress, while nothing else asks or changes the scene."""
+        """Returns a context with the library's progress callback, in which no other thread uses the scene."""
         if self._owner == threading.get_ident():
-            raise RuntimeError("this scene is at work: its progress and signal handlers cannot ask or change it")
+            raise RuntimeError("this scene is in use: its progress callback and signal handlers must not use it")
         with self._busy, reporting(progress) as report:
             self._owner = threading.get_ident()
             try:
@@ -370,9 +499,18 @@ class ProximityScene:
 def separation(
     a: MeshLike, b: MeshLike, *, max_distance: Real = np.inf, threads: int = 0, progress: Progress = False
 ) -> PrimitivePair | None:
-    """The closest points of two meshes, exactly; None where they are further apart than `max_distance`.
+    """Returns the closest points of two meshes, exactly. None if they are further apart than `max_distance`.
 
-    For meshes that move, :class:`ProximityScene` asks again without starting anew.
+    :class:`ProximityScene` keeps its structures for meshes that move.
+
+    Parameters
+    ----------
+    a, b : meshes
+        As for :func:`distance_field`.
+    max_distance : float
+        Mesh units.
+    threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> box = blum.generate("box")
@@ -394,16 +532,21 @@ def closest_primitives(
     threads: int = 0,
     progress: Progress = False,
 ) -> ProximityPairs:
-    """For each primitive (triangle, segment, point) of one or several meshes the closest one of another mesh, or of the
-    same one that shares no vertex with it; exact.
+    """Returns, for each primitive of one or several meshes, the closest primitive of another mesh, exactly.
+
+    Primitives are triangles, segments and points. If a mesh is compared with itself, the closest one may also be a
+    primitive of the same mesh that shares no vertex.
 
     Parameters
     ----------
-    meshes : anything that stands for a mesh, or a list of these
+    meshes : mesh, or a list of meshes
+        As for :func:`distance_field`.
     max_distance : float
-        Primitives that have nothing this close are left out.
+        Primitives without another one within this distance are left out. Mesh units.
     compare_self : bool, optional
-        Whether each mesh is compared with itself. Default: where there is only one.
+        True: each mesh is compared with itself. Default: True for a single mesh.
+    threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> found = blum.closest_primitives(blum.generate("torus"))
@@ -422,17 +565,21 @@ def collisions(
     threads: int = 0,
     progress: Progress = False,
 ) -> ProximityPairs:
-    """All pairs of primitives (triangles, segments, points) of one or several meshes that meet, or that are no further
-    apart than `max_distance`; exact.
+    """Returns all pairs of primitives of one or several meshes that meet, or are at most `max_distance` apart, exactly.
+
+    Primitives are triangles, segments and points.
 
     Parameters
     ----------
-    meshes : anything that stands for a mesh, or a list of these
+    meshes : mesh, or a list of meshes
+        As for :func:`distance_field`.
     max_distance : float
-        In mesh units. With 0, primitives that share a vertex are told where they have more in common than that; else
+        Mesh units. At 0, primitives that share a vertex are returned if they have more in common than that. Above 0,
         they are left out.
     compare_self : bool, optional
-        Whether each mesh is compared with itself. Default: where there is only one.
+        True: each mesh is compared with itself. Default: True for a single mesh.
+    threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> box = blum.generate("box")
@@ -445,26 +592,36 @@ def collisions(
     if distance == 0:
         return scene.collisions(threads=threads, progress=progress)
     if not distance > 0:
-        raise InvalidOption(f"max_distance is {distance}, but must be a number of at least 0")
+        raise InvalidOption(f"max_distance is {distance}, but must be at least 0")
     return scene.closer_than(distance, threads=threads, progress=progress)
 
 
 @dataclass(frozen=True, eq=False)
 class TriangleDistances:
-    """How far triangles are apart, and where."""
+    """Distances of pairs of triangles; the result of :func:`triangle_distances`.
 
-    distance: FloatArray  #: (n,): 0 just where they have a point in common
-    point: FloatArray  #: (n, 2, 3): the closest points of both; where they meet, a point near both
-    feature: IntArray  #: (n, 2, 3): the one, two or three corners (0 to 2) that each lies on, padded with -1
+    >>> import blum
+    >>> triangle = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
+    >>> found = blum.triangle_distances([triangle], [triangle])
+    >>> found.distance.tolist(), found.point.shape, found.feature.shape
+    ([0.0], (1, 2, 3), (1, 2, 3))
+    """
+
+    distance: FloatArray  #: Distances: (n,). 0 if and only if the triangles have a point in common.
+    point: FloatArray  #: Closest points of both: (n, 2, 3). If they meet, a point near both.
+    #: The one, two or three corners (0 to 2) of the feature that contains each: (n, 2, 3), padded with -1.
+    feature: IntArray
 
 
 def triangle_distances(a: Any, b: Any, *, threads: int = 0, progress: Progress = False) -> TriangleDistances:
-    """The closest points of pairs of triangles, of which any may have lost its area; exact where they meet.
+    """Returns the closest points of pairs of triangles. Contacts are exact. Triangles without area are valid.
 
     Parameters
     ----------
     a, b : (n, 3, 3) arrays
-        The corners of the first and the second triangle of each pair.
+        Corners of the first and the second triangle of each pair.
+    threads, progress
+        As for :func:`distance_field`.
 
     >>> import blum
     >>> floor, above = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 2], [9, 0, 3], [0, 9, 3]]
@@ -476,18 +633,19 @@ def triangle_distances(a: Any, b: Any, *, threads: int = 0, progress: Progress =
     """
     first, second = _triangles(a, "a"), _triangles(b, "b")
     if len(first) != len(second):
-        raise InvalidMesh(f"a has {len(first)} triangles, and b {len(second)}; they must be as many")
+        raise InvalidMesh(f"a has {len(first)} triangles, but b has {len(second)}: give equal numbers")
     with reporting(progress) as report:
         return TriangleDistances(*_core.triangle_distances(first, second, integer(threads, "threads"), report))
 
 
 def _scene_of(meshes: MeshLike | Sequence[MeshLike], compare_self: bool | None, threads: int) -> ProximityScene:
+    """Returns a scene of one or several meshes."""
     if _is_several(meshes):
         several = [(f"meshes[{k}]", mesh) for k, mesh in enumerate(meshes)]
     else:
         several = [("mesh", cast(MeshLike, meshes))]
     if not several:
-        raise InvalidMesh("meshes holds no mesh: give at least one")
+        raise InvalidMesh("meshes is empty: give at least one mesh")
     own = len(several) == 1 if compare_self is None else truth(compare_self, "compare_self")
     scene = ProximityScene()
     for name, mesh in several:
@@ -505,10 +663,12 @@ def _penetration(
     is_first: bool,
     *rest: Any,
 ) -> Penetration:
+    """Returns a Penetration from the library's values."""
     return Penetration(objects, depth, bound, np.array(direction), np.array(deep), np.array(surface), is_first, *rest)
 
 
 def _motions_of(motions: Any) -> list[tuple[Any, Any]]:
+    """Returns the entries of a dict of motions."""
     if isinstance(motions, Mapping):
         return list(motions.items())
     raise TypeError(
@@ -518,20 +678,21 @@ def _motions_of(motions: Any) -> list[tuple[Any, Any]]:
 
 
 def _is_place(end: Any) -> bool:
-    """Whether it is a transform: a matrix of four columns, or a rotation and a translation."""
+    """Returns True for a transform: a matrix with four columns, or a rotation and a translation."""
     if isinstance(end, tuple) and len(end) == 2:
         return np.shape(end[0]) == (3, 3) and np.shape(end[1]) == (3,)
     return isinstance(end, np.ndarray) and end.shape in ((3, 4), (4, 4))
 
 
 def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | None]:
+    """Returns the vertices and the transform of an object at the end of its motion."""
     given = end if isinstance(end, dict) else {"transform" if _is_place(end) else "vertices": end}
     if unknown := set(given) - {"vertices", "transform"}:
         raise InvalidOption(f"motions[{which}] has {sorted(unknown)}, but takes 'vertices' and 'transform'")
     vertices, transform = given.get("vertices"), given.get("transform")
     moved = None if vertices is None else end_vertices(vertices, f"motions[{which}]")
     if moved is not None and len(moved) == 0:
-        raise InvalidMesh(f"motions[{which}] has no vertices; an object that rests is left out of the motions")
+        raise InvalidMesh(f"motions[{which}] has no vertices: leave out objects that do not move")
     return (
         _object(which, "motions"),
         moved,
@@ -540,14 +701,15 @@ def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | 
 
 
 def closest_rotation(matrix: Any) -> FloatArray:
-    """The rotation that is closest to a matrix that is one but for rounding, in doubles: of poses in float32, for
-    :meth:`ProximityScene.update`.
+    """Returns the rotation closest to a matrix that is a rotation except for rounding, in double precision.
+
+    :meth:`ProximityScene.update` needs it for poses in float32.
 
     Parameters
     ----------
     matrix : (3, 3), (3, 4) or (4, 4) array
-        A rotation, or a transform, of which only the rotation changes. Its columns have length 1 and are at right
-        angles to 0.1.
+        A rotation, or a transform, of which only the rotation changes. Its columns must have length 1 and be
+        perpendicular, to 0.1.
 
     >>> import blum, numpy as np
     >>> turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]], dtype=np.float32)
@@ -566,21 +728,22 @@ def closest_rotation(matrix: Any) -> FloatArray:
 
 
 def _is_several(meshes: Any) -> TypeGuard[Sequence[MeshLike]]:
-    """Whether this is a list of meshes, and not vertices with triangles."""
+    """Returns True for a list of meshes, False for a pair of vertices and triangles."""
     if not isinstance(meshes, Sequence) or isinstance(meshes, (str, bytes)):
         return False
     return len(meshes) != 2 or not _is_rows(meshes[0])
 
 
 def _is_rows(value: Any) -> bool:
-    """Whether this is a matrix of numbers, as vertices are."""
+    """Returns True for a matrix of numbers, as vertices are."""
     try:
         return np.ndim(value) == 2
-    except ValueError:  # lists of different lengths
+    except ValueError:  # Lists of different lengths.
         return False
 
 
 def _layers(value: Any, name: str) -> int:
+    """Returns a set of layers as bits."""
     bits = integer(value, name, bits=64)
     if not 0 <= bits <= _ALL_LAYERS:
         raise InvalidOption(f"{name} is {bits}, but must be 0 to 2^32 - 1: a bit for each layer")
@@ -588,14 +751,15 @@ def _layers(value: Any, name: str) -> int:
 
 
 def _object(value: Any, name: str) -> int:
+    """Returns the number of an object."""
     index = integer(value, name)
     if index < 0:
-        raise InvalidOption(f"{name} is {index}, but objects count from 0")
+        raise InvalidOption(f"{name} is {index}, but must be the number of an object, 0 or more")
     return index
 
 
 def _place(transform: Any) -> FloatArray:
-    """(3, 4): a rotation, and beside it a translation."""
+    """Returns a transform as (3, 4): a rotation and a translation."""
     if isinstance(transform, (tuple, list)) and len(transform) == 2:
         rotation, translation = matrix(transform[0], "transform[0]"), triple(transform[1], "transform[1]")
         rows = np.column_stack([rotation, translation])
@@ -611,11 +775,12 @@ def _place(transform: Any) -> FloatArray:
         if len(rows) == 4 and rows[3].tolist() != [0, 0, 0, 1]:
             raise InvalidOption(f"the last row of transform is {rows[3].tolist()}, but must be [0, 0, 0, 1]")
     if not np.isfinite(rows).all():
-        raise InvalidOption("transform holds numbers that are not finite")
+        raise InvalidOption("transform holds a number that is not finite")
     return np.ascontiguousarray(rows[:3], dtype=np.float64)
 
 
 def _triangles(value: Any, name: str) -> FloatArray:
+    """Returns an (n, 3, 3) array of float64."""
     array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must hold real numbers, not {array.dtype}")

@@ -16,19 +16,30 @@ _ImageName = Literal["ball_image", "balls_image", "noise_image", "tube_image"]
 
 @dataclass(frozen=True)
 class ShapeParameter:
-    """A number that a shape can be asked for with."""
+    """Parameter of a shape.
+
+    >>> import blum
+    >>> parameter = blum.shapes()["torus"].parameters[0]
+    >>> parameter.name, parameter.default, parameter.integer
+    ('ring_radius', 1.0, False)
+    """
 
     name: str
     description: str
     default: float
-    minimum: float  #: inclusive
-    maximum: float  #: inclusive
-    integer: bool
+    minimum: float  #: Inclusive.
+    maximum: float  #: Inclusive.
+    integer: bool  #: True if only integers are valid.
 
 
 @dataclass(frozen=True)
 class ShapeInfo:
-    """A shape that :func:`generate` makes."""
+    """Shape that :func:`generate` makes.
+
+    >>> import blum
+    >>> blum.shapes()["torus"].kind
+    'mesh'
+    """
 
     name: str
     description: str
@@ -37,7 +48,7 @@ class ShapeInfo:
 
 
 def shapes() -> dict[str, ShapeInfo]:
-    """All shapes by name, with their parameters.
+    """Returns all shapes by name, with their parameters.
 
     >>> import blum
     >>> [parameter.name for parameter in blum.shapes()["torus"].parameters]
@@ -55,9 +66,10 @@ def shapes() -> dict[str, ShapeInfo]:
 
 
 def _arguments(name: str, parameters: dict[str, Any]) -> tuple[ShapeInfo, dict[str, float]]:
+    """Returns the facts of a shape and its checked parameters."""
     known = shapes()
     if name not in known:
-        raise InvalidOption(f"there is no shape {name!r}; there are {', '.join(sorted(known))}")
+        raise InvalidOption(f"there is no shape {name!r}: name must be one of {', '.join(sorted(known))}")
     return known[name], {key: number(value, key) for key, value in parameters.items()}
 
 
@@ -66,9 +78,9 @@ def generate(name: _ImageName, **parameters: Real) -> Image: ...  # type: ignore
 @overload
 def generate(name: str, **parameters: Real) -> Mesh: ...
 def generate(name: str, **parameters: Real) -> Mesh | Image:
-    """Makes the shape of a name: a :class:`Mesh`, or an :class:`Image` for those whose name ends in ``_image``.
+    """Makes the shape of a name: a :class:`Mesh`, or an :class:`Image` if the name ends in ``_image``.
 
-    Parameters are those that ``blum make NAME --help`` lists, and :func:`shapes`.
+    :func:`shapes` and ``blum make NAME --help`` list the parameters.
 
     >>> import blum
     >>> blum.generate("sphere", frequency=4)
@@ -83,7 +95,7 @@ def generate(name: str, **parameters: Real) -> Mesh | Image:
 
 
 def known_betti(name: str, **parameters: Real) -> Betti | None:
-    """Components, tunnels and voids of a shape, from its construction; None where it bounds no solid.
+    """Returns components, tunnels and voids of a shape, from its construction. None if it bounds no solid.
 
     >>> import blum
     >>> blum.known_betti("plate", holes_x=2, holes_y=2)
@@ -101,9 +113,11 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
     outline : (n, 2) array
         A simple polygon, in either direction.
     holes : list of (k, 2) arrays
-        Simple polygons inside of it that touch neither it nor each other, in either direction.
+        Simple polygons inside it, in either direction. They must not touch it or each other.
+    thickness : float
+        Mesh units.
     stacks : int
-        Bands along the thickness.
+        Number of bands along the thickness.
 
     >>> import blum
     >>> frame = blum.extrusion([[0, 0], [4, 0], [4, 3], [0, 3]], [[[1, 1], [3, 1], [3, 2], [1, 2]]])
@@ -121,7 +135,16 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
 
 
 def noisy(mesh: MeshLike, amplitude: Real, *, seed: Integer = 1, weld: Real | None = None) -> Mesh:
-    """A copy whose vertices are each moved by a random vector, uniform in a ball of this radius; it may cross itself.
+    """Returns a copy whose vertices are moved by random vectors, uniform in a ball. It may cross itself.
+
+    Parameters
+    ----------
+    mesh, weld
+        As for :func:`distance_field`.
+    amplitude : float
+        Radius of the ball, mesh units.
+    seed : int
+        0 to 2^64 - 1.
 
     >>> import blum, numpy as np
     >>> box = blum.generate("box")
@@ -136,12 +159,14 @@ def noisy(mesh: MeshLike, amplitude: Real, *, seed: Integer = 1, weld: Real | No
 
 
 def subdivided(mesh: MeshLike, levels: Integer = 1, *, weld: Real | None = None) -> Mesh:
-    """The same shape with each triangle cut into four at the midpoints of its edges, and each segment into two.
+    """Returns the same shape with each triangle cut into four at the midpoints of its edges, and each segment into two.
 
     Parameters
     ----------
+    mesh, weld
+        As for :func:`distance_field`.
     levels : int
-        How often, 0 to 12.
+        Number of subdivisions, 0 to 12.
 
     >>> import blum
     >>> blum.subdivided(blum.generate("box"), 2)

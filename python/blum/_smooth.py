@@ -1,4 +1,4 @@
-"""The smooth surface that the voxels of an image sample."""
+"""Smooth surfaces of voxels."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ def smooth_surface(
     progress: Progress = False,
     **options: Unpack[SmoothSurfaceOptions],
 ) -> Mesh:
-    """A smooth, closed mesh between the voxels of an image that are selected and all others.
+    """Returns a smooth, closed mesh between the selected voxels of an image and all others.
 
-    The centres of the selected voxels are inside, all other centres outside; no vertex is further than half a voxel,
-    along each axis, from where it began on the surface of the voxels' boxes. The mesh is manifold and does not cross
-    itself, and it bounds as many components, tunnels and voids as the voxels have. Its medial axis lacks the small
-    sheets that the steps of boxes give.
+    The centres of the selected voxels are inside, all other centres outside. Each vertex stays within half a voxel,
+    along each axis, of its place on the surface of the voxels' boxes. The mesh is manifold and does not cross itself.
+    It bounds as many components, tunnels and voids as the voxels have. Its medial axis lacks the small sheets that the
+    steps of boxes cause.
 
     Parameters
     ----------
     image : (z, y, x) array, Image, or path
     label : int, optional
-        The voxels of this value. What is not zero, without this and a threshold.
+        Selects the voxels of this value. Default without a threshold: the nonzero voxels.
     threshold : float, optional
-        The voxels of at least this value.
+        Selects the voxels of at least this value. Excludes `label`.
     spacing, origin, direction
         As for :class:`Image`, in x, y, z order: the reverse of the array's axes.
     **options
@@ -52,7 +52,7 @@ def smooth_surface(
 
     Raises
     ------
-    InvalidImage, InvalidOption (all ValueError), TypeError, OutOfMemory, KeyboardInterrupt
+    InvalidImage, InvalidOption (both ValueError), TypeError, OutOfMemory, KeyboardInterrupt
 
     >>> import blum
     >>> tubes = blum.smooth_surface(blum.generate("tube_image", nodes=2))

@@ -1,4 +1,4 @@
-"""Solids: what a mesh or an image stands for."""
+"""Solids of meshes and images."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Integer, Real, integer, label_of, optional_number, points_and_shape
+from ._arguments import Integer, Real, check_finite, integer, label_of, optional_number, points_and_shape
 from ._complex import Complex
 from ._image import Image, as_image, is_image, refuse_selection
 from ._mesh import Betti, Mesh, MeshOrVertices, as_mesh, betti_of, mesh_of_arrays
@@ -20,41 +20,61 @@ from ._structs import Bounds, CellularModelOptions, CellularModelReport, Crossin
 
 @dataclass(frozen=True)
 class SolidBody:
-    """A connected part of a solid, or the whole of it, and the triangles of the input around it."""
+    """Connected part of a solid, or the whole of it, with the triangles of the input around it.
 
-    mesh: Mesh  #: of a polyhedron, it faces outwards
-    vertex_of: npt.NDArray[
-        np.uint32
-    ]  #: of each vertex of `mesh`, in the input; 0xffffffff: new, where triangles crossed
-    triangle_of: npt.NDArray[np.uint32]  #: of each triangle of `mesh`, that of the input which it is a part of
-    betti: Betti  #: components, tunnels, voids; of polyhedra
-    shells: tuple[int, ...]  #: of polyhedra: the outer one, then its voids
+    >>> import blum
+    >>> (body,) = blum.Solid(blum.generate("box")).bodies
+    >>> body.mesh, body.betti, body.shells
+    (Mesh(8 vertices, 12 triangles), (1, 0, 0), (0,))
+    """
+
+    mesh: Mesh  #: Its surface. For a polyhedron, it faces outwards.
+    #: Vertex of the input for each vertex of `mesh`. 0xffffffff: a new one, at which triangles crossed.
+    vertex_of: npt.NDArray[np.uint32]
+    triangle_of: npt.NDArray[np.uint32]  #: Triangle of the input of which each triangle of `mesh` is a part.
+    betti: Betti  #: Polyhedra: components, tunnels, voids.
+    shells: tuple[int, ...]  #: Polyhedra: the outer shell, then its voids.
 
 
 class CellularModel:
-    """A cell complex with the homotopy type of a polyhedron: see :meth:`Solid.model`."""
+    """Cell complex with the homotopy type of a polyhedron; the result of :meth:`Solid.model`.
+
+    >>> import blum
+    >>> blum.Solid(blum.generate("box")).model(resolution=2).passes
+    True
+    """
 
     def __init__(self, core: Any) -> None:
         self._core = core
 
     @property
     def report(self) -> CellularModelReport:
-        """What it consists of, and the places that do not pass."""
+        """Counts of its cells, and the places that fail."""
         found: CellularModelReport = self._core.report
         return found
 
     @property
     def passes(self) -> bool:
-        """Whether every component in a cell is contractible, so that the model has the solid's homotopy type."""
+        """True if every component in a cell is contractible. Then the model has the solid's homotopy type."""
         return self.report.passes
 
     def complex(self, *, threads: int = 0, progress: Progress = False) -> Complex:
-        """The model, collapsed as far as removing free cells from outside goes."""
+        """Returns the model after removal of free cells from outside, as far as possible.
+
+        >>> import blum
+        >>> blum.Solid(blum.generate("box")).model(resolution=2).complex()
+        Complex(1 vertices, 0 edges, 0 triangles)
+        """
         with reporting(progress) as report:
             return Complex._from_core(self._core.complex(integer(threads, "threads"), report))
 
     def betti(self, *, threads: int = 0, progress: Progress = False) -> Betti:
-        """Components, tunnels and voids, by the homology of :meth:`complex`."""
+        """Returns components, tunnels and voids, by the homology of :meth:`complex`.
+
+        >>> import blum
+        >>> blum.Solid(blum.generate("torus")).model(resolution=4).betti()
+        (1, 1, 0)
+        """
         with reporting(progress) as report:
             numbers: Any = self._core.betti(integer(threads, "threads"), report)
         return betti_of(numbers)
@@ -64,21 +84,23 @@ class CellularModel:
 
 
 class Solid:
-    """The solid that a mesh or an image stands for: by which rule, its bodies, and their topology.
+    """Solid of a mesh or an image: its rule, its bodies and their topology.
 
-    Closed meshes that do not cross themselves are polyhedra, shell by shell; shells and triangles that face the wrong
-    way are reversed. Those that do cross become polyhedra, too, where few triangles cross: the solid is where the
-    winding number is 1 or more. Of other meshes it is where that is above 1/2. Of images it is the union of the
-    selected voxels, which touch in corners.
+    Closed meshes that do not cross themselves are polyhedra, shell by shell. Shells and triangles that face the wrong
+    way are reversed. Meshes that cross themselves become polyhedra if few triangles cross: the solid is where the
+    winding number is 1 or more. For other meshes, the solid is where the winding number is above 1/2. For images, it is
+    the union of the selected voxels, which touch in corners.
 
     Parameters
     ----------
     shape, triangles
-        A mesh, as for :func:`distance_field`; or an image: an array [z, y, x], an :class:`Image`, a path.
+        A mesh, as for :func:`distance_field`, or an image: an array [z, y, x], an :class:`Image` or a path.
     label, threshold
-        Images: which voxels; default: those that are not zero.
+        Images: voxels of this value, or of at least this value. Default: the nonzero voxels.
     weld : float, optional
         Meshes: as for :func:`distance_field`.
+    threads, progress
+        As for :func:`distance_field`.
 
     Raises
     ------
@@ -116,34 +138,36 @@ class Solid:
 
     @property
     def rule(self) -> str:
-        """What tells its inside: "polyhedron", "winding" or "voxels"."""
+        """Rule for its inside: "polyhedron", "winding" or "voxels"."""
         return self._core.rule
 
     @property
     def reason(self) -> str:
-        """One sentence: why this rule."""
+        """Reason for this rule, one sentence."""
         return self._core.reason
 
     @property
     def problem(self) -> str:
-        """What keeps a mesh from bounding bodies that do not touch, with what to do; empty where nothing does."""
+        """Reason why a mesh does not bound bodies that do not touch, with advice. Empty if it does."""
         return self._core.problem
 
     @property
     def surface(self) -> Mesh:
-        """Meshes: the surface of all bodies, which faces outwards. Triangles and vertices have the numbers that they
-        have in the input, but where crossings were resolved."""
+        """Surface of all bodies of a mesh, which faces outwards.
+
+        Vertices and triangles have the numbers of the input, unless crossings were resolved.
+        """
         return mesh_of_arrays(self._core.surface)
 
     @property
     def betti(self) -> Betti | None:
-        """Components, tunnels and voids; None for "winding", where only voxels have numbers."""
+        """Components, tunnels and voids. None for "winding", for which only voxels have numbers."""
         numbers: Any = self._core.betti
         return None if numbers is None else betti_of(numbers)
 
     @property
     def bodies(self) -> tuple[SolidBody, ...]:
-        """Polyhedra: each faces outwards. "winding": one, of all triangles. Images: none."""
+        """Polyhedra: the bodies, each facing outwards. "winding": one, of all triangles. Images: none."""
         return tuple(
             SolidBody(mesh_of_arrays(arrays), vertices, triangles, betti_of(betti), tuple(map(int, shells)))
             for arrays, vertices, triangles, betti, shells in self._core.bodies
@@ -151,41 +175,54 @@ class Solid:
 
     @property
     def shells(self) -> tuple[SolidShell, ...]:
-        """Of polyhedra, in the order of their smallest triangles."""
+        """Shells of a polyhedron, in the order of their smallest triangles."""
         return tuple(self._core.shells)
 
     @property
     def reversed_shells(self) -> int:
-        """How many shells faced the wrong way and were reversed."""
+        """Number of shells that faced the wrong way and were reversed."""
         return self._core.reversed_shells
 
     @property
     def reversed_triangles(self) -> int:
-        """How many triangles faced another way than most of their shell and were reversed."""
+        """Number of triangles that faced another way than most of their shell and were reversed."""
         return self._core.reversed_triangles
 
     @property
     def resolved(self) -> CrossingCounts | None:
-        """What stood in the way of the mesh being a polyhedron, where that was resolved; None where nothing did."""
+        """Counts of the crossings that were resolved. None if none were."""
         found: CrossingCounts | None = self._core.resolved
         return found
 
     @property
     def faces_inwards(self) -> bool:
-        """ "winding": whether the triangles face inwards as a whole, so that hardly anything is inside."""
+        """True for "winding" if the triangles face inwards as a whole, so that hardly anything is inside."""
         return self._core.faces_inwards
 
     @property
     def bounds(self) -> Bounds:
-        """Meshes: the box around the input. Images: that of all voxels, selected or not."""
+        """Meshes: box around the input. Images: box around all voxels, selected or not."""
         lower, upper = self._core.box
         return (lower[0], lower[1], lower[2]), (upper[0], upper[1], upper[2])
 
     def inside(self, points: Any, *, threads: int = 0, progress: Progress = False) -> npt.NDArray[np.bool_]:
-        """Whether points (..., 3) lie in the solid; those of a polyhedron's surface do. Exact for closed ones."""
+        """Returns True for each of the points (..., 3) that lies in the solid.
+
+        It is exact for closed, consistently oriented meshes. Points on the surface of a polyhedron lie in it.
+
+        Parameters
+        ----------
+        points : array of shape (..., 3)
+            Finite.
+        threads, progress
+            As for :func:`distance_field`.
+
+        >>> import blum
+        >>> blum.Solid(blum.generate("box")).inside([[0, 0, 0.5], [0, 0, 0.6]]).tolist()
+        [True, False]
+        """
         rows, shape = points_and_shape(points, "points")
-        if not np.isfinite(rows).all():
-            raise ValueError("points must be finite")
+        check_finite(rows, shape, "points")
         with reporting(progress) as report:
             found: npt.NDArray[np.uint8] = self._core.inside(rows, integer(threads, "threads"), report)
         return found.view(np.bool_).reshape(shape)
@@ -194,7 +231,7 @@ class Solid:
     def model(
         self, *, threads: int = 0, progress: Progress = False, **options: Unpack[CellularModelOptions]
     ) -> CellularModel:
-        """A cell complex with the homotopy type of a polyhedron, at any resolution.
+        """Returns a cell complex with the homotopy type of a polyhedron, at any resolution.
 
         Parameters
         ----------
@@ -204,7 +241,7 @@ class Solid:
 
         Raises
         ------
-        InvalidOption, also for an image; InvalidMesh unless the solid is a polyhedron.
+        InvalidOption, also for an image. InvalidMesh, unless the solid is a polyhedron.
 
         >>> import blum
         >>> model = blum.Solid(blum.generate("torus")).model(resolution=4)

@@ -43,29 +43,35 @@ from ._warn import warn_all
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMap:
-    """A distance vector field over the surface of a mesh, as a texture.
+    """Distance vector field over the surface of a mesh, as a texture.
 
-    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture, with rows from the top; its value is that
-    of one point of one triangle. Between texels the texture is read by the nearest one or bilinearly.
+    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture, with rows from the top. Its value is that
+    of one point of one triangle. Between texels, lookups use the nearest texel or are bilinear.
+
+    >>> import blum
+    >>> map = blum.surface_distance_map(blum.generate("box"), blum.generate("sphere"), texel=0.1)
+    >>> map.vector.shape == (*map.distance.shape, 3), len(map.corners), len(map.vertex_distance)
+    (True, 12, 8)
     """
 
-    quantity: str  #: "distance", "self-distance", "ray-thickness" or "ball-thickness"
-    #: (h, w) float32: mesh units; infinite where there is nothing, not a number in texels of no triangle
+    quantity: str  #: "distance", "self-distance", "ray-thickness" or "ball-thickness".
+    #: Distances: (h, w), mesh units. Infinite if nothing was found, NaN in texels of no triangle.
     distance: npt.NDArray[np.float32]
-    #: (h, w, 3) float32: from the point of the surface to the closest point (of thickness, the one on the far side)
+    #: Vectors from the point of the surface to the closest point: (h, w, 3), mesh units. For thickness, to the point on
+    #: the far side.
     vector: npt.NDArray[np.float32]
-    site: IntArray  #: (h, w): what the closest point lies on, see :class:`Sites`; -1 where there is nothing
-    triangle: IntArray  #: (h, w): of the mesh; -1 in texels of no triangle
-    corners: FloatArray  #: (t, 3, 2): where the corners of each triangle are in the texture, in texels, x then y
-    #: (t,) float32: how much the distance at any point of a triangle may differ from what is read there; None of
-    #: thickness, which may jump
+    site: IntArray  #: Site that contains the closest point: (h, w), see :class:`Sites`. -1 if none.
+    triangle: IntArray  #: Triangle of the mesh: (h, w). -1 in texels of no triangle.
+    corners: FloatArray  #: Corners of each triangle in the texture: (t, 3, 2), texels, x then y.
+    #: Bound for each triangle: (t,), mesh units. At any of its points, the distance differs from a lookup by at most
+    #: this. None for thickness, which may jump.
     error: npt.NDArray[np.float32] | None
-    vertex_distance: FloatArray  #: (v,): exact, at the vertices of the mesh
-    faces: npt.NDArray[np.float32]  #: (t, 3): smallest, largest and mean value of the texels of each triangle
-    sign_rule: str
-    sign_reason: str  #: why by this rule
-    seconds: dict[str, float]  #: where time went
-    mesh: Mesh  #: that the map is of
+    vertex_distance: FloatArray  #: Exact values at the vertices of the mesh: (v,).
+    faces: npt.NDArray[np.float32]  #: Smallest, largest and mean value of each triangle's texels: (t, 3).
+    sign_rule: str  #: Rule that decided the signs.
+    sign_reason: str  #: Reason for this rule, one sentence.
+    seconds: dict[str, float]  #: Wall-clock seconds of each phase.
+    mesh: Mesh  #: Mesh of the map.
     _handle: Any = None
     _others: tuple[Mesh, ...] | None = ()
 
@@ -75,31 +81,41 @@ class SurfaceMap:
 
     @property
     def texture_coordinates(self) -> FloatArray:
-        """(t, 3, 2): of the corners of triangles, 0 to 1, v down as in glTF files (OBJ files have 1 - v)."""
+        """Texture coordinates of the corners of triangles: (t, 3, 2), 0 to 1.
+
+        v points down, as in glTF files. OBJ files have 1 - v.
+        """
         height, width = self.distance.shape
         return self.corners / (width, height)
 
     def write(self, path: PathLike, *, units: str = "", range: tuple[Real, Real] | None = None) -> None:
-        """Writes the map; the format goes by the extension.
+        """Writes the map. The extension selects the format.
 
-        ``.npz`` everything as arrays; ``.png`` the texture in colours with a bar; ``.glb`` the mesh with the texture;
-        ``.ply``, ``.vtp`` values of vertices and triangles.
+        ``.npz`` holds everything as arrays. ``.png`` is the texture in colours with a bar. ``.glb`` is the mesh with
+        the texture. ``.ply`` and ``.vtp`` hold the values of vertices and triangles.
 
         Parameters
         ----------
         path : path
-            An existing file is replaced by a complete one.
+            An existing file is replaced only by a complete one.
         units : str
-            Of the mesh, such as "mm", for the bar and the metadata.
+            Units of the mesh, for example "mm", for the bar and the metadata.
         range : (float, float), optional
-            The distances at the ends of the colours. Default: those of the map.
+            Distances at the ends of the colours. Default: those of the map.
+
+        >>> import blum, pathlib, tempfile
+        >>> map = blum.thickness_map(blum.generate("box"), texel=0.1)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     map.write(pathlib.Path(folder) / "box.png", units="mm")
+        ...     (pathlib.Path(folder) / "box.png").stat().st_size > 1000
+        True
         """
         ends = None if range is None else (number(range[0], "range"), number(range[1], "range"))
         metadata = [("tool", "blum")]
         _core.write_surface_map(Path(os.fspath(path)), self.mesh._arrays, self._handle, metadata, ends, units)
 
     def statistics(self) -> SurfaceMapStatistics:
-        """Mean, root mean square and percentiles of the values, by area.
+        """Returns mean, root mean square and percentiles of the values, by area.
 
         >>> import blum
         >>> thick = blum.thickness_map(blum.generate("box", size_z=0.5), texel=0.05).statistics()
@@ -111,9 +127,12 @@ class SurfaceMap:
 
     @cached_property
     def object(self) -> IntArray:
-        """(h, w): which of the other meshes is closest, in their order; -1 where there is nothing; not of files."""
+        """Index of the closest one of the other meshes, in their order: (h, w). -1 if none.
+
+        Maps from files raise ValueError, because files do not record it.
+        """
         if self._others is None:
-            raise ValueError("files of maps do not tell which of the other meshes is closest")
+            raise ValueError("the map is from a file, and files do not record which of the other meshes is closest")
         out = np.where(self.site >= 0, 0, -1).astype(np.int32)
         if len(self._others) > 1:
             ends = np.cumsum([len(other.vertices) for other in self._others])
@@ -124,9 +143,9 @@ class SurfaceMap:
 
 
 def read_surface_map(path: PathLike) -> SurfaceMap:
-    """Reads a map, and the mesh that it is of, from an .npz file of :meth:`SurfaceMap.write` or ``blum surface-map``.
+    """Reads a map and its mesh from an .npz file of :meth:`SurfaceMap.write` or ``blum surface-map``.
 
-    The numbers are the same, bit by bit. Which of several other meshes is closest is not in the file.
+    All numbers are restored bit by bit. The file does not record which of several other meshes is closest.
 
     Raises
     ------
@@ -152,14 +171,14 @@ def surface_distance_map(
     progress: Progress = False,
     **options: Unpack[SurfaceMapOptions],
 ) -> SurfaceMap:
-    """The distance from every point of a surface to other meshes, as a texture with certain errors.
+    """Computes the distance from every point of a surface to other meshes, as a texture with guaranteed error bounds.
 
     Parameters
     ----------
     target : mesh
-        With triangles. Meshes come as for :func:`distance_field`.
+        A mesh with triangles, as for :func:`distance_field`.
     *others : meshes
-        Any soups; :attr:`SurfaceMap.object` tells which of them is closest.
+        Any soups. :attr:`SurfaceMap.object` contains the closest one of each texel.
     weld, threads, progress
         As for :func:`distance_field`.
     **options
@@ -170,7 +189,7 @@ def surface_distance_map(
     ('distance', True)
     """
     if not others:
-        raise TypeError("surface_distance_map() needs another mesh; for a mesh and itself there is self_distance_map()")
+        raise TypeError("surface_distance_map() needs another mesh: use self_distance_map() for a mesh and itself")
     of = as_mesh(target, name="target", weld=weld)
     parts = tuple(as_mesh(other, name="other", weld=weld) for other in others)
     joined = parts[0] if len(parts) == 1 else _joined(parts)
@@ -183,17 +202,17 @@ def surface_distance_map(
 
 @takes("SurfaceMapOptions")
 class SurfaceMapper:
-    """Maps of surfaces that move: the texture stays.
+    """Maps of surfaces that move. The layout of the texture stays.
 
     Parameters
     ----------
     target, other : meshes
         As for :func:`surface_distance_map`.
     texture_coordinates : array (t, 3, 2), optional
-        Where the corners of each triangle of the target are in a texture that it has, 0 to 1, v down (OBJ files have 1
-        - v). Triangles must not overlap. Default: a texture of its own.
+        Texture coordinates of the corners of each triangle of the target, 0 to 1, v down (OBJ files have 1 - v).
+        Triangles must not overlap. Default: a layout of its own.
     texture_size : (int, int), optional
-        Width and height of that texture, in texels.
+        Width and height of the given texture, in texels.
     weld, threads, progress
         As for :func:`distance_field`.
     **options
@@ -236,36 +255,66 @@ class SurfaceMapper:
             )
 
     def move_target(self, vertices: Any) -> None:
-        """New places of the vertices of the target, as many as it has."""
+        """Sets new positions of the target's vertices, as many as it has.
+
+        >>> import blum
+        >>> box = blum.generate("box")
+        >>> mapper = blum.SurfaceMapper(box, box, texel=0.2)
+        >>> mapper.move_target(box.vertices + [3, 0, 0])
+        >>> float(mapper.map().faces[:, 0].min())
+        2.0
+        """
         moved = float_rows(vertices, "vertices")
         self._mapper.move_target(moved)
         mesh = self._target
         self._target = Mesh(moved.copy(), mesh.triangles, mesh.segments, mesh.points)
 
     def move_other(self, vertices: Any, *, threads: int = 0) -> None:
-        """New places of the vertices of the other mesh, as many as it has."""
+        """Sets new positions of the other mesh's vertices, as many as it has.
+
+        >>> import blum
+        >>> box = blum.generate("box")
+        >>> mapper = blum.SurfaceMapper(box, box, texel=0.2)
+        >>> mapper.move_other(box.vertices + [3, 0, 0])
+        >>> float(mapper.map().faces[:, 0].min())
+        2.0
+        """
         self._mapper.move_other(float_rows(vertices, "vertices"), integer(threads, "threads"))
 
     def replace_other(self, other: MeshLike, *, weld: Real | None = None, threads: int = 0) -> None:
-        """Another mesh instead of the other one."""
+        """Replaces the other mesh.
+
+        >>> import blum
+        >>> box = blum.generate("box")
+        >>> mapper = blum.SurfaceMapper(box, box, texel=0.2)
+        >>> mapper.replace_other(blum.Mesh([[0, 0, 3]]))
+        >>> round(float(mapper.map().faces[:, 0].min()), 6)
+        2.5
+        """
         mesh = as_mesh(other, name="other", weld=weld)
         self._mapper.replace_other(mesh._arrays, integer(threads, "threads"))
 
     def map(self, *, threads: int = 0, progress: Progress = False) -> SurfaceMap:
-        """The map of the meshes as they are now."""
+        """Returns the map of the meshes as they are now.
+
+        >>> import blum
+        >>> box = blum.generate("box")
+        >>> blum.SurfaceMapper(box, box, texel=0.2).map().quantity
+        'distance'
+        """
         with reporting(progress) as report:
             found = self._mapper.map(integer(threads, "threads"), report)
         return _map(found, self._target)
 
 
 def _map(found: dict[str, Any], mesh: Mesh, others: tuple[Mesh, ...] | None = ()) -> SurfaceMap:
-    """A map of the library, with what it warns of."""
+    """Returns a map of the library, and issues its warnings."""
     warn_all(found.pop("warnings"))
     return SurfaceMap(**found, mesh=mesh, _others=others)
 
 
 def _places(coordinates: Any, width: int, height: int) -> FloatArray:
-    """Texture coordinates in texels."""
+    """Returns texture coordinates in texels."""
     array = as_array(coordinates, "texture_coordinates")
     if array.ndim != 3 or array.shape[1:] != (3, 2):
         raise ValueError(f"texture_coordinates has the shape {array.shape}, but must have (triangles, 3, 2)")
@@ -281,7 +330,9 @@ def self_distance_map(
     progress: Progress = False,
     **options: Unpack[SurfaceMapOptions],
 ) -> SurfaceMap:
-    """The distance from every point of a surface to those triangles of the same mesh that share no vertex with its own.
+    """Computes the distance from every point of a surface to the rest of the same mesh, as a texture.
+
+    The rest are the triangles, segments and points that share no vertex with the point's triangle.
 
     Parameters
     ----------
@@ -311,7 +362,7 @@ def thickness_map(
     progress: Progress = False,
     **options: Unpack[SurfaceMapOptions],
 ) -> SurfaceMap:
-    """How thick a solid is, over its surface, as a texture.
+    """Computes the thickness of a solid over its surface, as a texture.
 
     Parameters
     ----------
@@ -335,11 +386,18 @@ def thickness_map(
 
 @dataclass(frozen=True, eq=False)
 class Thickness:
-    """What :func:`thickness` finds; all arrays have the shape of the points without the last axis."""
+    """Result of :func:`thickness`. All arrays have the shape of the points without the last axis.
 
-    thickness: FloatArray  #: mesh units; infinite where there is nothing on the far side
-    opposite: FloatArray  #: (..., 3): where the ray leaves, or the ball touches; else the point itself
-    triangle: IntArray  #: that this point lies on; -1 where there is nothing
+    >>> import blum
+    >>> found = blum.thickness(blum.generate("box"), [0.1, 0.2, 0.5])
+    >>> float(found.thickness), found.opposite.round(5).tolist()
+    (1.0, [0.1, 0.2, -0.5])
+    """
+
+    thickness: FloatArray  #: Mesh units. Infinite if nothing lies on the far side.
+    #: Point at which the ray leaves or the ball touches: (..., 3). The point itself if nothing was found.
+    opposite: FloatArray
+    triangle: IntArray  #: Triangle that contains it. -1 if nothing was found.
 
     def __repr__(self) -> str:
         points = self.thickness.size
@@ -356,19 +414,20 @@ def thickness(
     progress: Progress = False,
     **options: Unpack[ThicknessOptions],
 ) -> Thickness:
-    """How thick a solid is at points of its surface.
+    """Computes the thickness of a solid at points of its surface.
 
-    By `ray`: how far it is, from the point against the normal of its triangle, to the first other triangle through
-    which one leaves the solid. By `ball`: the diameter of the largest ball that touches the surface at the point from
-    inside, and holds no point of a triangle that is turned by `separation` or more; triangles that are turned by less
-    count as one smooth surface.
+    - `ray`: distance from the point, against the normal of its triangle, to the first other triangle through which the
+      ray leaves the solid.
+
+    - `ball`: diameter of the largest ball that touches the surface at the point from inside. It contains no point of a
+      triangle that is turned by `separation` or more. Triangles that are turned by less count as one smooth surface.
 
     Parameters
     ----------
     solid : mesh
-        Its triangles face outwards.
-    points : array of the shape (..., 3), optional
-        Each stands for the point of the surface that is closest to it. Default: the centroids of the triangles.
+        Its triangles must face outwards.
+    points : array of shape (..., 3), optional
+        Each stands for the closest point of the surface. Default: the centroids of the triangles.
     weld, threads, progress
         As for :func:`distance_field`.
     **options
@@ -397,7 +456,7 @@ def hausdorff_distance(
     progress: Progress = False,
     **options: Unpack[HausdorffOptions],
 ) -> HausdorffDistance:
-    """The Hausdorff distance of two meshes: an interval that holds it for certain, and witnesses.
+    """Computes the Hausdorff distance of two meshes: an interval that is guaranteed to contain it, and witnesses.
 
     Parameters
     ----------
@@ -428,7 +487,7 @@ def directed_hausdorff_distance(
     progress: Progress = False,
     **options: Unpack[HausdorffOptions],
 ) -> DirectedHausdorff:
-    """How far a mesh is, at most, from another one: one side of :func:`hausdorff_distance`.
+    """Computes the largest distance of a point of a mesh to another mesh: one direction of :func:`hausdorff_distance`.
 
     Parameters
     ----------
@@ -459,14 +518,16 @@ def surface_deviation(
     progress: Progress = False,
     **options: Unpack[DeviationOptions],
 ) -> SurfaceDeviation:
-    """Mean, root mean square and percentiles of the distance of a surface from another mesh, with certain errors.
+    """Computes mean, root mean square and percentiles of the distance of a surface from another mesh.
+
+    The errors are guaranteed bounds.
 
     Parameters
     ----------
     mesh : mesh
-        With triangles, such as a scan.
+        A mesh with triangles, for example a scan.
     other : mesh
-        Any soup, such as a design.
+        Any soup, for example a design.
     weld, threads, progress
         As for :func:`distance_field`.
     **options
@@ -484,13 +545,13 @@ def surface_deviation(
 def _compared(
     compare: Any, meshes: tuple[Mesh, Mesh], options: dict[str, Any], threads: int, progress: Progress
 ) -> Any:
-    """What a function of the library says of two meshes."""
+    """Returns the result of a library function of two meshes."""
     with reporting(progress) as report:
         return compare(meshes[0]._arrays, meshes[1]._arrays, options, integer(threads, "threads"), report)
 
 
 def _joined(parts: tuple[Mesh, ...]) -> Mesh:
-    """Meshes as one, in their order."""
+    """Returns meshes as one, in their order."""
     starts = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
     moved = [
         [cells + start for cells in (part.triangles, part.segments, part.points)]

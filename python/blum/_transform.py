@@ -30,16 +30,18 @@ def distance_transform(
     progress: Progress = False,
     **options: Unpack[DistanceTransformOptions],
 ) -> Field:
-    """Exact Euclidean distance and closest voxel at every voxel of an image, from centre to centre.
+    """Computes the exact Euclidean distance and the closest voxel at every voxel of an image, between voxel centres.
 
     Parameters
     ----------
     image : (z, y, x) array, Image, or path
-        Booleans or numbers; selected are the voxels that are not zero, unless `label` or `threshold` says otherwise.
+        Booleans or numbers. The nonzero voxels are selected, unless `label` or `threshold` selects others.
     spacing, origin, direction
         As for :class:`Image`, in x, y, z order: the reverse of the array's axes.
     device : "cpu", "auto", "cuda" or "cuda:K"
         As for :func:`distance_field`. A device must hold the whole image, and 8 bytes per voxel.
+    threads, progress
+        As for :func:`distance_field`.
     **options
 
     Returns
@@ -69,7 +71,7 @@ def distance_transforms(
     progress: Progress = False,
     **options: Unpack[DistanceTransformOptions],
 ) -> list[Field]:
-    """One :func:`distance_transform` for each label, checked once and with shared working memory.
+    """Returns one :func:`distance_transform` for each label. The image is checked once, and working memory is shared.
 
     Parameters
     ----------
@@ -77,9 +79,14 @@ def distance_transforms(
     image, spacing, origin, direction, threads, device, progress
         As for :func:`distance_transform`.
     **options
+
+    >>> import blum
+    >>> one, two = blum.distance_transforms([[[1, 0, 2]]], [1, 2], signed=False)
+    >>> one.distance.tolist(), two.distance.tolist()
+    ([[[0.0, 1.0, 2.0]]], [[[2.0, 1.0, 0.0]]])
     """
     if options.keys() & {"label", "threshold"}:
-        raise InvalidOption("labels excludes label and threshold: each selects the voxels")
+        raise InvalidOption("labels excludes label and threshold: each of them selects voxels")
     wanted = [label_of(label, "labels") for label in _several(labels)]
     if not wanted:
         return []
@@ -87,6 +94,7 @@ def distance_transforms(
 
 
 def _several(labels: Any) -> list[Any]:
+    """Returns a list of labels."""
     if isinstance(labels, (Sequence, np.ndarray)) and not isinstance(labels, (str, bytes)) and np.ndim(labels) == 1:
         return list(labels)
     raise TypeError(f"labels must be a list of integers, not {type(labels).__name__}")
@@ -95,6 +103,7 @@ def _several(labels: Any) -> list[Any]:
 def _transforms(
     image: Image, labels: list[int], options: DistanceTransformOptions, threads: int, device: str, progress: Progress
 ) -> list[Field]:
+    """Returns the transforms of several labels; without labels, that of the options' selection."""
     with reporting(progress) as report:
         fields = _core.distance_transforms(
             image._arrays, labels, dict(options), integer(threads, "threads"), device_name(device), report

@@ -18,8 +18,9 @@ from ._structs import Certificate, CertificateOptions
 
 
 class AxisVerifier:
-    """Certifies axes of one mesh or image, as :func:`certify` does, and reads it once: six axes take little longer
-    than one.
+    """Certifier of axes of one mesh or image, which it reads once. Six axes take little longer than one.
+
+    The certificates are those of :func:`certify`.
 
     Parameters
     ----------
@@ -27,7 +28,7 @@ class AxisVerifier:
         The mesh, as for :func:`distance_field`, or the image, as for :func:`distance_transform`. Its arrays must not
         change while the verifier is used.
     weld : float, optional
-        Of a mesh: as for :func:`certify`.
+        Meshes: as for :func:`certify`.
 
     >>> import blum
     >>> torus = blum.generate("torus")
@@ -54,7 +55,7 @@ class AxisVerifier:
         progress: Progress = False,
         **checks: Unpack[CertificateOptions],
     ) -> Certificate:
-        """The same as `blum.certify(axis, shape)`.
+        """Returns the same certificate as `blum.certify(axis, shape)`.
 
         Parameters
         ----------
@@ -62,7 +63,12 @@ class AxisVerifier:
         label, threshold, grid, threads, progress
             As for :func:`certify`.
         **options
-            What is not said: all that the axis has.
+            An option that is not given is checked if the axis has the attribute.
+
+        >>> import blum
+        >>> box = blum.generate("box")
+        >>> blum.AxisVerifier(box).certify(blum.medial_axis(box, resolution=16).simplify(60)).holds
+        True
         """
         return self._verifier.certified(
             claim_of(axis), label=label, threshold=threshold, grid=grid, threads=threads, progress=progress, **checks

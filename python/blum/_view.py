@@ -1,4 +1,4 @@
-"""Pages for a browser: what `blum view` makes, of objects in memory."""
+"""Pages for a browser of objects in memory, as `blum view` makes them of files."""
 
 from __future__ import annotations
 
@@ -24,42 +24,43 @@ from ._mesh import Mesh, MeshLike, as_mesh
 from ._surface_map import SurfaceMap
 
 _TOOL = Path(__file__).parent / "_bin" / "blum"
-_UNREADABLE = 1  # exit status
+_UNREADABLE = 1  # Exit status.
 _PREFIX = re.compile(r"^blum: (?:error|warning): ")
 
 
-#: What a page shows.
+#: Objects that a page can show.
 Viewable = MeshLike | Image | Field | MedialAxis | MedialComplex | SurfaceMap | npt.NDArray[Any]
 
 
 def view(*things: Viewable, output: PathLike | None = None, show: bool | None = None, **named: Viewable) -> Path:
-    """Writes one HTML page that shows meshes, images, fields, medial axes, surface maps in any mixture, and opens it.
+    """Writes one HTML page that shows meshes, images, fields, medial axes and surface maps, and opens it.
 
-    The page is one file that needs neither a network nor this process: slices and isosurfaces of fields, a slider for
-    theta (for a :class:`MedialAxis`), and what lies under the pointer.
+    The page is one file that needs neither a network nor this process. It shows slices and isosurfaces of fields, a
+    slider for theta of a :class:`MedialAxis`, and the values under the pointer.
 
     Parameters
     ----------
     things
-        Meshes as for :func:`distance_field` (as one object each), :class:`Field`, :class:`MedialAxis`,
-        :class:`MedialComplex`, :class:`SurfaceMap`, :class:`Image`, arrays [z, y, x], and paths of files that
-        `blum view` shows.
+        Meshes as for :func:`distance_field`, each as one object. Objects of the classes :class:`Field`,
+        :class:`MedialAxis`, :class:`MedialComplex`, :class:`SurfaceMap` and :class:`Image`. Arrays [z, y, x], and paths
+        of files that `blum view` shows.
     named
-        The same with names of your own: ``view(part=mesh, distance=field)``.
+        The same with names: ``view(part=mesh, distance=field)``.
     output : path, optional
-        The page, .html. Default: a file of a new temporary folder, which stays until somebody removes it.
+        The page, .html or .htm. Default: a file in a new temporary folder, which is not removed.
     show : bool, optional
-        Whether to open it in the desktop's browser. Default: if `output` is not given.
+        True: opens it in the desktop's browser. Default: True if `output` is not given.
 
     Returns
     -------
     Path
-        Of the page.
+        Path of the page.
 
     Raises
     ------
-    InvalidOption, TypeError, FileError (also where one of several files cannot be read; the page then shows the
-    others, and names it), KeyboardInterrupt
+    InvalidOption, TypeError, KeyboardInterrupt
+    FileError
+        Also if one of several files cannot be read. The page then shows the others, and names it.
 
     >>> import blum, pathlib, tempfile
     >>> part = blum.generate("bracket")
@@ -72,7 +73,7 @@ def view(*things: Viewable, output: PathLike | None = None, show: bool | None = 
     shown = [(f"things[{place}]", "", thing) for place, thing in enumerate(things)]
     shown += [(name, name, thing) for name, thing in named.items()]
     if not shown:
-        raise InvalidOption("nothing was given to view")
+        raise InvalidOption("view() needs at least one object to show")
     if output is not None and not os.fspath(output).lower().endswith((".html", ".htm")):
         raise InvalidOption(f"output is '{os.fspath(output)}', but must end in .html or .htm")
     with tempfile.TemporaryDirectory(prefix="blum-") as folder:
@@ -92,8 +93,9 @@ def view(*things: Viewable, output: PathLike | None = None, show: bool | None = 
 
 
 def _make_page(files: list[Path], page: Path) -> None:
+    """Runs the command-line tool on files, and raises an error with its messages if it reports any."""
     if not _TOOL.exists():
-        raise Error(f"the command-line tool, which makes the page, is not installed with this package: {_TOOL}")
+        raise Error(f"the command-line tool that makes the page is not installed with this package: {_TOOL}")
     done = subprocess.run([_TOOL, "view", "--quiet", "--output", page, "--", *files], capture_output=True, check=False)
     lines = done.stderr.decode("utf-8", "backslashreplace").strip().splitlines()
     told = "\n".join(_PREFIX.sub("", line) for line in lines)
@@ -101,22 +103,22 @@ def _make_page(files: list[Path], page: Path) -> None:
         return
     if done.returncode < 0:
         raise Error(
-            f"the tool that makes the page was ended by signal {-done.returncode} (9: too little memory, maybe)"
+            f"the tool that makes the page was ended by signal {-done.returncode} (9 may mean that memory ran out)"
         )
-    if done.returncode in (0, _UNREADABLE):  # 0: some could be read; a script should not find that in the page alone
+    if done.returncode in (0, _UNREADABLE):  # 0: only some could be read. Scripts need an error.
         raise FileError(told)
     raise InvalidOption(told)
 
 
 def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]) -> Path:
-    """The file that shows something: its own, or one that is written."""
+    """Returns the file that shows an object: its own, or a written one."""
     if isinstance(thing, (str, os.PathLike)):
         return existing_file(thing).absolute()
     if isinstance(thing, (MedialAxis, MedialComplex)):
         path = _fresh(folder, names, name or "axis", ".npz")
         thing.write(path)
     elif isinstance(thing, NestedComplex):
-        raise TypeError(f"{argument} is a NestedComplex: give the MedialAxis that it is of")
+        raise TypeError(f"{argument} is a NestedComplex: pass its MedialAxis instead")
     elif isinstance(thing, Field):
         path = _fresh(folder, names, name or "field", ".npz")
         thing.write(path)
@@ -135,7 +137,7 @@ def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]
 
 
 def _fresh(folder: Path, names: set[str], stem: str, extension: str) -> Path:
-    """A name that the page can show, and that is not taken."""
+    """Returns a path with a name that the page can show and that is not in use."""
     name, number = stem, 1
     while name + extension in names:
         number += 1

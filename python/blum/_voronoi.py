@@ -26,11 +26,15 @@ _CoreComplex = _core.Complex
 
 
 class VoronoiComplex(Complex):
-    """The walls of a Voronoi diagram inside a mesh, and its surface, as triangles. What :func:`voronoi_complex`
-    returns.
+    """Walls of a Voronoi diagram inside a mesh, and its surface, as triangles; the result of :func:`voronoi_complex`.
+
+    >>> import blum
+    >>> found = blum.voronoi_complex(blum.generate("box"), resolution=2)
+    >>> found.triangle_sites.shape == (len(found.triangles), 2), found.part
+    (True, 'all')
     """
 
-    #: What it consists of, and whether it is certified.
+    #: Counts of its parts, and whether it is certified.
     report: VoronoiReport
     #: "all", "walls" or "medial".
     part: str
@@ -47,31 +51,32 @@ class VoronoiComplex(Complex):
 
     @property
     def radius(self) -> FloatArray:
-        """(n,): distance of each vertex from the closest site; 0 on the surface."""
+        """Distance of each vertex from the closest site: (n,), mesh units. 0 on the surface."""
         found: FloatArray = self.vertex_columns["radius"]
         return found
 
     @property
     def triangle_sites(self) -> IntArray:
-        """(m, 2): the sites of the regions on both sides of each triangle, the smaller one first; -1 outside."""
+        """Sites of the regions on both sides of each triangle: (m, 2), the smaller one first. -1 outside."""
         columns = self.triangle_columns
         return np.stack([columns["site_a"], columns["site_b"]], axis=1)
 
     @property
     def footprints(self) -> FloatArray:
-        """(n, 2, 3): the closest points of the surface; of more than two those that are seen furthest apart."""
+        """Closest points of the surface: (n, 2, 3). If more than two exist, those that are seen furthest apart."""
         columns = self.vertex_columns
         return np.stack([columns["footprint_0"], columns["footprint_1"]], axis=1)
 
     @property
     def separation_angle(self) -> FloatArray:
-        """(n,): the angle between the footprints of each vertex, degrees."""
+        """Angle between the footprints of each vertex: (n,), degrees."""
         found: FloatArray = self.vertex_columns["separation_angle"]
         return found
 
     def sites(self) -> list[VoronoiSite]:
-        """What each number of `triangle_sites` and of regions is of the mesh, each with `kind` ("face", "edge" or
-        "vertex"), `triangles` (of a face) and `vertices` (of an edge or a vertex).
+        """Returns the parts of the mesh that the numbers of `triangle_sites` and of regions stand for.
+
+        Each has `kind` ("face", "edge" or "vertex"), `triangles` (of a face) and `vertices` (of an edge or a vertex).
 
         >>> import blum
         >>> found = blum.voronoi_complex(blum.generate("box")).sites()
@@ -82,8 +87,9 @@ class VoronoiComplex(Complex):
         return found
 
     def regions(self) -> list[VoronoiRegion]:
-        """The regions by rising site, each with `volume`, `surface_area` and `neighbours` (`site`, `area`); of
-        `part="all"`.
+        """Returns the regions by ascending site, each with `volume`, `surface_area` and `neighbours` (`site`, `area`).
+
+        The diagram must have been made with `part="all"`.
 
         >>> import blum
         >>> found = blum.voronoi_complex(blum.generate("box")).regions()
@@ -91,12 +97,12 @@ class VoronoiComplex(Complex):
         (6, 1.0)
         """
         if self.part != "all":
-            raise InvalidOption(f'regions have walls and surface: part="all", not "{self.part}"')
+            raise InvalidOption(f'regions need walls and surface: part="all", not "{self.part}"')
         found: list[VoronoiRegion] = _core.voronoi_regions(self._core)
         return found
 
     def graph(self) -> VoronoiGraph:
-        """Its regions (of `part="all"`), walls, seams and junctions, and which of them meet.
+        """Returns the regions (for `part="all"`), walls, seams and junctions, and their connections.
 
         >>> import blum
         >>> box = blum.Mesh(blum.generate("box").vertices * [1, 2, 3], blum.generate("box").triangles)
@@ -108,10 +114,17 @@ class VoronoiComplex(Complex):
         return found
 
     def medial_axis(self, theta: Real = 1.0, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
-        """The medial axis where two footprints are seen more than theta degrees apart, and what joins that.
+        """Returns the medial axis with separation angles above theta, and the cells that connect it.
 
-        Of a complex that is `part="medial"`: triangles of at most theta go by elementary collapses, so that the
-        topology stays; what a larger theta leaves is part of what a smaller one does.
+        The complex must have been made with `part="medial"`. Triangles of at most theta are removed by elementary
+        collapses, so the topology stays. The result for a larger theta is part of that for a smaller one.
+
+        Parameters
+        ----------
+        theta : float
+            Degrees, 0 to 180.
+        threads, progress
+            As for :func:`distance_field`.
 
         >>> import blum
         >>> walls = blum.voronoi_complex(blum.generate("box"), part="medial")
@@ -120,18 +133,22 @@ class VoronoiComplex(Complex):
         (True, True)
         """
         if self.part != "medial":
-            raise InvalidOption(f'a medial axis is made of walls with two footprints: part="medial", not "{self.part}"')
+            raise InvalidOption(f'a medial axis needs walls with two footprints: part="medial", not "{self.part}"')
         angle = number(theta, "theta")
         if not self.report.certified:
-            warn("the complex is not certified, so the axis may have another topology than the solid", "not-certified")
+            warn(
+                "the complex is not certified, so the topology of the axis may differ from that of the solid",
+                "not-certified",
+            )
         with reporting(progress) as report:
             core = _core.collapse_axis(self._core, angle, integer(threads, "threads"), report)
         origin = Origin(self._mesh, theta=angle, solid_rule="polyhedron")
         return MedialComplex._of(core, EVERYTHING, origin)
 
     def with_failing_cells(self) -> Complex:
-        """This complex, with the sides of the cubes that do not pass as edges: where it may be wrong. Edges have a
-        column `obstacle`: 1 (square), 2 (tunnel), 3 (enclosed), 4 (face hole), 5 (handle), 6 (joins) and 7
+        """Returns this complex with the sides of the failing cubes as edges. The diagram may be wrong there.
+
+        Edges have a column `obstacle`: 1 (square), 2 (tunnel), 3 (enclosed), 4 (face hole), 5 (handle), 6 (joins) and 7
         (contradiction).
 
         >>> import blum
@@ -143,23 +160,37 @@ class VoronoiComplex(Complex):
         return Complex._from_core(_core.with_failing_cells(self._core, cells))
 
     def write(self, path: PathLike, *, allow_uncertified: bool = False) -> None:
-        """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all. All but
-        .glb are read by :func:`read_complex`.
+        """Writes .vtp, .ply, .obj (without columns), .npz or .glb. :func:`read_complex` reads all of them except .glb.
 
-        A diagram that is not certified is refused unless `allow_uncertified` is set: parts of it may be missing or
-        wrong. Its file then says so, and has the cubes that do not pass as edges.
+        The file appears under its name only when it is complete. A diagram that is not certified is rejected unless
+        `allow_uncertified` is True, because parts of it may be missing or wrong. Its file then records that, and has
+        the failing cubes as edges.
+
+        >>> import blum, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     blum.voronoi_complex(blum.generate("box"), resolution=2).write(pathlib.Path(folder) / "box.vtp")
+        ...     blum.read_complex(pathlib.Path(folder) / "box.vtp").metadata["certified"]
+        'true'
         """
         if not self.report.certified and not allow_uncertified:
             raise InvalidOption(
                 "the diagram is not certified, so parts of it may be missing or wrong (report.failing, "
-                "with_failing_cells()): allow_uncertified=True writes it all the same"
+                "with_failing_cells()): use allow_uncertified=True to write it"
             )
         core = self._core if self.report.certified else self.with_failing_cells()._core
         _core.write_complex(Path(os.fspath(path)), core, list(self._metadata().items()), [], True)
 
     def write_graph(self, path: PathLike) -> None:
-        """Writes :meth:`graph` with the sites: all of it to .json, nodes and edges with numbers to .graphml, for
-        networkx, Gephi, igraph and yEd. The file appears complete or not at all, and says whether this is certified.
+        """Writes :meth:`graph` with the sites to .json or .graphml, and records whether the diagram is certified.
+
+        .json holds everything. .graphml holds nodes and edges with numbers, for networkx, Gephi, igraph and yEd. The
+        file appears under its name only when it is complete.
+
+        >>> import blum, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     blum.voronoi_complex(blum.generate("box"), resolution=2).write_graph(pathlib.Path(folder) / "box.json")
+        ...     "walls" in (pathlib.Path(folder) / "box.json").read_text()
+        True
         """
         _core.write_voronoi_graph(Path(os.fspath(path)), self._core, self._mesh._arrays, list(self._metadata().items()))
 
@@ -188,16 +219,17 @@ def voronoi_complex(
     progress: Progress = False,
     **options: Unpack[VoronoiOptions],
 ) -> VoronoiComplex:
-    """The Voronoi diagram of the faces, reflex edges and reflex vertices of a polyhedron inside it, as a complex whose
-    homology is proven to be that of the exact diagram where its report is `certified`.
+    """Computes the Voronoi diagram inside a polyhedron, as a complex.
 
-    Triangles are taken as they are given: faces that rounding has bent are several sites.
+    Its sites are the faces, reflex edges and reflex vertices. If the report is `certified`, the homology of the complex
+    is proven to be that of the exact diagram. Triangles are used as given: faces that rounding has bent are several
+    sites.
 
     Parameters
     ----------
     mesh, triangles
-        As for :func:`distance_field`, closed; or a :class:`Solid`. Where it crosses itself, sites are those of its
-        solid's surface, without the crossings.
+        A closed mesh, as for :func:`distance_field`, or a :class:`Solid`. If the mesh crosses itself, sites are those
+        of its solid's surface, without the crossings.
     threads, progress
         As for :func:`distance_field`.
     **options
@@ -205,8 +237,8 @@ def voronoi_complex(
     Returns
     -------
     VoronoiComplex
-        Triangles on walls and on the surface with `triangle_sites`, vertices with `radius` and `footprints`;
-        `.report`. With `part="walls"` without the surface; with `part="medial"` the medial axis.
+        Triangles on walls and on the surface with `triangle_sites`, vertices with `radius` and `footprints`, and
+        `.report`. ``part="walls"`` leaves out the surface. ``part="medial"`` keeps only the walls of the medial axis.
 
     >>> import blum
     >>> found = blum.voronoi_complex(blum.generate("box"))

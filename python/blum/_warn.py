@@ -1,4 +1,4 @@
-"""Warnings of results, as the library finds them."""
+"""Warnings of results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _FOLDER = os.path.dirname(__file__)
 
 
 def warn(text: str, code: WarningCode) -> None:
-    """Warns where the package was called from."""
+    """Issues an InputWarning at the line that called the package."""
     frame, level = inspect.currentframe(), 1
     while frame is not None and os.path.dirname(frame.f_code.co_filename) == _FOLDER:
         frame, level = frame.f_back, level + 1
@@ -25,6 +25,6 @@ def warn(text: str, code: WarningCode) -> None:
 
 
 def warn_all(found: Iterable[ResultWarning]) -> None:
-    """The same of all that a result carries."""
+    """Issues all warnings of a result."""
     for warning in found:
         warn(warning.text, warning.code)

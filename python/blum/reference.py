@@ -1,4 +1,4 @@
-"""Brute force in double precision: slow, obvious, for tests and for trust."""
+"""Brute force in double precision: slow and simple, for tests."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ __all__ = ["nearest", "nearest_voxel", "winding_number"]
 def nearest(
     mesh: MeshLike, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
 ) -> tuple[FloatArray, IntArray]:
-    """Distance and closest site of each point of the shape (..., 3), over all sites: O(points * sites).
+    """Returns the distance and the closest site of each of the points (..., 3), by a search of all sites.
+
+    The cost is O(points * sites).
 
     >>> import blum
     >>> distance, site = blum.reference.nearest(blum.generate("box"), [0, 0, 1])
@@ -34,7 +36,14 @@ def nearest(
 def winding_number(
     mesh: MeshLike, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
 ) -> FloatArray:
-    """The sum of all solid angles at each point of the shape (..., 3): O(points * triangles)."""
+    """Returns the generalized winding number at each of the points (..., 3), by a sum over all triangles.
+
+    The cost is O(points * triangles).
+
+    >>> import blum
+    >>> round(float(blum.reference.winding_number(blum.generate("box"), [0, 0, 0])), 6)
+    1.0
+    """
     rows, shape = points_and_shape(points, "points")
     with reporting(progress) as report:
         values: FloatArray = _core.reference_winding_number(
@@ -46,7 +55,26 @@ def winding_number(
 def nearest_voxel(
     mask: Any, voxels: Any, *, grid: Grid | None = None, threads: int = 0, progress: Progress = False
 ) -> tuple[FloatArray, IntArray]:
-    """Squared distance and flat index of the closest true voxel of a mask [z, y, x], for flat indices of voxels."""
+    """Returns the squared distance to the closest true voxel, and its flat index, for each query voxel.
+
+    The cost is O(queries * voxels). Squared distances have squared units of the spacing.
+
+    Parameters
+    ----------
+    mask : (z, y, x) array
+        Booleans or integers.
+    voxels : (n,) array of integers
+        Flat indices of the query voxels.
+    grid : Grid, optional
+        Grid of the voxel centres. Default: spacing 1.
+    threads, progress
+        As for :func:`distance_field`.
+
+    >>> import blum
+    >>> squared, voxel = blum.reference.nearest_voxel([[[True, False, False]]], [2])
+    >>> squared.tolist(), voxel.tolist()
+    ([4.0], [0])
+    """
     targets = mask_array(mask, "mask")
     nodes = Grid((0, 0, 0), 1, tuple(reversed(targets.shape))) if grid is None else grid
     asked = indices(voxels, "voxels", None, targets.size)

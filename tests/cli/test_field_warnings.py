@@ -35,7 +35,7 @@ def test_shells_that_cross_face_the_right_way(shapes, tmp_path):
         return ["field", tmp_path / "two.obj", "-o", tmp_path / "two.npz", "--resolution", 12]
 
     summary = run_json(*with_copy(1, (0.3, 0.2, 0.1)))
-    assert summary["warnings"] == [] and "crosses itself" in summary["fields"][0]["sign"]["reason"]
+    assert summary["warnings"] == [] and "crosses or touches itself" in summary["fields"][0]["sign"]["reason"]
     out, err = run(*with_copy(0.5, (0, 0, 0)), warns=True)
     assert "face the wrong way" in err and "do not all face away" in out
 

@@ -340,7 +340,7 @@ def test_bad_options_are_said(parts, tmp_path):
     for option, value in (("--depth", 0), ("--depth", 25), ("--resolution", 0), ("--max-cubes", 10), ("--weld", -1)):
         assert option in run("voronoi", box, "-o", out, option, value, status=2)[1]
     for option, value in (("--resolution", 1000), ("--tolerance", 0.002)):
-        assert "--max-cubes" in run("voronoi", box, "-o", out, option, value, status=2)[1]
+        assert "raise max_cubes" in run("voronoi", box, "-o", out, option, value, status=2)[1]
     assert "--output" in run("voronoi", box, "-o", tmp_path / "o.xyz", status=2)[1]
     assert "give one" in run("voronoi", box, "--walls", "--medial", status=2)[1]
     assert "--allow-uncertified" in run("voronoi", box, "--allow-uncertified", status=2)[1]

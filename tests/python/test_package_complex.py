@@ -54,7 +54,7 @@ def test_topology_and_pickling():
     [
         ({"vertex_columns": {"weight": [1.0]}}, "weight"),
         ({"vertex_columns": {"": [1.0] * 4}}, "name"),
-        ({"vertex_columns": {"a\0b": [1.0] * 4}}, "has a 0 in it"),
+        ({"vertex_columns": {"a\0b": [1.0] * 4}}, "without null characters"),
         ({"vertex_columns": {"\ud800": [1.0] * 4}}, "UTF-8"),
         ({"edges": [[0, 4]]}, "edges"),
         ({"edges": [[1, 1]]}, "twice"),

@@ -65,7 +65,7 @@ def test_arrays_of_other_kinds_are_taken():
 @pytest.mark.parametrize(
     ("call", "error", "text"),
     [
-        (lambda: blum.continuous_collisions((TRIANGLE, [[0, 1, 2]]), TRIANGLE[:2]), ValueError, "as many"),
+        (lambda: blum.continuous_collisions((TRIANGLE, [[0, 1, 2]]), TRIANGLE[:2]), ValueError, "same number"),
         (lambda: blum.continuous_collisions((TRIANGLE, [[0, 1, 2]]), [1, 2, 3]), ValueError, "end has the shape"),
         (lambda: blum.continuous_collisions((TRIANGLE, [[0, 1, 2]]), "x"), FileNotFoundError, "x"),
         (
@@ -74,7 +74,7 @@ def test_arrays_of_other_kinds_are_taken():
             "at the end",
         ),
         (lambda: blum.continuous_collisions(3, TRIANGLE), TypeError, "mesh is a int"),
-        (lambda: blum.vertex_face_impacts(np.zeros((2, 4, 3)), np.zeros((1, 4, 3))), ValueError, "as many"),
+        (lambda: blum.vertex_face_impacts(np.zeros((2, 4, 3)), np.zeros((1, 4, 3))), ValueError, "equal numbers"),
         (lambda: blum.vertex_face_impacts(np.zeros((4, 3)), np.zeros((4, 3))), ValueError, r"must have \(n, 4, 3\)"),
         (lambda: blum.edge_edge_impacts(np.full((1, 4, 3), np.inf), np.zeros((1, 4, 3))), ValueError, "not finite"),
         (lambda: blum.edge_edge_impacts(*questions(1, 4), tolerance=0), ValueError, "tolerance"),

@@ -356,7 +356,7 @@ def scene_of_two():
         (lambda s: s.update(0, [1, 2, 3]), ValueError, "vertices has the shape"),
         (lambda s: s.exclude(0, 7), ValueError, "no object 7"),
         (lambda s: s.exclude(0, 1, 1), TypeError, "excluded must be True or False"),
-        (lambda s: s.separation(0), ValueError, "two objects"),
+        (lambda s: s.separation(0), ValueError, "both a and b"),
         (lambda s: s.separation(0, 2), ValueError, "no object 2"),
         (lambda s: s.separation("a", "b"), TypeError, "a must be an integer"),
         (lambda s: s.separation(0, 1, -1), ValueError, "max_distance is -1"),
@@ -367,11 +367,11 @@ def scene_of_two():
         (lambda _: blum.ProximityScene(culling="octree"), ValueError, "culling is 'octree'"),
         (lambda _: blum.ProximityScene(cell_size=0), ValueError, "cell_size"),
         (lambda _: blum.ProximityScene(cells=2), TypeError, "cells"),
-        (lambda _: blum.collisions([], max_distance=1), ValueError, "no mesh"),
+        (lambda _: blum.collisions([], max_distance=1), ValueError, "meshes is empty"),
         (lambda _: blum.collisions(soup(1, 1), max_distance=-1), ValueError, "max_distance is -1"),
         (lambda _: blum.collisions([soup(1, 1), 3]), TypeError, r"meshes\[1\] is a int"),
         (lambda _: blum.separation(soup(1, 1), None), TypeError, "b is a NoneType"),
-        (lambda _: blum.triangle_distances(np.zeros((1, 3, 3)), np.zeros((2, 3, 3))), ValueError, "as many"),
+        (lambda _: blum.triangle_distances(np.zeros((1, 3, 3)), np.zeros((2, 3, 3))), ValueError, "equal numbers"),
         (lambda _: blum.triangle_distances(np.zeros((3, 3)), np.zeros((3, 3))), ValueError, r"must have \(n, 3, 3\)"),
         (lambda _: blum.triangle_distances(np.full((1, 3, 3), np.nan), np.zeros((1, 3, 3))), ValueError, "not finite"),
         (lambda _: blum.triangle_distances([["x"]], [["x"]]), TypeError, "a must hold real numbers"),
@@ -410,7 +410,7 @@ def test_progress_can_stop_a_query_and_cannot_change_the_scene():
 
     with pytest.raises(Stop):
         scene.closest_primitives(threads=1, progress=stop)
-    assert len(phases) == 1 == len(refused) and "at work" in refused[0]
+    assert len(phases) == 1 == len(refused) and "in use" in refused[0]
     assert len(scene.closest_primitives(1e-3)) > 0, "the scene still answers"
 
 

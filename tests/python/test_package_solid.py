@@ -81,7 +81,7 @@ def test_a_certificate_against_another_selection_is_warned_of(tmp_path):
         warnings.simplefilter("error")
         assert blum.certify(axis, image)
         assert blum.certify(axis, image, label=1)
-    with pytest.warns(blum.InputWarning, match="made with label=1; label=2 is used"):
+    with pytest.warns(blum.InputWarning, match="computed with label=1; label=2 is used, because it was given"):
         assert not blum.certify(axis, image, label=2)
 
 

@@ -74,7 +74,7 @@ def test_a_page_is_opened_only_where_that_is_meant(part, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("things", "error", "text"),
     [
-        ((), ValueError, "nothing"),
+        ((), ValueError, "at least one"),
         ((3,), TypeError, r"things\[0\]"),
         (("there is no such.ply",), FileNotFoundError, "no such"),
         ((np.full((2, 2, 2), "a"),), TypeError, "image"),
