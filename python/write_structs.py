@@ -1,6 +1,6 @@
-"""Writes blum/_structs.py, the types of Blum's options and results, from what the extension module says of them.
+"""Writes blum/_structs.py, the types of Blum's options and results, from the descriptions in the extension module.
 
-write_structs.py FOLDER     the one that holds the module _core, and gets _structs.py
+write_structs.py FOLDER     contains the module _core and receives _structs.py
 """
 
 import re
@@ -8,9 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-#: Options that functions name themselves: the spacing of an image is three numbers.
+#: Options that functions declare as their own parameters: the spacing of an image consists of three numbers.
 NAMED = {"MedialAxisOptions": {"spacing"}}
-#: Results that _methods.py has a base for.
+#: Results with a base class in _methods.py.
 METHODS = re.findall(r"^class (\w+)Methods:", (Path(__file__).parent / "blum/_methods.py").read_text("utf-8"), re.M)
 HEAD = '''"""Options and results of the library, as its descriptions have them. Written when the package was built."""
 
@@ -41,7 +41,7 @@ def class_of(name: str, entry: dict[str, Any]) -> str:
     bases = "TypedDict, total=False" if entry["is_options"] else f"_methods.{name}Methods" if name in METHODS else ""
     lines = [f"class {name}({bases}):" if bases else f"class {name}:"]
     if not entry["is_options"]:
-        # Arrays compare element by element, which does not tell whether results are equal.
+        # Arrays compare element by element, so a generated __eq__ could not return one bool.
         has_arrays = any(kind in ("FloatArray", "IntArray") for _, kind, *_ in entry["members"])
         lines.insert(0, "@dataclass(frozen=True, eq=False)" if has_arrays else "@dataclass(frozen=True)")
     lines.append(f'    """{entry["doc"]}."""\n')

@@ -1,4 +1,4 @@
-// Blum: arrays of Python as Blum sees them, and the other way round. SPDX-License-Identifier: Apache-2.0
+// Blum: conversion of arrays between Python and C++. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -20,7 +20,7 @@ namespace blum::python {
 
 namespace nb = nanobind;
 
-/// Arrays that come in: contiguous, on the CPU, of exactly this type. The Python side of the package sees to that.
+/// Input array: contiguous, on the CPU, of exactly this type. The Python code of the package guarantees this.
 template <class T, class Shape>
 using In = nb::ndarray<const T, Shape, nb::c_contig, nb::device::cpu>;
 using PointsIn = In<double, nb::shape<-1, 3>>;
@@ -28,36 +28,37 @@ using TrianglesIn = In<std::int32_t, nb::shape<-1, 3>>;
 using SegmentsIn = In<std::int32_t, nb::shape<-1, 2>>;
 using IndicesIn = In<std::int32_t, nb::shape<-1>>;
 
-/// An array that goes out; it keeps what it shows alive.
+/// Output array. It keeps the memory that it shows alive.
 template <class T>
 using Out = nb::ndarray<nb::numpy, T>;
 
-/// n x 3 doubles as vectors.
+/// Returns an n x 3 array of doubles as vectors.
 [[nodiscard]] inline std::span<const Vec3d> vectors(const PointsIn& array) {
   static_assert(sizeof(Vec3d) == 3 * sizeof(double));
   return {reinterpret_cast<const Vec3d*>(array.data()), array.shape(0)};
 }
 
-/// The elements of an array as rows of another type of the same size. Indices below zero become ones that are far out
-/// of range, which every check sees.
+/// Returns the elements of an array as rows of another type of the same size. Negative indices become indices far out
+/// of range, which every range check rejects.
 template <class Row, class Array>
 [[nodiscard]] std::span<const Row> rows(const Array& array) {
   return {reinterpret_cast<const Row*>(array.data()), array.shape(0)};
 }
 
-/// A view of memory that `owner` keeps alive. @param strides  in elements; none: contiguous.
+/// Returns a view of memory that `owner` keeps alive.
+/// @param strides  in elements; empty: contiguous.
 template <class T>
 [[nodiscard]] Out<T> view_of(T* data, std::initializer_list<std::size_t> shape, nb::handle owner,
                              std::initializer_list<std::int64_t> strides = {}) {
   static T nothing{};
-  T* const start = data == nullptr ? &nothing : data;  // an empty array needs a place, too
+  T* const start = data == nullptr ? &nothing : data;  // An empty array needs an address, too.
   return Out<T>(start, shape.size(), shape.begin(), owner, strides.size() == 0 ? nullptr : strides.begin());
 }
 
-/// A list that Python keeps alive for as long as an array shows a part of it.
+/// List that Python keeps alive while an array shows a part of it.
 template <class Entry>
 struct Held {
-  std::vector<Entry>* entries;  ///< never nullptr
+  std::vector<Entry>* entries;  ///< Never nullptr.
   nb::capsule owner;
 };
 template <class Entry>
@@ -65,11 +66,12 @@ template <class Entry>
   auto kept = std::make_unique<std::vector<Entry>>(std::move(entries));
   std::vector<Entry>* const list = kept.get();
   nb::capsule owner(list, [](void* memory) noexcept { delete static_cast<std::vector<Entry>*>(memory); });
-  (void)kept.release();  // the capsule's from here on
+  (void)kept.release();  // The capsule owns it from here on.
   return {list, std::move(owner)};
 }
 
-/// Hands a list over to Python, without a copy. @param width  elements T per entry; 0: an array of one axis.
+/// Passes a list to Python without a copy.
+/// @param width  elements T per entry; 0: an array with one axis.
 template <class T, class Entry>
 [[nodiscard]] Out<T> handed_over(std::vector<Entry> entries, std::size_t width = 0) {
   static_assert(sizeof(Entry) % sizeof(T) == 0);
@@ -88,7 +90,8 @@ extern template Out<std::int32_t> handed_over<std::int32_t>(std::vector<Segment>
 extern template Out<std::int32_t> handed_over<std::int32_t>(std::vector<Triangle>, std::size_t);
 extern template Out<std::uint32_t> handed_over<std::uint32_t>(std::vector<std::uint32_t>, std::size_t);
 
-/// Values at the nodes of a grid as an array [z, y, x]. @param size  nodes along x, y, z.
+/// Returns values at the nodes of a grid as an array [z, y, x].
+/// @param size  nodes along x, y, z.
 template <class T>
 [[nodiscard]] Out<T> grid_view(T* data, const std::array<std::int64_t, 3>& size, nb::handle owner) {
   return view_of<T>(
@@ -101,7 +104,7 @@ template <class T>
   return grid_view<T>(kept.entries->data(), size, kept.owner);
 }
 
-/// The arrays of a mesh, seen by Blum without a copy.
+/// Arrays of a mesh, used without a copy.
 struct MeshArrays {
   PointsIn vertices;
   TrianglesIn triangles;
@@ -113,7 +116,7 @@ struct MeshArrays {
   }
 };
 
-/// (vertices, triangles, segments, points).
+/// Returns (vertices, triangles, segments, points).
 [[nodiscard]] nb::tuple arrays_of(TriangleMesh mesh);
 
 [[nodiscard]] inline std::array<double, 3> triple(const Vec3d& v) {

@@ -24,7 +24,7 @@ namespace nb = nanobind;
 
 constexpr std::chrono::milliseconds look_every{50};
 
-/// What the worker and the calling thread tell each other.
+/// State shared by the worker and the calling thread.
 class Shared {
  public:
   void finish(std::exception_ptr failure) {
@@ -39,12 +39,12 @@ class Shared {
     phase_ = phase;
     is_news_ = true;
   }
-  /// Whether the work has ended within the time between two looks.
+  /// Waits for at most `look_every`. Returns true if the work has ended.
   [[nodiscard]] bool wait() {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, look_every, [&] { return is_done_; });
   }
-  /// Calls tell(fraction, phase) if something new was reported.
+  /// Calls the given function with (fraction, phase) if something new was reported.
   template <class Tell>
   void take_news(const Tell& tell) {
     std::unique_lock lock(mutex_);
@@ -66,11 +66,11 @@ class Shared {
   std::exception_ptr failure_;
 };
 
-/// The calls that run, so that the interpreter can end: a thread that then waits for the interpreter's lock is ended
-/// with force, and the process with it where C++ is on the thread's stack.
+/// Running calls, which must end before the interpreter does. While it ends, it kills every thread that waits for its
+/// lock. This ends the whole process if C++ frames are on the stack of that thread.
 class RunningCalls {
  public:
-  /// Counts a call while it is alive.
+  /// Registers a call for as long as the entry exists.
   class Entry {
    public:
     Entry(RunningCalls& all, std::stop_source& stop) : all_(&all) {
@@ -94,13 +94,13 @@ class RunningCalls {
     std::list<std::stop_source*>::iterator place_;
   };
 
-  /// Whether this thread must not go back to Python any more.
+  /// Returns true if this thread must not return to Python any more.
   [[nodiscard]] bool is_over() {
     const std::scoped_lock lock(mutex_);
     return exiting_ && *exiting_ != std::this_thread::get_id();
   }
 
-  /// Stops the calls of all threads but this one, and waits until they have ended.
+  /// Stops the calls of all other threads, and waits until they have ended, at most for `longest_end`.
   void end() {
     std::unique_lock lock(mutex_);
     exiting_ = std::this_thread::get_id();
@@ -109,7 +109,7 @@ class RunningCalls {
   }
 
  private:
-  /// Python code that is told the progress may take any time.
+  /// A limit is needed because progress callbacks of Python may take any time.
   static constexpr std::chrono::seconds longest_end{10};
 
   std::mutex mutex_;
@@ -118,21 +118,21 @@ class RunningCalls {
   std::optional<std::thread::id> exiting_;
 };
 
-/// Never destroyed: threads may use it until the process ends.
+/// Returns the only instance. It is never destroyed, because threads may use it until the process ends.
 RunningCalls& running_calls() {
   static auto* const all = new RunningCalls;
   return *all;
 }
 
-/// Whether Python ends beside threads that hold on to what they have: it ends them between two steps of theirs, and
-/// never clears their frames.
+/// Returns true if other threads run Python code. When Python ends, it stops them between two steps and never clears
+/// their frames, so the objects that they hold leak.
 bool other_threads_run() {
   const auto frames = nb::cast<nb::dict>(nb::module_::import_("sys").attr("_current_frames")());
   const auto own = nb::int_(PyThread_get_thread_ident());
   return nb::len(frames) > (frames.contains(own) ? 1U : 0U);
 }
 
-/// What is left to a thread that Python has no place for any more.
+/// Blocks a thread that cannot return to Python any more.
 [[noreturn]] void park() {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
@@ -140,7 +140,7 @@ bool other_threads_run() {
 }  // namespace
 
 void end_calls_at_exit() {
-  // The child of a fork has none of its parent's threads, and begins anew: a lock may be held by one of them.
+  // A forked child has none of its parent's threads, and one of them may hold the lock. So the child starts anew.
   pthread_atfork(nullptr, nullptr, [] { std::construct_at(&running_calls()); });
   nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {
     if (other_threads_run()) nb::set_leak_warnings(false);
@@ -173,7 +173,7 @@ void run_call(const Call& call, void (*work)(const void* subject, const Context&
     shared.finish(std::move(failure));
   });
 
-  std::exception_ptr raised;  // by Python code in this thread
+  std::exception_ptr raised;  // Thrown by Python code in this thread.
   const auto look = [&] {
     if (raised) return;
     try {

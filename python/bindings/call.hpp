@@ -1,4 +1,4 @@
-// Blum: how Python calls long work. SPDX-License-Identifier: Apache-2.0
+// Blum: calls of long computations from Python. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -12,16 +12,17 @@
 
 namespace blum::python {
 
-/// How a call runs, as Python says it.
+/// Settings of a call, given by Python.
 struct Call {
-  int threads = 0;            ///< as Context::threads
-  nanobind::object progress;  ///< None, or called with (fraction, phase) in the thread that called
-  Device device = {};         ///< as Context::device
+  int threads = 0;            ///< As Context::threads.
+  nanobind::object progress;  ///< None, or called with (fraction, phase) in the calling thread.
+  Device device = {};         ///< As Context::device.
 };
 
-/// Runs work in a thread of its own, without the interpreter's lock. Meanwhile the calling thread looks after signals
-/// and progress every 50 ms: what a handler (Ctrl-C) or the progress callback raises cancels the work, and is raised
-/// here once that has ended. @param work  called once, with `subject`.
+/// Runs work in its own thread, without the interpreter's lock. Every 50 ms the calling thread handles signals and
+/// progress. An exception of a signal handler (Ctrl-C) or of the progress callback cancels the work. It is raised here
+/// after the work has ended.
+/// @param work  called once, with `subject`.
 void run_call(const Call& call, void (*work)(const void* subject, const Context& context), const void* subject);
 template <class Work>
 void run_call(const Call& call, const Work& work) {
@@ -29,10 +30,11 @@ void run_call(const Call& call, const Work& work) {
   run_call(call, begin, std::addressof(work));
 }
 
-/// Registers with Python's atexit what ends the calls of other threads when the interpreter ends: they never return.
+/// Registers a function with Python's atexit that stops the calls of other threads when the interpreter ends. These
+/// calls never return.
 void end_calls_at_exit();
 
-/// run_call() for work with a result.
+/// Runs work as run_call() does, and returns its result.
 template <class Work>
 auto run(const Call& call, const Work& work) {
   using Result = decltype(work(std::declval<const Context&>()));

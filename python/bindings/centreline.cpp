@@ -18,7 +18,7 @@
 namespace blum::python {
 namespace {
 
-/// (kinds, positions, radii).
+/// Returns (kinds, positions, radii).
 nb::tuple nodes_of(const Centreline& line) {
   nb::list kinds;
   std::vector<Vec3d> positions;
@@ -32,7 +32,7 @@ nb::tuple nodes_of(const Centreline& line) {
                         handed_over<double>(std::move(radii)));
 }
 
-/// (nodes, length, mean radius, least radius, points, radii) of each.
+/// Returns (nodes, length, mean radius, least radius, points, radii) of each branch.
 nb::list branches_of(Centreline& line) {
   nb::list out;
   for (CentrelineBranch& branch : line.branches) {
@@ -43,7 +43,7 @@ nb::list branches_of(Centreline& line) {
   return out;
 }
 
-/// (label, voxels, nodes, branches, label_betti, graph_betti, homotopy_kept, homotopy).
+/// Returns (label, voxels, nodes, branches, label_betti, graph_betti, homotopy_kept, homotopy).
 nb::tuple parts_of(Centreline& line) {
   return nb::make_tuple(line.label, line.voxels, nodes_of(line), branches_of(line), line.label_betti, line.graph_betti,
                         line.homotopy_kept, line.homotopy);

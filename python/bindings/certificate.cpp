@@ -26,7 +26,8 @@
 namespace blum::python {
 namespace {
 
-/// What an axis says of itself. @param has  which attributes are more than fillers.
+/// Returns the claims of an axis.
+/// @param has  true for each attribute with real values, false for one with fillers.
 MedialClaims claims_from(const nb::dict& metadata, const nb::dict& has) {
   const auto holds = [&](const char* name) { return nb::cast<bool>(has[name]); };
   return {options_from<MedialMetadata>(metadata),

@@ -23,7 +23,7 @@
 namespace blum::python {
 namespace {
 
-/// (points, distances, sites, triangles), views of one block of memory.
+/// Returns (points, distances, sites, triangles), views of one block of memory.
 nb::tuple columns_of(std::vector<ClosestPoint> found) {
   const Held<ClosestPoint> kept = held(std::move(found));
   const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };
@@ -31,8 +31,8 @@ nb::tuple columns_of(std::vector<ClosestPoint> found) {
                         shown(&ClosestPoint::triangle));
 }
 
-/// (first entry of each query, primitives, sites, distances, points); all but the first are views of one block of
-/// memory.
+/// Returns (first entry of each query, primitives, sites, distances, points). All but the first are views of one block
+/// of memory.
 nb::tuple columns_of(NearPrimitives found) {
   const Held<NearestPrimitive> kept = held(std::move(found.found));
   const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };
@@ -50,7 +50,7 @@ void check_counts(std::size_t points, std::initializer_list<std::size_t> others)
   }
 }
 
-/// NaN where there is none.
+/// Returns the gradient at each point, NaN if it has none.
 Out<double> gradients(const PointsIn& points, const PointsIn& closest, const DistancesIn& distance) {
   check_counts(points.shape(0), {closest.shape(0), distance.shape(0)});
   const std::span<const Vec3d> queries = vectors(points);
@@ -62,7 +62,7 @@ Out<double> gradients(const PointsIn& points, const PointsIn& closest, const Dis
   return handed_over<double>(std::move(out), 3);
 }
 
-/// NaN where there are none.
+/// Returns the barycentric weights of each closest point, NaN if it has none.
 Out<double> weights(const MeshArrays& mesh, const PointsIn& closest, const IndicesIn& site, const IndicesIn& triangle) {
   check_counts(closest.shape(0), {site.shape(0), triangle.shape(0)});
   const MeshView view = mesh.view();

@@ -16,8 +16,8 @@
 
 namespace blum::python {
 
-/// What a member of a structure is as part of an array: elements of one type, along some axes. Ids and counts show as
-/// int32, as they do in files: none() as -1.
+/// Layout of a member of a structure as part of an array: the type and the axes of its elements. Ids and counts become
+/// int32, as in files, and none() becomes -1.
 template <class Member>
 struct Layout {
   using Element = Member;
@@ -45,8 +45,8 @@ struct Layout<std::array<Part, count>> {
   }();
 };
 
-/// One member of every entry of a list, seen without a copy; read-only where the list is.
-/// @param owner  what keeps the list alive.
+/// Returns one member of every entry of a list as a view, without a copy. It is read-only if the list is const.
+/// @param owner  object that keeps the list alive.
 template <class List, class Entry, class Member>
 [[nodiscard]] auto column(List& entries, Member Entry::* member, nb::handle owner) {
   using Plain = typename Layout<Member>::Element;
@@ -61,7 +61,7 @@ template <class List, class Entry, class Member>
     strides[a] = step;
     step *= static_cast<std::int64_t>(extents[a - 1]);
   }
-  static Entry nowhere{};  // an empty array needs a place, too
+  static Entry nowhere{};  // An empty array needs an address, too.
   auto& first = entries.empty() ? nowhere : entries.front();
   return Out<Element>(reinterpret_cast<Element*>(&(first.*member)), shape.size(), shape.data(), owner, strides.data());
 }

@@ -18,12 +18,12 @@
 namespace blum::python {
 namespace {
 
-/// Numbers of one or several per row.
+/// Array with one or more numbers per row.
 template <class T>
 using ColumnIn = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
 
-/// The columns by name, each seen without a copy and read-only.
-/// @param owner  what keeps them alive.
+/// Returns the columns by name, as read-only views without a copy.
+/// @param owner  object that keeps the columns alive.
 nb::dict views_of(const Columns& columns, nb::handle owner) {
   nb::dict out;
   for (const Column& column : columns) {
@@ -39,7 +39,7 @@ nb::dict views_of(const Columns& columns, nb::handle owner) {
   return out;
 }
 
-/// Adds copies of arrays.
+/// Adds a copy of an array. Returns false if its elements are not of type T.
 template <class T>
 bool add_column(Columns& columns, const std::string& name, nb::handle array) {
   ColumnIn<T> numbers;

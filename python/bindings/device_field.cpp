@@ -25,7 +25,7 @@ namespace blum::python {
 namespace {
 
 struct NamedType {
-  const char* name;  ///< as NumPy's typestr
+  const char* name;  ///< As NumPy's typestr.
   ElementType type;
   nb::dlpack::dtype dlpack;
   std::size_t bytes;
@@ -35,7 +35,7 @@ template <class T>
 constexpr NamedType named(const char* name, ElementType type) {
   return {name, type, nb::dtype<T>(), sizeof(T)};
 }
-// A type that is named twice has its first name.
+// Booleans are read as uint8.
 constexpr std::array<NamedType, 11> types{named<std::uint8_t>("|u1", ElementType::uint8),
                                           named<std::int8_t>("|i1", ElementType::int8),
                                           named<std::uint16_t>("<u2", ElementType::uint16),
@@ -48,7 +48,7 @@ constexpr std::array<NamedType, 11> types{named<std::uint8_t>("|u1", ElementType
                                           named<double>("<f8", ElementType::float64),
                                           named<bool>("|b1", ElementType::uint8)};
 
-/// An array in a device's memory, and what keeps it there.
+/// Array in a device's memory, and the owner of that memory.
 struct DeviceArray {
   DeviceArray() = default;
   DeviceArray(DeviceArray&&) noexcept = default;
@@ -57,20 +57,21 @@ struct DeviceArray {
   DeviceArray& operator=(const DeviceArray&) = delete;
   ~DeviceArray() {
     if (memory.data() == nullptr) return;
-    const nb::gil_scoped_release released;  // it waits for the device, which may wait for Python
+    const nb::gil_scoped_release released;  // Freeing waits for the device, which may wait for Python.
     memory = {};
   }
 
   void* data = nullptr;
   std::vector<std::size_t> shape;
-  std::optional<NamedType> type;  ///< none: one that Blum does not take
+  std::optional<NamedType> type;  ///< nullopt if Blum does not accept the type.
   bool is_contiguous = true;
   int device = 0;
-  DeviceMemory memory;   ///< of its own,
-  nb::object owner;      ///< or of another object,
-  nb::ndarray<> import;  ///< or of one that came by DLPack
+  DeviceMemory memory;   ///< Set if the array owns its memory.
+  nb::object owner;      ///< Set if another object owns it.
+  nb::ndarray<> import;  ///< Set if it was imported by DLPack.
 
-  /// @param axes  how many of the first count the rows.
+  /// Returns a view for Blum.
+  /// @param axes  number of leading axes; the product of their sizes is the number of rows.
   [[nodiscard]] DeviceArrayView view(std::size_t axes = 1) const {
     if (!type || !is_contiguous || shape.size() < axes) {
       throw InvalidOption("arrays on a device must be C-contiguous numbers");
@@ -112,7 +113,7 @@ DeviceArray of_capsule(nb::ndarray<> import) {
 DeviceArray at_address(std::uintptr_t address, std::vector<std::size_t> shape, const std::string& type,
                        bool is_contiguous, int device, nb::object owner) {
   DeviceArray array;
-  array.data = reinterpret_cast<void*>(address);  // NOLINT(performance-no-int-to-ptr): that is what it came as
+  array.data = reinterpret_cast<void*>(address);  // NOLINT(performance-no-int-to-ptr): Python passes an integer
   array.shape = std::move(shape);
   array.type = named_type(type);
   array.is_contiguous = is_contiguous;
@@ -137,7 +138,7 @@ DeviceArray allocated(const std::string& device, std::vector<std::size_t> shape,
   return array;
 }
 
-/// A DLPack capsule that keeps the array alive.
+/// Returns a DLPack capsule that keeps the array alive.
 nb::object capsule_of(nb::pointer_and_handle<DeviceArray> array) {
   const DeviceArray& self = *array.p;
   const nb::ndarray<> view(self.data, self.shape.size(), self.shape.data(), array.h, nullptr, self.type->dlpack,
@@ -146,7 +147,7 @@ nb::object capsule_of(nb::pointer_and_handle<DeviceArray> array) {
 }
 
 void* stream_of(std::uintptr_t stream) {
-  return reinterpret_cast<void*>(stream);  // NOLINT(performance-no-int-to-ptr): as CUDA's bindings have it
+  return reinterpret_cast<void*>(stream);  // NOLINT(performance-no-int-to-ptr): CUDA's bindings use integers
 }
 
 void bind_device_array(nb::module_& m) {
@@ -166,8 +167,8 @@ void bind_device_array(nb::module_& m) {
       .def("capsule", &capsule_of);
 }
 
-/// A solver that many threads may call, one after the other. None of them holds Python's lock meanwhile: the device may
-/// wait for Python, too.
+/// Solver that many threads may call; the calls run one after the other. No thread holds Python's lock during a call,
+/// because the device may wait for Python, too.
 template <class Solver>
 class Locked {
  public:
@@ -195,12 +196,12 @@ class Locked {
 using FieldSolverHere = Locked<DeviceFieldSolver>;
 using TransformHere = Locked<DeviceDistanceTransform>;
 
-/// @param site  may be null.
+/// @param site  may be nullptr.
 DeviceFieldView output_of(const DeviceArray& distance, const DeviceArray* site) {
   return {static_cast<float*>(distance.data), site == nullptr ? nullptr : static_cast<std::uint32_t*>(site->data)};
 }
 
-/// The number of pieces of work that are queued with this one.
+/// Queues the computation of a field. Returns the number of pieces of work queued so far, including this one.
 std::uint64_t compute(FieldSolverHere& solver, const DeviceArray& vertices, const DeviceArray* triangles,
                       const DeviceArray* segments, const DeviceArray* points, const DeviceArray& distance,
                       const DeviceArray* site, std::uintptr_t stream) {
@@ -225,7 +226,7 @@ std::uint64_t transform(TransformHere& transform, const DeviceArray& values, con
   });
 }
 
-/// What both solvers have.
+/// Binds the functions that both solvers have.
 template <class Solver>
 void bind_queue(nb::class_<Locked<Solver>>& type) {
   type.def_prop_ro(

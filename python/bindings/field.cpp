@@ -51,7 +51,7 @@ Field field_of(const FloatsIn& distance, const GridSpec& grid, const std::option
   return field;
 }
 
-/// A view of site ids, or none.
+/// Returns a view of site ids, or None if the field has none.
 nb::object sites_of(const nb::pointer_and_handle<Field>& self, Buffer<SiteId>& sites) {
   if (sites.empty()) return nb::none();
   return nb::cast(grid_view(reinterpret_cast<std::int32_t*>(sites.data()), self.p->grid.size, self.h));
@@ -130,7 +130,7 @@ void bind_field_class(nb::module_& m) {
           nb::arg("level"), nb::arg("threads"), nb::arg("progress").none());
 }
 
-/// A solver, and whether its fields are views of its own buffers.
+/// Binds FieldSolver. `compute` returns a field with its own memory, `compute_in_place` one in the solver's buffers.
 void bind_solver(nb::module_& m) {
   nb::class_<FieldSolver>(m, "FieldSolver")
       .def(

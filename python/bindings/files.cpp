@@ -112,7 +112,7 @@ void bind_complex_files(nb::module_& m) {
       nb::arg("path"), nb::arg("complex"), nb::arg("metadata"), nb::arg("further"), nb::arg("allow_loss"));
 }
 
-/// Which attributes a file of an axis holds.
+/// Returns for each attribute whether the file of an axis has it.
 nb::dict has_of(const MedialFile& file) {
   nb::dict out;
   out["radii"] = file.has_radii;

@@ -31,12 +31,12 @@ namespace {
 
 constexpr std::size_t queries_per_range = 256;
 
-/// How many queries of brute force are done between looks for cancellation: a few milliseconds.
+/// Returns the number of brute-force queries between two checks for cancellation, a few milliseconds of work.
 std::size_t queries_between_looks(const MeshView& mesh) {
   return std::max<std::size_t>(1, 65536 / std::max<std::size_t>(1, mesh.triangles.size()));
 }
 
-/// One value per point, computed by all threads.
+/// Returns one value per point, computed by all threads.
 template <class T, class Value>
 Out<T> for_each_point(const PointsIn& points, const Call& call, const char* phase, const Value& value,
                       std::size_t at_once = queries_per_range) {
@@ -152,7 +152,7 @@ std::span<const Point2> polygon(const OutlineIn& points) {
   return rows<Point2>(points);
 }
 
-/// Meshes made of others, and of polygons.
+/// Binds functions that make meshes from polygons and from other meshes.
 void bind_makers(nb::module_& m) {
   m.def(
       "extrusion",

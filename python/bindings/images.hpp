@@ -14,22 +14,22 @@ namespace blum::python {
 
 using ValuesIn = nb::ndarray<nb::ro, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
-/// An image whose values are an array of Python, indexed [z, y, x].
+/// Image whose values are a Python array, indexed [z, y, x].
 struct ImageArrays {
   ValuesIn values;
   VoxelImageView view;
 };
 
-/// @throws nanobind::type_error for values of another type than VoxelImageView knows.
+/// @throws nanobind::type_error if the values have a type that VoxelImageView does not support.
 [[nodiscard]] ImageArrays image_arrays(ValuesIn values, const GridSpec& grid, std::string space);
 
-/// (values [z, y, x], grid, space).
+/// Returns (values [z, y, x], grid, space).
 [[nodiscard]] nb::tuple image_of(VoxelImage image);
 
-/// The voxels that are true, of an array [z, y, x] of bytes.
+/// Array [z, y, x] of bytes. Voxels that are not 0 belong to the set.
 using MaskIn = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 [[nodiscard]] VoxelSet voxel_set(const MaskIn& mask);
-/// The other way round.
+/// Returns the mask of a set of voxels: 1 if the voxel belongs to it, else 0.
 [[nodiscard]] Out<std::uint8_t> mask_of(const VoxelSet& voxels);
 
 }  // namespace blum::python

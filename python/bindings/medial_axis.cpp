@@ -82,9 +82,10 @@ void bind_axis(nb::module_& m) {
 
 using VerifyAxis = FunctionRef<Certificate(const Complex& axis, const MedialClaims& claims, const Context& context)>;
 
-/// certified_axes() at one angle, from an axis of all angles that is there: the complex, how far it is at most from
-/// that with all vertices (None: it has all), its report, its certificate, mismatches and warnings.
-/// @param mesh, medial  how the axis was made, to make it again on a moved grid; nullptr of an image.
+/// Runs certified_axes() at one angle, starting from an existing axis of all angles. Returns (complex, deviation,
+/// report, certificate, mismatches, warnings). The deviation bounds the distance from the axis with all vertices. It is
+/// None if the complex has all vertices.
+/// @param mesh, medial  input and options of the axis, to compute it again on a moved grid; nullptr for an image.
 nb::tuple certified(const MedialAxis& first, const MeshView* mesh, const MedialAxisOptions& medial, VerifyAxis verify,
                     const CertifiedAxisOptions& options, int threads, nb::object progress) {
   CertifiedAxes made = run({threads, std::move(progress)}, [&](const Context& context) {
@@ -136,7 +137,7 @@ void bind_certified(nb::module_& m) {
 }  // namespace
 
 void bind_medial_axis(nb::module_& m) {
-  // Columns hold numbers, and blum.ROLES is indexed by them.
+  // Columns contain the numbers of roles, which are indices of blum.ROLES.
   static_assert([] {
     std::size_t number = 0;
     for (const auto& named : Description<MedialRole>::values) {

@@ -1,4 +1,4 @@
-// The extension module blum._core: what the C++ library does, on arrays, for the Python package alone to call.
+// Extension module blum._core: the C++ library on arrays. Only the Python package may call it.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
@@ -14,14 +14,14 @@ namespace blum::python {
 namespace {
 
 void raise(const char* name, const std::exception& error) {
-  // Messages name files, whose names may be any bytes.
+  // Messages may contain file names, which may be any bytes.
   const std::string_view text = error.what();
   const auto message =
       nb::steal(PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
   PyErr_SetObject(nb::module_::import_("blum._errors").attr(name).ptr(), message.ptr());
 }
 
-/// Blum's exceptions become those of the same name in blum._errors.
+/// Raises exceptions of Blum as the exceptions of the same name in blum._errors.
 void translate(const std::exception_ptr& thrown, void* /*payload*/) {
   try {
     std::rethrow_exception(thrown);

@@ -12,7 +12,7 @@
 namespace blum::python {
 namespace {
 
-/// (points, normals, triangles).
+/// Returns (points, normals, triangles).
 nb::tuple columns_of(SurfaceSamples found) {
   static_assert(sizeof(TriangleId) == sizeof(std::int32_t));
   return nb::make_tuple(handed_over<double>(std::move(found.points), 3),
@@ -20,7 +20,7 @@ nb::tuple columns_of(SurfaceSamples found) {
                         handed_over<std::int32_t>(std::move(found.triangles)));
 }
 
-/// (points, closest points, distances, sites, triangles); all but the first are views of one block of memory.
+/// Returns (points, closest points, distances, sites, triangles). All but the first are views of one block of memory.
 nb::tuple columns_of(NearSamples found) {
   const Held<ClosestPoint> kept = held(std::move(found.closest));
   const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };

@@ -18,7 +18,7 @@ namespace {
 
 using FourIn = In<double, nb::shape<-1, 4, 3>>;
 
-/// Four vertices in a row.
+/// Row of four vertices.
 using Four = std::array<std::int32_t, 4>;
 
 Four four(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
@@ -34,7 +34,7 @@ std::vector<FourMovingPoints> moving_points(const FourIn& start, const FourIn& e
   return points;
 }
 
-/// NaN where there is none.
+/// Returns the times of impacts, NaN if there is no impact.
 Out<double> times_of(const std::vector<std::optional<double>>& impacts) {
   std::vector<double> times;
   times.reserve(impacts.size());
@@ -42,7 +42,7 @@ Out<double> times_of(const std::vector<std::optional<double>>& impacts) {
   return handed_over<double>(std::move(times));
 }
 
-/// (vertex_face, face, vertex_face_time, edge_edge, edge_edge_time, box_pairs, exact_tests).
+/// Returns (vertex_face, face, vertex_face_time, edge_edge, edge_edge_time, box_pairs, exact_tests).
 nb::tuple columns_of(ContinuousCollisions found, const MeshView& mesh) {
   std::vector<Four> vertex_face;
   for (const VertexFaceCollision& one : found.vertex_face) {

@@ -24,10 +24,10 @@
 namespace blum::python {
 namespace {
 
-/// A rotation, and beside it a translation.
+/// Matrix with the rotation in its first three columns and the translation in the last one.
 using PlaceIn = In<double, nb::shape<3, 4>>;
 using TrianglesOfPointsIn = In<double, nb::shape<-1, 3, 3>>;
-/// Of two sides, as in files.
+/// Vertices of the features of both sides, as in files.
 using Features = std::array<std::array<std::int32_t, 3>, 2>;
 
 RigidTransform place_of(const PlaceIn& rows) {
@@ -39,14 +39,14 @@ RigidTransform place_of(const PlaceIn& rows) {
   return place;
 }
 
-/// Pairs, and the vertices of their features.
+/// Pairs and the vertices of their features.
 struct Pairs {
   std::vector<PrimitivePair> pairs;
   std::vector<Features> features;
   ProximityReport report;
 };
 
-/// Adds the vertices of features.
+/// Adds the vertices of features to pairs.
 Pairs with_features(const ProximityScene& scene, ProximityPairs found, const Context& context) {
   constexpr std::size_t look_every = 65536;
   const auto vertices = [&](ObjectId object, std::uint32_t primitive, const TriangleFeature& feature) {
@@ -62,13 +62,13 @@ Pairs with_features(const ProximityScene& scene, ProximityPairs found, const Con
   return out;
 }
 
-/// Numbers of every entry of a list, seen without a copy. @param of  the first of them of an entry, the others behind
-/// it.
-/// @param shape  of those of one entry.
+/// Returns a view of numbers of every entry of a list, without a copy.
+/// @param of  returns the first number of an entry; the others follow it in memory.
+/// @param shape  shape of the numbers of one entry.
 template <class T, class Entry, class Of, std::size_t axes>
 Out<T> numbers(const Held<Entry>& list, const Of& of, const std::array<std::size_t, axes>& shape) {
   static_assert(sizeof(Entry) % sizeof(T) == 0);
-  static Entry nowhere{};  // an empty array needs a place, too
+  static Entry nowhere{};  // An empty array needs an address, too.
   std::array<std::size_t, axes + 1> extents{list.entries->size()};
   std::array<std::int64_t, axes + 1> strides{sizeof(Entry) / sizeof(T)};
   std::int64_t step = 1;
@@ -84,7 +84,7 @@ constexpr std::array<std::size_t, 0> single{};
 constexpr std::array<std::size_t, 1> two{2};
 constexpr std::array<std::size_t, 2> two_vectors{2, 3};
 
-// What numbers() takes to be beside each other is.
+// numbers() requires that these members are adjacent in memory.
 static_assert(offsetof(PrimitivePair, second_object) - offsetof(PrimitivePair, first_object) == sizeof(std::int32_t));
 static_assert(offsetof(PrimitivePair, second) - offsetof(PrimitivePair, first) == sizeof(std::int32_t));
 static_assert(offsetof(TriangleDistance, second_point) - offsetof(TriangleDistance, first_point) == 3 * sizeof(double));
@@ -93,7 +93,8 @@ Out<std::int32_t> features_out(std::vector<Features> features) {
   return numbers<std::int32_t>(held(std::move(features)), [](Features& one) -> auto& { return one; }, two_vectors);
 }
 
-/// (object, primitive, distance, point, feature, culling, cells, left_over, object_pairs, candidates, exact_tests).
+/// Returns (object, primitive, distance, point, feature, culling, cells, left_over, object_pairs, candidates,
+/// exact_tests).
 nb::tuple columns_of(Pairs found) {
   const Held<PrimitivePair> pairs = held(std::move(found.pairs));
   return nb::make_tuple(numbers<std::int32_t>(
@@ -109,7 +110,7 @@ nb::tuple columns_of(Pairs found) {
                         found.report.exact_tests);
 }
 
-/// (distance, point, feature), features by corners.
+/// Returns (distance, point, feature). Features name corners of their triangles, 0 to 2.
 nb::tuple columns_of(std::vector<TriangleDistance> found) {
   constexpr Triangle corners{0, 1, 2};
   std::vector<Features> features;
@@ -180,7 +181,7 @@ void bind_updates(nb::class_<ProximityScene>& scene) {
       nb::arg("first"), nb::arg("second"), nb::arg("excluded"));
 }
 
-/// A query of all of a scene that takes a distance.
+/// Query of the whole scene that takes a distance.
 using Query = ProximityPairs (ProximityScene::*)(double, const Context&) const;
 
 void bind_query(nb::class_<ProximityScene>& scene, const char* name, Query query) {
@@ -226,8 +227,8 @@ nb::tuple vector_out(const Vec3d& p) {
   return nb::make_tuple(p.x, p.y, p.z);
 }
 
-/// (objects, depth, depth_bound, direction, deep_point, surface_point, is_first_deep, deep_triangle, surface_triangle,
-/// area, volume, curves) of each part.
+/// Returns (objects, depth, depth_bound, direction, deep_point, surface_point, is_first_deep, deep_triangle,
+/// surface_triangle, area, volume, curves) of each part.
 nb::list parts_out(Penetrations found) {
   nb::list out;
   for (Penetration& part : found.parts) {
@@ -244,8 +245,8 @@ nb::list parts_out(Penetrations found) {
 using Row4 = std::array<std::int32_t, 4>;
 using Row6 = std::array<std::int32_t, 6>;
 
-/// (vertex_face: object, vertex, object, face; its times; edge_edge: object, two vertices, object, two vertices; its
-/// times; box_pairs, exact_tests).
+/// Returns (vertex_face, its times, edge_edge, its times, box_pairs, exact_tests). Rows of vertex_face are object,
+/// vertex, object, face. Rows of edge_edge are object, two vertices, object, two vertices.
 nb::tuple collisions_out(const SceneCollisions& found) {
   const auto number = [](std::uint32_t value) { return static_cast<std::int32_t>(value); };
   std::vector<Row4> vertex_face;
@@ -313,7 +314,7 @@ void bind_solids(nb::class_<ProximityScene>& scene) {
       nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }
 
-/// An object, and where its vertices and its place are at the end.
+/// Object, and its vertices and its place at the end of the motion.
 using MotionIn = std::tuple<std::uint32_t, std::optional<PointsIn>, std::optional<PlaceIn>>;
 
 void bind_motions(nb::class_<ProximityScene>& scene) {

@@ -23,7 +23,7 @@
 namespace blum::python {
 namespace {
 
-/// (mesh, vertex_of, triangle_of, betti, shells).
+/// Returns (mesh, vertex_of, triangle_of, betti, shells).
 nb::tuple parts_of(const SolidBody& body) {
   return nb::make_tuple(arrays_of(body.mesh), handed_over<std::uint32_t>(body.vertex_of),
                         handed_over<std::uint32_t>(body.triangle_of), nb::cast(body.betti),
@@ -58,7 +58,7 @@ nb::tuple cleaned(const Call& call, const Shape& shape, double tolerance) {
                         to_python(out.warnings));
 }
 
-/// (mesh, vertex_of, report).
+/// Binds functions that return (mesh, vertex_of, report, warnings).
 void bind_clean_mesh(nb::module_& m) {
   bind_struct<CleanReport>(m);
   m.def(
@@ -75,7 +75,7 @@ void bind_clean_mesh(nb::module_& m) {
       nb::arg("solid"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none());
 }
 
-/// (mesh, reversed_triangles, reversed_shells).
+/// Binds oriented_mesh(), which returns (mesh, reversed_triangles, reversed_shells).
 void bind_oriented_mesh(nb::module_& m) {
   m.def(
       "oriented_mesh",

@@ -10,12 +10,12 @@
 namespace blum::python {
 namespace {
 
-/// The name of a member in Python, where some words are taken: `lambda` becomes `lambda_`.
+/// Returns the name of a member in Python. The reserved word `lambda` becomes `lambda_`.
 std::string python_name(std::string_view name) {
   return name == "lambda" ? "lambda_" : std::string(name);
 }
 
-/// Where a stored member lies.
+/// Returns the address of a stored member.
 const void* place_in(const void* whole, const StructMember& member) {
   return static_cast<const std::byte*>(whole) + member.offset;
 }
@@ -23,7 +23,7 @@ void* place_in(void* whole, const StructMember& member) {
   return static_cast<std::byte*>(whole) + member.offset;
 }
 
-/// What is given by a name, and whether that is anything.
+/// Values given by name. take() returns an invalid object if nothing was given.
 class Given {
  public:
   explicit Given(const nb::dict& values) : values_(&values) {}
@@ -32,7 +32,7 @@ class Given {
     const std::string& key = names_.emplace_back(name);
     return values_->contains(key.c_str()) ? nb::object((*values_)[key.c_str()]) : nb::object();
   }
-  /// @throws nanobind::type_error for a key that was not taken.
+  /// @throws nanobind::type_error if a key was not taken.
   void refuse_others() const {
     for (const auto& [key, value] : *values_) {
       const auto name = nb::cast<std::string>(key);
@@ -65,7 +65,8 @@ bool is_described(const nb::module_& m, std::string_view name) {
   return nb::cast<nb::dict>(m.attr("described")).contains(std::string(name).c_str());
 }
 
-/// A member as the module tells of it. @param type  its name as a type.
+/// Returns the description of a member, as the module lists it.
+/// @param type  name of the member's type.
 nb::tuple told(const std::string& name, const std::string& type, const nb::object& value, std::string_view unit,
                std::string_view doc) {
   return nb::make_tuple(name, type, value, std::string(unit), std::string(doc));
@@ -131,7 +132,7 @@ void bind_members(nb::module_& m, const StructType& type, bool is_options) {
           told("threshold", "Real | None", nb::none(), "", "images: those of at least this value; excludes a label"));
       continue;
     }
-    // Defaults are of options; results may hold what Python has a class for only once the package is there.
+    // Only options have defaults. Results may have types whose Python classes exist only once the package is complete.
     const nb::object value = is_options ? member.of(type.defaults) : nb::none();
     const std::string name = member.type->type_name(m, is_options, member.choices);
     members.append(told(python_name(member.name), name, value, member.unit, member.doc));

@@ -1,5 +1,4 @@
-// Blum: described structs as Python sees them: options come as dicts, results are dataclasses. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: described structs in Python, options as dicts and results as dataclasses. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -23,72 +22,78 @@
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 
-// Templates here only make tables, of the members of a struct and of how Python sees their types. What is done with
-// them is ordinary functions of structs.cpp, compiled once.
+// These templates only make tables: of the members of a struct, and of the functions that convert their types. Ordinary
+// functions of structs.cpp, which are compiled once, use the tables.
 namespace blum::python {
 
 namespace nb = nanobind;
 
-/// Values of an enumeration that may be chosen; none: all of it. `first` is one of the type that they are of.
+/// Allowed values of an enumeration; empty: all of them. `first` points to the first one, of the enumeration's type.
 struct Choices {
   const void* first = nullptr;
   std::size_t count = 0;
 };
 
-/// How Python sees the values of one type of C++.
+/// Conversion of the values of one C++ type to and from Python.
 struct ValueType {
   nb::object (*to_python)(const void* value);
-  /// Reads an option into `value`; nullptr for types that no options have. @throws InvalidOption, nanobind::type_error.
+  /// Reads an option into `value`. nullptr for types that options do not have.
+  /// @throws InvalidOption, nanobind::type_error: invalid value.
   void (*from_python)(void* value, nb::handle given, const std::string& name, const Choices& choices);
-  /// What Python calls it. @param is_options  whether values go in, where NumPy's numbers will do, too.
+  /// Returns the name of the type in Python.
+  /// @param is_options  true for inputs, which may also be NumPy's numbers.
   std::string (*type_name)(nb::module_& m, bool is_options, const Choices& choices);
 };
 
-/// A member of a described struct.
+/// Member of a described struct.
 struct StructMember {
   std::string_view name;
   std::string_view unit;
   std::string_view doc;
-  const ValueType* type = nullptr;  ///< nullptr for a selection of voxels, which Python has as `label` and `threshold`
+  const ValueType* type = nullptr;  ///< nullptr for a selection of voxels: `label` and `threshold` in Python.
   Choices choices;
-  std::size_t offset = 0;  ///< of what is stored
-  /// Of facts: asks a struct for it.
+  std::size_t offset = 0;  ///< Bytes from the start of the struct, for stored members.
+  /// Reads a fact from a struct; nullptr for stored members.
   nb::object (*read)(const void* fact, const void* whole) = nullptr;
   const void* fact = nullptr;
 
   [[nodiscard]] nb::object of(const void* whole) const;
 };
 
-/// A described struct.
+/// Described struct.
 struct StructType {
   std::string_view name;
   std::string_view doc;
-  const void* defaults;  ///< one that is as it is made
+  const void* defaults;  ///< A default-constructed struct.
   std::vector<StructMember> members;
 };
 
-/// An object of blum._structs with what a struct holds; its members by name.
+/// Returns an object of blum._structs with the values of a struct.
 [[nodiscard]] nb::object struct_of(const StructType& type, const void* whole);
+/// Returns the members of a struct by name.
 [[nodiscard]] nb::dict members_of(const StructType& type, const void* whole);
-/// Sets the members that are given; a selection of voxels comes as `label` and `threshold`.
-/// @throws InvalidOption, nanobind::type_error, for a key that is no member, too.
+/// Sets the members that are given. A selection of voxels is given as `label` and `threshold`.
+/// @throws InvalidOption, nanobind::type_error: invalid value; type_error also if a key is not a member.
 void read_members(const StructType& type, const nb::dict& given, void* whole);
-/// Adds a struct to what the module says of itself, for blum._structs and signatures, and the structs that it consists
-/// of before it. @param is_options  a typed dict with defaults; else a dataclass.
+/// Adds a struct to `described` of the module, from which blum._structs and signatures are made. The structs that it
+/// consists of are added before it.
+/// @param is_options  true for a typed dict with defaults, false for a dataclass.
 void bind_members(nb::module_& m, const StructType& type, bool is_options);
-/// The name of a struct as a type, which is bound where it is not yet.
+/// Returns the name of a struct as a type, and binds the struct if it is not bound yet.
 [[nodiscard]] std::string struct_name(nb::module_& m, const StructType& type);
 
 [[nodiscard]] nb::object word(std::string_view text);
-/// A word; what is no string stands as Python shows it.
+/// Returns a string as it is, and any other value as Python's repr().
 [[nodiscard]] std::string word_from(nb::handle value);
-/// Seconds by phase; those of one name are added.
+/// Returns seconds by phase. Phases of the same name are added up.
 [[nodiscard]] nb::dict seconds_of(const std::vector<PhaseTime>& phases);
-/// A tuple of the entries of a list. @param size  bytes of each.
+/// Returns a tuple of the entries of a list.
+/// @param size  bytes of each entry.
 [[nodiscard]] nb::object tuple_of(const ValueType& type, const void* first, std::size_t count, std::size_t size);
-/// "tuple[int, int]".
+/// Returns the type of a tuple, for example "tuple[int, int]".
 [[nodiscard]] std::string tuple_name(nb::module_& m, const ValueType& type, std::size_t count, bool is_options);
-/// What Python calls the type of an enumeration, whose values the module then lists.
+/// Returns the type of an enumeration in Python: its name if `is_all`, else a Literal of its allowed values. The module
+/// lists the values of the named ones.
 [[nodiscard]] std::string enum_type(nb::module_& m, std::string_view name, const std::vector<std::string_view>& values,
                                     bool is_all);
 
@@ -97,11 +102,11 @@ template <class T>
 template <DescribedStruct T>
 [[nodiscard]] const StructType& struct_type();
 
-/// A type's functions for ValueType; `from` only where options may have it. What it is not specialised for here is in
-/// value_types.cpp: numbers, texts, arrays.
+/// Functions of a type for ValueType. `from` exists only if options may have the type. The specialisations for numbers,
+/// texts and arrays are in value_types.cpp.
 template <class T>
 struct Values;
-/// Whether options may have members of a type.
+/// True if options may have members of a type.
 template <class T>
 inline constexpr bool is_option_value =
     std::is_arithmetic_v<T> || std::same_as<T, std::string> || std::same_as<T, GridSpec> || DescribedEnum<T>;
@@ -215,7 +220,7 @@ template <>
 const ValueType& value_type<GridSpec>();
 template <>
 const ValueType& value_type<std::vector<PhaseTime>>();
-/// Lists of numbers or vectors, which may be long, are arrays of NumPy: copies that Python owns, ids as int32.
+/// Lists of numbers or vectors may be long. They become NumPy arrays: copies that Python owns, with ids as int32.
 template <>
 const ValueType& value_type<std::vector<Vec3d>>();
 template <>
@@ -225,13 +230,14 @@ const ValueType& value_type<std::vector<std::uint32_t>>();
 template <>
 const ValueType& value_type<std::optional<double>>();
 
-/// Appends a member that is stored, or one that a struct is asked for.
+/// Appends a stored member, or a fact that is read by a function.
 void add_member(StructType& type, const std::string_view& name, const std::string_view& unit,
                 const std::string_view& doc, const ValueType* value, const Choices& choices, std::size_t offset);
 void add_fact(StructType& type, const std::string_view& name, const std::string_view& unit, const std::string_view& doc,
               const ValueType* value, nb::object (*read)(const void* fact, const void* whole), const void* fact);
 
-/// Appends an entry of a description. @param example  any struct of its kind.
+/// Appends an entry of a description.
+/// @param example  any struct of the type.
 template <class T, class Type>
 void add_entry(StructType& type, const Member<T, Type>& entry, const T& example) {
   const ValueType* value = nullptr;
@@ -266,13 +272,13 @@ template <class T>
   return value_type<T>().to_python(&value);
 }
 
-/// The same as the result of a function, whose type the package names.
+/// Returns the same as to_python(), for results of functions. The package states their types.
 template <class T>
 [[nodiscard]] nb::any result_of(const T& value) {
   return nb::steal<nb::any>(to_python(value).release());
 }
 
-/// The members of a described struct by name; of a selection of voxels, what options_from() reads.
+/// Returns the members of a described struct by name; for a selection of voxels, the keys that options_from() reads.
 template <DescribedStruct T>
 [[nodiscard]] nb::dict dict_of(const T& whole) {
   return members_of(struct_type<T>(), &whole);
@@ -289,7 +295,8 @@ consteval bool has_option_values() {
       Description<T>::members);
 }
 
-/// Options of Python as a struct; what is not given keeps its default. @throws InvalidOption, nanobind::type_error.
+/// Returns options from Python as a struct. Members that are not given keep their defaults.
+/// @throws InvalidOption, nanobind::type_error: as read_members().
 template <DescribedStruct T>
 [[nodiscard]] T options_from(const nb::dict& given) {
   static_assert(has_option_values<T>(), "options have a member of a type that is not read from Python yet");
@@ -298,19 +305,20 @@ template <DescribedStruct T>
   return out;
 }
 
-/// What Python calls the type of a result; makes it known to Python.
+/// Returns the name of a result's type in Python, and registers the type there.
 template <class T>
 [[nodiscard]] std::string type_name(nb::module_& m) {
   return value_type<T>().type_name(m, false, {});
 }
 
-/// Makes a struct known to Python, and those that it consists of: as a dataclass of blum._structs.
+/// Registers a struct, and the structs that it consists of, as dataclasses of blum._structs.
 template <DescribedStruct T>
 void bind_struct(nb::module_& m) {
   bind_members(m, struct_type<T>(), false);
 }
 
-/// The same for options: as a typed dict there, and in the signatures of what takes them.
+/// Registers options as a typed dict of blum._structs. It also appears in the signatures of functions that take the
+/// options.
 template <DescribedStruct T>
 void bind_options(nb::module_& m) {
   bind_members(m, struct_type<T>(), true);

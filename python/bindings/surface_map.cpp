@@ -26,14 +26,14 @@
 namespace blum::python {
 namespace {
 
-/// (thickness, opposite points, triangles), views of one block of memory.
+/// Returns (thickness, opposite points, triangles), views of one block of memory.
 nb::tuple columns_of(std::vector<Thickness> found) {
   const Held<Thickness> kept = held(std::move(found));
   const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };
   return nb::make_tuple(shown(&Thickness::thickness), shown(&Thickness::opposite), shown(&Thickness::triangle));
 }
 
-/// A map that Python keeps alive while an array shows a part of it; `handle` is for writing it.
+/// Returns a map as arrays, which keep it alive. `_handle` is the map itself, for write_surface_map().
 nb::dict dict_of(SurfaceMap found) {
   const nb::object owner = nb::cast(std::move(found), nb::rv_policy::move);
   SurfaceMap& map = nb::cast<SurfaceMap&>(owner);
@@ -62,7 +62,7 @@ nb::dict dict_of(SurfaceMap found) {
 }
 
 void bind_maps(nb::module_& m) {
-  nb::class_<SurfaceMap>(m, "SurfaceMap");  // NOLINT(bugprone-unused-raii): making it tells the module
+  nb::class_<SurfaceMap>(m, "SurfaceMap");  // NOLINT(bugprone-unused-raii): the constructor registers the type
   m.def(
       "write_surface_map",
       [](const std::filesystem::path& path, const MeshArrays& mesh, const SurfaceMap& map,
@@ -121,7 +121,7 @@ void bind_maps(nb::module_& m) {
       nb::arg("solid"), nb::arg("options"), nb::arg("thickness"), nb::arg("threads"), nb::arg("progress").none());
 }
 
-/// An atlas of places of the corners of triangles, [t, 3, 2], in texels.
+/// Makes an atlas from the positions of the corners of triangles, [t, 3, 2], in texels.
 SurfaceAtlas atlas_of(const MeshView& mesh, const In<double, nb::shape<-1, 3, 2>>& places, std::uint32_t width,
                       std::uint32_t height, const Context& context) {
   const std::size_t count = 3 * places.shape(0);
@@ -176,7 +176,8 @@ void bind_mapper(nb::module_& m) {
           nb::arg("threads"), nb::arg("progress").none());
 }
 
-/// A function of two meshes, and what their parameters are called.
+/// Binds a function of two meshes.
+/// @param first, second  names of the parameters for the meshes.
 template <class Options, class Result>
 void bind_comparison(nb::module_& m, const char* name, const char* first, const char* second,
                      Result (*compare)(const MeshView&, const MeshView&, const Options&, const Context&)) {

@@ -1,4 +1,4 @@
-// How Python sees numbers, texts, vectors, grids and arrays.
+// Conversion of numbers, texts, vectors, grids and arrays between Python and C++.
 #include <nanobind/stl/string.h>
 
 #include "arrays.hpp"
@@ -7,7 +7,7 @@
 namespace blum::python {
 namespace {
 
-/// A function of blum._arguments, which raise errors that name what they are given.
+/// Returns a function of blum._arguments. Errors of these functions name the argument.
 nb::object argument(const char* function) {
   return nb::module_::import_("blum._arguments").attr(function);
 }
@@ -23,7 +23,7 @@ struct Values<T> {
     if constexpr (std::same_as<T, bool>) {
       own = nb::cast<bool>(argument("truth")(given, name));
     } else if constexpr (std::integral<T>) {
-      // Of 64 bits without a sign those of 63 are taken, which are enough for seeds and counts.
+      // Unsigned numbers of 64 bits are limited to 63 bits, which is enough for seeds and counts.
       const char* const kind = std::unsigned_integral<T> ? "natural" : "integer";
       own = static_cast<T>(nb::cast<std::int64_t>(argument(kind)(given, name, static_cast<int>(8 * sizeof(T)))));
     } else {
@@ -89,7 +89,8 @@ struct Values<std::vector<PhaseTime>> {
   }
 };
 
-/// @param Shown  what the array's elements are.
+/// Conversion of a list to a NumPy array.
+/// @param Shown  type of the array's elements.
 template <class T, class Shown, std::size_t width>
 struct ArrayOf {
   static nb::object to(const void* value) {
