@@ -83,8 +83,9 @@ struct PlacedBox {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-/// Solves a x = b for a symmetric positive definite matrix, by Gaussian elimination.
-Vec3d solve(Matrix a, Vec3d b) {
+/// Solves a x = b for a symmetric positive definite matrix, by Gaussian elimination. `inline` here and below: without
+/// it, g++ calls these in the inner loop of settle(), and complexes take 3 % longer.
+inline Vec3d solve(Matrix a, Vec3d b) {
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t i = k + 1; i < 3; ++i) {
       const double factor = a[i][k] / a[k][k];
@@ -104,7 +105,7 @@ struct Distance {
   Vec3d slope;
 };
 
-Distance distance_from(const PlacedLabel& label, const Vec3d& q) {
+inline Distance distance_from(const PlacedLabel& label, const Vec3d& q) {
   if (label.kind == SiteKind::face) return {label.height(q), label.direction};
   const Vec3d away = q - label.foot(q);
   const double value = length(away);
