@@ -340,7 +340,7 @@ describe("what cannot be shown", () => {
     for (const [name, text, message] of [
       ["none.html", whole.slice(0, from) + whole.slice(to), "holds no scene"],
       ["cut.html", whole.slice(0, to - 4000) + whole.slice(to), "cut off"],
-      ["other.html", whole.slice(0, begin) + "AAAA".repeat(30) + whole.slice(to), "no scene of blum"],
+      ["other.html", whole.slice(0, begin) + "AAAA".repeat(30) + whole.slice(to), "not a scene of blum view"],
     ]) {
       writeFileSync(file(name), text);
       const { page } = await open(browser, fileUrl(name));
