@@ -55,7 +55,8 @@ std::optional<std::array<Between, 3>> cell_around(const GridSpec& grid, const Ve
   return axes;
 }
 
-/// Returns the values at the corners of a cell. Bit a of a corner's number is set for the layer after, along axis a.
+/// Returns the values at the corners of a cell. Bit a of a corner's number is 1 if the corner lies in the
+/// higher of the two layers along axis a.
 std::array<double, 8> corners_of(const GridSpec& grid, std::span<const float> values,
                                  const std::array<Between, 3>& cell) {
   std::array<double, 8> out;

@@ -296,7 +296,7 @@ def test_json_goes_to_a_file_beside_the_text(solids, tmp_path):
     out, _ = run(
         "medial", solids / "box.obj", "-o", tmp_path / "b.obj", "--resolution", 12, "--json", tmp_path / "b.json"
     )
-    assert "yes: 1 component, 0 tunnels, 0 voids, as the solid; inside the solid" in out
+    assert "yes: topology of the solid (1 component, 0 tunnels, 0 voids); inside the solid" in out
     assert json.loads((tmp_path / "b.json").read_text())["outputs"] == [str(tmp_path / "b.obj")]
 
 
@@ -345,7 +345,7 @@ def test_an_open_mesh_is_certified_against_voxels(solids, axes, tmp_path):
     command = ["medial", solids / "open.obj", "-o", tmp_path / "o.npz", "--resolution", 16]
     out, err = run(*command, warns=True)
     assert "it is open (3 boundary edges)" in err and "winding number is above 1/2" in err
-    assert ", as the voxels of the winding number of side 0.0625; inside the solid" in out
+    assert "topology of the voxels of the winding number of side 0.0625 (" in out
     summary = run_json(*command, warns=True)
     assert summary["solids"][0]["rule"] == "winding"
     assert axis_of(summary)["certificate"]["against"] == "winding"

@@ -264,7 +264,7 @@ def test_what_the_file_claims_to_be_is_told(solids, axes):
 
 def test_the_voxels_that_an_open_mesh_is_taken_as_are_told(solids, axes, tmp_path):
     out, _ = run("verify", solids / "open.obj", axes / "open.npz")
-    assert ", as the voxels of the winding number of side 0.0625; " in out
+    assert "topology of the voxels of the winding number of side 0.0625 (" in out
     false = falsified(axes, tmp_path, "open.npz", lambda arrays: change_metadata(arrays, spacing="0.03125"))
     assert "its spacing is 0.03125, but its grid has a spacing of 0.0625" in run("verify", solids / "open.obj", false,
                                                                             status=3)[1]

@@ -159,7 +159,7 @@ def test_a_bracket_as_text(parts, tmp_path):
     text, _ = run("voronoi", parts / "bracket.ply", "-o", tmp_path / "b.vtp", "--verbose")
     assert CERTIFIED in text and "144 reflex edges, 4 reflex vertices" in text and f"wrote      {tmp_path}" in text
     rows = dict(re.findall(r"^(\w+)  +(.*)$", text, re.MULTILINE))
-    assert rows["topology"] == "1 component, 12 tunnels, 291 voids"
+    assert rows["topology"] == "walls and surface: 1 component, 12 tunnels, 291 voids"
     assert {"sites", "cubes", "lines", "complex", "certified", "time"} <= set(rows)
 
 
@@ -281,7 +281,7 @@ def test_what_is_not_certified_is_not_written(parts, tmp_path):
     (tmp_path / "gear.vtp").write_bytes(b"old")
     out, err = run("voronoi", parts / "gear.ply", "-o", tmp_path / "gear.vtp", *COARSE, "--json", "-", status=3)
     assert "NOT certified" in err and "nothing was written" in err and "--depth" in err
-    assert re.search(r"\d+ cubes do not pass, the first one from \(.*\) to \(.*\) \(\w+( \w+)?\)", err)
+    assert re.search(r"\d+ cubes do not pass the local test, the first one from \(.*\) to \(.*\) \(\w+( \w+)?\)", err)
     assert "but walls and surface have 1 component, 18 tunnels, 546 voids" in err
     assert (tmp_path / "gear.vtp").read_bytes() == b"old" and names(tmp_path) == ["gear.vtp"]
     found = json.loads(out)

@@ -304,7 +304,7 @@ def test_the_tool_certifies_the_voxels_of_a_mesh_as_python_does(tmp_path):
     piece = blum.medial_axis(tmp_path / "open.ply", resolution=24).simplify(60)
     piece.write(tmp_path / "axis.npz")
     told = tool.run("verify", tmp_path / "open.ply", tmp_path / "axis.npz")[0]
-    assert "as the voxels of the winding number of side" in told
+    assert "topology of the voxels of the winding number of side" in told
     elsewhere = blum.Grid(np.array(piece.grid.origin) + 5, piece.grid.spacing, piece.grid.size)
     with pytest.raises(ValueError, match="no voxel"):
         blum.certify(piece, tmp_path / "open.ply", grid=elsewhere)

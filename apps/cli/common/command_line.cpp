@@ -97,11 +97,12 @@ void check_command(const CLI::App& app, std::span<const std::string> arguments) 
 }
 
 /// Returns the command that was given. Appends its name and those of its parents to `name`.
-const CLI::App& used_command(const CLI::App& app, std::string& name) {
-  const auto used = app.get_subcommands();
-  if (used.empty()) return app;
-  name += " " + used.front()->get_name();
-  return used_command(*used.front(), name);
+const CLI::App* used_command(const CLI::App* app, std::string& name) {
+  for (auto used = app->get_subcommands(); !used.empty(); used = app->get_subcommands()) {
+    app = used.front();
+    name += " " + app->get_name();
+  }
+  return app;
 }
 
 /// Describes the first argument that CLI11 did not accept, with a hint for a misspelt option. Empty if none is left.
@@ -136,7 +137,7 @@ void finish(const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();
   while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
   std::string name = "blum";
-  const CLI::App& command = used_command(app, name);
+  const CLI::App& command = *used_command(&app, name);
   // A misspelt option also causes the error that its option is missing. So the misspelling is reported first.
   const std::string leftover = leftover_text(command);
   const bool only_leftover = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);

@@ -58,7 +58,7 @@ std::string TextTable::text(bool verbose) const {
 }
 
 void PhaseSummary::add_to(TextTable& table) const {
-  table.add("time", text + ", " + bytes_text(static_cast<double>(peak_memory())) + " of memory at most");
+  table.add("time", text + ", peak memory " + bytes_text(static_cast<double>(peak_memory())));
   if (!phases.empty()) table.detail("phases", phases + " (seconds)");
 }
 

@@ -71,7 +71,7 @@ std::string labels_text(const Certificate& c) {
   if (c.checked.labels) text = c.labels.holds ? "roles and sheets match the triangles" : "wrong roles or sheets";
   if (!c.checked.angles) return text;
   if (!text.empty()) text += "; ";
-  if (!c.angles.holds) return text + "wrong angles of triangles or edges";
+  if (!c.angles.holds) return text + "separation angles of triangles or edges do not fit their positions";
   if (c.angles.below_share == 0 && c.angles.above_share == 0) return text + "angles match the corners";
   return text + percent(c.angles.below_share) + " of the triangles have a smaller angle than their corners, " +
          percent(c.angles.above_share) + " a larger one than their surroundings";
@@ -80,8 +80,8 @@ std::string labels_text(const Certificate& c) {
 /// Describes the share of the axis that is in the middle, and the missing share; empty if neither was checked.
 std::string medial_share_text(const Certificate& c) {
   if (!c.checked.medial || c.medial.samples == 0) return "";
-  std::string text = "; " + percent(c.medial.medial_share) + " in the middle";
-  if (c.medial.judges_missing) text += ", " + percent(c.medial.missed_share) + " missing";
+  std::string text = "; " + percent(c.medial.medial_share) + " of samples in the middle";
+  if (c.medial.judges_missing) text += ", " + percent(c.medial.missed_share) + " of the axis missing";
   return text;
 }
 
@@ -238,9 +238,9 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 }  // namespace
 
 std::string balls_text(const BallUnionCheck& balls) {
-  return "the solid extends at most " + rounded_text(balls.solid_to_balls) + " beyond the union of balls (mean " +
-         rounded_text(balls.mean_solid_to_balls) + "); their surfaces are at most " +
-         rounded_text(balls.balls_to_surface) + " apart";
+  return "the union of balls misses the solid by at most " + rounded_text(balls.solid_to_balls) + " (mean " +
+         rounded_text(balls.mean_solid_to_balls) + "); its surface is within " + rounded_text(balls.balls_to_surface) +
+         " of the solid's";
 }
 
 void add_decimated(TextTable& table, const CertifiedAxis& made) {
@@ -317,7 +317,7 @@ std::string angles_text(double least_theta) {
 
 void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
   if (c.holds()) {
-    table.add("certified", "yes: " + betti_text(c.axis) + ", as " + against_text(c) +
+    table.add("certified", "yes: topology of " + against_text(c) + " (" + betti_text(c.axis) + ")" +
                                (c.bodies.size() > 1 ? ", in each of " + count_text(c.bodies.size()) + " bodies" : "") +
                                "; inside the solid" + medial_share_text(c));
   } else {

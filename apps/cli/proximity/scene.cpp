@@ -155,15 +155,15 @@ std::string distance_text(const PrimitivePair& pair, double size) {
            point_text(between.second_point, size);
   }
   if (between.distance == 0) return "they meet, near " + point_text(between.first_point, size);
-  return rounded_text(between.distance) + ", from " + point_text(between.first_point, size) + " to " +
+  return "distance " + rounded_text(between.distance) + ", from " + point_text(between.first_point, size) + " to " +
          point_text(between.second_point, size);
 }
 
 std::string penetration_text(const Penetration& part, double size) {
   // The direction is the difference of two rounded points, divided by their distance.
   const double blur = std::clamp(size / part.depth, 1.0, 1e6);
-  return "depth " + rounded_text(part.depth) + " (at most " + rounded_text(part.depth_bound) + ") at " +
-         point_text(part.deep_point, size) + ", out along " + point_text(part.direction, blur) + "; volume " +
+  return "depth " + rounded_text(part.depth) + " to " + rounded_text(part.depth_bound) + ", deepest point " +
+         point_text(part.deep_point, size) + ", direction " + point_text(part.direction, blur) + "; volume " +
          rounded_text(part.volume);
 }
 

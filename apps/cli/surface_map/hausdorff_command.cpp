@@ -60,7 +60,10 @@ struct Side {
 };
 
 std::string interval_text(double lower, double upper) {
-  return rounded_text(lower) + " to " + rounded_text(upper) + ", " + rounded_text(upper - lower) + " wide";
+  if (rounded_text(lower) == rounded_text(upper)) {
+    return rounded_text(upper) + " (interval " + rounded_text(upper - lower) + " wide)";
+  }
+  return rounded_text(lower) + " to " + rounded_text(upper);
 }
 
 void add_side(TextTable& table, const std::string& label, const Side& side) {

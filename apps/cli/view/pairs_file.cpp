@@ -31,7 +31,7 @@ std::string text_of(const std::filesystem::path& path) {
   }
   constexpr double bytes_per_character = 6;  // memory for parsed numbers and names
   check_memory(bytes_per_character * static_cast<double>(size), "reading '" + path.string() + "'",
-               "give the pairs of fewer frames");
+               "give a file with fewer frames");
   std::string text(std::istreambuf_iterator<char>(file), {});
   if (file.bad()) throw FileError("cannot read '" + path.string() + "' completely");
   return text;

@@ -104,8 +104,8 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
   if (!report.failing.empty()) {
     const FailingVoronoiCell& first = report.failing.front();
     std::string text = report.failing.size() == 1
-                           ? "a cube does not pass,"
-                           : count_text(report.failing.size()) + " cubes do not pass, the first one";
+                           ? "a cube does not pass the local test,"
+                           : count_text(report.failing.size()) + " cubes do not pass the local test, the first one";
     text += " from " + vector_text(first.low) + " to " + vector_text(first.high) + " (" +
             std::string(to_string(first.obstacle)) + ")";
     all.push_back(text + advice(report, options, is_cleaned));
@@ -157,13 +157,13 @@ std::string sites_text(const VoronoiReport& report) {
 }
 
 std::string certificate_text(VoronoiPart part) {
-  if (part == VoronoiPart::medial_axis) return "same homology as the exact medial axis and as the solid";
-  return "same homology as " + subject_of(part) + " of the exact diagram";
+  if (part == VoronoiPart::medial_axis) return "same topology (homology) as the exact medial axis and as the solid";
+  return "same topology (homology) as the exact diagram";
 }
 
 void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, TextTable& table) {
   table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
-  table.add("topology", betti_text(report.found) +
+  table.add("topology", subject_of(part) + ": " + betti_text(report.found) +
                             (report.found == report.expected ? "" : "; expected " + betti_text(report.expected)));
   table.add("sites", sites_text(report));
   table.detail("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
@@ -174,7 +174,7 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
                             count_text(report.exact_lines) + " by exact signs");
   table.add("complex", counts.text());
   if (report.certified) {
-    table.add("geometry", "at most " + rounded_text(report.hausdorff_bound) + " from the exact diagram, everywhere");
+    table.add("geometry", "no point is more than " + rounded_text(report.hausdorff_bound) + " from the exact diagram");
   }
 }
 

@@ -188,7 +188,7 @@ struct AxisSheet {
   bool for_homotopy = false;    ///< True if all its triangles exist for homotopy alone.
   AxisSpread thickness;         ///< Twice the radius.
   AxisSpread separation_angle;  ///< Degrees, of its vertices. Near 180 between parallel walls.
-  double wall_area = 0;         ///< Area of its triangles whose corners all have an angle of 150 degrees or more.
+  double wall_area = 0;         ///< Area of triangles whose vertices have separation angles of 150 degrees or more.
   AxisSpread wall_thickness;    ///< Twice the radius over these triangles; zeros if none exist.
   Vec3d centroid;               ///< Centroid of the area.
   double rim_length = 0;        ///< Length of its free border.

@@ -7,8 +7,8 @@
 
 namespace blum {
 
-/// Returns the part of a medial axis whose separation angle is above theta, and the cells that connect it up to
-/// homotopy.
+/// Returns the part of a medial axis with separation angles above theta, and the other cells that its homotopy type
+/// needs.
 ///
 /// Triangles of at most theta are removed by elementary collapses from free edges of at most theta, the smallest angle
 /// first. Then edges of no triangle are removed from free ends. Neither such an edge nor any triangle that was at it

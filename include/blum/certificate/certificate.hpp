@@ -24,7 +24,7 @@ namespace blum {
 
 /// Result that a certificate proves about the topology of an axis, in ascending order.
 enum class Proven : std::uint8_t {
-  nothing,            ///< Numbers differ, or positions were not checked.
+  nothing,            ///< Betti numbers of axis and solid differ, or positions were not checked.
   betti_numbers,      ///< In each body, the axis has as many components, tunnels and voids as the solid.
   homology_modulo_2,  ///< Its inclusion into the solid is an isomorphism of homology with coefficients in Z/2.
   homology,           ///< Its inclusion into the solid is an isomorphism of integer homology.
@@ -125,7 +125,7 @@ struct EdgeCheck {
   Vec3d where;              ///< Place of that distance, mesh units.
   std::size_t across = 0;   ///< Edges that leave the body only within the tolerance, but cross a gap there.
   Vec3d across_at;          ///< Place of the first of these, mesh units.
-  std::size_t untold = 0;   ///< Edges for which that cannot be decided. Then only Betti numbers are proven.
+  std::size_t untold = 0;   ///< Edges for which a crossing is undecided. Then only Betti numbers are proven.
   double tolerance = 0;     ///< Ten times GeometryCheck::tolerance (SolidRule::winding: plus a voxel's diagonal).
   bool holds = false;       ///< True if no edge is outside or crosses a gap.
 };
@@ -402,9 +402,9 @@ struct Description<TriangleCheck> {
 /// listed as rims, those of three or more as seams, those of none as curves, and no others. Roles of vertices follow
 /// from these and from sheets (MedialRole).
 ///
-/// Sheets must be numbered from 0, without gaps. Each must be connected over edges of two triangles. Two sheets may
-/// share such an edge only next to a seam. The file decides whether a sheet continues past a seam there. No exception
-/// is allowed.
+/// Sheets must be numbered from 0, without gaps. Each must be connected through edges that exactly two triangles share.
+/// Two sheets may share such an edge only next to a seam. The file decides whether a sheet continues past a seam there.
+/// No exception is allowed.
 struct LabelCheck {
   std::size_t doubled = 0;       ///< Cells with the same vertices as another cell.
   std::size_t inner_listed = 0;  ///< Listed edges of two triangles.

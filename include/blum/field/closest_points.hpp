@@ -100,7 +100,7 @@ class ClosestPointQuery {
   /// Answers many queries, threaded. Results are those of nearest(), bit for bit, for any number of threads. Queries
   /// are ordered in space and answered together if they are at least 4,096 and at least as many as the mesh has
   /// triangles. The first such call builds a structure for this, which takes 0.5 us and 450 bytes per triangle. Later
-  /// calls use it from 1,024 queries on, if they are at least half as many as the triangles.
+  /// calls use it if they have at least 1,024 queries, and at least half as many as the mesh has triangles.
   /// @throws InvalidOption that names the first query that is not finite or too far away.
   /// @throws Cancelled.
   [[nodiscard]] std::vector<ClosestPoint> nearest(std::span<const Vec3d> queries, const Context& context = {}) const;

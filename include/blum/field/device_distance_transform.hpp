@@ -34,8 +34,8 @@ class DeviceDistanceTransform {
   /// Queues the work of distance_transform(), with the same bytes as the result. It does not wait, except for the
   /// oldest call when 64 calls are in flight.
   ///
-  /// The selected voxels are known only on the device. If no voxel is selected, or in a signed transform every voxel,
-  /// distances are infinite (or the band's), without sites.
+  /// The selected voxels are known only on the device. If no voxel is selected, all distances are
+  /// infinite (with a band, its half-width), without sites. In a signed transform this also holds if all are selected.
   /// @param values  one per voxel, x fastest.
   /// @param field   memory for distances and sites.
   /// @throws InvalidImage for another number of values.

@@ -33,8 +33,8 @@ struct DeviceFieldView {
   std::uint32_t* site = nullptr;  ///< 0xffffffff if none; ignored if the options exclude sites
 };
 
-/// Number of calls that have queued work so far, and of those, from the first on, that the device has completed. Memory
-/// that completed calls read or wrote is free again.
+/// Number of calls that have queued work so far, and how many of them, counted from the first, the device has
+/// completed. Memory that completed calls read or wrote is free again.
 struct DeviceProgress {
   std::uint64_t queued = 0;
   std::uint64_t finished = 0;

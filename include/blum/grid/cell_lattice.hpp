@@ -58,7 +58,7 @@ class CellLattice {
   [[nodiscard]] std::size_t stride(std::size_t axis) const { return stride_[axis]; }
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
 
-  /// Returns the cubes below and above a square. Neither may lie beyond the lattice.
+  /// Returns the cubes below and above a square. Both must lie in the lattice.
   [[nodiscard]] std::array<Cell, 2> cubes_beside(Cell square) const {
     const Cell above = square | 7U;
     return {static_cast<Cell>(above - 8 * stride_[normal_axis(square)]), above};

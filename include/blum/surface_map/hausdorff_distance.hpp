@@ -106,7 +106,8 @@ struct Description<HausdorffDistance> {
                                                             const HausdorffOptions& options = {},
                                                             const Context& context = {});
 
-/// Computes the Hausdorff distance of two meshes as sets of points, from both directions.
+/// Computes the Hausdorff distance of two meshes: the larger of the two one-sided distances. All points of their
+/// primitives count, not only vertices.
 [[nodiscard]] HausdorffDistance hausdorff_distance(const MeshView& a, const MeshView& b,
                                                    const HausdorffOptions& options = {}, const Context& context = {});
 

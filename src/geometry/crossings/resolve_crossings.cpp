@@ -220,7 +220,7 @@ class Windings {
         if (const auto winding = front_along_ray(f, random)) return {f, *winding};
       }
     }
-    throw Unresolved("a part of it is too small to decide if it lies inside others");
+    throw Unresolved("a part is so small that rounding hides if it lies inside another part");
   }
 
   /// Returns the winding number in front of a facet, from the crossings of a ray through it. Returns nullopt if

@@ -43,8 +43,8 @@ struct TrimLimits {
 };
 
 /// Collapses triangles and edges none of whose vertices sees two footprints at more than theta apart. Collapses run
-/// from the free borders inwards, as far as homotopy allows. Such cells exist because the cells of an axis reach up to
-/// a voxel beyond where the angle is theta. Flat triangles that lie on their other sides are collapsed, too.
+/// from the free borders inwards, as far as homotopy allows. Such cells exist because the axis extends up to one
+/// voxel past the line where the angle is theta. Flat triangles that lie on their other sides are collapsed, too.
 /// @param incidence  of the lists.
 /// @param angles     that each vertex sees, degrees.
 /// @return  true if the lists changed, if only in their order.  @throws Cancelled. Cost: near-linear.

@@ -262,8 +262,8 @@ class Unfolder {
     std::vector<Side> moved, at_edge;  ///< of folds()
   };
 
-  /// Returns the edges at which a sheet is folded now, without those around which nothing has changed since they were
-  /// examined in vain. They are ordered by in_strands(): next to each one is the one a batch before.
+  /// Returns the edges at which a sheet is folded. It skips edges near which nothing has changed since their last
+  /// examination. They are ordered by in_strands(): next to each one is the one a batch before.
   [[nodiscard]] std::vector<std::uint32_t> folded_edges() {
     constexpr std::size_t grain = 4096;
     const auto& edges = lists_.incidence().edges();
