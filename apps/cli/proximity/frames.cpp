@@ -200,7 +200,6 @@ std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
 }
 
 TextTable table_of(const ProximityArguments& a, const Answer& answer, const PhaseSummary& spent) {
-  constexpr std::size_t most_rows = 6;
   TextTable table;
   table.add("pairs", pairs_text(a, answer));
   table.add("frames", count_text(a.scene.size()));

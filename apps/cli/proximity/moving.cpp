@@ -18,18 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Largest number of rows for pairs of objects in the summary.
-constexpr std::size_t most_rows = 6;
-
 void check(const ProximityArguments& a) {
   if (a.ends.size() != a.scene.size()) {
     throw UsageError("--to has " + plural(a.ends.size(), "file", "files") + ", but " +
                      plural(a.scene.size(), "object is", "objects are") +
                      " given; give one file for each, in the same order, and repeat that of an object at rest");
   }
-  if (a.scene.size() == 1 && !a.self) {
-    throw UsageError("one object can only meet itself; add --self, or the files of more objects");
-  }
+  check_objects(a);
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 

@@ -109,6 +109,12 @@ void run_frames(const ProximityArguments& a, const SceneQuery& query);
 /// Returns a point as text. Coordinates below rounding errors at a size (mesh units) are printed as 0.
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
 
+/// Largest number of rows for pairs, parts or steps in a summary.
+inline constexpr std::size_t most_rows = 6;
+
+/// Requires something that objects can meet. @throws UsageError for one object without --self.
+void check_objects(const ProximityArguments& a);
+
 /// Returns the largest number of pairs to write: --limit, or a number above any count. @throws UsageError.
 [[nodiscard]] std::size_t read_limit(const ProximityArguments& a);
 

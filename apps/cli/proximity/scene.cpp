@@ -25,13 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Largest number of rows for pairs or parts in the summary.
-constexpr std::size_t most_rows = 6;
-
 void check(const ProximityArguments& a) {
-  if (a.scene.size() == 1 && !a.self) {
-    throw UsageError("one object can only meet itself; add --self, or the files of more objects");
-  }
+  check_objects(a);
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
 }
 

@@ -69,6 +69,12 @@ std::string objects_text(const std::vector<std::string>& names, ObjectId first, 
   return names[first.value] + ", " + (first == second ? "itself" : names[second.value]);
 }
 
+void check_objects(const ProximityArguments& a) {
+  if (a.scene.size() == 1 && !a.self) {
+    throw UsageError("one object can only meet itself; add --self, or the files of more objects");
+  }
+}
+
 std::size_t read_limit(const ProximityArguments& a) {
   constexpr std::int64_t most = std::int64_t{1} << 40;
   return a.limit ? static_cast<std::size_t>(parse_integer("--limit", *a.limit, 0, most)) : most;
