@@ -142,15 +142,14 @@ TEST(Formats, HaveOneNameAndExtensionEach) {
 }
 
 TEST(Formats, OfRowsGraphsAndMapsAreWrittenByName) {
-  // Further formats may follow.
   const auto written = [](FileContent content) { return extension_list(content, FileAccess::write); };
-  EXPECT_TRUE(written(FileContent::points).starts_with(".npz .ply .vtp .csv"));
-  EXPECT_TRUE(written(FileContent::pairs).starts_with(".npz .csv .json .vtp"));
-  EXPECT_TRUE(written(FileContent::collisions).starts_with(".npz .csv .json .vtp"));
-  EXPECT_TRUE(written(FileContent::surface_map).starts_with(".npz .png .glb .ply .vtp"));
-  EXPECT_TRUE(written(FileContent::graph).starts_with(".json .graphml"));
-  EXPECT_TRUE(written(FileContent::centreline).starts_with(".json .csv .swc .vtp .ply .npz"));
-  EXPECT_TRUE(written(FileContent::extended_axis).starts_with(".vtp .ply .obj .npz .stl"));
+  EXPECT_EQ(written(FileContent::points), ".npz .ply .vtp .csv");
+  EXPECT_EQ(written(FileContent::pairs), ".npz .csv .json .vtp");
+  EXPECT_EQ(written(FileContent::collisions), ".npz .csv .json .vtp");
+  EXPECT_EQ(written(FileContent::surface_map), ".npz .png .glb .ply .vtp");
+  EXPECT_EQ(written(FileContent::graph), ".json .graphml");
+  EXPECT_EQ(written(FileContent::centreline), ".json .csv .swc .vtp .ply .npz");
+  EXPECT_EQ(written(FileContent::extended_axis), ".vtp .ply .obj .npz .stl");
   EXPECT_EQ(cloud_extensions(), (std::vector<std::string>{".npy", ".npz", ".csv", ".xyz", ".txt"}));
   EXPECT_EQ(extensions_with_radii(), (std::vector<std::string>{".vtp", ".ply", ".ma", ".npz"}));
   EXPECT_TRUE(may_hold_columns("a.PLY") && !may_hold_columns("a.obj") && !may_hold_columns("a.glb"));
