@@ -124,8 +124,10 @@ def python_pieces(text: str) -> Iterator[Piece]:
             last = token.start[0]
     if comments:
         yield start, " ".join(comments)
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+    nodes = list(ast.walk(ast.parse(text)))
+    parts = {part for node in nodes if isinstance(node, ast.JoinedStr) for part in node.values}
+    for node in nodes:
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in parts:
             yield from string_pieces(node.lineno, node.value)
         elif isinstance(node, ast.JoinedStr):
             said = "".join(part.value if isinstance(part, ast.Constant) else "1" for part in node.values)
