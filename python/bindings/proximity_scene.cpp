@@ -181,20 +181,6 @@ void bind_updates(nb::class_<ProximityScene>& scene) {
       nb::arg("first"), nb::arg("second"), nb::arg("excluded"));
 }
 
-/// Query of the whole scene that takes a distance.
-using Query = ProximityPairs (ProximityScene::*)(double, const Context&) const;
-
-void bind_query(nb::class_<ProximityScene>& scene, const char* name, Query query) {
-  scene.def(
-      name,
-      [query](const ProximityScene& self, double distance, int threads, nb::object progress) {
-        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return with_features(self, (self.*query)(distance, context), context);
-        }));
-      },
-      nb::arg("distance"), nb::arg("threads"), nb::arg("progress").none());
-}
-
 void bind_queries(nb::class_<ProximityScene>& scene) {
   scene.def(
       "separation",
@@ -210,17 +196,16 @@ void bind_queries(nb::class_<ProximityScene>& scene) {
         }));
       },
       nb::arg("first"), nb::arg("second"), nb::arg("distance"), nb::arg("threads"), nb::arg("progress").none());
-  bind_query(scene, "separations", &ProximityScene::separation);
-  bind_query(scene, "closest_primitives", &ProximityScene::closest_primitives);
-  bind_query(scene, "closer_than", &ProximityScene::closer_than);
   scene.def(
-      "collisions",
-      [](const ProximityScene& self, int threads, nb::object progress) {
+      "pairs",
+      [](const ProximityScene& self, const std::string& query, double distance, const nb::dict& given, int threads,
+         nb::object progress) {
+        const PairQueryOptions options{distance, options_from<PenetrationOptions>(given)};
         return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return with_features(self, self.collisions(context), context);
+          return with_features(self, ask_pairs(self, query, options, context), context);
         }));
       },
-      nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("query"), nb::arg("distance"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 nb::tuple vector_out(const Vec3d& p) {
@@ -301,15 +286,6 @@ void bind_solids(nb::class_<ProximityScene>& scene) {
         const auto options = options_from<PenetrationOptions>(given);
         return parts_out(run({threads, std::move(progress)},
                              [&](const Context& context) { return self.penetrations(options, context); }));
-      },
-      nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
-  scene.def(
-      "signed_separations",
-      [](const ProximityScene& self, const nb::dict& given, int threads, nb::object progress) {
-        const auto options = options_from<PenetrationOptions>(given);
-        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return with_features(self, self.signed_separations(options, context), context);
-        }));
       },
       nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }

@@ -1,4 +1,7 @@
-"""Distances and collisions among meshes that move."""
+"""Proximity scenes.
+
+They compute distances and collisions among meshes that move.
+"""
 
 from __future__ import annotations
 
@@ -32,6 +35,16 @@ from ._progress import Progress, ProgressCallback, reporting
 from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
 from ._structs import ImpactOptions, PenetrationOptions, SceneOptions
 
+__all__ = [
+    "ProximityScene",
+    "TriangleDistances",
+    "closest_primitives",
+    "closest_rotation",
+    "collisions",
+    "separation",
+    "triangle_distances",
+]
+
 _ALL_LAYERS = 0xFFFFFFFF
 
 
@@ -47,6 +60,8 @@ class ProximityScene:
     ----------
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> scene = blum.ProximityScene()
     >>> table, ball = scene.add(blum.generate("box")), scene.add(blum.generate("sphere"))
@@ -100,6 +115,8 @@ class ProximityScene:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> scene = blum.ProximityScene()
         >>> scene.add(blum.generate("box"), name="table"), scene.add(blum.generate("sphere"))
@@ -118,6 +135,8 @@ class ProximityScene:
     def remove(self, index: Integer) -> None:
         """Removes an object. The others keep their numbers.
 
+        Examples
+        --------
         >>> import blum
         >>> scene = blum.ProximityScene()
         >>> scene.remove(scene.add(blum.generate("box")))
@@ -132,6 +151,8 @@ class ProximityScene:
     def rename(self, index: Integer, name: str) -> None:
         """Changes the name of an object in messages.
 
+        Examples
+        --------
         >>> import blum
         >>> scene = blum.ProximityScene()
         >>> scene.rename(scene.add(blum.generate("box")), "table")
@@ -166,6 +187,8 @@ class ProximityScene:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> fixed, moving = scene.add(box), scene.add(box)
@@ -195,6 +218,8 @@ class ProximityScene:
     def exclude(self, a: Integer, b: Integer, excluded: bool = True) -> None:
         """Excludes a pair of objects, or an object with itself, whatever their layers; or includes it again.
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add(box)
@@ -247,6 +272,8 @@ class ProximityScene:
         -------
         PrimitivePair, or None if no pair lies within `max_distance`. ProximityPairs without `a` and `b`.
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
@@ -258,7 +285,7 @@ class ProximityScene:
         most, count = number(max_distance, "max_distance"), integer(threads, "threads")
         if a is None or b is None:
             with self._alone(progress) as report:
-                return ProximityPairs(*self._scene.separations(most, count, report))
+                return ProximityPairs(*self._scene.pairs("separation", most, {}, count, report))
         first, second = _object(a, "a"), _object(b, "b")
         with self._alone(progress) as report:
             return ProximityPairs(*self._scene.separation(first, second, most, count, report)).closest
@@ -278,6 +305,8 @@ class ProximityScene:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
@@ -286,7 +315,7 @@ class ProximityScene:
         """
         most, count = number(max_distance, "max_distance"), integer(threads, "threads")
         with self._alone(progress) as report:
-            return ProximityPairs(*self._scene.closest_primitives(most, count, report))
+            return ProximityPairs(*self._scene.pairs("closest_primitives", most, {}, count, report))
 
     def closer_than(self, distance: Real, *, threads: int = 0, progress: Progress = False) -> ProximityPairs:
         """Returns all compared pairs of primitives that are at most a distance apart, each once.
@@ -298,6 +327,8 @@ class ProximityScene:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
@@ -306,13 +337,15 @@ class ProximityScene:
         """
         most, count = number(distance, "distance"), integer(threads, "threads")
         with self._alone(progress) as report:
-            return ProximityPairs(*self._scene.closer_than(most, count, report))
+            return ProximityPairs(*self._scene.pairs("closer_than", most, {}, count, report))
 
     def collisions(self, *, threads: int = 0, progress: Progress = False) -> ProximityPairs:
         """Returns all compared pairs of primitives that have a point in common.
 
         For one object, this includes pairs that share a vertex and have more in common than the shared corner or edge.
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add((box.vertices + [0.5, 0.25, 0.25], box.triangles))
@@ -321,7 +354,7 @@ class ProximityScene:
         """
         count = integer(threads, "threads")
         with self._alone(progress) as report:
-            return ProximityPairs(*self._scene.collisions(count, report))
+            return ProximityPairs(*self._scene.pairs("collisions", 0, {}, count, report))
 
     @takes("PenetrationOptions")
     def penetration(
@@ -345,6 +378,8 @@ class ProximityScene:
             As for :func:`distance_field`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> scene = blum.ProximityScene()
         >>> box, ball = scene.add(blum.generate("box")), scene.add(blum.generate("sphere", radius=0.5))
@@ -382,6 +417,8 @@ class ProximityScene:
             As for :func:`distance_field`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add((box.vertices + [0.75, 0, 0], box.triangles))
@@ -407,6 +444,8 @@ class ProximityScene:
             As for :func:`distance_field`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> places = [[0, 0, 0], [0.75, 0, 0], [1.25, 0, 0]]
@@ -437,6 +476,8 @@ class ProximityScene:
             As for :func:`distance_field`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add((box.vertices + [0.75, 0, 0], box.triangles))
@@ -445,7 +486,7 @@ class ProximityScene:
         """
         count = integer(threads, "threads")
         with self._alone(progress) as report:
-            return ProximityPairs(*self._scene.signed_separations(dict(options), count, report))
+            return ProximityPairs(*self._scene.pairs("signed_separations", 0, dict(options), count, report))
 
     @takes("ImpactOptions")
     def continuous(
@@ -470,6 +511,8 @@ class ProximityScene:
             As for :func:`distance_field`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> scene = blum.ProximityScene()
         >>> box = blum.generate("box")
@@ -512,6 +555,8 @@ def separation(
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> box = blum.generate("box")
     >>> found = blum.separation(box, (box.vertices + [3, 0, 0], box.triangles))
@@ -548,6 +593,8 @@ def closest_primitives(
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.closest_primitives(blum.generate("torus"))
     >>> len(found), found.primitive[0, 0].item(), bool((found.distance > 0).all())
@@ -581,6 +628,8 @@ def collisions(
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> box = blum.generate("box")
     >>> moved = blum.Mesh(box.vertices + [0.5, 0.25, 0.25], box.triangles)
@@ -600,6 +649,8 @@ def collisions(
 class TriangleDistances:
     """Distances of pairs of triangles; the result of :func:`triangle_distances`.
 
+    Examples
+    --------
     >>> import blum
     >>> triangle = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     >>> found = blum.triangle_distances([triangle], [triangle])
@@ -623,6 +674,8 @@ def triangle_distances(a: Any, b: Any, *, threads: int = 0, progress: Progress =
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> floor, above = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 2], [9, 0, 3], [0, 9, 3]]
     >>> found = blum.triangle_distances([floor], [above])
@@ -711,6 +764,8 @@ def closest_rotation(matrix: Any) -> FloatArray:
         A rotation, or a transform, of which only the rotation changes. Its columns must have length 1 and be
         perpendicular, to 0.1.
 
+    Examples
+    --------
     >>> import blum, numpy as np
     >>> turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]], dtype=np.float32)
     >>> rotation = blum.closest_rotation(turn)

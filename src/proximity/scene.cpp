@@ -1,6 +1,7 @@
 #include "blum/proximity/scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <iterator>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -446,6 +448,37 @@ ProximityPairs ProximityScene::signed_separations(const PenetrationOptions& opti
     ++next;
   }
   return out;
+}
+
+std::span<const PairQuery> pair_queries() {
+  using Scene = const ProximityScene&;
+  using Options = const PairQueryOptions&;
+  static constexpr std::array queries{
+      PairQuery{"separation", [](Scene scene, Options options,
+                                 const Context& context) { return scene.separation(options.max_distance, context); }},
+      PairQuery{"signed_separations",
+                [](Scene scene, Options options, const Context& context) {
+                  return scene.signed_separations(options.penetration, context);
+                }},
+      PairQuery{"closest_primitives",
+                [](Scene scene, Options options, const Context& context) {
+                  return scene.closest_primitives(options.max_distance, context);
+                }},
+      PairQuery{"closer_than", [](Scene scene, Options options,
+                                  const Context& context) { return scene.closer_than(options.max_distance, context); }},
+      PairQuery{"collisions", [](Scene scene, Options, const Context& context) { return scene.collisions(context); }},
+  };
+  return queries;
+}
+
+ProximityPairs ask_pairs(const ProximityScene& scene, std::string_view query, const PairQueryOptions& options,
+                         const Context& context) {
+  std::string names;
+  for (const PairQuery& one : pair_queries()) {
+    if (one.name == query) return one.ask(scene, options, context);
+    names += (names.empty() ? "" : ", ") + std::string(one.name);
+  }
+  throw InvalidOption("query is '" + std::string(query) + "', but must be one of " + names);
 }
 
 }  // namespace blum

@@ -245,4 +245,23 @@ class ProximityScene {
   std::unique_ptr<Data> data_;
 };
 
+/// Options of a query that is called by name. Each query uses those that its method has.
+struct PairQueryOptions {
+  double max_distance = std::numeric_limits<double>::infinity();  ///< Largest distance of a pair, mesh units.
+  PenetrationOptions penetration;
+};
+
+/// Method of ProximityScene that returns pairs, for front ends that call queries by name.
+struct PairQuery {
+  std::string_view name;  ///< of the method
+  ProximityPairs (*ask)(const ProximityScene& scene, const PairQueryOptions& options, const Context& context);
+};
+
+/// Returns all queries of a whole scene that return pairs.
+[[nodiscard]] std::span<const PairQuery> pair_queries();
+
+/// Calls the query of this name. @throws InvalidOption if no query has the name; else as the method.
+[[nodiscard]] ProximityPairs ask_pairs(const ProximityScene& scene, std::string_view query,
+                                       const PairQueryOptions& options = {}, const Context& context = {});
+
 }  // namespace blum

@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -539,6 +540,29 @@ TEST(ProximityScene, StopsWhenAsked) {
   EXPECT_THROW(static_cast<void>(scene.collisions(context)), Cancelled);
   EXPECT_THROW(scene.add(make_torus({}), {}, context), Cancelled);
   EXPECT_EQ(scene.size(), 1U);
+}
+
+TEST(PairQueries, CallTheMethodsOfTheirNames) {
+  ProximityScene scene;
+  TriangleMesh box = make_box({});
+  for (const double x : {0.0, 0.75, 4.0}) {
+    TriangleMesh moved = box;
+    for (Vec3d& p : moved.vertices) p.x += x;
+    scene.add(moved);
+  }
+  const PairQueryOptions options{.max_distance = 0.5, .penetration = {.depth_tolerance = 1e-3}};
+  const std::map<std::string_view, ProximityPairs> expected{
+      {"separation", scene.separation(0.5)},
+      {"signed_separations", scene.signed_separations(options.penetration)},
+      {"closest_primitives", scene.closest_primitives(0.5)},
+      {"closer_than", scene.closer_than(0.5)},
+      {"collisions", scene.collisions()}};
+  for (const auto& [name, wanted] : expected) {
+    SCOPED_TRACE(name);
+    EXPECT_FALSE(wanted.pairs.empty());
+    EXPECT_EQ(rows(ask_pairs(scene, name, options).pairs), rows(wanted.pairs));
+  }
+  EXPECT_THROW((void)ask_pairs(scene, "penetrations"), InvalidOption);
 }
 
 }  // namespace
