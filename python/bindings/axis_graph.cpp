@@ -42,10 +42,10 @@ void bind_axis_graph(nb::module_& m) {
       nb::arg("axis"), nb::arg("mesh").none(), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
       "write_graph",
-      [](const Path& path, const Complex& axis, const MeshArrays* mesh, const nb::dict& given, const nb::dict& told) {
+      [](const Path& path, const Complex& axis, const MeshArrays* mesh, const nb::dict& given, const nb::dict& stated) {
         const std::optional<MeshView> view = view_of_mesh(mesh);
         const auto options = options_from<AxisGraphOptions>(given);
-        auto metadata = options_from<MedialMetadata>(told);
+        auto metadata = options_from<MedialMetadata>(stated);
         metadata.version = BLUM_VERSION;
         run_call({0, nb::none()},
                  [&](const Context& context) { write_graph(path, graph_of(axis, view, options, context), metadata); });

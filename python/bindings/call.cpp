@@ -45,14 +45,14 @@ class Shared {
     return changed_.wait_for(lock, look_every, [&] { return is_done_; });
   }
   /// Calls the given function with (fraction, phase) if something new was reported.
-  template <class Tell>
-  void take_news(const Tell& tell) {
+  template <class Show>
+  void take_news(const Show& show) {
     std::unique_lock lock(mutex_);
     if (!std::exchange(is_news_, false)) return;
     const double fraction = fraction_;
     const std::string phase = phase_;
     lock.unlock();
-    tell(fraction, phase);
+    show(fraction, phase);
   }
   [[nodiscard]] const std::exception_ptr& failure() const { return failure_; }
 
@@ -159,8 +159,8 @@ void run_call(const Call& call, void (*work)(const void* subject, const Context&
   std::stop_source stop;
   RunningCalls::Entry entry(calls, stop);
   Context context{call.threads, {}, stop.get_token(), call.device};
-  const bool tells = !call.progress.is_none();
-  if (tells) {
+  const bool sniffer = !call.progress.is_none();
+  if (sniffer) {
     context.progress = [&](double fraction, std::string_view phase) { shared.report(fraction, phase); };
   }
   std::jthread worker([&] {
@@ -178,7 +178,7 @@ void run_call(const Call& call, void (*work)(const void* subject, const Context&
     if (raised) return;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
-      if (tells) shared.take_news([&](double fraction, const std::string& phase) { call.progress(fraction, phase); });
+      if (sniffer) shared.take_news([&](double fraction, const std::string& phase) { call.progress(fraction, phase); });
     } catch (...) {
       raised = std::current_exception();
       stop.request_stop();

@@ -28,8 +28,8 @@ void bind_extend_axis(nb::module_& m) {
       nb::arg("axis"), nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
       "write_extended",
-      [](const std::filesystem::path& path, const Complex& surface, const nb::dict& told) {
-        auto metadata = options_from<MedialMetadata>(told);
+      [](const std::filesystem::path& path, const Complex& surface, const nb::dict& stated) {
+        auto metadata = options_from<MedialMetadata>(stated);
         metadata.version = BLUM_VERSION;
         run_call({0, nb::none()}, [&](const Context& context) { write_extended(path, surface, metadata, context); });
       },

@@ -67,8 +67,8 @@ bool is_described(const nb::module_& m, std::string_view name) {
 
 /// Returns the description of a member, as the module lists it.
 /// @param type  name of the member's type.
-nb::tuple told(const std::string& name, const std::string& type, const nb::object& value, std::string_view unit,
-               std::string_view doc) {
+nb::tuple stated(const std::string& name, const std::string& type, const nb::object& value, std::string_view unit,
+                 std::string_view doc) {
   return nb::make_tuple(name, type, value, std::string(unit), std::string(doc));
 }
 
@@ -127,15 +127,16 @@ void bind_members(nb::module_& m, const StructType& type, bool is_options) {
   nb::list members;
   for (const StructMember& member : type.members) {
     if (member.type == nullptr) {
-      members.append(told("label", "Integer | None", nb::none(), "", "images: the voxels of this value are the ones"));
       members.append(
-          told("threshold", "Real | None", nb::none(), "", "images: those of at least this value; excludes a label"));
+          stated("label", "Integer | None", nb::none(), "", "images: the voxels of this value are the ones"));
+      members.append(
+          stated("threshold", "Real | None", nb::none(), "", "images: those of at least this value; excludes a label"));
       continue;
     }
     // Only options have defaults. Results may have types whose Python classes exist only once the package is complete.
     const nb::object value = is_options ? member.of(type.defaults) : nb::none();
     const std::string name = member.type->type_name(m, is_options, member.choices);
-    members.append(told(python_name(member.name), name, value, member.unit, member.doc));
+    members.append(stated(python_name(member.name), name, value, member.unit, member.doc));
   }
   nb::dict entry;
   entry["doc"] = std::string(type.doc);

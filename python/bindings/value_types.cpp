@@ -111,83 +111,83 @@ struct Values<std::vector<std::uint32_t>> : ArrayOf<std::uint32_t, std::int32_t,
 namespace {
 
 template <class T>
-constexpr ValueType read_and_told{&Values<T>::to, &Values<T>::from, &Values<T>::name};
+constexpr ValueType read_and_written{&Values<T>::to, &Values<T>::from, &Values<T>::name};
 template <class T>
-constexpr ValueType only_told{&Values<T>::to, nullptr, &Values<T>::name};
+constexpr ValueType only_written{&Values<T>::to, nullptr, &Values<T>::name};
 
 }  // namespace
 
 template <>
 const ValueType& value_type<bool>() {
-  return read_and_told<bool>;
+  return read_and_written<bool>;
 }
 template <>
 const ValueType& value_type<int>() {
-  return read_and_told<int>;
+  return read_and_written<int>;
 }
 template <>
 const ValueType& value_type<unsigned>() {
-  return read_and_told<unsigned>;
+  return read_and_written<unsigned>;
 }
 template <>
 const ValueType& value_type<long>() {
-  return read_and_told<long>;
+  return read_and_written<long>;
 }
 template <>
 const ValueType& value_type<unsigned long>() {
-  return read_and_told<unsigned long>;
+  return read_and_written<unsigned long>;
 }
 template <>
 const ValueType& value_type<long long>() {
-  return read_and_told<long long>;
+  return read_and_written<long long>;
 }
 template <>
 const ValueType& value_type<unsigned long long>() {
-  return read_and_told<unsigned long long>;
+  return read_and_written<unsigned long long>;
 }
 template <>
 const ValueType& value_type<float>() {
-  return read_and_told<float>;
+  return read_and_written<float>;
 }
 template <>
 const ValueType& value_type<double>() {
-  return read_and_told<double>;
+  return read_and_written<double>;
 }
 template <>
 const ValueType& value_type<std::string>() {
-  return read_and_told<std::string>;
+  return read_and_written<std::string>;
 }
 template <>
 const ValueType& value_type<std::optional<double>>() {
-  return read_and_told<std::optional<double>>;
+  return read_and_written<std::optional<double>>;
 }
 template <>
 const ValueType& value_type<GridSpec>() {
-  return read_and_told<GridSpec>;
+  return read_and_written<GridSpec>;
 }
 template <>
 const ValueType& value_type<Vec3d>() {
-  return only_told<Vec3d>;
+  return only_written<Vec3d>;
 }
 template <>
 const ValueType& value_type<Box3>() {
-  return only_told<Box3>;
+  return only_written<Box3>;
 }
 template <>
 const ValueType& value_type<std::vector<PhaseTime>>() {
-  return only_told<std::vector<PhaseTime>>;
+  return only_written<std::vector<PhaseTime>>;
 }
 template <>
 const ValueType& value_type<std::vector<Vec3d>>() {
-  return only_told<std::vector<Vec3d>>;
+  return only_written<std::vector<Vec3d>>;
 }
 template <>
 const ValueType& value_type<std::vector<double>>() {
-  return only_told<std::vector<double>>;
+  return only_written<std::vector<double>>;
 }
 template <>
 const ValueType& value_type<std::vector<std::uint32_t>>() {
-  return only_told<std::vector<std::uint32_t>>;
+  return only_written<std::vector<std::uint32_t>>;
 }
 
 }  // namespace blum::python

@@ -32,7 +32,7 @@ constexpr double sharp = 0.8;
 constexpr std::size_t few = 8;
 /// Number of triangles away from seams that show how a sheet lies, and number of those among which they are searched
 /// for.
-constexpr std::size_t telling = 12;
+constexpr std::size_t most_samples = 12;
 constexpr std::size_t most_looked_at = 96;
 
 Vec3d normal_of(const Complex& axis, std::uint32_t triangle) {
@@ -138,7 +138,7 @@ class SheetJoiner {
     std::unordered_set<std::uint32_t> known{triangle};
     std::size_t count = 0;
     Vec3d sum;
-    for (std::size_t k = 0; k < line.size() && k < most_looked_at && count < telling; ++k) {
+    for (std::size_t k = 0; k < line.size() && k < most_looked_at && count < most_samples; ++k) {
       if (is_inner_[line[k]]) {
         const Vec3d normal = normal_of(axis_, line[k]);
         sum += dot(sum, normal) < 0 ? -1.0 * normal : normal;

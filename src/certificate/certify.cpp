@@ -178,7 +178,7 @@ Certificate verifier::certify_against(const Complex& complex, const KnownSolid& 
   certificate.edges =
       verifier::check_edges(axis, incidence, solid, locations, parts, factor, ways, certificate.mismatches, context);
   certificate.homology =
-      verifier::check_homology({axis, incidence, solid, locations, parts, ways, factor, certificate.edges.untold},
+      verifier::check_homology({axis, incidence, solid, locations, parts, ways, factor, certificate.edges.undecided},
                                certificate.edges.holds && certificate.geometry.not_finite == 0, certificate.bodies,
                                name, certificate.mismatches, context);
   certificate.triangles = verifier::check_triangles(axis, solid, locations, parts, certificate.checked, factor,

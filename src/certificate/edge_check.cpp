@@ -24,7 +24,7 @@ struct Findings {
     ways.grazing.insert(ways.grazing.end(), other.ways.grazing.begin(), other.ways.grazing.end());
     if (check.across == 0) check.across_at = other.check.across_at;
     check.across += other.check.across;
-    check.untold += other.check.untold;
+    check.undecided += other.check.undecided;
     check.pushed += other.check.pushed;
     check.pushed_by = std::max(check.pushed_by, other.check.pushed_by);
     check.outside += other.check.outside;
@@ -85,7 +85,7 @@ class EdgeLook {
         found.check.across_at = 0.5 * (way[k].at + way[k + 1].at);
         return;
       }
-      if (!is_across) found.check.untold = 1;
+      if (!is_across) found.check.undecided = 1;
     }
   }
 

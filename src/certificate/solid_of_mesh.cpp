@@ -58,7 +58,7 @@ std::optional<bool> GapSearch::crosses(const Vec3d& a, const Vec3d& b, std::uint
   const auto met = meetings(a, b, body);
   if (!met) return std::nullopt;
   const double nothing = 1e-13 * solid_.diagonal();
-  bool is_told = true;
+  bool is_decided = true;
   for (std::size_t k = 0; k + 1 < met->size(); ++k) {
     const Meeting& from = (*met)[k];
     const Meeting& to = (*met)[k + 1];
@@ -66,9 +66,9 @@ std::optional<bool> GapSearch::crosses(const Vec3d& a, const Vec3d& b, std::uint
     const std::optional<bool> joined = are_joined(from, to, reach);
     if (joined == true) continue;
     if (joined == false && length(to.at - from.at) > nothing) return true;
-    is_told = false;
+    is_decided = false;
   }
-  return is_told ? std::optional(false) : std::nullopt;
+  return is_decided ? std::optional(false) : std::nullopt;
 }
 
 std::optional<std::vector<GapSearch::Meeting>> GapSearch::meetings(const Vec3d& a, const Vec3d& b,

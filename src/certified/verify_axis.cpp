@@ -136,7 +136,7 @@ Certificate MeshAxisVerifier::verify(const Complex& axis, const MedialClaims& cl
   if (found.rule == SolidRule::polyhedron) {
     return with_claims(polyhedron_.certify(all.get(), checks, context), all.get(), claims, nullptr);
   }
-  if (!claims.metadata.grid) throw UntoldVoxels(found.reason);
+  if (!claims.metadata.grid) throw UnknownVoxels(found.reason);
   const auto voxels = voxels_on(*claims.metadata.grid, found.reason, available_memory, context);
   return with_claims(voxels->verifier.certify(all.get(), checks, context), all.get(), claims, nullptr);
 }

@@ -44,7 +44,7 @@ std::optional<NearestSite> PointSearch::search(const Vec3d& query, const cpu::Fo
 }
 
 void PointSearch::nearest(std::span<const Vec3d> queries, double max_distance, const Bvh& bvh, const Context& context,
-                          FunctionRef<void(std::span<const Answer>)> tell) const {
+                          FunctionRef<void(std::span<const Answer>)> receive) const {
   for (std::size_t first = 0; first < queries.size(); first += queries_per_batch) {
     const auto batch = queries.subspan(first, std::min(queries_per_batch, queries.size() - first));
     engine_.for_each_group(batch, context, [&](std::span<const cpu::FoundSite> group) {
@@ -59,7 +59,7 @@ void PointSearch::nearest(std::span<const Vec3d> queries, double max_distance, c
           answer.nearest.site = SiteId::none();
         }
       }
-      tell(answers.span());
+      receive(answers.span());
     });
   }
 }

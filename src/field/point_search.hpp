@@ -38,12 +38,12 @@ class PointSearch {
     NearestSite nearest;    ///< without a site if nothing lies within max_distance
   };
 
-  /// Calls `tell(answers)` for groups of queries, on many threads at once. Each query is in exactly one group.
+  /// Calls `receive(answers)` for groups of queries, on many threads at once. Each query is in exactly one group.
   /// @param queries  finite points.
   /// @param bvh      tree of the same mesh.
   /// @throws Cancelled.
   void nearest(std::span<const Vec3d> queries, double max_distance, const Bvh& bvh, const Context& context,
-               FunctionRef<void(std::span<const Answer>)> tell) const;
+               FunctionRef<void(std::span<const Answer>)> receive) const;
 
  private:
   /// Computes the answer from the sites that the kernels found. Returns false if it is not certain.

@@ -44,7 +44,7 @@ namespace fs = std::filesystem;
 using volume_io::ByteSource;
 
 /// Tests that identify the content of a file by its bytes.
-struct Tells {
+struct Sniffer {
   /// Returns true if the first bytes of a file are those of this format; null if they do not identify it.
   bool (*begins)(std::string_view head) = nullptr;
   /// Returns true if a file with this format's extension and these first bytes holds this content; null: always.
@@ -56,14 +56,14 @@ struct MeshCode {
   MeshFile (*read)(std::string_view bytes, std::string_view name);
   /// Writes a valid mesh of finite vertices.
   void (*write)(const fs::path& path, const MeshView& mesh);
-  Tells tells = {};
+  Sniffer sniffer = {};
 };
 
 struct ImageCode {
   /// @param path  path of the source; empty for memory.
   VoxelImage (*read)(const ByteSource& source, const fs::path& path);
   void (*write)(const fs::path& path, const VoxelImageView& image) = nullptr;  ///< null if not written
-  Tells tells = {};
+  Sniffer sniffer = {};
   /// Reads an image that is spread over several files. Returns nullopt if the path is of another kind. May be null.
   std::optional<VoxelImage> (*read_several)(const fs::path& path) = nullptr;
 };
@@ -72,7 +72,7 @@ struct FieldCode {
   /// @param path  path of the source, to find the files of the other arrays; if empty, they are not read.
   Field (*read)(const ByteSource& source, const fs::path& path);
   void (*write)(const fs::path& path, const Field& field, const FieldFileInfo& info, const Context& context);
-  Tells tells = {};
+  Sniffer sniffer = {};
 };
 
 /// Readers check only what they need to be safe; callers check problem_of() afterwards. Writers need complexes without
@@ -83,7 +83,7 @@ struct ComplexCode {
   ComplexFile (*read_text)(std::string_view bytes, std::string_view name);
   void (*write)(const fs::path& path, const Complex& complex, const FileMetadata& metadata,
                 const ComplexWriteOptions& options, const Context& context);
-  Tells tells = {};
+  Sniffer sniffer = {};
   bool holds_further = false;  ///< true if a file can hold several complexes
   bool holds_columns = true;   ///< true if files hold any columns
   bool holds_radii = true;     ///< true if files hold the radii of medial axes
@@ -234,13 +234,13 @@ inline constexpr auto table = [] {
 }();
 
 /// Returns the tests of a row. They are null if its code has none.
-[[nodiscard]] inline Tells tells_of(std::size_t row) {
+[[nodiscard]] inline Sniffer sniffer_of(std::size_t row) {
   return std::visit(
       []<class Code>(const Code* code) {
-        if constexpr (requires { code->tells; }) {
-          return code->tells;
+        if constexpr (requires { code->sniffer; }) {
+          return code->sniffer;
         } else {
-          return Tells{};
+          return Sniffer{};
         }
       },
       table[row].code);

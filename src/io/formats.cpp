@@ -67,7 +67,7 @@ std::size_t find_named(FileContent content, std::string_view name) {
 
 std::optional<std::size_t> find_head(FileContent content, std::string_view head) {
   const auto fits = [&](std::size_t row) {
-    const auto begins_as = formats::tells_of(row).begins;
+    const auto begins_as = formats::sniffer_of(row).begins;
     return begins_as != nullptr && begins_as(head);
   };
   // OBJ comes last, because PLY and OFF files may contain lines that look like OBJ.
@@ -199,7 +199,7 @@ std::optional<ImageFormat> image_format(const fs::path& path, std::string_view h
 template <class Format>
 bool holds(const std::optional<Format>& format, const fs::path& path, std::string_view head) {
   if (!format) return false;
-  const auto holds_this = formats::tells_of(format->row()).holds_this;
+  const auto holds_this = formats::sniffer_of(format->row()).holds_this;
   return holds_this == nullptr || holds_this(head, path);
 }
 

@@ -179,7 +179,7 @@ class BlockSearch {
   }
 
   /// @param out  closest pair of each primitive of the object.
-  void tell(std::vector<std::optional<PrimitivePair>>& out) const {
+  void add_to(std::vector<std::optional<PrimitivePair>>& out) const {
     for (std::size_t k = 0; k < primitives_.size(); ++k) out[primitives_[k]] = best_[k].pair;
   }
 
@@ -244,7 +244,7 @@ ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects,
         if (!std::any_of(primitives.begin(), primitives.end(), wanted)) continue;
         BlockSearch search(bvh, block, max_distance, candidates);
         for (const Partner& partner : partners[k]) search.look_at(partner, reports[range.begin / blocks_per_range]);
-        search.tell(out[k]);
+        search.add_to(out[k]);
       }
     });
     candidates.check();
@@ -351,14 +351,14 @@ class NearSearch {
     ++found.report.exact_tests;
     if (distance_ == 0 && !triangles_meet(objects_.a().corners(i), objects_.b().corners(j))) return;
     const PrimitivePair pair = objects_.compare(i, j);
-    if (pair.between.distance <= distance_) tell(pair, found);
+    if (pair.between.distance <= distance_) add_to(pair, found);
   }
   void test_fold(std::uint32_t i, std::uint32_t j, FoundPairs& found) const {
     ++found.report.exact_tests;
     if (!objects_.are_folded(i, j)) return;
-    tell(objects_.compare(i, j), found);
+    add_to(objects_.compare(i, j), found);
   }
-  void tell(const PrimitivePair& pair, FoundPairs& found) const {
+  void add_to(const PrimitivePair& pair, FoundPairs& found) const {
     found.pairs.push_back(pair);
     ++count_;
   }

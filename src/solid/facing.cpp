@@ -48,7 +48,7 @@ class Reverser {
     int sum = 0;
     for (std::size_t next = 0; next < shell.size(); ++next) {
       sum += facing_[shell[next]];
-      if (!tell_neighbours(shell[next], shell)) return false;
+      if (!visit_neighbours(shell[next], shell)) return false;
     }
     for (const std::uint32_t t : shell) {
       if ((facing_[t] > 0) == (sum >= 0)) continue;
@@ -59,7 +59,7 @@ class Reverser {
   }
 
   /// Sets the orientation of a triangle's neighbours. Returns false if a neighbour already has the opposite one.
-  bool tell_neighbours(std::uint32_t t, std::vector<std::uint32_t>& shell) {
+  bool visit_neighbours(std::uint32_t t, std::vector<std::uint32_t>& shell) {
     for (const EdgeId edge : sites_.triangle_edges()[t]) {
       const auto& pair = of_edge_[edge.value];
       const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];

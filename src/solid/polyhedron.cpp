@@ -170,13 +170,13 @@ std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites
 
 std::string resolved_text(const CrossingCounts& counts) {
   std::string text;
-  const auto tell = [&](std::size_t n, const char* one, const char* many) {
+  const auto add = [&](std::size_t n, const char* one, const char* many) {
     if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, one, many);
   };
-  tell(counts.crossing, "pair of triangles crossed", "pairs of triangles crossed");
-  tell(counts.touching, "pair of triangles touched", "pairs of triangles touched");
-  tell(counts.flat, "triangle had no area", "triangles had no area");
-  tell(counts.crowded_edges, "edge had more than two triangles", "edges had more than two triangles");
+  add(counts.crossing, "pair of triangles crossed", "pairs of triangles crossed");
+  add(counts.touching, "pair of triangles touched", "pairs of triangles touched");
+  add(counts.flat, "triangle had no area", "triangles had no area");
+  add(counts.crowded_edges, "edge had more than two triangles", "edges had more than two triangles");
   return text + ": resolved exactly, the solid is where the winding number is 1 or more";
 }
 

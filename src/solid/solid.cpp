@@ -83,19 +83,19 @@ bool PointLocation::contains(const Vec3d& p) const {
 
 std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& direction) const {
   int winding = 0;
-  bool tells = true;
+  bool is_decisive = true;
   bool is_on_surface = false;
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   bvh_->for_each_crossing({p, direction}, no_limit, [&](const RayCrossing& crossing) {
     const Triangle& t = mesh_.triangles[crossing.triangle.value];
     // A ray crosses a plane once. If its origin lies in the plane, it is the crossing.
     is_on_surface = is_on_surface || orient3d(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], p) == 0;
-    tells = tells && !crossing.on_border;
+    is_decisive = is_decisive && !crossing.on_border;
     winding += crossing.side;
     return is_on_surface ? -1 : no_limit;
   });
   if (is_on_surface && is_polyhedron_) return true;
-  if (!tells || is_on_surface) return std::nullopt;
+  if (!is_decisive || is_on_surface) return std::nullopt;
   return winding > 0;
 }
 

@@ -124,7 +124,7 @@ class PartOfSquare {
     std::size_t class_count = 0;
     for (std::uint32_t k = 0; k < cells_.pieces.size(); ++k) class_count += classes.find(k) == k ? 1U : 0U;
     const std::size_t points = out_.corners.size() + (rule_.is_medial() ? square_.reflex_piercings : 0);
-    out_.is_told = out_.is_told && out_.arcs.size() + joins + class_count == cells_.pieces.size() + points;
+    out_.is_decided = out_.is_decided && out_.arcs.size() + joins + class_count == cells_.pieces.size() + points;
     find_components(classes);
     return std::move(out_);
   }
@@ -163,7 +163,7 @@ class PartOfSquare {
           ++joins;
           classes.join(before, behind);
         } else if (classes.find(before) != classes.find(behind)) {
-          out_.is_told = false;
+          out_.is_decided = false;
         }
       }
     }
@@ -193,7 +193,7 @@ class PartOfSquare {
       const std::uint32_t first = piece_of(arc.first, arc.event);
       const std::uint32_t second = piece_of(arc.second, arc.event);
       if (first == outside || second == outside) {
-        out_.is_told = false;
+        out_.is_decided = false;
       } else {
         add_arc(first, second);
       }
@@ -259,7 +259,7 @@ class PartOfSquare {
         if (rule_.is_edge(cells_.pieces[e].site) && are_joined(f, e) && are_joined(e, v)) ++edges;
       }
       if (edges == 2) out_.corners.push_back({cells_.pieces[f].site, rule_.vertex_of(cells_.pieces[v].site)});
-      if (edges > 2) out_.is_told = false;
+      if (edges > 2) out_.is_decided = false;
     }
   }
 

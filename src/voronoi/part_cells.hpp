@@ -118,7 +118,7 @@ struct ThinRegion {
 /// Pieces are joined across dropped walls. Each piece is connected and reaches the border, so two of them share at most
 /// one arc: two arcs would enclose a third piece. Joined pieces may go around a point around which all walls are
 /// dropped. There a reflex edge pierces the square, or the normal of a face at a vertex (`corners`). Anything else that
-/// they go around is a component of the part that lies strictly inside; then `is_told` is false. A thin region that
+/// they go around is a component of the part that lies strictly inside; then `is_decided` is false. A thin region that
 /// reaches the border in k places is convex. So it joins the k chains of pieces between these as k - 1 arcs would.
 struct PartSquare {
   std::vector<std::array<std::uint32_t, 2>> arcs;  ///< dropped: the pieces on both sides, the smaller one first
@@ -127,7 +127,7 @@ struct PartSquare {
   std::vector<std::uint32_t> component;  ///< of the part, for each event; `outside` for dropped ones
   std::uint32_t component_count = 0;
   std::vector<ThinRegion> thin;  ///< regions that reach the border
-  bool is_told = true;
+  bool is_decided = true;
 };
 
 [[nodiscard]] PartSquare part_square(const SquareCells& cells, const GridSquare& square, const PartRule& rule);

@@ -66,11 +66,11 @@ bool PartSquareTest::resolve(GridSquare& square) const {
   // The square is resolved, so no closed curve exists.
   if (const auto chains = surface_chains(tree_, surface_, square)) add_surface(*chains, square);
   const SquareCells cells = square_cells(tree_, labels_, square);
-  bool is_told = true;
-  if (rule_.is_medial()) is_told = add_walls(cells, square);
-  is_told = is_told && part_square(cells, square, rule_).is_told;
-  if (!is_told) square.state = SquareState::unknown;
-  return is_told;
+  bool is_decided = true;
+  if (rule_.is_medial()) is_decided = add_walls(cells, square);
+  is_decided = is_decided && part_square(cells, square, rule_).is_decided;
+  if (!is_decided) square.state = SquareState::unknown;
+  return is_decided;
 }
 
 /// Adds arcs of the surface between the outside and faces, and of walls that begin where a reflex edge pierces the

@@ -6,7 +6,7 @@ namespace blum::cli {
 namespace {
 
 /// Returns true if a file records its solid. Files .obj, .ma and those of other programs do not.
-bool tells_its_solid(const MedialMetadata& metadata) {
+bool states_its_solid(const MedialMetadata& metadata) {
   return !metadata.solid_rule.empty();
 }
 
@@ -40,7 +40,7 @@ void record(const LabelSelection& selection, std::optional<double> weld, InputKi
 
 std::string missing_options(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                             bool topology_holds) {
-  if (tells_its_solid(metadata)) return {};
+  if (states_its_solid(metadata)) return {};
   if (kind == InputKind::mesh) {
     // Welding moves vertices only slightly, so a wrong --weld shows in the topology.
     if (given.weld || topology_holds) return {};

@@ -34,7 +34,7 @@ std::string claims_text(const CertificateOptions& said) {
 }
 
 /// For a mesh that bounds no polyhedron and a file without metadata.
-constexpr const char* untold_rule =
+constexpr const char* missing_rule =
     "; its axis belongs to voxels that the file does not record (.obj and .ma store neither rule nor grid). "
     "Verify the .vtp, .ply or .npz file of the same run, or repeat --weld if that run had it";
 
@@ -175,8 +175,8 @@ Certificate SolidVerifier::certificate_of(const MedialFile& file, const LabelSel
   if (image_) return image_->verify(file.complex, claims_of(file), selection, {}, context);
   try {
     return mesh_->verify(file.complex, claims_of(file), {}, available_memory(), context);
-  } catch (const UntoldVoxels& error) {
-    throw InvalidMesh("the mesh bounds no polyhedron (" + error.reason() + ")" + untold_rule);
+  } catch (const UnknownVoxels& error) {
+    throw InvalidMesh("the mesh bounds no polyhedron (" + error.reason() + ")" + missing_rule);
   }
 }
 
@@ -287,7 +287,7 @@ Json certificate_json(const Certificate& c, bool has_nested) {
 Json counts_json(const MedialCounts& counts, bool has_labels) {
   Json json = to_json(counts);
   if (!has_labels) {
-    for (const char* const told : {"sheets", "rim_edges", "seam_edges", "junctions"}) json[told] = nullptr;
+    for (const char* const stated : {"sheets", "rim_edges", "seam_edges", "junctions"}) json[stated] = nullptr;
   }
   return json;
 }

@@ -43,7 +43,7 @@ struct Frame {
   }
 };
 
-void tell(const SceneFound& found, std::size_t limit, Frame& out) {
+void add_result(const SceneFound& found, std::size_t limit, Frame& out) {
   const std::string kind(found.kind);
   for (const Penetration& part : found.parts) {
     out.add(pair_json(kind, part.deep_point, part.surface_point, part.depth), limit);
@@ -59,8 +59,8 @@ void tell(const SceneFound& found, std::size_t limit, Frame& out) {
 }
 
 /// Adds the features that meet before the next frame. Each pair is the path of one of their vertices until they meet.
-void tell(const SceneCollisions& found, const TriangleMesh& from, std::span<const Vec3d> to, std::size_t limit,
-          Frame& out) {
+void add_result(const SceneCollisions& found, const TriangleMesh& from, std::span<const Vec3d> to, std::size_t limit,
+                Frame& out) {
   const auto add = [&](std::uint32_t vertex, double time) {
     const Vec3d& start = from.vertices[vertex];
     const Vec3d end = start + (to[vertex] - start) * time;
@@ -97,7 +97,7 @@ class Sequence {
     move_to(k);
     out.phases.push_back({"boxes", watch.lap()});
     if (query_.ask != nullptr) {
-      tell(query_.ask(scene_, asked_, context_), limit_, out);
+      add_result(query_.ask(scene_, asked_, context_), limit_, out);
     } else if (k + 1 < arguments_.scene.size()) {
       ask_continuous(k, out);
     }
@@ -139,7 +139,7 @@ class Sequence {
     ObjectMotion motion;
     motion.object = object_;
     motion.vertices = next_->vertices;
-    tell(scene_.continuous({&motion, 1}, impact_, context_), mesh_, next_->vertices, limit_, out);
+    add_result(scene_.continuous({&motion, 1}, impact_, context_), mesh_, next_->vertices, limit_, out);
   }
 
   const ProximityArguments& arguments_;
@@ -176,12 +176,12 @@ struct Answer {
       first = k;
       first_time = *frame.earliest;
     }
-    Json told{{"pairs", std::move(frame.pairs)}, {"stages", to_json(frame.phases)}};
+    Json facts{{"pairs", std::move(frame.pairs)}, {"stages", to_json(frame.phases)}};
     if (!frame.skipped.empty()) {
-      told["skipped"] = frame.skipped;
+      facts["skipped"] = frame.skipped;
       skipped.push_back({{"frame", k}, {"reason", frame.skipped}});
     }
-    frames.push_back(std::move(told));
+    frames.push_back(std::move(facts));
     phases.insert(phases.end(), frame.phases.begin(), frame.phases.end());
   }
 };

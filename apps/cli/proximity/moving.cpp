@@ -103,7 +103,7 @@ FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
                    {"self", a.self ? "true" : "false"},
                    {"tolerance", exact_text(answer.options.tolerance)},
                    {"min_separation", exact_text(answer.options.min_separation)}};
-  const std::vector<std::string> ends = told_apart(a.ends);
+  const std::vector<std::string> ends = distinct_names(a.ends);
   for (std::size_t k = 0; k < a.scene.size(); ++k) {
     out.emplace_back("object_" + std::to_string(k), answer.names[k]);
     out.emplace_back("end_" + std::to_string(k), ends[k]);
@@ -203,7 +203,7 @@ void run_moving_scene(const ProximityArguments& a) {
   answer.options = a.impact.read();
   check(answer.options);
   answer.limit = read_limit(a);
-  answer.names = told_apart(a.scene);
+  answer.names = distinct_names(a.scene);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();
   if (a.output) outputs.emplace_back(*a.output);

@@ -101,7 +101,7 @@ void run_frames(const ProximityArguments& a, const SceneQuery& query);
 [[nodiscard]] Json penetration_json(const Penetration& part);
 
 /// Returns short names of files: as many last parts of their paths as distinguish different paths.
-[[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& files);
+[[nodiscard]] std::vector<std::string> distinct_names(const std::vector<std::string>& files);
 
 /// Returns the names of two objects; "name, itself" if they are the same.
 [[nodiscard]] std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second);

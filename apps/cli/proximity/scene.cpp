@@ -249,7 +249,7 @@ void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
   check(answer.asked.penetration);
   if (a.max_distance) answer.asked.max_distance = parse_non_negative("--max-distance", *a.max_distance);
   answer.limit = read_limit(a);
-  answer.names = told_apart(a.scene);
+  answer.names = distinct_names(a.scene);
   const std::optional<double> weld = parse_weld(a.weld);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();

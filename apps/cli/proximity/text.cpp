@@ -33,7 +33,7 @@ void cut(std::vector<T>& entries, std::size_t& left) {
 
 }  // namespace
 
-std::vector<std::string> told_apart(const std::vector<std::string>& files) {
+std::vector<std::string> distinct_names(const std::vector<std::string>& files) {
   std::vector<std::size_t> parts(files.size(), 1);
   std::vector<std::string> names(files.size());
   for (bool is_longer = true; is_longer;) {

@@ -117,17 +117,17 @@ struct Description<GeometryCheck> {
 /// most 64 moves. This fails for an edge across a gap, however narrow. Against the voxels of a mesh, the tolerance
 /// includes the diagonal of a voxel, and no edge is pushed.
 struct EdgeCheck {
-  std::size_t edges = 0;    ///< Checked edges, each counted once.
-  std::size_t pushed = 0;   ///< Edges that cut a corner of the body of their ends, and can be pushed into it.
-  double pushed_by = 0;     ///< Largest distance of these from the solid, mesh units.
-  std::size_t outside = 0;  ///< Edges that leave that body otherwise.
-  double outside_by = 0;    ///< Largest distance of these from the body, at least, mesh units.
-  Vec3d where;              ///< Place of that distance, mesh units.
-  std::size_t across = 0;   ///< Edges that leave the body only within the tolerance, but cross a gap there.
-  Vec3d across_at;          ///< Place of the first of these, mesh units.
-  std::size_t untold = 0;   ///< Edges for which a crossing is undecided. Then only Betti numbers are proven.
-  double tolerance = 0;     ///< Ten times GeometryCheck::tolerance (SolidRule::winding: plus a voxel's diagonal).
-  bool holds = false;       ///< True if no edge is outside or crosses a gap.
+  std::size_t edges = 0;      ///< Checked edges, each counted once.
+  std::size_t pushed = 0;     ///< Edges that cut a corner of the body of their ends, and can be pushed into it.
+  double pushed_by = 0;       ///< Largest distance of these from the solid, mesh units.
+  std::size_t outside = 0;    ///< Edges that leave that body otherwise.
+  double outside_by = 0;      ///< Largest distance of these from the body, at least, mesh units.
+  Vec3d where;                ///< Place of that distance, mesh units.
+  std::size_t across = 0;     ///< Edges that leave the body only within the tolerance, but cross a gap there.
+  Vec3d across_at;            ///< Place of the first of these, mesh units.
+  std::size_t undecided = 0;  ///< Edges for which a crossing is undecided. Then only Betti numbers are proven.
+  double tolerance = 0;       ///< Ten times GeometryCheck::tolerance (SolidRule::winding: plus a voxel's diagonal).
+  bool holds = false;         ///< True if no edge is outside or crosses a gap.
 };
 
 template <>
@@ -144,7 +144,8 @@ struct Description<EdgeCheck> {
       Member{"across", &EdgeCheck::across, "",
              "edges that leave the solid only within the tolerance, but cross a gap there"},
       Member{"across_at", &EdgeCheck::across_at, "mesh units", "place of the first of these"},
-      Member{"untold", &EdgeCheck::untold, "", "edges for which that is undecided; then only Betti numbers are proven"},
+      Member{"undecided", &EdgeCheck::undecided, "",
+             "edges for which that is undecided; then only Betti numbers are proven"},
       Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "tolerance"},
       Member{"holds", &EdgeCheck::holds, "", "true if no edge is outside or crosses a gap"},
   };

@@ -33,9 +33,9 @@ struct MedialClaims {
 
 /// Error for a mesh that does not bound a polyhedron, if the axis's file does not name the voxels that its solid
 /// consists of.
-class UntoldVoxels : public InvalidMesh {
+class UnknownVoxels : public InvalidMesh {
  public:
-  explicit UntoldVoxels(const std::string& reason)
+  explicit UnknownVoxels(const std::string& reason)
       : InvalidMesh("the mesh bounds no polyhedron (" + reason +
                     "), so its axis is that of voxels: give the grid of their centres"),
         reason_(reason) {}
@@ -71,7 +71,7 @@ class MeshAxisVerifier {
   /// the voxels inside on the grid that the claims name. Data that the file does not have are not checked, nor are
   /// sites of another kind of solid. If Blum wrote the file, no vertex may lack a site.
   /// @param available_memory  bytes; a grid that needs more is rejected.
-  /// @throws UntoldVoxels if a grid is needed and the claims name none. InvalidGrid if the grid has fewer than 8 steps
+  /// @throws UnknownVoxels if a grid is needed and the claims name none. InvalidGrid if the grid has fewer than 8 steps
   /// along the longest side of the mesh. InvalidMesh if none of its voxels lies inside. OutOfMemory; as certify() and
   /// voxels_inside().
   [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims,

@@ -289,8 +289,8 @@ Windings windings(const ComplexView& axis, const Incidence& incidence, const std
   const Borders borders(core, sheets);
   std::vector<std::unique_ptr<VoidLines>> lines;  // to several far points
   const auto void_count = static_cast<std::uint32_t>(complement.voids().size());
-  std::vector<bool> is_told(body_count, false);
-  std::vector<bool> is_told_by_rows(body_count, false);  // for the previous choice
+  std::vector<bool> is_decided(body_count, false);
+  std::vector<bool> is_decided_by_rows(body_count, false);  // for the previous choice
   std::vector<SparseRow> rows;
   for (std::size_t choice = 0; choice < choices; ++choice) {
     const std::vector<SparseRow> rows_before = std::exchange(rows, {});
@@ -304,24 +304,24 @@ Windings windings(const ComplexView& axis, const Incidence& incidence, const std
       rows = borders.rows;
       is_doubtful = lines[attempt]->add(choice, borders.columns, rows, context);
     }
-    std::vector<bool> is_told_now(body_count, true);
+    std::vector<bool> is_decided_now(body_count, true);
     for (std::uint32_t k = 0; k < void_count; ++k) {
       const Complement::Void& one = complement.voids()[k];
       if (!is_doubtful[k]) continue;
-      is_told_now[one.body] = false;
-      if (!is_told[one.body]) result.untold[one.body] = one.points.front();
+      is_decided_now[one.body] = false;
+      if (!is_decided[one.body]) result.undecided[one.body] = one.points.front();
     }
     const bool is_same = rows == rows_before;
     for (std::uint32_t body = 0; body < body_count; ++body) {
-      if (voids[body] == 0 || !is_told_now[body] || (is_same && is_told_by_rows[body])) continue;
+      if (voids[body] == 0 || !is_decided_now[body] || (is_same && is_decided_by_rows[body])) continue;
       const Wound own =
           wound_in(body, voids[body], core, sheets, body_of, rows, borders.columns, borders.columns + void_count);
-      result.rank[body] = is_told[body] ? std::min(result.rank[body], own.rank) : own.rank;
+      result.rank[body] = is_decided[body] ? std::min(result.rank[body], own.rank) : own.rank;
       result.over_integers = result.over_integers && own.over_integers;
-      is_told[body] = true;
-      result.untold[body].reset();
+      is_decided[body] = true;
+      result.undecided[body].reset();
     }
-    is_told_by_rows = std::move(is_told_now);
+    is_decided_by_rows = std::move(is_decided_now);
   }
   return result;
 }

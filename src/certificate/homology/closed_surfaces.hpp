@@ -21,7 +21,7 @@ struct Windings {
   std::vector<std::size_t> rank;  ///< in each body, modulo 2: the least over all choices of points in its voids
   bool over_integers = false;     ///< true if they span all integer ones, in every body
   /// For each body, a point of a void left undecided by triangles through its points.
-  std::vector<std::optional<Vec3d>> untold;
+  std::vector<std::optional<Vec3d>> undecided;
 };
 
 /// Computes how often closed surfaces of an axis wind around the voids. Triangles with free edges are removed

@@ -17,12 +17,12 @@ constexpr std::size_t most_steps = 300'000'000;
 
 /// Facts about one body.
 struct BodyProof {
-  bool is_compared = false;         ///< true if its Betti numbers agree and edges lie in the solid
-  std::size_t generators = 0;       ///< of the fundamental group of the axis in it
-  bool loops_over_integers = true;  ///< true if loops of the axis span all of its first homology
-  std::size_t across = 0;           ///< triangles that span its tunnels
-  std::size_t doubtful = 0;         ///< edges that touch the surface, so that linking is undecided
-  bool are_triangles_told = true;   ///< true if none of these is the side of a triangle
+  bool is_compared = false;           ///< true if its Betti numbers agree and edges lie in the solid
+  std::size_t generators = 0;         ///< of the fundamental group of the axis in it
+  bool loops_over_integers = true;    ///< true if loops of the axis span all of its first homology
+  std::size_t across = 0;             ///< triangles that span its tunnels
+  std::size_t doubtful = 0;           ///< edges that touch the surface, so that linking is undecided
+  bool are_triangles_decided = true;  ///< true if none of these is the side of a triangle
 };
 
 std::string counted(std::size_t count, const char* one, const char* many) {
@@ -52,7 +52,7 @@ class Loops {
     for (const std::uint32_t e : labels.doubtful()) {
       BodyProof& proof = proofs[body_of(e)];
       ++proof.doubtful;
-      if (!given_.incidence.triangles_of_edge()[e].empty()) proof.are_triangles_told = false;
+      if (!given_.incidence.triangles_of_edge()[e].empty()) proof.are_triangles_decided = false;
     }
   }
 
@@ -139,10 +139,10 @@ Proven proven_of(const BodyCheck& body, const Found& found, std::size_t b) {
   const bool has_tunnels = body.solid[1] > 0;
   const bool has_voids = body.solid[2] > 0;
   if ((has_tunnels || has_voids) && !found.is_looked_at) return Proven::betti_numbers;
-  if (has_tunnels && (!proof.are_triangles_told || proof.across > 0 || body.tunnels_met != body.solid[1])) {
+  if (has_tunnels && (!proof.are_triangles_decided || proof.across > 0 || body.tunnels_met != body.solid[1])) {
     return Proven::betti_numbers;
   }
-  if (has_voids && (found.surfaces.untold[b] || body.voids_met != body.solid[2])) return Proven::betti_numbers;
+  if (has_voids && (found.surfaces.undecided[b] || body.voids_met != body.solid[2])) return Proven::betti_numbers;
   const bool is_exact = proof.generators == static_cast<std::size_t>(body.solid[1]) && proof.loops_over_integers &&
                         (!has_voids || found.surfaces.over_integers);
   if (!is_exact) return Proven::homology_modulo_2;
@@ -168,7 +168,7 @@ std::string sentence(Proven proven) {
 /// Returns the mismatch of the loops of a body; empty if none.
 std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std::string& name) {
   const bool is_short = body.tunnels_met < body.solid[1];
-  if (proof.doubtful > 0 && (is_short || !proof.are_triangles_told)) {
+  if (proof.doubtful > 0 && (is_short || !proof.are_triangles_decided)) {
     return "it is unknown if loops of the axis run around the " +
            counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " + name + ": " +
            counted(proof.doubtful, "edge of the axis touches", "edges of the axis touch") + " the surface";
@@ -180,11 +180,11 @@ std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std
 }
 
 /// Returns the mismatch of its closed surfaces; empty if none.
-std::string wrong_surfaces(const BodyCheck& body, const std::optional<Vec3d>& untold, double factor,
+std::string wrong_surfaces(const BodyCheck& body, const std::optional<Vec3d>& undecided, double factor,
                            const std::string& name) {
-  if (untold) {
+  if (undecided) {
     return "it is unknown if closed surfaces of the axis enclose the void at " +
-           verifier::place_text(*untold / factor) + " of " + name + ": triangles of the axis pass through it";
+           verifier::place_text(*undecided / factor) + " of " + name + ": triangles of the axis pass through it";
   }
   if (body.voids_met >= body.solid[2]) return {};
   return "closed surfaces of the axis enclose " + count_text(static_cast<std::uint64_t>(body.voids_met)) + " of the " +
@@ -208,7 +208,7 @@ void conclude(HomologyCheck& check, const Found& found, const AxisInSolid& given
     if (found.is_looked_at) {
       body.voids_met = static_cast<std::int64_t>(found.surfaces.rank[b]);
       refuse(wrong_loops(body, found.proofs[b], name(b)));
-      refuse(wrong_surfaces(body, found.surfaces.untold[b], given.factor, name(b)));
+      refuse(wrong_surfaces(body, found.surfaces.undecided[b], given.factor, name(b)));
     }
     body.proven = proven_of(body, found, b);
     check.proven = std::min(check.proven, body.proven);
@@ -217,13 +217,14 @@ void conclude(HomologyCheck& check, const Found& found, const AxisInSolid& given
     refuse(counted(check.across, "triangle of the axis spans", "triangles of the axis span") +
            " a tunnel of the solid, the first one at " + verifier::place_text(check.where));
   }
-  if (given.untold_edges > 0) {
+  if (given.undecided_edges > 0) {
     check.proven = std::min(check.proven, Proven::betti_numbers);
     for (BodyCheck& body : bodies) body.proven = std::min(body.proven, Proven::betti_numbers);
   }
   check.shown = sentence(check.proven);
-  if (given.untold_edges > 0) {
-    check.shown += ", and no more: " + counted(given.untold_edges, "edge", "edges") + " may cross a gap of the solid";
+  if (given.undecided_edges > 0) {
+    check.shown +=
+        ", and no more: " + counted(given.undecided_edges, "edge", "edges") + " may cross a gap of the solid";
   }
   if (!found.is_looked_at && has_tunnels_or_voids) check.shown += ", and no more: it is made of voxels";
   if (check.across > 0) check.shown += ", and no more: triangles span a tunnel of the solid";

@@ -20,8 +20,8 @@ struct AxisInSolid {
   const std::vector<Location>& locations;
   const AxisParts& parts;
   const EdgeWays& ways;
-  double factor = 1;             ///< lengths are this many times the caller's
-  std::size_t untold_edges = 0;  ///< edges that may cross gaps of the solid
+  double factor = 1;                ///< lengths are this many times the caller's
+  std::size_t undecided_edges = 0;  ///< edges that may cross gaps of the solid
 };
 
 /// Checks that the inclusion of an axis in its solid is an isomorphism of homology. Fills the missing members of

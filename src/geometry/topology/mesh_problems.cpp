@@ -80,13 +80,13 @@ namespace mesh_problem {
 
 std::string obstacles(const Topology& facts) {
   std::string text;
-  const auto tell = [&](std::size_t n, const std::string& what, const char* one, const char* many) {
+  const auto add = [&](std::size_t n, const std::string& what, const char* one, const char* many) {
     if (n > 0) text += (text.empty() ? "" : ", ") + what + " (" + counted(n, one, many) + ")";
   };
-  tell(facts.boundary_edges, "it is open", "boundary edge", "boundary edges");
-  tell(facts.nonmanifold_edges, "it is not manifold", "edge", "edges");
-  tell(facts.inconsistent_edges, "its triangles face different ways", "edge", "edges");
-  tell(facts.nonmanifold_vertices, "it is not manifold", "vertex", "vertices");
+  add(facts.boundary_edges, "it is open", "boundary edge", "boundary edges");
+  add(facts.nonmanifold_edges, "it is not manifold", "edge", "edges");
+  add(facts.inconsistent_edges, "its triangles face different ways", "edge", "edges");
+  add(facts.nonmanifold_vertices, "it is not manifold", "vertex", "vertices");
   return text.empty() && !facts.closed ? "its triangles enclose nothing" : text;
 }
 

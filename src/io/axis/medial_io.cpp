@@ -106,9 +106,9 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
   const std::string problem = problem_of_axes(axis, nested, least_theta);
   if (!problem.empty()) throw InvalidMesh("the medial axis cannot be written: " + problem);
   throw_if_cancelled(context);
-  MedialMetadata told = metadata;
-  if (all.is_copy()) told.version.clear();  // only files with all columns name a version; verify() needs them
-  FileMetadata pairs = medial_files::to_pairs(told);
+  MedialMetadata stated = metadata;
+  if (all.is_copy()) stated.version.clear();  // only files with all columns name a version; verify() needs them
+  FileMetadata pairs = medial_files::to_pairs(stated);
   ComplexWriteOptions options;
   options.allow_loss = true;  // the table of formats says what is lost
   if (nested != nullptr) {

@@ -13,7 +13,7 @@ namespace blum::complex_files {
 namespace {
 
 /// Returns false, because a file of vertices, edges and triangles may also be a mesh.
-bool never_tells(std::string_view, const std::filesystem::path&) {
+bool never_matches(std::string_view, const std::filesystem::path&) {
   return false;
 }
 
@@ -66,7 +66,7 @@ namespace blum::formats {
 constinit const ComplexCode complex_obj{nullptr,
                                         complex_files::read_obj,
                                         complex_files::write_obj,
-                                        {.holds_this = complex_files::never_tells},
+                                        {.holds_this = complex_files::never_matches},
                                         false,
                                         false,
                                         false};

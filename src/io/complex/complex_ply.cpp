@@ -328,7 +328,7 @@ class ComplexPlyReader {
     const Column* const copy = columns.find(derived_property);
     const Column* const source = columns.find(derived_from);
     if (copy == nullptr || source == nullptr || source->components != 1 || copy->type_name() != "float32") return;
-    if (is_told_of(derived_property, "vertex", header_.comments)) return;
+    if (is_listed(derived_property, "vertex", header_.comments)) return;
     const auto& copies = std::get<std::vector<float>>(copy->values);
     const bool is_copy = std::visit(
         [&](const auto& values) {

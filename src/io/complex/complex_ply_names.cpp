@@ -32,21 +32,21 @@ std::string_view vector_name(const std::vector<PlyProperty>& properties, std::si
   return x.substr(0, x.size() - 2);
 }
 
-struct Told {
+struct Listed {
   std::size_t components = 1;
   std::string_view name;
 };
 
 /// Returns the columns of an element that comments declare, by their first property.
-std::map<std::string_view, Told> told_columns(std::string_view element, const std::vector<std::string>& comments) {
-  std::map<std::string_view, Told> told;
+std::map<std::string_view, Listed> listed_columns(std::string_view element, const std::vector<std::string>& comments) {
+  std::map<std::string_view, Listed> stated;
   for (const std::string& comment : comments) {
     const auto words = volume_io::split_words(comment);
     if (words.size() != 5 || words[0] != mark || words[1] != element) continue;
     const auto components = volume_io::parse_number<std::size_t>(words[3]);
-    if (components && *components > 0) told.emplace(words[2], Told{*components, words[4]});
+    if (components && *components > 0) stated.emplace(words[2], Listed{*components, words[4]});
   }
-  return told;
+  return stated;
 }
 
 /// Returns true if `count` properties of one type begin at `first`.
@@ -96,11 +96,11 @@ PlyNames property_names(const Columns& columns, std::string_view element, const 
 
 std::vector<PlyColumn> find_columns(const std::vector<PlyProperty>& properties, std::string_view element,
                                     const std::vector<std::string>& comments) {
-  const auto told = told_columns(element, comments);
+  const auto stated = listed_columns(element, comments);
   std::vector<PlyColumn> columns;
   for (std::size_t i = 0; i < properties.size(); i += columns.back().components) {
-    const auto found = told.find(properties[i].name);
-    if (found != told.end() && has_run(properties, i, found->second.components)) {
+    const auto found = stated.find(properties[i].name);
+    if (found != stated.end() && has_run(properties, i, found->second.components)) {
       columns.push_back({std::string(found->second.name), i, found->second.components});
     } else if (const std::string_view name = vector_name(properties, i); !name.empty()) {
       columns.push_back({std::string(name), i, 3});
@@ -111,8 +111,8 @@ std::vector<PlyColumn> find_columns(const std::vector<PlyProperty>& properties, 
   return columns;
 }
 
-bool is_told_of(std::string_view property, std::string_view element, const std::vector<std::string>& comments) {
-  return told_columns(element, comments).contains(property);
+bool is_listed(std::string_view property, std::string_view element, const std::vector<std::string>& comments) {
+  return listed_columns(element, comments).contains(property);
 }
 
 }  // namespace blum::complex_files

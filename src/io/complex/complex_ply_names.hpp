@@ -47,7 +47,7 @@ struct PlyNames {
                                                   const std::vector<std::string>& comments);
 
 /// Returns true if a comment declares this property.
-[[nodiscard]] bool is_told_of(std::string_view property, std::string_view element,
-                              const std::vector<std::string>& comments);
+[[nodiscard]] bool is_listed(std::string_view property, std::string_view element,
+                             const std::vector<std::string>& comments);
 
 }  // namespace blum::complex_files

@@ -121,7 +121,7 @@ struct FlatGraph {
 [[nodiscard]] std::string graphml_text(const char* id, const Attributes& whole, const FlatGraph& graph);
 
 /// Returns the metadata of the axis of a graph as attributes. Unknown values are omitted.
-[[nodiscard]] Attributes told(const MedialMetadata& metadata);
+[[nodiscard]] Attributes attributes_of(const MedialMetadata& metadata);
 
 /// Each function returns the whole content of a file.
 [[nodiscard]] std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata);

@@ -12,7 +12,7 @@ namespace blum {
 
 namespace graph_files {
 
-Attributes told(const MedialMetadata& metadata) {
+Attributes attributes_of(const MedialMetadata& metadata) {
   Attributes out;
   const auto add = [&](const char* name, const auto& value) {
     if (value) out.emplace_back(name, *value);
@@ -91,7 +91,7 @@ std::string text_of(const Json& json) {
 
 std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata) {
   Json json = {{"content", "graph of a medial axis"}};
-  for (const auto& [name, value] : told(metadata)) {
+  for (const auto& [name, value] : attributes_of(metadata)) {
     std::visit([&, &key = name](const auto& known) { json[key] = known; }, value);
   }
   json.update(json_of(graph));

@@ -169,7 +169,7 @@ class FlatAxis : public FlatGraph {
 }  // namespace
 
 std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata) {
-  Attributes whole = told(metadata);
+  Attributes whole = attributes_of(metadata);
   add_members(graph, whole);
   return graphml_text("axis", whole, FlatAxis(graph));
 }

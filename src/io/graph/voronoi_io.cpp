@@ -32,7 +32,7 @@ constexpr const char* content = "graph of a Voronoi diagram";
 
 /// Adds all metadata of the complex except `content`, because the graph has its own.
 template <class Add>
-void add_told(const FileMetadata& metadata, const Add& add) {
+void add_stated(const FileMetadata& metadata, const Add& add) {
   for (const auto& [key, value] : metadata) {
     if (key != "content") add(key, value);
   }
@@ -96,7 +96,7 @@ namespace graph_files {
 
 std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites, const FileMetadata& metadata) {
   Json json = {{"content", content}};
-  add_told(metadata, [&](const std::string& key, const std::string& value) { json[key] = value; });
+  add_stated(metadata, [&](const std::string& key, const std::string& value) { json[key] = value; });
   json["sites"] = json_of(std::vector<VoronoiSite>(sites.begin(), sites.end()));
   json.update(json_of(graph));
   return text_of(json);
@@ -104,7 +104,7 @@ std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> si
 
 std::string graphml_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites, const FileMetadata& metadata) {
   Attributes whole{{"content", std::string(content)}};
-  add_told(metadata, [&](const std::string& key, const std::string& value) { whole.emplace_back(key, value); });
+  add_stated(metadata, [&](const std::string& key, const std::string& value) { whole.emplace_back(key, value); });
   return graphml_text("diagram", whole, flattened(graph, sites));
 }
 

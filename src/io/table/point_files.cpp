@@ -186,10 +186,10 @@ void write_points(const std::filesystem::path& path, const Complex& points, cons
   if (!points.edges.empty() || !points.triangles.empty()) {
     throw InvalidMesh("points have edges or triangles: write them with write_complex()");
   }
-  FileMetadata told = metadata;
+  FileMetadata stated = metadata;
   const auto is_content = [](const auto& pair) { return pair.first == "content"; };
-  if (std::none_of(told.begin(), told.end(), is_content)) told.insert(told.begin(), {"content", "points"});
-  formats::code_of(format).write(path, points, told, context);
+  if (std::none_of(stated.begin(), stated.end(), is_content)) stated.insert(stated.begin(), {"content", "points"});
+  formats::code_of(format).write(path, points, stated, context);
 }
 
 namespace formats {

@@ -98,7 +98,7 @@ TEST(GapSearch, InAThinWall) {
     const Vec3d along{0.4, 0.4 * turn, 0};
     const Certificate found = of_path({middle - along, middle + along}, wall);
     EXPECT_TRUE(found.holds());
-    EXPECT_EQ(found.edges.untold, 0U);
+    EXPECT_EQ(found.edges.undecided, 0U);
     EXPECT_EQ(found.homology.proven, Proven::homotopy_type);
   }
 }

@@ -451,7 +451,7 @@ TEST(Windings, WhereNoPointTellsThatIsSaid) {
     const Complement complement({}, {}, {}, {{points, 0}});
     const verifier::Windings found =
         verifier::windings(view, incidence, complex.positions, body_of, complement, 1, box, {});
-    EXPECT_EQ(found.untold[0].has_value(), !has_other);
+    EXPECT_EQ(found.undecided[0].has_value(), !has_other);
     EXPECT_EQ(found.rank[0], has_other ? 1U : 0U);
   }
 }

@@ -56,7 +56,7 @@ TEST(VerifyMedial, VoxelsOfAnOpenMeshMustBeNamed) {
   EXPECT_EQ(certificate.against, SolidRule::winding);
   EXPECT_THROW((void)verify(axis.simplify(60), claims, mesh, {}, 1000), OutOfMemory);
   claims.metadata.grid.reset();
-  EXPECT_THROW((void)verify(axis.simplify(60), claims, mesh), UntoldVoxels);
+  EXPECT_THROW((void)verify(axis.simplify(60), claims, mesh), UnknownVoxels);
 }
 
 TEST(VerifyMedial, TheGridOfAnOpenMeshIsFineEnoughAndHasTheSpacing) {

@@ -73,10 +73,10 @@ void expect_as_at_places(const LabelledSolid& solid, const SegmentLabels& found,
       Vec3d q = from;
       q[axis] = step == 8 ? next : last + (next - last) * step / 8;
       const std::vector<voronoi::Label> closest = solid.labels.closest_labels(q);
-      const bool is_told = std::any_of(closest.begin(), closest.end(), [&](const voronoi::Label& label) {
+      const bool is_decided = std::any_of(closest.begin(), closest.end(), [&](const voronoi::Label& label) {
         return solid.labels.site_of(label) == found.sites[k];
       });
-      ASSERT_TRUE(is_told) << "site " << k << " of " << found.sites.size() << ", step " << step;
+      ASSERT_TRUE(is_decided) << "site " << k << " of " << found.sites.size() << ", step " << step;
     }
     if (k < found.changes.size()) last = found.changes[k][1];
   }
@@ -86,7 +86,7 @@ class SegmentLabelsOfShapes : public testing::TestWithParam<std::string> {};
 
 struct Tally {
   std::size_t told = 0;
-  std::size_t untold = 0;
+  std::size_t undecided = 0;
   std::size_t changes = 0;
 };
 
@@ -97,7 +97,7 @@ Tally look_along_many(const LabelledSolid& solid) {
   Random random(6);
   const std::size_t wanted = std::clamp<std::size_t>(60'000 / solid.labels.all().size(), 2, 60);
   Tally out;
-  for (int round = 0; round < 20000 && out.told + out.untold < wanted; ++round) {
+  for (int round = 0; round < 20000 && out.told + out.undecided < wanted; ++round) {
     const Vec3d t = random.in_cube();
     const Vec3d size = box.size();
     Vec3d from = box.lower + Vec3d{size.x * t.x, size.y * t.y, size.z * t.z};
@@ -108,7 +108,7 @@ Tally look_along_many(const LabelledSolid& solid) {
     from[axis] -= 0.99 * inside;
     const auto labels = along(solid, from, to, axis);
     if (!labels) {
-      ++out.untold;
+      ++out.undecided;
       continue;
     }
     expect_as_at_places(solid, *labels, from, to, axis);
@@ -130,7 +130,7 @@ TEST_P(SegmentLabelsOfShapes, AreThoseAtManyPlaces) {
   // Of these, rounding has bent the squares a little: doubles do not part the edges' regions.
   const bool has_bent_faces = GetParam() == "torus" || GetParam() == "uv_sphere";
   if (!has_bent_faces) {
-    EXPECT_EQ(tally.untold, 0U);
+    EXPECT_EQ(tally.undecided, 0U);
   }
 }
 

@@ -169,12 +169,12 @@ TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
         if (!inside.inside(q)) continue;
         ++asked;
         const std::vector<voronoi::Label> closest = divided.solid.exact.closest_labels(q);
-        const bool is_told = std::any_of(cells.pieces.begin(), cells.pieces.end(), [&](const auto& piece) {
+        const bool is_decided = std::any_of(cells.pieces.begin(), cells.pieces.end(), [&](const auto& piece) {
           return std::any_of(closest.begin(), closest.end(), [&](const voronoi::Label& label) {
             return divided.solid.exact.site_of(label) == piece.site;
           });
         });
-        EXPECT_TRUE(is_told) << "at " << q.x << " " << q.y << " " << q.z;
+        EXPECT_TRUE(is_decided) << "at " << q.x << " " << q.y << " " << q.z;
       }
     }
     EXPECT_GT(asked, 300U);
