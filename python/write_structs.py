@@ -12,7 +12,10 @@ from typing import Any
 NAMED = {"MedialAxisOptions": {"spacing"}}
 #: Results with a base class in _methods.py.
 METHODS = re.findall(r"^class (\w+)Methods:", (Path(__file__).parent / "blum/_methods.py").read_text("utf-8"), re.M)
-HEAD = '''"""Options and results of the library, as its descriptions have them. Written when the package was built."""
+HEAD = '''"""Options and results.
+
+The build of the package writes this file from the descriptions of the library's structs.
+"""
 
 from __future__ import annotations
 

@@ -9,218 +9,107 @@ input, and distances are negative inside. The verbs are those of the C++ library
     axis.certificate.holds
 """
 
-from . import _structs, reference
-from ._axis_graph import axis_graph
-from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
-from ._certificate import solid_rule
-from ._clean import CleanedMesh, OrientedMesh, clean_mesh, oriented_mesh
-from ._closest import ClosestPointQuery, ClosestPoints, NearPrimitives, closest_points, winding_number
-from ._complex import Complex, homology
-from ._complex_files import ComplexFile, read_complex, write_complex
+# ruff: noqa: F403  (each module lists its public names in __all__, so that a new one needs no line here)
+from . import (
+    _axis_graph,
+    _centreline,
+    _certificate,
+    _clean,
+    _closest,
+    _complex,
+    _complex_files,
+    _device,
+    _errors,
+    _extend,
+    _features,
+    _field,
+    _formats,
+    _grid,
+    _image,
+    _medial,
+    _medial_columns,
+    _medial_complex,
+    _mesh,
+    _points,
+    _proximity,
+    _proximity_results,
+    _proximity_scene,
+    _shapes,
+    _smooth,
+    _solid,
+    _structs,
+    _surface_map,
+    _transform,
+    _verifier,
+    _view,
+    _voronoi,
+    reference,
+)
+from ._axis_graph import *
+from ._centreline import *
+from ._certificate import *
+from ._clean import *
+from ._closest import *
+from ._complex import *
+from ._complex_files import *
 from ._core import thread_count
 from ._core import version as __version__
-from ._device import DeviceArray, DeviceDistanceTransform, DeviceField, DeviceFieldSolver, cuda_devices
-from ._errors import (
-    Cancelled,
-    DeviceError,
-    Error,
-    FileError,
-    FormatError,
-    InputWarning,
-    InvalidGrid,
-    InvalidImage,
-    InvalidMesh,
-    InvalidOption,
-    NotCertified,
-    OutOfMemory,
-)
-from ._extend import ExtendedAxis, extend_axis
-from ._features import FeaturePairs, close_features
-from ._field import (
-    Field,
-    FieldSolver,
-    distance_field,
-    read_field,
-    selected_voxels,
-    voxel_topology,
-)
-from ._formats import file_formats
-from ._grid import Grid
-from ._image import Image, read_image
-from ._medial import MedialAxis, medial_axis
-from ._medial_columns import ROLES, NestedComplex, Present
-from ._medial_complex import MedialComplex, ball_union_field, certify, read_medial
-from ._mesh import (
-    Mesh,
-    MeshLike,
-    SelfIntersections,
-    Sites,
-    WindingNumber,
-    pseudonormals,
-    read_mesh,
-    self_intersections,
-    topology,
-    weld,
-    weld_clusters,
-)
-from ._points import NearSamples, SignedDistances, SurfaceSamples, sample_near, sample_surface, signed_distance
-from ._proximity import ContinuousCollisions, continuous_collisions, edge_edge_impacts, vertex_face_impacts
-from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
-from ._proximity_scene import (
-    ProximityScene,
-    TriangleDistances,
-    closest_primitives,
-    closest_rotation,
-    collisions,
-    separation,
-    triangle_distances,
-)
-from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
-from ._smooth import smooth_surface
-from ._solid import CellularModel, Solid, SolidBody
-from ._structs import *  # noqa: F403
-from ._surface_map import (
-    SurfaceMap,
-    SurfaceMapper,
-    Thickness,
-    directed_hausdorff_distance,
-    hausdorff_distance,
-    read_surface_map,
-    self_distance_map,
-    surface_deviation,
-    surface_distance_map,
-    thickness,
-    thickness_map,
-)
-from ._transform import distance_transform, distance_transforms
-from ._verifier import AxisVerifier
-from ._view import view
-from ._voronoi import VoronoiComplex, voronoi_complex
+from ._device import *
+from ._errors import *
+from ._extend import *
+from ._features import *
+from ._field import *
+from ._formats import *
+from ._grid import *
+from ._image import *
+from ._medial import *
+from ._medial_columns import *
+from ._medial_complex import *
+from ._mesh import *
+from ._points import *
+from ._proximity import *
+from ._proximity_results import *
+from ._proximity_scene import *
+from ._shapes import *
+from ._smooth import *
+from ._solid import *
+from ._structs import *
+from ._surface_map import *
+from ._transform import *
+from ._verifier import *
+from ._view import *
+from ._voronoi import *
 
-__all__ = [
-    "ROLES",
-    "AxisVerifier",
-    "Cancelled",
-    "CellularModel",
-    "Centreline",
-    "CentrelineBranch",
-    "Centrelines",
-    "CleanedMesh",
-    "ClosestPointQuery",
-    "ClosestPoints",
-    "Complex",
-    "ComplexFile",
-    "ContinuousCollisions",
-    "DeviceArray",
-    "DeviceDistanceTransform",
-    "DeviceError",
-    "DeviceField",
-    "DeviceFieldSolver",
-    "Error",
-    "ExtendedAxis",
-    "FeaturePairs",
-    "Field",
-    "FieldSolver",
-    "FileError",
-    "FormatError",
-    "Grid",
-    "Image",
-    "InputWarning",
-    "InvalidGrid",
-    "InvalidImage",
-    "InvalidMesh",
-    "InvalidOption",
-    "MedialAxis",
-    "MedialComplex",
-    "Mesh",
-    "MeshLike",
-    "NearPrimitives",
-    "NearSamples",
-    "NestedComplex",
-    "NotCertified",
-    "OrientedMesh",
-    "OutOfMemory",
-    "Penetration",
-    "Present",
-    "PrimitivePair",
-    "ProximityPairs",
-    "ProximityScene",
-    "SceneCollisions",
-    "SelfIntersections",
-    "ShapeInfo",
-    "ShapeParameter",
-    "SignedDistances",
-    "Sites",
-    "Solid",
-    "SolidBody",
-    "SurfaceMap",
-    "SurfaceMapper",
-    "SurfaceSamples",
-    "Thickness",
-    "TriangleDistances",
-    "VoronoiComplex",
-    "WindingNumber",
-    "__version__",
-    "axis_graph",
-    "ball_union_field",
-    "centreline",
-    "certify",
-    "clean_mesh",
-    "close_features",
-    "closest_points",
-    "closest_primitives",
-    "closest_rotation",
-    "collisions",
-    "continuous_collisions",
-    "cuda_devices",
-    "directed_hausdorff_distance",
-    "distance_field",
-    "distance_transform",
-    "distance_transforms",
-    "edge_edge_impacts",
-    "extend_axis",
-    "extrusion",
-    "file_formats",
-    "generate",
-    "hausdorff_distance",
-    "homology",
-    "known_betti",
-    "medial_axis",
-    "noisy",
-    "oriented_mesh",
-    "pseudonormals",
-    "read_complex",
-    "read_field",
-    "read_image",
-    "read_medial",
-    "read_mesh",
-    "read_surface_map",
-    "reference",
-    "sample_near",
-    "sample_surface",
-    "selected_voxels",
-    "self_distance_map",
-    "self_intersections",
-    "separation",
-    "shapes",
-    "signed_distance",
-    "smooth_surface",
-    "solid_rule",
-    "subdivided",
-    "surface_deviation",
-    "surface_distance_map",
-    "thickness",
-    "thickness_map",
-    "thread_count",
-    "topology",
-    "triangle_distances",
-    "vertex_face_impacts",
-    "view",
-    "voronoi_complex",
-    "voxel_topology",
-    "weld",
-    "weld_clusters",
-    "winding_number",
-    "write_complex",
-]
+__all__ = ["__version__", "reference", "thread_count"]
+__all__ += _axis_graph.__all__
+__all__ += _centreline.__all__
+__all__ += _certificate.__all__
+__all__ += _clean.__all__
+__all__ += _closest.__all__
+__all__ += _complex.__all__
+__all__ += _complex_files.__all__
+__all__ += _device.__all__
+__all__ += _errors.__all__
+__all__ += _extend.__all__
+__all__ += _features.__all__
+__all__ += _field.__all__
+__all__ += _formats.__all__
+__all__ += _grid.__all__
+__all__ += _image.__all__
+__all__ += _medial.__all__
+__all__ += _medial_columns.__all__
+__all__ += _medial_complex.__all__
+__all__ += _mesh.__all__
+__all__ += _points.__all__
+__all__ += _proximity.__all__
+__all__ += _proximity_results.__all__
+__all__ += _proximity_scene.__all__
+__all__ += _shapes.__all__
+__all__ += _smooth.__all__
+__all__ += _solid.__all__
 __all__ += _structs.__all__
+__all__ += _surface_map.__all__
+__all__ += _transform.__all__
+__all__ += _verifier.__all__
+__all__ += _view.__all__
+__all__ += _voronoi.__all__

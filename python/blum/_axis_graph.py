@@ -1,4 +1,7 @@
-"""Medial axes as graphs of sheets, seams, curves and junctions."""
+"""Graphs of medial axes.
+
+They have sheets, seams, curves and junctions.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,8 @@ from ._mesh import Mesh, MeshOrVertices, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions
+
+__all__ = ["axis_graph"]
 
 
 @takes("AxisGraphOptions")
@@ -48,6 +53,8 @@ def axis_graph(
         Numbers of seams, curves, junctions and patches are indices into its lists. Sheets have the numbers of
         `triangle_sheet`. `.to_networkx()` converts it.
 
+    Examples
+    --------
     >>> import blum
     >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
     >>> graph = blum.medial_axis(plate, resolution=48).simplify(120).graph()
@@ -59,7 +66,11 @@ def axis_graph(
     own = mesh_of(axis, mesh, triangles)
     with reporting(progress) as report:
         found: AxisGraph = _core.axis_graph(
-            axis._core, None if own is None else own._arrays, _told(axis, options), integer(threads, "threads"), report
+            axis._core,
+            None if own is None else own._arrays,
+            _stated(axis, options),
+            integer(threads, "threads"),
+            report,
         )
     return found
 
@@ -74,12 +85,12 @@ def write_graph(
     """Writes the graph of an axis with the known facts about the axis's origin."""
     own = mesh_of(axis, mesh, triangles)
     origin = getattr(axis, "_origin", None)
-    told = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
+    stated = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
     arrays = None if own is None else own._arrays
-    _core.write_graph(Path(os.fspath(path)), axis._core, arrays, _told(axis, options), told)
+    _core.write_graph(Path(os.fspath(path)), axis._core, arrays, _stated(axis, options), stated)
 
 
-def _told(axis: Complex, options: AxisGraphOptions) -> dict[str, Any]:
+def _stated(axis: Complex, options: AxisGraphOptions) -> dict[str, Any]:
     """Returns the options, with the known theta of the axis as the angle up to which cells exist for homotopy alone."""
     theta = getattr(getattr(axis, "_origin", None), "theta", None)
     return ({} if theta is None else {"homotopy_angle": theta}) | dict(options)
@@ -110,8 +121,8 @@ def to_networkx(graph: AxisGraph) -> Any:
             out.add_node(f"curve{number}", element="curve", **_attributes(curve))
         else:
             first, last = curve.junctions
-            told = {"element": "curve", "curve": number, **_attributes(curve)}
-            out.add_edge(f"junction{first}", f"junction{last}", **told)
+            stated = {"element": "curve", "curve": number, **_attributes(curve)}
+            out.add_edge(f"junction{first}", f"junction{last}", **stated)
     for sheet in graph.sheets:
         out.add_edges_from(((f"sheet{sheet.sheet}", f"seam{seam}") for seam in sheet.seams), element="incidence")
         shares: dict[int, float] = {}

@@ -1,4 +1,7 @@
-"""Centrelines of labelled images: graphs of curves with radii."""
+"""Centrelines of labelled images.
+
+They are graphs of curves with radii.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +22,15 @@ from ._progress import Progress, reporting
 from ._structs import CentrelineNodeKind, CentrelineOptions
 from ._warn import warn_all
 
+__all__ = ["Centreline", "CentrelineBranch", "Centrelines", "centreline"]
+
 
 @dataclass(frozen=True, eq=False)
 class CentrelineBranch:
     """Curve between two nodes, or a closed curve without nodes.
 
+    Examples
+    --------
     >>> import blum
     >>> (line,) = blum.centreline(blum.generate("tube_image", nodes=2, pitch=30))
     >>> branch = line.branches[0]
@@ -50,6 +57,8 @@ class CentrelineBranch:
 class Centreline:
     """Centreline of the voxels of one label: a graph of curves.
 
+    Examples
+    --------
     >>> import blum
     >>> (line,) = blum.centreline(blum.generate("tube_image", nodes=2, pitch=30))
     >>> line.label, line.label_betti == line.graph_betti, len(line.kinds) == len(line.radii)
@@ -74,6 +83,8 @@ class Centreline:
         Nodes have `kind`, `position` and `radius`. Edges have the branch's numbers, `points` and `radii`. A closed
         curve gets a node of its own, of kind "closed". Raises ImportError if networkx is missing.
 
+        Examples
+        --------
         >>> import blum
         >>> (line,) = blum.centreline(blum.generate("tube_image", nodes=2, pitch=30))
         >>> graph = line.to_networkx()
@@ -105,6 +116,8 @@ class Centreline:
 class Centrelines(Sequence[Centreline]):
     """Centrelines of an image, by ascending label, or in the order of the requested labels.
 
+    Examples
+    --------
     >>> import blum
     >>> lines = blum.centreline(blum.generate("balls_image"), labels=[2, 1])
     >>> [line.label for line in lines]
@@ -178,6 +191,8 @@ def centreline(
     Centrelines
         A sequence of :class:`Centreline`.
 
+    Examples
+    --------
     >>> import numpy as np, blum
     >>> mask = np.zeros((9, 9, 40), dtype=bool)
     >>> mask[2:7, 2:7, 4:36] = True

@@ -1,4 +1,4 @@
-"""Certificates: checks whether an axis has the topology of its solid.
+"""Rules for solids of certificates.
 
 The checking code is independent of the construction, except for the parts that docs/decisions/0007-certificate.md
 lists.
@@ -22,6 +22,8 @@ from ._mesh import MeshOrVertices, as_mesh
 from ._progress import Progress, reporting
 from ._structs import Certificate, CertificateOptions, MeshSolidRule
 from ._warn import warn_all
+
+__all__ = ["solid_rule"]
 
 
 @dataclass(frozen=True)
@@ -155,6 +157,8 @@ def solid_rule(
     mesh, triangles, weld, threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.solid_rule(blum.generate("sphere")).rule
     'polyhedron'

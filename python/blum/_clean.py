@@ -1,4 +1,7 @@
-"""Closed meshes that face outwards, without needles and redundant vertices."""
+"""Cleaned meshes.
+
+They are closed, face outwards, and have no needles and no redundant vertices.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +18,15 @@ from ._solid import Solid
 from ._structs import CleanReport
 from ._warn import warn_all
 
+__all__ = ["CleanedMesh", "OrientedMesh", "clean_mesh", "oriented_mesh"]
+
 
 @dataclass(frozen=True, eq=False)
 class CleanedMesh:
     """Result of :func:`clean_mesh`.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.clean_mesh(blum.generate("box"), 1e-6)
     >>> found.vertex_of.tolist() == list(range(8)), found.report.collapses
@@ -60,6 +67,8 @@ def clean_mesh(
     ------
     InvalidMesh, InvalidOption (both ValueError), TypeError, KeyboardInterrupt
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.clean_mesh(blum.subdivided(blum.generate("box"), 3), 1e-6)
     >>> found.mesh, found.report.triangles_before, found.report.deviation < 1e-12
@@ -81,6 +90,8 @@ def clean_mesh(
 class OrientedMesh:
     """Result of :func:`oriented_mesh`.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.oriented_mesh(blum.generate("box"))
     >>> found.mesh, found.reversed_triangles, found.reversed_shells
@@ -110,6 +121,8 @@ def oriented_mesh(
     ------
     InvalidMesh (a ValueError), TypeError, KeyboardInterrupt
 
+    Examples
+    --------
     >>> import blum
     >>> box = blum.generate("box")
     >>> found = blum.oriented_mesh((box.vertices, box.triangles[:, ::-1]))

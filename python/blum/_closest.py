@@ -1,4 +1,4 @@
-"""Closest points and winding numbers at arbitrary points."""
+"""Closest points and winding numbers."""
 
 from __future__ import annotations
 
@@ -16,11 +16,15 @@ from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions
 
+__all__ = ["ClosestPointQuery", "ClosestPoints", "NearPrimitives", "closest_points", "winding_number"]
+
 
 @dataclass(frozen=True, eq=False)
 class ClosestPoints:
     """Result of :func:`closest_points`. All arrays have the shape of the queries without the last axis.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.closest_points(blum.generate("box"), [0, 0, 2], max_distance=1)
     >>> float(found.distance), int(found.site), int(found.triangle)
@@ -40,6 +44,8 @@ class NearPrimitives:
     Query q has the entries ``first[q]`` to ``first[q + 1] - 1``, by ascending distance, then primitive. Queries are
     numbered in C order, whatever their shape.
 
+    Examples
+    --------
     >>> import blum
     >>> query = blum.ClosestPointQuery(blum.generate("box"))
     >>> query.within([[0, 0, 1], [0, 0, 5]], 0.7)
@@ -67,6 +73,8 @@ class ClosestPointQuery:
         As for :func:`distance_field`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> query = blum.ClosestPointQuery(blum.generate("box"))
     >>> query([[0, 0, 5]]).closest.tolist()
@@ -114,6 +122,8 @@ class ClosestPointQuery:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> query = blum.ClosestPointQuery(blum.generate("box"))
         >>> query([[0, 0, 5], [0, 0, 0.4]]).distance.round(6).tolist()
@@ -137,6 +147,8 @@ class ClosestPointQuery:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> query = blum.ClosestPointQuery(blum.generate("box"))
         >>> found = query.within([[0, 0, 1], [0, 0, 5]], 0.7)
@@ -163,6 +175,8 @@ class ClosestPointQuery:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> query = blum.ClosestPointQuery(blum.generate("box"))
         >>> query.nearest_primitives([[0, 0, 1]], 3).distance.round(3).tolist()
@@ -188,6 +202,8 @@ class ClosestPointQuery:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> box = blum.generate("box")
         >>> query = blum.ClosestPointQuery(box)
@@ -219,6 +235,8 @@ def closest_points(
     points : array of shape (..., 3)
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.closest_points(blum.generate("sphere"), [[0, 0, 3], [0, 0, 0.2]])
     >>> [round(distance, 2) for distance in found.distance.tolist()]
@@ -251,6 +269,8 @@ def winding_number(
         Soups of 70,000 triangles take some 30 microseconds per point at 1e-3, and 250 at 1e-6. Closed meshes, and
         meshes with some holes, take 0.2 to 2 microseconds.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.winding_number(blum.generate("box"), [[0, 0, 0], [5, 5, 5]]).tolist()
     [1.0, 0.0]

@@ -1,4 +1,7 @@
-"""Complexes of vertices, edges and triangles, with named columns of numbers."""
+"""Complexes with columns.
+
+A complex has vertices, edges and triangles, and named columns of numbers.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,8 @@ from ._arguments import FloatArray, IntArray, as_array, float_rows, indices, int
 from ._errors import InvalidOption
 from ._mesh import Betti, betti_of
 from ._progress import Progress, reporting
+
+__all__ = ["Complex", "homology"]
 
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
@@ -39,6 +44,8 @@ class Complex:
         (n,) or (n, components) arrays of float64, float32, int64 or int32, with a row for each vertex, edge or
         triangle.
 
+    Examples
+    --------
     >>> import blum
     >>> path = blum.Complex([[0, 0, 0], [1, 0, 0], [1, 1, 0]], edges=[[0, 1], [1, 2]], edge_columns={"cost": [1, 2.5]})
     >>> path.edge_columns["cost"]
@@ -115,6 +122,8 @@ class Complex:
     def homology(self, *, threads: int = 0, progress: Progress = False) -> Betti:
         """Returns the Betti numbers over Z/2: components, tunnels, voids.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Complex([[0, 0, 0], [1, 0, 0], [0, 1, 0]], edges=[[0, 1], [1, 2], [2, 0]]).homology()
         (1, 1, 0)
@@ -193,6 +202,8 @@ def homology(
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.homology(4, edges=[[0, 1], [1, 2], [2, 0]])
     (2, 1, 0)

@@ -13,11 +13,15 @@ from . import _core
 from ._arguments import PathLike, existing_file, text
 from ._complex import Complex
 
+__all__ = ["ComplexFile", "read_complex", "write_complex"]
+
 
 @dataclass(frozen=True, eq=False)
 class ComplexFile:
     """Result of :func:`read_complex`: the content of a file.
 
+    Examples
+    --------
     >>> import blum, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     blum.write_complex(pathlib.Path(folder) / "one.npz", blum.Complex([[0, 0, 0]]))
@@ -41,6 +45,8 @@ def read_complex(path: PathLike) -> ComplexFile:
     ------
     FileNotFoundError, FileError, FormatError, InvalidOption
 
+    Examples
+    --------
     >>> import blum, tempfile, os
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     blum.voronoi_complex(blum.generate("box")).write(os.path.join(folder, "box.npz"))
@@ -83,6 +89,8 @@ def write_complex(
     ------
     FileError, InvalidOption, TypeError
 
+    Examples
+    --------
     >>> import blum, tempfile, os
     >>> path = blum.Complex([[0, 0, 0], [1, 0, 0]], edges=[[0, 1]], edge_columns={"cost": [2.5]})
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""Fields from and to the memory of a CUDA device."""
+"""Fields on a CUDA device."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from ._grid import Grid
 from ._options import takes
 from ._structs import CudaDevices, DistanceTransformOptions, FieldOptions
 
+__all__ = ["DeviceArray", "DeviceDistanceTransform", "DeviceField", "DeviceFieldSolver", "cuda_devices"]
+
 _CUDA = 2  # Number of the kind of device in DLPack.
 _MANAGED = 13
 _LEGACY = 1  # The legacy default stream, in CUDA and DLPack.
@@ -24,6 +26,8 @@ _LEGACY = 1  # The legacy default stream, in CUDA and DLPack.
 def cuda_devices() -> CudaDevices:
     """Returns the CUDA devices that `device=` may name, or the reason why none exists.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.cuda_devices()
     >>> bool(found.devices) != bool(found.reason)

@@ -1,9 +1,29 @@
-"""Exceptions and warnings of Blum. Each exception also derives from the built-in one that fits."""
+"""Exceptions and warnings.
+
+Each exception also derives from the built-in one that fits.
+"""
+
+__all__ = [
+    "Cancelled",
+    "DeviceError",
+    "Error",
+    "FileError",
+    "FormatError",
+    "InputWarning",
+    "InvalidGrid",
+    "InvalidImage",
+    "InvalidMesh",
+    "InvalidOption",
+    "NotCertified",
+    "OutOfMemory",
+]
 
 
 class Error(Exception):
     """Base class of all exceptions that Blum raises on purpose. Messages state the problem, its place and a remedy.
 
+    Examples
+    --------
     >>> import blum
     >>> try:
     ...     blum.distance_field([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 7]])
@@ -18,6 +38,8 @@ class InputWarning(UserWarning):
 
     `warnings.filterwarnings` silences it. `code` identifies the kind of warning.
 
+    Examples
+    --------
     >>> import blum, warnings
     >>> with warnings.catch_warnings(record=True) as caught:
     ...     warnings.simplefilter("always")
@@ -35,6 +57,8 @@ class InputWarning(UserWarning):
 class InvalidMesh(Error, ValueError):
     """Error for a mesh that cannot be used: empty, with non-finite coordinates, or with indices out of range.
 
+    Examples
+    --------
     >>> import blum
     >>> try:
     ...     blum.Mesh([[0, 0, 0]], [[0, 1, 2]])
@@ -47,6 +71,8 @@ class InvalidMesh(Error, ValueError):
 class InvalidGrid(Error, ValueError):
     """Error for a grid that cannot be used: with a spacing that is not positive, without nodes, or with too many nodes.
 
+    Examples
+    --------
     >>> import blum
     >>> try:
     ...     blum.Grid(origin=(0, 0, 0), spacing=0, size=(2, 2, 2))
@@ -59,6 +85,8 @@ class InvalidGrid(Error, ValueError):
 class InvalidImage(Error, ValueError):
     """Error for an image that cannot be used, or in which no voxel is selected.
 
+    Examples
+    --------
     >>> import blum, numpy as np
     >>> try:
     ...     blum.distance_transform(np.zeros((2, 2, 2), dtype=bool))
@@ -71,6 +99,8 @@ class InvalidImage(Error, ValueError):
 class InvalidOption(Error, ValueError):
     """Error for an argument out of range, or for arguments that exclude each other.
 
+    Examples
+    --------
     >>> import blum
     >>> try:
     ...     blum.distance_field(blum.generate("box"), resolution=1)
@@ -84,6 +114,8 @@ class NotCertified(Error, RuntimeError):
     """Error for an axis that is not certified, although a certified one was requested. The message lists all failed
     checks.
 
+    Examples
+    --------
     >>> import blum
     >>> issubclass(blum.NotCertified, RuntimeError)
     True
@@ -93,6 +125,8 @@ class NotCertified(Error, RuntimeError):
 class OutOfMemory(Error, MemoryError):
     """Error for a call that needs more memory than is available. The message states the amount.
 
+    Examples
+    --------
     >>> import blum
     >>> issubclass(blum.OutOfMemory, MemoryError)
     True
@@ -102,6 +136,8 @@ class OutOfMemory(Error, MemoryError):
 class DeviceError(Error, RuntimeError):
     """Error for a requested device that does not exist or failed. The message names the device and a remedy.
 
+    Examples
+    --------
     >>> import blum
     >>> try:
     ...     blum.distance_field(blum.generate("box"), resolution=8, device="cuda:1000")
@@ -114,6 +150,8 @@ class DeviceError(Error, RuntimeError):
 class Cancelled(Error):
     """Error for a call that was asked to stop.
 
+    Examples
+    --------
     >>> import blum
     >>> issubclass(blum.Cancelled, blum.Error)
     True
@@ -123,6 +161,8 @@ class Cancelled(Error):
 class FileError(Error, OSError):
     """Error for a file that cannot be opened, read or written.
 
+    Examples
+    --------
     >>> import blum
     >>> try:
     ...     blum.generate("box").write("no such folder/box.ply")
@@ -135,6 +175,8 @@ class FileError(Error, OSError):
 class FormatError(FileError, ValueError):
     """Error for a file whose content violates its format.
 
+    Examples
+    --------
     >>> import blum, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "part.off"

@@ -1,4 +1,7 @@
-"""Medial axes whose sheets are extended to the surface, for meshes of shell elements."""
+"""Extended medial axes.
+
+Their sheets reach the surface, for meshes of shell elements.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,8 @@ from ._progress import Progress, reporting
 from ._structs import ExtendOptions, ExtendReport
 from ._warn import warn_all
 
+__all__ = ["ExtendedAxis", "extend_axis"]
+
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
 
@@ -30,6 +35,8 @@ class ExtendedAxis(Complex):
     It has the vertices and triangles of the axis in their order, then the new ones. Its edges are the curves of the
     axis.
 
+    Examples
+    --------
     >>> import blum
     >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
     >>> shell = blum.medial_axis(plate, resolution=24).simplify(120).extend()
@@ -39,14 +46,14 @@ class ExtendedAxis(Complex):
 
     #: Outcome for the rims, with counts and lengths.
     report: ExtendReport
-    _told: dict[str, Any]
+    _stated: dict[str, Any]
 
     @staticmethod
-    def _of(core: _CoreComplex, report: ExtendReport, told: dict[str, Any]) -> ExtendedAxis:
+    def _of(core: _CoreComplex, report: ExtendReport, stated: dict[str, Any]) -> ExtendedAxis:
         made = ExtendedAxis.__new__(ExtendedAxis)
         made._core = core
         made.report = report
-        made._told = told
+        made._stated = stated
         return made
 
     @property
@@ -71,6 +78,8 @@ class ExtendedAxis(Complex):
         """Writes .vtp, .ply, .obj, .npz or .stl (triangles only). The file appears under its name only when it is
         complete.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
         >>> shell = blum.medial_axis(plate, resolution=24).simplify(120).extend()
@@ -79,11 +88,13 @@ class ExtendedAxis(Complex):
         ...     (pathlib.Path(folder) / "shell.vtp").stat().st_size > 1000
         True
         """
-        _core.write_extended(Path(os.fspath(path)), self._core, self._told)
+        _core.write_extended(Path(os.fspath(path)), self._core, self._stated)
 
     def to_mesh(self) -> Mesh:
         """Returns the vertices and triangles as a mesh, without the curves.
 
+        Examples
+        --------
         >>> import blum
         >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
         >>> shell = blum.medial_axis(plate, resolution=24).simplify(120).extend()
@@ -93,14 +104,14 @@ class ExtendedAxis(Complex):
         return Mesh(np.array(self.vertices), np.array(self.triangles))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (core_arguments(self), self.report, self._told)
+        return _restored, (core_arguments(self), self.report, self._stated)
 
     def __repr__(self) -> str:
         return f"ExtendedAxis({len(self.vertices):,} vertices, {len(self.triangles):,} triangles)"
 
 
-def _restored(arguments: tuple[Any, ...], report: ExtendReport, told: dict[str, Any]) -> ExtendedAxis:
-    return ExtendedAxis._of(_core.Complex(*arguments), report, told)
+def _restored(arguments: tuple[Any, ...], report: ExtendReport, stated: dict[str, Any]) -> ExtendedAxis:
+    return ExtendedAxis._of(_core.Complex(*arguments), report, stated)
 
 
 @takes("ExtendOptions")
@@ -136,6 +147,8 @@ def extend_axis(
         Triangles with `thickness`, `triangle_sheet` and `triangle_extended`. `.report` contains the outcome for the
         rims.
 
+    Examples
+    --------
     >>> import blum
     >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.25)
     >>> shell = blum.medial_axis(plate, resolution=48).certified(120).extend()
@@ -148,10 +161,10 @@ def extend_axis(
     if own is None:
         raise InvalidOption("the mesh of this axis is not known here: pass it, as in extend_axis(axis, mesh)")
     with reporting(progress) as report:
-        core, told, found = _core.extend_axis(
+        core, stated, found = _core.extend_axis(
             axis._core, own._arrays, dict(options), integer(threads, "threads"), report
         )
     warn_all(found)
     origin = getattr(axis, "_origin", None)
     known = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
-    return ExtendedAxis._of(core, told, known)
+    return ExtendedAxis._of(core, stated, known)

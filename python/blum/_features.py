@@ -1,4 +1,7 @@
-"""Pairs of close features of a mesh: of a vertex and a face, and of two edges."""
+"""Close features of a mesh.
+
+A pair of features is a vertex and a face, or two edges.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,8 @@ from ._progress import Progress
 from ._proximity_results import ProximityPairs
 from ._proximity_scene import ProximityScene
 
+__all__ = ["FeaturePairs", "close_features"]
+
 _VERTICES, _FACES, _EDGES = 1, 2, 4  # Layers of the scene.
 
 
@@ -19,6 +24,8 @@ _VERTICES, _FACES, _EDGES = 1, 2, 4  # Layers of the scene.
 class FeaturePairs:
     """Pairs of close features of a mesh, as arrays; the result of :func:`close_features`.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.close_features(blum.generate("box"), 0.5)
     FeaturePairs(0 vertex_face, 0 edge_edge)
@@ -59,6 +66,8 @@ def close_features(mesh: MeshLike, distance: Real, *, threads: int = 0, progress
     -------
     FeaturePairs
 
+    Examples
+    --------
     >>> import blum
     >>> floor, above = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 1], [2, 1, 2], [1, 2, 2]]
     >>> found = blum.close_features((floor + above, [[0, 1, 2], [3, 4, 5]]), 1.5)

@@ -35,6 +35,8 @@ from ._progress import Progress, reporting
 from ._structs import FieldOptions, VoxelTopology
 from ._warn import warn_all
 
+__all__ = ["Field", "FieldSolver", "distance_field", "read_field", "selected_voxels", "voxel_topology"]
+
 
 class Field:
     """Distance and closest site at every node of a grid; the result of :func:`distance_field` and similar functions.
@@ -49,6 +51,8 @@ class Field:
     grid : Grid
         Its shape must be that of `distance`.
 
+    Examples
+    --------
     >>> import blum, numpy as np
     >>> grid = blum.Grid((-1, -1, -1), 0.25, (9, 9, 9))
     >>> ball = blum.Field(np.linalg.norm(grid.positions(), axis=-1) - 0.6, grid)
@@ -91,9 +95,9 @@ class Field:
         self._sign_rule, self._sign_reason = str(core.sign_rule), str(core.sign_reason)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        told = (self.site_ids, self.band, self.sign_rule, self.sign_reason)
+        stated = (self.site_ids, self.band, self.sign_rule, self.sign_reason)
         arrays = (self.distance, self.grid, self.site, self.distance2, self.site2, self.second)
-        return _restored, (*arrays, *told, self.mesh, self.source, self._space)
+        return _restored, (*arrays, *stated, self.mesh, self.source, self._space)
 
     @property
     def distance(self) -> npt.NDArray[np.float32]:
@@ -199,6 +203,8 @@ class Field:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> field = blum.distance_field(blum.generate("sphere"), resolution=64)
         >>> round(float(field.interpolate([0.5, 0, 0])), 2)
@@ -226,6 +232,8 @@ class Field:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> field = blum.distance_field(blum.generate("torus"), resolution=32)
         >>> blum.topology(field.zero_surface()).betti
@@ -240,6 +248,8 @@ class Field:
         Files appear under their names only when they are complete. If a field without sites replaces a field with sites
         as .nrrd, the file of the old sites is removed.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> field = blum.distance_field(blum.generate("box"), resolution=8)
         >>> with tempfile.TemporaryDirectory() as folder:
@@ -257,6 +267,8 @@ class Field:
         A field of order 2 also has `distance2` and `site2`. The point data are copies, because VTK would hold the
         library's memory until after Python's end, which then reports a leak.
 
+        Examples
+        --------
         >>> import blum
         >>> image = blum.distance_field(blum.generate("box"), resolution=8).to_pyvista()
         >>> type(image).__name__ in ("ImageData", "dict")
@@ -377,6 +389,8 @@ def distance_field(
     ------
     InvalidMesh, InvalidGrid, InvalidOption (all ValueError), TypeError, OutOfMemory, DeviceError, KeyboardInterrupt
 
+    Examples
+    --------
     >>> import blum
     >>> field = blum.distance_field(blum.generate("box"), resolution=32)
     >>> field.distance.shape, field.sign_rule
@@ -415,6 +429,8 @@ class FieldSolver:
         each frame has its own arrays.
     **options
 
+    Examples
+    --------
     >>> import numpy as np, blum
     >>> mesh = blum.generate("sphere", frequency=4)
     >>> solver = blum.FieldSolver(blum.Grid.around(mesh, resolution=16, padding=0.5))
@@ -465,6 +481,8 @@ class FieldSolver:
         objects : (n,) of integers, optional
             The object of each vertex in this frame, as for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> solver = blum.FieldSolver(blum.Grid((-1, -1, -1), 0.5, (5, 5, 5)))
         >>> solver.compute(blum.generate("box")).distance.shape
@@ -507,6 +525,8 @@ def selected_voxels(
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum, numpy as np
     >>> blum.selected_voxels(np.array([[[0, 1, 2, 3]]]), threshold=2).tolist()
     [[[False, False, True, True]]]
@@ -525,6 +545,8 @@ def selected_voxels(
 def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -> VoxelTopology:
     """Returns the Betti numbers and the Euler characteristic of the voxels of a mask [z, y, x].
 
+    Examples
+    --------
     >>> import blum
     >>> blum.voxel_topology(blum.generate("tube_image", nodes=2).values).betti
     (1, 5, 0)
@@ -537,6 +559,8 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
 def read_field(path: PathLike) -> Field:
     """Reads a field from .nrrd (with the sites beside it), .npz or .vti.
 
+    Examples
+    --------
     >>> import blum, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "box.npz"

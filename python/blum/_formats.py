@@ -5,6 +5,8 @@ from __future__ import annotations
 from . import _core
 from ._structs import FileFormat
 
+__all__ = ["file_formats"]
+
 
 def file_formats(content: str | None = None) -> list[FileFormat]:
     """Returns all file formats that Blum reads or writes, or those for one content.
@@ -14,6 +16,8 @@ def file_formats(content: str | None = None) -> list[FileFormat]:
     content : str, optional
         For example "mesh", "image", "field", "complex" or "surface map". Default: all contents.
 
+    Examples
+    --------
     >>> import blum
     >>> [one.name for one in blum.file_formats("mesh")][:2]
     ['OBJ', 'OFF']

@@ -13,6 +13,8 @@ from ._errors import InvalidOption
 from ._mesh import MeshLike, as_mesh
 from ._structs import Bounds
 
+__all__ = ["Grid"]
+
 
 class Grid:
     """Regular grid of nodes. Node (i, j, k) lies at ``origin + direction @ ((i, j, k) * spacing)``.
@@ -29,6 +31,8 @@ class Grid:
     direction : (3, 3) array, optional
         Orthonormal. Column a is the direction of index axis a.
 
+    Examples
+    --------
     >>> import blum
     >>> grid = blum.Grid(origin=(0, 0, 0), spacing=0.5, size=(5, 3, 2))
     >>> grid.shape
@@ -63,6 +67,8 @@ class Grid:
         padding : float
             Padding on each side, as a fraction of the longest side.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Grid.around(((0, 0, 0), (1, 1, 2)), resolution=9, padding=0.5).size
         (7, 7, 9)
@@ -88,6 +94,8 @@ class Grid:
         spacing : float, optional
             Distance between nodes, mesh units. Replaces `resolution`.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Grid.within(((0, 0, 0), (1, 1, 2)), spacing=0.5)
         Grid(origin=(0, 0, 0), spacing=(0.5, 0.5, 0.5), size=(3, 3, 5))
@@ -146,6 +154,8 @@ class Grid:
     def positions_of(self, nodes: Any) -> FloatArray:
         """Returns the positions of nodes (i, j, k) as (..., 3), in x, y, z order. Fractions lie between nodes.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Grid((1, 0, 0), 0.5, (3, 3, 3)).positions_of([2, 0, 0.5]).tolist()
         [2.0, 0.0, 0.25]
@@ -157,6 +167,8 @@ class Grid:
     def positions(self) -> FloatArray:
         """Returns the positions of all nodes: (z, y, x, 3).
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Grid((0, 0, 0), 1, (4, 3, 2)).positions().shape
         (2, 3, 4, 3)

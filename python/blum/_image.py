@@ -17,6 +17,8 @@ from ._grid import Grid, image_grid
 from ._progress import Progress, reporting
 from ._structs import ImageValues
 
+__all__ = ["Image", "read_image"]
+
 _EXTENSIONS = extensions("image")
 
 
@@ -35,6 +37,8 @@ class Image:
     space : str
         Name of the world axes in NRRD files. See :attr:`space`.
 
+    Examples
+    --------
     >>> import numpy as np, blum
     >>> blum.Image(np.zeros((4, 5, 6), dtype=np.uint8), spacing=(0.5, 0.5, 2)).grid.size
     (6, 5, 4)
@@ -87,6 +91,8 @@ class Image:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> [(each.label, each.betti) for each in blum.generate("ball_image", size=12).labels().labels]
         [(0, None), (1, (1, 0, 0))]
@@ -113,6 +119,8 @@ class Image:
     def write(self, path: PathLike) -> None:
         """Writes .nrrd (with the grid) or .npy (values only).
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     path = pathlib.Path(folder) / "ball.nrrd"
@@ -133,6 +141,8 @@ def read_image(path: PathLike) -> Image:
     ------
     FileNotFoundError, FileError, FormatError, InvalidOption
 
+    Examples
+    --------
     >>> import blum, numpy as np, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "mask.npy"
@@ -175,7 +185,7 @@ def is_image(value: Any) -> bool:
 
 def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any = None) -> Image:
     """Returns an Image, a path of one or an array [z, y, x] as an Image."""
-    told = [
+    stated = [
         name
         for name, value in (("spacing", spacing), ("origin", origin), ("direction", direction))
         if value is not None
@@ -183,7 +193,7 @@ def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any
     if isinstance(image, (str, os.PathLike)):
         image = read_image(image)
     if isinstance(image, Image):
-        if told:
-            raise InvalidOption(f"{told[0]} is given, but the image has its own: leave it out, or pass an array")
+        if stated:
+            raise InvalidOption(f"{stated[0]} is given, but the image has its own: leave it out, or pass an array")
         return image
     return Image(image, 1.0 if spacing is None else spacing, 0.0 if origin is None else origin, direction)

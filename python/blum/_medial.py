@@ -1,4 +1,4 @@
-"""Medial axes of meshes and images."""
+"""Medial axes."""
 
 from __future__ import annotations
 
@@ -21,10 +21,14 @@ from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
 from ._warn import warn, warn_all
 
+__all__ = ["MedialAxis", "medial_axis"]
+
 
 class MedialAxis:
     """Medial axis of a solid for all angles theta at once; the result of :func:`medial_axis`.
 
+    Examples
+    --------
     >>> import blum
     >>> axis = blum.medial_axis(blum.generate("box"), resolution=32)
     >>> len(axis.simplify(80).triangles) >= len(axis.simplify(120).triangles)
@@ -63,6 +67,8 @@ class MedialAxis:
         ------
         InvalidOption, TypeError
 
+        Examples
+        --------
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=16)
         >>> axis.simplify(60).sheet_count, axis.simplify(120).sheet_count
@@ -107,6 +113,8 @@ class MedialAxis:
         NotCertified
             If no form is certified.
 
+        Examples
+        --------
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).certified(60)
         >>> axis.certificate.holds, axis.counts["sheets"]
@@ -128,8 +136,8 @@ class MedialAxis:
                 made = _core.certified_axis_of_mesh(
                     self._core, of_mesh, shape._arrays, self._options, angle, most, count, report
                 )
-        core, deviation, of_grid, certificate, mismatches, told = made
-        warn_all(told)
+        core, deviation, of_grid, certificate, mismatches, stated = made
+        warn_all(stated)
         if mismatches:
             text = "NOT certified: " + "; ".join(mismatches)
             if not allow_uncertified:
@@ -151,6 +159,8 @@ class MedialAxis:
             As for :meth:`simplify`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box", size_x=3, size_y=2, size_z=0.5), resolution=24)
         >>> [round(sheet.thickness.median, 6) for sheet in axis.graph(120).sheets]
@@ -164,6 +174,8 @@ class MedialAxis:
         It serves sliders, for example. The cost is near-linear in the axis at the least angle. Raises InvalidOption
         unless `greatest_theta` is 180.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.medial_axis(blum.generate("box"), resolution=16, least_theta=60).nested().least_theta
         60.0
@@ -175,6 +187,8 @@ class MedialAxis:
 
         `blum view` and :func:`view` show such a file with a slider for theta.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=16, least_theta=60)
         >>> with tempfile.TemporaryDirectory() as folder:
@@ -236,6 +250,8 @@ def medial_axis(
     ------
     InvalidMesh, InvalidImage, InvalidOption (all ValueError), TypeError, OutOfMemory, KeyboardInterrupt
 
+    Examples
+    --------
     >>> import blum
     >>> axis = blum.medial_axis(blum.generate("torus"), resolution=32)
     >>> axis

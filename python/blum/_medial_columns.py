@@ -1,4 +1,7 @@
-"""Columns of medial axes as arrays, and axes of all angles in one complex."""
+"""Columns of medial axes.
+
+Columns are arrays. A nested complex holds the axes of all angles.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,8 @@ from ._options import takes
 from ._progress import Progress
 from ._structs import AxisGraph, AxisGraphOptions
 
+__all__ = ["ROLES", "NestedComplex", "Present"]
+
 #: Names of the roles. `MedialComplex.role` and `edge_role` hold indices into them.
 ROLES: tuple[str, ...] = _core.enums["MedialRole"]
 
@@ -31,6 +36,8 @@ class MedialColumns(Complex):
     A property raises :class:`InvalidOption` if the axis lacks its column, for example because its file does not hold
     it.
 
+    Examples
+    --------
     >>> import blum
     >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
     >>> axis.radius.shape == axis.role.shape == (len(axis.vertices),)
@@ -67,6 +74,8 @@ class MedialColumns(Complex):
             As for :func:`distance_field`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
         >>> len(blum.medial_axis(plate, resolution=24).simplify(120).graph().sheets)
@@ -89,6 +98,8 @@ class MedialColumns(Complex):
             As for :meth:`graph`.
         **options
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
         >>> with tempfile.TemporaryDirectory() as folder:
@@ -167,6 +178,8 @@ class MedialColumns(Complex):
 class Present:
     """Parts of a :class:`NestedComplex` that exist at an angle: True or False for each.
 
+    Examples
+    --------
     >>> import blum
     >>> nested = blum.medial_axis(blum.generate("box"), resolution=16).nested()
     >>> present = nested.at(80)
@@ -187,6 +200,8 @@ class NestedComplex(MedialColumns):
     from that of the solid. Roles of vertices and sheets are those at the least angle. An edge with several roles is
     listed several times.
 
+    Examples
+    --------
     >>> import blum
     >>> nested = blum.medial_axis(blum.generate("box"), resolution=32).nested()
     >>> at = nested.at(80)
@@ -234,6 +249,8 @@ class NestedComplex(MedialColumns):
         theta : float
             Degrees, `least_theta` to 180.
 
+        Examples
+        --------
         >>> import blum
         >>> nested = blum.medial_axis(blum.generate("box"), resolution=16).nested()
         >>> bool(nested.at(60).triangles.sum() >= nested.at(120).triangles.sum())

@@ -1,4 +1,7 @@
-"""Medial axes as complexes, their files and their certificates."""
+"""Medial axes as complexes.
+
+They have files and certificates.
+"""
 
 from __future__ import annotations
 
@@ -39,6 +42,8 @@ from ._mesh import Mesh, MeshOrVertices
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import Bounds, Certificate, CertificateOptions, ExtendOptions
+
+__all__ = ["MedialComplex", "ball_union_field", "certify", "read_medial"]
 
 EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, "labels": True}
 
@@ -90,6 +95,8 @@ class MedialComplex(MedialColumns):
     triangles : (m, 3) array of integers, optional
     triangle_angle, triangle_sheet : (m,) arrays, optional
 
+    Examples
+    --------
     >>> import blum
     >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).simplify(60)
     >>> axis.counts["sheets"] > 0, axis.certificate.holds
@@ -228,6 +235,8 @@ class MedialComplex(MedialColumns):
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box", size_x=2), resolution=16).simplify(20)
         >>> axis.sheet_count, axis.prune_sheets(90).sheet_count
@@ -253,6 +262,8 @@ class MedialComplex(MedialColumns):
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=64).simplify(60)
         >>> lean = axis.decimate()
@@ -289,6 +300,8 @@ class MedialComplex(MedialColumns):
             As for :func:`distance_field`.
         **options
 
+        Examples
+        --------
         >>> import blum
         >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
         >>> blum.medial_axis(plate, resolution=24).simplify(120).extend().report.not_reached
@@ -316,6 +329,8 @@ class MedialComplex(MedialColumns):
         resolution, spacing, padding, bounds, grid, threads, progress
             As for :func:`distance_field`, around the balls.
 
+        Examples
+        --------
         >>> import blum
         >>> ball = blum.medial_axis(blum.generate("sphere"), resolution=32).simplify(60).reconstruct(resolution=32)
         >>> blum.topology(ball.zero_surface()).betti
@@ -339,6 +354,8 @@ class MedialComplex(MedialColumns):
 
         .npz files also hold the axes of all angles, `nested`, if they exist.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
         >>> with tempfile.TemporaryDirectory() as folder:
@@ -352,6 +369,8 @@ class MedialComplex(MedialColumns):
     def to_trimesh(self) -> Any:
         """Returns a trimesh.Trimesh with vertex attributes; without trimesh, the pair (vertices, triangles).
 
+        Examples
+        --------
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
         >>> type(axis.to_trimesh()).__name__ in ("Trimesh", "tuple")
@@ -379,6 +398,8 @@ class MedialComplex(MedialColumns):
         It has all columns of vertices, and the angles, roles and sheets of cells. Cell data list the edges before the
         triangles, as PolyData does. `sheet` and `role` are -1 for cells without one.
 
+        Examples
+        --------
         >>> import blum
         >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
         >>> type(axis.to_pyvista()).__name__ in ("PolyData", "dict")
@@ -412,8 +433,8 @@ class MedialComplex(MedialColumns):
 
     def __repr__(self) -> str:
         counts = self.counts
-        told = [name for name in ("vertices", "triangles", "sheets") if counts[name] is not None]
-        parts = ", ".join(f"{counts[name]:,} {name}" for name in told)
+        stated = [name for name in ("vertices", "triangles", "sheets") if counts[name] is not None]
+        parts = ", ".join(f"{counts[name]:,} {name}" for name in stated)
         return f"MedialComplex({parts}{'' if self.theta is None else f', theta={self.theta:g}'})"
 
 
@@ -530,6 +551,8 @@ def certify(
 
     :class:`AxisVerifier` reads the shape once for several axes.
 
+    Examples
+    --------
     >>> import blum
     >>> torus = blum.generate("torus")
     >>> axis = blum.medial_axis(torus, resolution=32)
@@ -557,6 +580,8 @@ def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, 
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> grid = blum.Grid((-1, -1, -1), 0.5, (5, 5, 5))
     >>> blum.ball_union_field([[0, 0, 0]], [0.5], grid).distance[2, 2].tolist()
@@ -578,9 +603,9 @@ def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, 
 
 def write_complex(path: PathLike, complex: MedialComplex, nested: NestedComplex | None) -> None:
     """Writes a medial axis with its metadata, and with the axes of all angles if given."""
-    told = {name: value for name, value in vars(complex._origin).items() if name not in ("shape", "version")}
+    stated = {name: value for name, value in vars(complex._origin).items() if name not in ("shape", "version")}
     inner, least = (None, 0.0) if nested is None else (nested._core, nested.least_theta)
-    _core.write_medial(Path(os.fspath(path)), complex._core, inner, least, told)
+    _core.write_medial(Path(os.fspath(path)), complex._core, inner, least, stated)
 
 
 def read_medial(path: PathLike) -> MedialComplex:
@@ -592,6 +617,8 @@ def read_medial(path: PathLike) -> MedialComplex:
     ------
     FileNotFoundError, FileError, FormatError, InvalidOption
 
+    Examples
+    --------
     >>> import blum, pathlib, tempfile
     >>> axis = blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)
     >>> with tempfile.TemporaryDirectory() as folder:

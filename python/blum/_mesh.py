@@ -35,6 +35,20 @@ from ._progress import Progress, reporting
 from ._structs import Bounds, Topology
 from ._warn import warn
 
+__all__ = [
+    "Mesh",
+    "MeshLike",
+    "SelfIntersections",
+    "Sites",
+    "WindingNumber",
+    "pseudonormals",
+    "read_mesh",
+    "self_intersections",
+    "topology",
+    "weld",
+    "weld_clusters",
+]
+
 Betti = tuple[int, int, int]
 
 
@@ -61,6 +75,8 @@ class Mesh:
 
     Arrays must not change during a call. They may change between calls (see :class:`FieldSolver`).
 
+    Examples
+    --------
     >>> import blum
     >>> tetrahedron = blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
     ...                         [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -108,8 +124,8 @@ class Mesh:
         return self._points
 
     def __reduce__(self) -> tuple[Any, ...]:
-        told = {"source": self.source, "file_info": self.file_info, "_weld": self._weld}
-        return Mesh, (self._vertices, self._triangles, self._segments, self._points), told
+        stated = {"source": self.source, "file_info": self.file_info, "_weld": self._weld}
+        return Mesh, (self._vertices, self._triangles, self._segments, self._points), stated
 
     @property
     def bounds(self) -> Bounds:
@@ -119,6 +135,8 @@ class Mesh:
     def write(self, path: PathLike) -> None:
         """Writes .obj, .off, .stl, .ply or .glb. The file appears under its name only when it is complete.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     blum.generate("box").write(pathlib.Path(folder) / "box.stl")
@@ -130,6 +148,8 @@ class Mesh:
     def to_trimesh(self) -> Any:
         """Returns a trimesh.Trimesh of the triangles, unprocessed. Without trimesh, returns (vertices, triangles).
 
+        Examples
+        --------
         >>> import blum
         >>> type(blum.generate("box").to_trimesh()).__name__ in ("Trimesh", "tuple")
         True
@@ -143,6 +163,8 @@ class Mesh:
     def to_pyvista(self) -> Any:
         """Returns a pyvista.PolyData of triangles, segments and points. Without PyVista, returns a dict of arrays.
 
+        Examples
+        --------
         >>> import blum
         >>> type(blum.generate("box").to_pyvista()).__name__ in ("PolyData", "dict")
         True
@@ -217,7 +239,7 @@ def as_mesh(
     if weld is None:
         own = _converted(mesh, triangles, name)
         if triangles is None and not isinstance(mesh, (Mesh, str, os.PathLike, tuple, list)):
-            _tell_of_seams(own, type(mesh).__name__)
+            _warn_of_seams(own, type(mesh).__name__)
         return own
     if triangles is None and isinstance(mesh, (str, os.PathLike)):
         return read_mesh(mesh, weld=weld)
@@ -247,7 +269,7 @@ def _is_pair(mesh: Any) -> bool:
     return isinstance(mesh, (tuple, list)) and len(mesh) == 2 and np.ndim(mesh[0]) == 2
 
 
-def _tell_of_seams(mesh: Mesh, name: str) -> None:
+def _warn_of_seams(mesh: Mesh, name: str) -> None:
     """Warns about a mesh of another package that is open only along seams.
 
     Other packages keep a vertex for each of its texture coordinates, so the mesh is open along texture seams.
@@ -363,6 +385,8 @@ def read_mesh(path: PathLike, *, weld: Real | None = None) -> Mesh:
     FileNotFoundError, FileError, FormatError
         FileError and FormatError name the file and the place of the problem.
 
+    Examples
+    --------
     >>> import blum, pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "box.ply"
@@ -389,6 +413,8 @@ def weld(mesh: MeshLike, tolerance: Real = 0.0) -> Mesh:
     tolerance : float
         Longest step, mesh units. A chain of steps becomes one vertex, however long it is.
 
+    Examples
+    --------
     >>> import blum
     >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     >>> blum.weld((corners, [[0, 1, 2], [3, 4, 5]]))
@@ -400,6 +426,8 @@ def weld(mesh: MeshLike, tolerance: Real = 0.0) -> Mesh:
 def weld_clusters(vertices: Any, tolerance: Real = 0.0) -> IntArray:
     """Returns, for each of (n, 3) vertices, the smallest index of the vertices that :func:`weld` merges with it: (n,).
 
+    Examples
+    --------
     >>> import blum
     >>> blum.weld_clusters([[0, 0, 0], [1, 0, 0], [0, 0, 0]]).tolist()
     [0, 1, 0]
@@ -425,6 +453,8 @@ def topology(
     mesh, triangles, weld, threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.topology(blum.generate("torus")).betti
     (1, 1, 0)
@@ -440,6 +470,8 @@ def topology(
 class SelfIntersections:
     """Pairs of triangles that share more than a corner or an edge; the result of :func:`self_intersections`.
 
+    Examples
+    --------
     >>> import blum
     >>> cross = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1]]
     >>> found = blum.self_intersections(cross, [[0, 1, 2], [3, 4, 5]])
@@ -472,6 +504,8 @@ def self_intersections(
     limit : int
         Largest number of pairs, at least 0. The search ends when it finds more.
 
+    Examples
+    --------
     >>> import blum
     >>> len(blum.self_intersections(blum.generate("sphere")).pairs)
     0
@@ -497,6 +531,8 @@ class Sites:
     mesh, triangles, weld, threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> sites = blum.Sites(blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
     >>> len(sites), sites.kind([0, 4, 6]).tolist()
@@ -546,6 +582,8 @@ class Sites:
     def kind(self, ids: Any) -> npt.NDArray[np.str_]:
         """Returns 'vertex', 'edge' or 'face' for each id.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Sites(blum.generate("box")).kind([7, 8, 37]).tolist()
         ['vertex', 'edge', 'face']
@@ -557,6 +595,8 @@ class Sites:
     def index(self, ids: Any) -> IntArray:
         """Returns the index of each id within its kind: of the vertex, the edge or the triangle.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Sites(blum.generate("box")).index([7, 8, 37]).tolist()
         [7, 0, 11]
@@ -570,6 +610,8 @@ class Sites:
     def vertices(self, ids: Any) -> IntArray:
         """Returns the one, two or three vertices of each site, padded with -1: (n, 3).
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Sites([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).vertices([1, 5, 6]).tolist()
         [[1, -1, -1], [1, 2, -1], [0, 1, 2]]
@@ -580,6 +622,8 @@ class Sites:
     def triangles(self, ids: Any) -> IntArray:
         """Returns the smallest triangle that contains each site, -1 if none: (n,).
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Sites([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).triangles([0, 3, 6]).tolist()
         [0, 0, 0]
@@ -606,6 +650,8 @@ def pseudonormals(
     mesh, triangles, weld, threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.pseudonormals([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])[6].round(6).tolist()
     [0.0, 0.0, 1.0]
@@ -625,6 +671,8 @@ class WindingNumber:
     mesh, triangles, weld, threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> inside = blum.WindingNumber(blum.generate("box"))
     >>> inside([[0, 0, 0], [5, 5, 5]]).round(6).tolist()
@@ -662,6 +710,8 @@ class WindingNumber:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> winding = blum.WindingNumber(blum.generate("sphere"))
         >>> round(float(winding([0, 0, 0], approximate=2)), 2)
@@ -679,6 +729,8 @@ class WindingNumber:
     def is_inside(self, points: Any, *, threads: int = 0, progress: Progress = False) -> npt.NDArray[np.bool_]:
         """Returns True for each of the points (..., 3) whose winding number is above 1/2, as the full sum decides it.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.WindingNumber(blum.generate("box")).is_inside([[0, 0, 0], [5, 5, 5]]).tolist()
         [True, False]

@@ -17,6 +17,8 @@ class AxisGraphMethods:
         The other attributes are the members that are values, for example `thickness_median` and `position_x`. The
         GraphML files of `MedialComplex.write_graph` hold the same graph. Raises ImportError if networkx is missing.
 
+        Examples
+        --------
         >>> import blum
         >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
         >>> graph = blum.medial_axis(plate, resolution=24).simplify(120).graph().to_networkx()

@@ -1,4 +1,7 @@
-"""Signed distances at arbitrary points, and samples of surfaces and of points near them."""
+"""Signed distances and samples.
+
+Samples are points of a surface, or points near it.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,15 @@ from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions, NearSampleOptions, SampleOptions
 from ._warn import warn_all
 
+__all__ = ["NearSamples", "SignedDistances", "SurfaceSamples", "sample_near", "sample_surface", "signed_distance"]
+
 
 @dataclass(frozen=True, eq=False)
 class SignedDistances:
     """Result of :func:`signed_distance`. All arrays have the shape of the queries without the last axis.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.signed_distance(blum.generate("box"), [0.1, 0, 2])
     >>> round(float(found.distance), 6), float(found.gradient[2])
@@ -72,6 +79,8 @@ def signed_distance(
     points : array of shape (..., 3)
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.signed_distance(blum.generate("box"), [[0, 0, 2], [0.3, 0, 0]])
     >>> found.distance.round(6).tolist(), found.gradient.round(6).tolist()
@@ -100,6 +109,8 @@ def signed_distance(
 class SurfaceSamples:
     """Result of :func:`sample_surface`. Row k of each array belongs to point k.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.sample_surface(blum.generate("box"), 10)
     >>> found.points.shape, found.normals.shape, found.triangle.shape
@@ -134,6 +145,8 @@ def sample_surface(
         Number of points, not negative.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.sample_surface(blum.generate("box"), 1000, seed=1)
     >>> found, float(abs(found.points).max())
@@ -150,6 +163,8 @@ def sample_surface(
 class NearSamples:
     """Result of :func:`sample_near`. Row k of each array belongs to point k.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.sample_near(blum.generate("box"), 10)
     >>> found.points.shape, found.distance.shape
@@ -188,6 +203,8 @@ def sample_near(
         Number of points, not negative.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.sample_near(blum.generate("sphere"), 500, sigma=0.01, in_box=0.5)
     >>> found, bool(abs(found.distance[:250]).max() < 0.06)

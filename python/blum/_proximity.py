@@ -1,4 +1,4 @@
-"""Collisions of meshes that move."""
+"""Continuous collisions of meshes."""
 
 from __future__ import annotations
 
@@ -16,11 +16,15 @@ from ._progress import Progress, reporting
 from ._proximity_results import earliest_of
 from ._structs import ImpactOptions
 
+__all__ = ["ContinuousCollisions", "continuous_collisions", "edge_edge_impacts", "vertex_face_impacts"]
+
 
 @dataclass(frozen=True, eq=False)
 class ContinuousCollisions:
     """Pairs of features of a mesh that meet between two frames; the result of :func:`continuous_collisions`.
 
+    Examples
+    --------
     >>> import blum
     >>> box = blum.generate("box")
     >>> found = blum.continuous_collisions(box, box.vertices + [1, 0, 0])
@@ -73,6 +77,8 @@ def continuous_collisions(
     -------
     ContinuousCollisions
 
+    Examples
+    --------
     >>> import blum
     >>> floor, falling = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 1], [2, 1, 2], [1, 2, 2]]
     >>> down = [[x, y, z - 4] for x, y, z in falling]
@@ -108,6 +114,8 @@ def vertex_face_impacts(
     (n,) array
         Times from 0 to 1, never after the contact; NaN if they do not meet.
 
+    Examples
+    --------
     >>> import blum
     >>> triangle = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     >>> blum.vertex_face_impacts([[[1, 1, 1], *triangle]], [[[1, 1, -1], *triangle]]).round(4).tolist()
@@ -137,6 +145,8 @@ def edge_edge_impacts(
     (n,) array
         As for :func:`vertex_face_impacts`.
 
+    Examples
+    --------
     >>> import blum
     >>> edge = [[-1, 0, 0], [1, 0, 0]]
     >>> start, end = [[*edge, [0, -1, 1], [0, 1, 1]]], [[*edge, [0, -1, -1], [0, 1, -1]]]

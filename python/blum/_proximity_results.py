@@ -10,6 +10,8 @@ import numpy as np
 
 from ._arguments import FloatArray, IntArray, Integer, integer
 
+__all__ = ["Penetration", "PrimitivePair", "ProximityPairs", "SceneCollisions"]
+
 
 def earliest_of(*times: FloatArray) -> float | None:
     """Returns the smallest of some times. None without times."""
@@ -23,6 +25,8 @@ class PrimitivePair:
 
     Primitives of a mesh are its triangles, then its segments, then its points.
 
+    Examples
+    --------
     >>> import blum
     >>> box = blum.generate("box")
     >>> found = blum.separation(box, (box.vertices + [3, 0, 0], box.triangles))
@@ -44,6 +48,8 @@ class ProximityPairs:
 
     `pairs[k]` is one pair, and `pairs[1:5]` is a part. Without pairs, it is false.
 
+    Examples
+    --------
     >>> import blum
     >>> pairs = blum.closest_primitives(blum.generate("box"))
     >>> len(pairs), pairs[0].primitive, len(pairs[1:5])
@@ -99,6 +105,8 @@ class ProximityPairs:
 class Penetration:
     """Connected part of the overlap of two solids.
 
+    Examples
+    --------
     >>> import blum
     >>> scene, box = blum.ProximityScene(), blum.generate("box")
     >>> a, b = scene.add(box), scene.add((box.vertices + [0.75, 0, 0], box.triangles))
@@ -130,6 +138,8 @@ class Penetration:
 class SceneCollisions:
     """Pairs of features of a scene's objects that meet while the objects move; see :meth:`ProximityScene.continuous`.
 
+    Examples
+    --------
     >>> import blum
     >>> scene, box = blum.ProximityScene(), blum.generate("box")
     >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))

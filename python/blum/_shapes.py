@@ -1,4 +1,4 @@
-"""Shapes and images that Blum generates."""
+"""Generated shapes and images."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from ._errors import InvalidOption
 from ._image import Image, image_of_parts
 from ._mesh import Betti, Mesh, MeshLike, as_mesh, mesh_of_arrays
 
+__all__ = ["ShapeInfo", "ShapeParameter", "extrusion", "generate", "known_betti", "noisy", "shapes", "subdivided"]
+
 _ImageName = Literal["ball_image", "balls_image", "noise_image", "tube_image"]
 
 
@@ -18,6 +20,8 @@ _ImageName = Literal["ball_image", "balls_image", "noise_image", "tube_image"]
 class ShapeParameter:
     """Parameter of a shape.
 
+    Examples
+    --------
     >>> import blum
     >>> parameter = blum.shapes()["torus"].parameters[0]
     >>> parameter.name, parameter.default, parameter.integer
@@ -36,6 +40,8 @@ class ShapeParameter:
 class ShapeInfo:
     """Shape that :func:`generate` makes.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.shapes()["torus"].kind
     'mesh'
@@ -50,6 +56,8 @@ class ShapeInfo:
 def shapes() -> dict[str, ShapeInfo]:
     """Returns all shapes by name, with their parameters.
 
+    Examples
+    --------
     >>> import blum
     >>> [parameter.name for parameter in blum.shapes()["torus"].parameters]
     ['ring_radius', 'tube_radius', 'ring_segments', 'tube_segments']
@@ -82,6 +90,8 @@ def generate(name: str, **parameters: Real) -> Mesh | Image:
 
     :func:`shapes` and ``blum make NAME --help`` list the parameters.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.generate("sphere", frequency=4)
     Mesh(162 vertices, 320 triangles)
@@ -97,6 +107,8 @@ def generate(name: str, **parameters: Real) -> Mesh | Image:
 def known_betti(name: str, **parameters: Real) -> Betti | None:
     """Returns components, tunnels and voids of a shape, from its construction. None if it bounds no solid.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.known_betti("plate", holes_x=2, holes_y=2)
     (1, 4, 0)
@@ -119,6 +131,8 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
     stacks : int
         Number of bands along the thickness.
 
+    Examples
+    --------
     >>> import blum
     >>> frame = blum.extrusion([[0, 0], [4, 0], [4, 3], [0, 3]], [[[1, 1], [3, 1], [3, 2], [1, 2]]])
     >>> blum.topology(frame).betti
@@ -146,6 +160,8 @@ def noisy(mesh: MeshLike, amplitude: Real, *, seed: Integer = 1, weld: Real | No
     seed : int
         0 to 2^64 - 1.
 
+    Examples
+    --------
     >>> import blum, numpy as np
     >>> box = blum.generate("box")
     >>> moved = blum.noisy(box, 0.01).vertices - box.vertices
@@ -168,6 +184,8 @@ def subdivided(mesh: MeshLike, levels: Integer = 1, *, weld: Real | None = None)
     levels : int
         Number of subdivisions, 0 to 12.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.subdivided(blum.generate("box"), 2)
     Mesh(98 vertices, 192 triangles)

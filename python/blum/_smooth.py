@@ -12,6 +12,8 @@ from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import SmoothSurfaceOptions
 
+__all__ = ["smooth_surface"]
+
 
 @takes("SmoothSurfaceOptions")
 def smooth_surface(
@@ -54,6 +56,8 @@ def smooth_surface(
     ------
     InvalidImage, InvalidOption (both ValueError), TypeError, OutOfMemory, KeyboardInterrupt
 
+    Examples
+    --------
     >>> import blum
     >>> tubes = blum.smooth_surface(blum.generate("tube_image", nodes=2))
     >>> blum.topology(tubes).betti

@@ -17,11 +17,15 @@ from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import Bounds, CellularModelOptions, CellularModelReport, CrossingCounts, SolidShell
 
+__all__ = ["CellularModel", "Solid", "SolidBody"]
+
 
 @dataclass(frozen=True)
 class SolidBody:
     """Connected part of a solid, or the whole of it, with the triangles of the input around it.
 
+    Examples
+    --------
     >>> import blum
     >>> (body,) = blum.Solid(blum.generate("box")).bodies
     >>> body.mesh, body.betti, body.shells
@@ -39,6 +43,8 @@ class SolidBody:
 class CellularModel:
     """Cell complex with the homotopy type of a polyhedron; the result of :meth:`Solid.model`.
 
+    Examples
+    --------
     >>> import blum
     >>> blum.Solid(blum.generate("box")).model(resolution=2).passes
     True
@@ -61,6 +67,8 @@ class CellularModel:
     def complex(self, *, threads: int = 0, progress: Progress = False) -> Complex:
         """Returns the model after removal of free cells from outside, as far as possible.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Solid(blum.generate("box")).model(resolution=2).complex()
         Complex(1 vertices, 0 edges, 0 triangles)
@@ -71,6 +79,8 @@ class CellularModel:
     def betti(self, *, threads: int = 0, progress: Progress = False) -> Betti:
         """Returns components, tunnels and voids, by the homology of :meth:`complex`.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Solid(blum.generate("torus")).model(resolution=4).betti()
         (1, 1, 0)
@@ -106,6 +116,8 @@ class Solid:
     ------
     InvalidMesh, InvalidImage, InvalidOption (all ValueError), TypeError, KeyboardInterrupt
 
+    Examples
+    --------
     >>> import blum
     >>> solid = blum.Solid(blum.generate("torus"))
     >>> solid.rule, solid.betti, solid.inside([[0, 0, 0], [1, 0, 0]])
@@ -217,6 +229,8 @@ class Solid:
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> blum.Solid(blum.generate("box")).inside([[0, 0, 0.5], [0, 0, 0.6]]).tolist()
         [True, False]
@@ -243,6 +257,8 @@ class Solid:
         ------
         InvalidOption, also for an image. InvalidMesh, unless the solid is a polyhedron.
 
+        Examples
+        --------
         >>> import blum
         >>> model = blum.Solid(blum.generate("torus")).model(resolution=4)
         >>> model.passes, model.betti()

@@ -1,4 +1,7 @@
-"""Distances over surfaces: maps as textures, thickness, Hausdorff distances, deviations."""
+"""Distances over surfaces.
+
+They are maps as textures, thickness, Hausdorff distances and deviations.
+"""
 
 from __future__ import annotations
 
@@ -40,6 +43,20 @@ from ._structs import (
 )
 from ._warn import warn_all
 
+__all__ = [
+    "SurfaceMap",
+    "SurfaceMapper",
+    "Thickness",
+    "directed_hausdorff_distance",
+    "hausdorff_distance",
+    "read_surface_map",
+    "self_distance_map",
+    "surface_deviation",
+    "surface_distance_map",
+    "thickness",
+    "thickness_map",
+]
+
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMap:
@@ -48,6 +65,8 @@ class SurfaceMap:
     Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture, with rows from the top. Its value is that
     of one point of one triangle. Between texels, lookups use the nearest texel or are bilinear.
 
+    Examples
+    --------
     >>> import blum
     >>> map = blum.surface_distance_map(blum.generate("box"), blum.generate("sphere"), texel=0.1)
     >>> map.vector.shape == (*map.distance.shape, 3), len(map.corners), len(map.vertex_distance)
@@ -103,6 +122,8 @@ class SurfaceMap:
         range : (float, float), optional
             Distances at the ends of the colours. Default: those of the map.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> map = blum.thickness_map(blum.generate("box"), texel=0.1)
         >>> with tempfile.TemporaryDirectory() as folder:
@@ -117,6 +138,8 @@ class SurfaceMap:
     def statistics(self) -> SurfaceMapStatistics:
         """Returns mean, root mean square and percentiles of the values, by area.
 
+        Examples
+        --------
         >>> import blum
         >>> thick = blum.thickness_map(blum.generate("box", size_z=0.5), texel=0.05).statistics()
         >>> round(thick.percentiles[0], 6), round(thick.percentiles[6], 6), round(thick.mean, 6)
@@ -151,6 +174,8 @@ def read_surface_map(path: PathLike) -> SurfaceMap:
     ------
     FileNotFoundError, FileError, FormatError
 
+    Examples
+    --------
     >>> import blum, tempfile, os
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     blum.thickness_map(blum.generate("box"), texel=0.1).write(os.path.join(folder, "box.npz"))
@@ -183,6 +208,8 @@ def surface_distance_map(
         As for :func:`distance_field`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> map = blum.surface_distance_map(blum.generate("box"), blum.generate("sphere"), texel=0.05)
     >>> map.quantity, bool(map.error.max() < 0.05)
@@ -217,6 +244,8 @@ class SurfaceMapper:
         As for :func:`distance_field`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> part, ball = blum.generate("box"), blum.generate("sphere", radius=2)
     >>> mapper = blum.SurfaceMapper(part, ball, texel=0.1)
@@ -257,6 +286,8 @@ class SurfaceMapper:
     def move_target(self, vertices: Any) -> None:
         """Sets new positions of the target's vertices, as many as it has.
 
+        Examples
+        --------
         >>> import blum
         >>> box = blum.generate("box")
         >>> mapper = blum.SurfaceMapper(box, box, texel=0.2)
@@ -272,6 +303,8 @@ class SurfaceMapper:
     def move_other(self, vertices: Any, *, threads: int = 0) -> None:
         """Sets new positions of the other mesh's vertices, as many as it has.
 
+        Examples
+        --------
         >>> import blum
         >>> box = blum.generate("box")
         >>> mapper = blum.SurfaceMapper(box, box, texel=0.2)
@@ -284,6 +317,8 @@ class SurfaceMapper:
     def replace_other(self, other: MeshLike, *, weld: Real | None = None, threads: int = 0) -> None:
         """Replaces the other mesh.
 
+        Examples
+        --------
         >>> import blum
         >>> box = blum.generate("box")
         >>> mapper = blum.SurfaceMapper(box, box, texel=0.2)
@@ -297,6 +332,8 @@ class SurfaceMapper:
     def map(self, *, threads: int = 0, progress: Progress = False) -> SurfaceMap:
         """Returns the map of the meshes as they are now.
 
+        Examples
+        --------
         >>> import blum
         >>> box = blum.generate("box")
         >>> blum.SurfaceMapper(box, box, texel=0.2).map().quantity
@@ -340,6 +377,8 @@ def self_distance_map(
         As for :func:`surface_distance_map`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> map = blum.self_distance_map(blum.generate("torus"), texel=0.1)
     >>> map.quantity
@@ -372,6 +411,8 @@ def thickness_map(
         As for :func:`surface_distance_map`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> map = blum.thickness_map(blum.generate("box"), texel=0.1)
     >>> float(map.faces[:, 1].max().round(5))
@@ -388,6 +429,8 @@ def thickness_map(
 class Thickness:
     """Result of :func:`thickness`. All arrays have the shape of the points without the last axis.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.thickness(blum.generate("box"), [0.1, 0.2, 0.5])
     >>> float(found.thickness), found.opposite.round(5).tolist()
@@ -432,6 +475,8 @@ def thickness(
         As for :func:`distance_field`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> plate = blum.generate("box", size_x=4, size_y=4, size_z=0.5)
     >>> blum.thickness(plate, [[0.5, 0.3, 0.25]]).thickness.round(6).tolist()
@@ -466,6 +511,8 @@ def hausdorff_distance(
         As for :func:`distance_field`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> small, large = blum.generate("box"), blum.generate("box", size_x=2, size_y=2, size_z=2)
     >>> found = blum.hausdorff_distance(small, large, tolerance=1e-6)
@@ -497,6 +544,8 @@ def directed_hausdorff_distance(
         As for :func:`distance_field`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> small, large = blum.generate("box"), blum.generate("box", size_x=2, size_y=2, size_z=2)
     >>> found = blum.directed_hausdorff_distance(small, large, tolerance=1e-6)
@@ -532,6 +581,8 @@ def surface_deviation(
         As for :func:`distance_field`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> small, large = blum.generate("box"), blum.generate("box", size_x=2, size_y=2, size_z=2)
     >>> round(blum.surface_deviation(small, large, pieces=1000).mean, 6)

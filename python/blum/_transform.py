@@ -17,6 +17,8 @@ from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import DistanceTransformOptions
 
+__all__ = ["distance_transform", "distance_transforms"]
+
 
 @takes("DistanceTransformOptions")
 def distance_transform(
@@ -49,6 +51,8 @@ def distance_transform(
     Field
         `Field.site` holds flat indices of the closest voxels.
 
+    Examples
+    --------
     >>> import numpy as np, blum
     >>> mask = np.zeros((3, 3, 3), dtype=bool)
     >>> mask[1, 1, 1] = True
@@ -80,6 +84,8 @@ def distance_transforms(
         As for :func:`distance_transform`.
     **options
 
+    Examples
+    --------
     >>> import blum
     >>> one, two = blum.distance_transforms([[[1, 0, 2]]], [1, 2], signed=False)
     >>> one.distance.tolist(), two.distance.tolist()

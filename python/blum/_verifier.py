@@ -1,4 +1,4 @@
-"""Certificates of several axes of one shape."""
+"""Verifiers of several axes."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from ._options import takes
 from ._progress import Progress
 from ._structs import Certificate, CertificateOptions
 
+__all__ = ["AxisVerifier"]
+
 
 class AxisVerifier:
     """Certifier of axes of one mesh or image, which it reads once. Six axes take little longer than one.
@@ -30,6 +32,8 @@ class AxisVerifier:
     weld : float, optional
         Meshes: as for :func:`certify`.
 
+    Examples
+    --------
     >>> import blum
     >>> torus = blum.generate("torus")
     >>> axis = blum.medial_axis(torus, resolution=32)
@@ -65,6 +69,8 @@ class AxisVerifier:
         **options
             An option that is not given is checked if the axis has the attribute.
 
+        Examples
+        --------
         >>> import blum
         >>> box = blum.generate("box")
         >>> blum.AxisVerifier(box).certify(blum.medial_axis(box, resolution=16).simplify(60)).holds

@@ -1,4 +1,7 @@
-"""Pages for a browser of objects in memory, as `blum view` makes them of files."""
+"""Views in a browser.
+
+`view()` makes a page of objects in memory, as `blum view` makes it of files.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +25,8 @@ from ._medial_columns import NestedComplex
 from ._medial_complex import MedialComplex
 from ._mesh import Mesh, MeshLike, as_mesh
 from ._surface_map import SurfaceMap
+
+__all__ = ["view"]
 
 _TOOL = Path(__file__).parent / "_bin" / "blum"
 _UNREADABLE = 1  # Exit status.
@@ -62,6 +67,8 @@ def view(*things: Viewable, output: PathLike | None = None, show: bool | None = 
     FileError
         Also if one of several files cannot be read. The page then shows the others, and names it.
 
+    Examples
+    --------
     >>> import blum, pathlib, tempfile
     >>> part = blum.generate("bracket")
     >>> axis = blum.medial_axis(part, resolution=32)
@@ -98,16 +105,16 @@ def _make_page(files: list[Path], page: Path) -> None:
         raise Error(f"the command-line tool that makes the page is not installed with this package: {_TOOL}")
     done = subprocess.run([_TOOL, "view", "--quiet", "--output", page, "--", *files], capture_output=True, check=False)
     lines = done.stderr.decode("utf-8", "backslashreplace").strip().splitlines()
-    told = "\n".join(_PREFIX.sub("", line) for line in lines)
-    if done.returncode == 0 and not told:
+    stated = "\n".join(_PREFIX.sub("", line) for line in lines)
+    if done.returncode == 0 and not stated:
         return
     if done.returncode < 0:
         raise Error(
             f"the tool that makes the page was ended by signal {-done.returncode} (9 may mean that memory ran out)"
         )
     if done.returncode in (0, _UNREADABLE):  # 0: only some could be read. Scripts need an error.
-        raise FileError(told)
-    raise InvalidOption(told)
+        raise FileError(stated)
+    raise InvalidOption(stated)
 
 
 def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]) -> Path:

@@ -1,4 +1,4 @@
-"""Voronoi diagrams inside polyhedra, as complexes."""
+"""Voronoi diagrams of polyhedra."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ from ._solid import Solid
 from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport, VoronoiSite
 from ._warn import warn
 
+__all__ = ["VoronoiComplex", "voronoi_complex"]
+
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
 
@@ -28,6 +30,8 @@ _CoreComplex = _core.Complex
 class VoronoiComplex(Complex):
     """Walls of a Voronoi diagram inside a mesh, and its surface, as triangles; the result of :func:`voronoi_complex`.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.voronoi_complex(blum.generate("box"), resolution=2)
     >>> found.triangle_sites.shape == (len(found.triangles), 2), found.part
@@ -78,6 +82,8 @@ class VoronoiComplex(Complex):
 
         Each has `kind` ("face", "edge" or "vertex"), `triangles` (of a face) and `vertices` (of an edge or a vertex).
 
+        Examples
+        --------
         >>> import blum
         >>> found = blum.voronoi_complex(blum.generate("box")).sites()
         >>> len(found), found[0].kind, len(found[0].triangles)
@@ -91,6 +97,8 @@ class VoronoiComplex(Complex):
 
         The diagram must have been made with `part="all"`.
 
+        Examples
+        --------
         >>> import blum
         >>> found = blum.voronoi_complex(blum.generate("box")).regions()
         >>> len(found), round(sum(region.volume for region in found), 9)
@@ -104,6 +112,8 @@ class VoronoiComplex(Complex):
     def graph(self) -> VoronoiGraph:
         """Returns the regions (for `part="all"`), walls, seams and junctions, and their connections.
 
+        Examples
+        --------
         >>> import blum
         >>> box = blum.Mesh(blum.generate("box").vertices * [1, 2, 3], blum.generate("box").triangles)
         >>> graph = blum.voronoi_complex(box).graph()
@@ -126,6 +136,8 @@ class VoronoiComplex(Complex):
         threads, progress
             As for :func:`distance_field`.
 
+        Examples
+        --------
         >>> import blum
         >>> walls = blum.voronoi_complex(blum.generate("box"), part="medial")
         >>> axis = walls.medial_axis(60)
@@ -151,6 +163,8 @@ class VoronoiComplex(Complex):
         Edges have a column `obstacle`: 1 (square), 2 (tunnel), 3 (enclosed), 4 (face hole), 5 (handle), 6 (joins) and 7
         (contradiction).
 
+        Examples
+        --------
         >>> import blum
         >>> found = blum.voronoi_complex(blum.generate("gear"), depth=3)
         >>> found.report.certified, len(found.with_failing_cells().edges) == 12 * len(found.report.failing)
@@ -166,6 +180,8 @@ class VoronoiComplex(Complex):
         `allow_uncertified` is True, because parts of it may be missing or wrong. Its file then records that, and has
         the failing cubes as edges.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     blum.voronoi_complex(blum.generate("box"), resolution=2).write(pathlib.Path(folder) / "box.vtp")
@@ -186,6 +202,8 @@ class VoronoiComplex(Complex):
         .json holds everything. .graphml holds nodes and edges with numbers, for networkx, Gephi, igraph and yEd. The
         file appears under its name only when it is complete.
 
+        Examples
+        --------
         >>> import blum, pathlib, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     blum.voronoi_complex(blum.generate("box"), resolution=2).write_graph(pathlib.Path(folder) / "box.json")
@@ -240,6 +258,8 @@ def voronoi_complex(
         Triangles on walls and on the surface with `triangle_sites`, vertices with `radius` and `footprints`, and
         `.report`. ``part="walls"`` leaves out the surface. ``part="medial"`` keeps only the walls of the medial axis.
 
+    Examples
+    --------
     >>> import blum
     >>> found = blum.voronoi_complex(blum.generate("box"))
     >>> found.report.certified, found.report.found_betti
@@ -254,5 +274,5 @@ def voronoi_complex(
             is_crossing = warning.code == "crossings-removed"
             warn(warning.text + (": Solid(mesh).surface" if is_crossing else ""), warning.code)
     with reporting(progress) as report:
-        core, told = _core.voronoi_complex(solid, dict(options), count, report)
-    return VoronoiComplex._of(core, told, options.get("part", "all"), mesh_of_arrays(solid.surface))
+        core, stated = _core.voronoi_complex(solid, dict(options), count, report)
+    return VoronoiComplex._of(core, stated, options.get("part", "all"), mesh_of_arrays(solid.surface))

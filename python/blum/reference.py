@@ -1,4 +1,7 @@
-"""Brute force in double precision: slow and simple, for tests."""
+"""Brute force for tests.
+
+The functions are slow and simple, in double precision.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,8 @@ def nearest(
 
     The cost is O(points * sites).
 
+    Examples
+    --------
     >>> import blum
     >>> distance, site = blum.reference.nearest(blum.generate("box"), [0, 0, 1])
     >>> round(float(distance), 6)
@@ -40,6 +45,8 @@ def winding_number(
 
     The cost is O(points * triangles).
 
+    Examples
+    --------
     >>> import blum
     >>> round(float(blum.reference.winding_number(blum.generate("box"), [0, 0, 0])), 6)
     1.0
@@ -70,6 +77,8 @@ def nearest_voxel(
     threads, progress
         As for :func:`distance_field`.
 
+    Examples
+    --------
     >>> import blum
     >>> squared, voxel = blum.reference.nearest_voxel([[[True, False, False]]], [2])
     >>> squared.tolist(), voxel.tolist()
