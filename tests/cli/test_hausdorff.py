@@ -1,4 +1,4 @@
-"""`blum hausdorff` tells an interval, witnesses, and means by area."""
+"""Proves that `blum hausdorff` reports an interval, witnesses, and means weighted by area."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def boxes(tmp_path_factory):
     return folder / "small.ply", folder / "large.ply"
 
 
-def test_an_interval_and_its_sides(boxes):
+def test_the_interval_and_both_directions_are_reported(boxes):
     found = run_json("hausdorff", *boxes, "--tolerance", "1e-5")
     assert found["lower"] <= 3**0.5 / 2 <= found["upper"] <= found["lower"] + 1e-5
     assert found["forward"]["lower"] <= 0.5 <= found["forward"]["upper"]
@@ -26,7 +26,7 @@ def test_an_interval_and_its_sides(boxes):
     assert all(np.isclose(value, 0.5) for value in deviation["percentiles"])
 
 
-def test_one_side_and_where(boxes, tmp_path):
+def test_one_direction_has_a_witness(boxes, tmp_path):
     out = tmp_path / "where.vtp"
     found = run_json("hausdorff", *boxes, "--one-sided", "--only-distance", "-o", out)
     assert "backward" not in found and "deviation" not in found["forward"] and found["one_sided"]
@@ -34,12 +34,12 @@ def test_one_side_and_where(boxes, tmp_path):
     assert out.read_bytes().startswith(b"<?xml")
 
 
-def test_text_says_both_directions(boxes):
+def test_text_reports_both_directions(boxes):
     text, _ = run("hausdorff", *boxes, "--pieces", "1000")
-    assert "a to b" in text and "b to a" in text and "mean 0.5 +- " in text
+    assert "small.ply to large.ply" in text and "large.ply to small.ply" in text and "mean 0.5 +- " in text
 
 
-def test_clouds_of_points(boxes, tmp_path):
+def test_clouds_of_points_are_compared(boxes, tmp_path):
     points = np.array([[2.0, 0, 0], [0, 0.5, 0.25]])
     np.save(tmp_path / "cloud.npy", points)
     np.savetxt(tmp_path / "cloud.XYZ", points)
@@ -53,7 +53,7 @@ def test_clouds_of_points(boxes, tmp_path):
     assert error.startswith("blum: error: ")
 
 
-def test_what_is_wrong_is_said(boxes, tmp_path):
+def test_wrong_arguments_are_rejected(boxes, tmp_path):
     assert "tolerance" in run("hausdorff", *boxes, "--tolerance", "0", status=2)[1]
     assert "none.ply" in run("hausdorff", boxes[0], tmp_path / "none.ply", status=1)[1]
     assert "--output" in run("hausdorff", *boxes, "-o", tmp_path / "a.xyz", status=2)[1]

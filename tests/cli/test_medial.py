@@ -1,5 +1,5 @@
-# Proves that `blum medial` does what its help says: every format, angles and labels, exit status and message, and
-# nothing written that is not certified.
+# Proves that `blum medial` writes certified axes in every format, for each angle and label, and nothing uncertified.
+# Bad usage and bad input give the documented exit status and message.
 import json
 import re
 import subprocess
@@ -13,11 +13,11 @@ from tool import BLUM, FORMATS, names, run, run_json
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
 COARSE = ["--resolution", 8, "--max-resolution", 8, "--decimate", 0]
-WHY_NOT = "loops of the axis run around 0 of the 1 tunnel"  # of the block with a needle
+WHY_NOT = "loops of the axis run around 0 of the 1 tunnel"  # the reason for the block with a needle
 
 
 def block_with_needle(folder):
-    """A cube with a square hole through it, far too narrow for its slant: no model opens it, and no axis is around it."""
+    """A cube with a slanted square hole, so narrow that the cellular model closes it and no axis runs around it."""
     path = folder / "needle.obj"
     width = 1e-9
     lines, faces = [], []
@@ -43,11 +43,11 @@ def axis_of(summary):
     return axis
 
 
-# ---- What is written ----
+# ---- Output ----
 
 
 def counts_in(path):
-    """Vertices and triangles that a file holds, by readers of our own."""
+    """Numbers of vertices and triangles in a file, read without Blum."""
     data = path.read_bytes()
     if path.suffix == ".npz":
         arrays = np.load(path)
@@ -107,7 +107,7 @@ def test_angles_give_a_file_each_and_nested_axes(solids, tmp_path):
     assert len(cells[2][1]) < len(cells[0][1])
 
 
-def test_simplify_takes_vertices_out_within_its_tolerance(solids, tmp_path):
+def test_decimation_removes_vertices_within_its_tolerance(solids, tmp_path):
     triangles = {}
     for tolerance in (None, 0, 0.05):
         name = tmp_path / f"{tolerance}.npz"
@@ -141,7 +141,7 @@ def test_several_labels_give_a_file_each(solids, tmp_path):
     assert "one.ply" in names(tmp_path)
 
 
-def test_images_by_threshold_and_by_what_is_not_zero(solids, tmp_path):
+def test_images_are_selected_by_threshold_label_or_nonzero(solids, tmp_path):
     for arguments, betti in [([], [3, 0, 0]), (["--threshold", 2], [2, 0, 0]), (["--label", 2], [1, 0, 0])]:
         summary = run_json("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", *arguments)
         assert summary["solids"][0]["rule"] == "voxels"
@@ -151,7 +151,7 @@ def test_images_by_threshold_and_by_what_is_not_zero(solids, tmp_path):
 def test_sites_of_images_are_voxels_that_are_not_selected(tmp_path):
     image = np.zeros((7, 8, 9), dtype=np.uint8)
     image[2:5, 2:6, 2:7] = 1
-    image[:, 3:5, 3:5] = 1  # two of its ends are on the border of the image
+    image[:, 3:5, 3:5] = 1  # a bar whose two ends lie on the border of the image
     np.save(tmp_path / "i.npy", image)
     run("medial", tmp_path / "i.npy", "-o", tmp_path / "i.npz", "--theta", 20)
     arrays = np.load(tmp_path / "i.npz")
@@ -165,7 +165,7 @@ def test_sites_of_images_are_voxels_that_are_not_selected(tmp_path):
     assert "unselected" in json.loads(str(arrays["metadata"]))["sites"]
 
 
-def test_lambda_leaves_out_what_is_thin(solids, axes, tmp_path):
+def test_lambda_removes_thin_parts(solids, axes, tmp_path):
     options = ["--resolution", 16, "--decimate", 0, "--lambda", 0.5]
     few = axis_of(run_json("medial", solids / "box.obj", "-o", tmp_path / "b.npz", *options))
     assert few["certificate"]["certified"]
@@ -269,10 +269,10 @@ def test_summary_has_its_keys(solids, tmp_path):
     assert 0 <= balls["mean_solid_to_balls"] <= balls["solid_to_balls"] < 0.3 and balls["sample_step"] > 0
 
 
-def test_voxels_finer_than_asked_are_told_of(solids, tmp_path):
+def test_voxels_finer_than_requested_are_reported(solids, tmp_path):
     run("make", "box", "-o", tmp_path / "p.obj", "--size-z", 0.02)
     lines = (tmp_path / "p.obj").read_text().splitlines()
-    (tmp_path / "p.obj").write_text("\n".join(lines[:-1]))  # open, so that its voxels are the solid
+    (tmp_path / "p.obj").write_text("\n".join(lines[:-1]))  # open, so that voxels define the solid
     command = ["medial", tmp_path / "p.obj", "-o", tmp_path / "p.vtp", "--resolution", 16]
     out, _ = run(*command, warns=True)
     (solid,) = run_json(*command, warns=True)["solids"]
@@ -284,7 +284,7 @@ def test_voxels_finer_than_asked_are_told_of(solids, tmp_path):
     assert "refined" not in run("medial", solids / "box.obj", "-o", tmp_path / "b.vtp", "--resolution", 12)[0]
 
 
-def test_voxels_that_are_no_cubes_are_told_by_all_sides(tmp_path):
+def test_voxels_that_are_not_cubes_are_reported_by_all_sides(tmp_path):
     data = "type: uint8\ndimension: 3\nsizes: 4 3 2\nencoding: ascii\nspace dimension: 3\n"
     vectors = "space directions: (0.5,0,0) (0,1,0) (0,0,2.5)\n\n"
     (tmp_path / "i.nrrd").write_text("NRRD0004\n" + data + vectors + "1 " * 24 + "\n")
@@ -296,7 +296,7 @@ def test_json_goes_to_a_file_beside_the_text(solids, tmp_path):
     out, _ = run(
         "medial", solids / "box.obj", "-o", tmp_path / "b.obj", "--resolution", 12, "--json", tmp_path / "b.json"
     )
-    assert "yes: topology of the solid (1 component, 0 tunnels, 0 voids); inside the solid" in out
+    assert "yes at theta 60: topology of the solid (1 component, 0 tunnels, 0 voids); inside the solid" in out
     assert json.loads((tmp_path / "b.json").read_text())["outputs"] == [str(tmp_path / "b.obj")]
 
 
@@ -329,10 +329,10 @@ def test_old_output_is_replaced(solids, axes, tmp_path):
     assert (tmp_path / "b.npz").read_bytes() == (axes / "box.npz").read_bytes()
 
 
-# ---- What solids are ----
+# ---- Solids ----
 
 
-def test_an_inverted_mesh_is_turned_and_warned_of(solids, tmp_path):
+def test_an_inverted_mesh_is_reversed_with_a_warning(solids, tmp_path):
     command = ["medial", solids / "inverted.obj", "-o", tmp_path / "i.npz", "--resolution", 16]
     assert "1 shell faces the wrong way and was reversed" in run(*command, warns=True)[1]
     summary = run_json(*command, warns=True)
@@ -355,7 +355,7 @@ def test_an_open_mesh_is_certified_against_voxels(solids, axes, tmp_path):
 # ---- Failures ----
 
 
-def test_what_is_not_certified_is_not_written(solids, tmp_path):
+def test_an_uncertified_axis_is_not_written(solids, tmp_path):
     (tmp_path / "p.npz").write_bytes(b"old")
     _, err = run("medial", block_with_needle(tmp_path.parent), "-o", tmp_path / "p.npz", *COARSE, status=3)
     assert "NOT certified" in err and WHY_NOT in err
@@ -365,7 +365,7 @@ def test_what_is_not_certified_is_not_written(solids, tmp_path):
     assert names(tmp_path) == ["p.npz"]
 
 
-def test_what_is_not_certified_is_written_where_that_is_asked_for(solids, tmp_path):
+def test_an_uncertified_axis_is_written_on_request(solids, tmp_path):
     out, err = run(
         "medial",
         block_with_needle(tmp_path.parent),
@@ -386,7 +386,7 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(solids, tmp_pa
     assert WHY_NOT in run("verify", block_with_needle(tmp_path.parent), tmp_path / "p.npz", status=3)[1]
 
 
-def test_drafts_touch_no_file_of_others(solids, tmp_path):
+def test_drafts_leave_existing_files_alone(solids, tmp_path):
     mine = tmp_path / ".b.draft.npz"
     mine.write_bytes(b"mine")
     run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 12)
@@ -398,7 +398,7 @@ def test_drafts_touch_no_file_of_others(solids, tmp_path):
     assert (tmp_path / ".p.draft.ply").exists()
 
 
-def test_a_link_and_permissions_of_an_output_stay(solids, tmp_path):
+def test_an_output_keeps_its_link_and_permissions(solids, tmp_path):
     (tmp_path / "real").mkdir()
     (tmp_path / "real" / "b.npz").write_bytes(b"old")
     (tmp_path / "real" / "b.npz").chmod(0o600)
@@ -409,7 +409,7 @@ def test_a_link_and_permissions_of_an_output_stay(solids, tmp_path):
     assert len(np.load(tmp_path / "b.npz")["vertices"]) > 8
 
 
-def test_summary_of_what_is_not_certified_lists_no_output(solids, tmp_path):
+def test_the_summary_of_an_uncertified_axis_lists_no_output(solids, tmp_path):
     out, _ = run("medial", block_with_needle(tmp_path.parent), "-o", tmp_path / "p.npz", *COARSE, "--json", "-", status=3)
     assert json.loads(out)["outputs"] == []
 

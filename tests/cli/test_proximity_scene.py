@@ -1,5 +1,6 @@
-"""`blum proximity` tells what is close among the objects of a scene: the same in every format and in Python; it says
-what was wrong, and leaves no half-written file."""
+"""Proves that `blum proximity` finds the close pairs of a scene, equal in every format and in the package.
+
+Wrong input is rejected, and no failure leaves a half-written file."""
 
 import csv
 import json
@@ -15,7 +16,7 @@ from tool import BLUM, names, run, run_json
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 blum = pytest.importorskip("blum")
 
-#: Queries of solids and of motions, which other files test.
+#: Queries of solids and of motions; other files test them.
 ELSEWHERE = {"signed", "penetration", "continuous"}
 
 
@@ -24,7 +25,7 @@ def method_of(query):
 
 
 def all_queries():
-    """Every query of the tool as it is; its help names the method."""
+    """Every query of the tool that is tested here; the help of a query names the package's method."""
     if not BLUM:
         return []
     listed = run("proximity", "--help")[0].split("Subcommands:")[1].split("Examples:")[0]
@@ -44,7 +45,7 @@ QUERIES += [
 
 @pytest.fixture(scope="module")
 def objects(tmp_path_factory):
-    """Three meshes: two that meet, and one apart; one of them has segments and crosses itself."""
+    """Two meshes that meet, and a third one apart that has segments and crosses itself."""
     folder = tmp_path_factory.mktemp("scene")
     run("make", "torus", "-o", folder / "torus.ply", "--ring-segments", 24, "--tube-segments", 12)
     torus = blum.read_mesh(folder / "torus.ply")
@@ -112,7 +113,7 @@ READERS = {"npz": read_npz, "csv": read_csv, "json": read_json, "vtp": read_vtp}
 
 
 @pytest.mark.parametrize(("query", "options", "ask"), QUERIES)
-def test_every_format_holds_what_python_says(objects, tmp_path, query, options, ask):
+def test_every_format_equals_the_package(objects, tmp_path, query, options, ask):
     wanted = ask(scene_of(objects, "--self" in options))
     for extension, read in READERS.items():
         output = tmp_path / f"p.{extension}"
@@ -138,7 +139,7 @@ def test_every_format_holds_what_python_says(objects, tmp_path, query, options, 
     assert metadata["self"] == ("true" if "--self" in options else "false")
 
 
-def test_pairs_are_no_field(objects, tmp_path):
+def test_files_of_pairs_are_not_read_as_fields(objects, tmp_path):
     pairs = tmp_path / "p.npz"
     run("proximity", "collide", *objects, "--max-distance", "1", "-o", pairs)
     for command in (["info", pairs], ["view", pairs, "-o", tmp_path / "page.html"]):
@@ -148,7 +149,7 @@ def test_pairs_are_no_field(objects, tmp_path):
 
 
 @pytest.mark.parametrize("extension", READERS)
-def test_no_pairs_are_a_file_too(objects, tmp_path, extension):
+def test_empty_results_are_written(objects, tmp_path, extension):
     output = tmp_path / f"p.{extension}"
     answer = run_json("proximity", "closest", objects[0], objects[2], "--max-distance", "1e-3", "-o", output)
     assert [answer["pairs"], answer["min_distance"], answer["closest"]] == [0, None, None]
@@ -157,10 +158,10 @@ def test_no_pairs_are_a_file_too(objects, tmp_path, extension):
         "object": (0, 2), "distance": (0,), "point": (0, 2, 3), "feature": (0, 2, 3)}  # fmt: skip
 
 
-def test_separation_is_told_in_words_and_facts(objects):
+def test_separation_is_reported_as_text_and_json(objects):
     out = run("proximity", "separation", *objects)[0]
     scene = scene_of(objects, False)
-    assert "3 objects, 1,160 triangles, 2 segments and points" in out and "pairs                 3 pairs" in out
+    assert "3 objects, 1,160 triangles, 2 segments and points" in out and "found                 3 pairs of objects" in out
     assert "torus.ply, moved.ply  they meet, near (" in out
     assert f"torus.ply, soup.obj   distance {scene.separation(0, 2).distance:.6g}, from (" in out
     answer = run_json("proximity", "separation", *objects, "--max-distance", "0")
@@ -175,7 +176,7 @@ def test_separation_is_told_in_words_and_facts(objects):
     assert "torus.ply, itself" in alone and "1 object, 576 triangles\n" in alone
 
 
-def test_many_objects_are_cut_short_in_words(objects):
+def test_text_lists_only_the_first_pairs(objects):
     out = run("proximity", "separation", *objects[:1] * 8)[0]
     assert out.count("they meet") == 6 and "22 pairs more: -o PAIRS lists all" in out
 
@@ -200,7 +201,7 @@ def test_culling_changes_no_file(objects, tmp_path):
     assert (tmp_path / "bvh.npz").read_bytes() == (tmp_path / "v.npz").read_bytes()
 
 
-def test_what_makes_no_sense_is_refused(objects, tmp_path):
+def test_wrong_arguments_and_files_are_rejected(objects, tmp_path):
     torus, moved, soup = objects
     out = tmp_path / "p.npz"
     (tmp_path / "far.obj").write_text("v 0 0 1e71\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

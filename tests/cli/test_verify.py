@@ -1,5 +1,5 @@
-# Proves that `blum verify`, `blum reconstruct` and `blum info` do with the files of medial axes what their help says:
-# falsified axes are found out, and files tell what they are of.
+# Proves that `blum verify` rejects falsified axes and axes of other solids, and repeats the selections in files.
+# Also proves `blum reconstruct` and `blum info` on files of medial axes.
 import json
 import re
 
@@ -16,7 +16,7 @@ SITES = ("site_0", "site_1")
 
 
 def falsified(axes, tmp_path, name, change):
-    """A copy of an axis whose arrays were changed."""
+    """A copy of an axis with changed arrays."""
     arrays = dict(np.load(axes / name))
     change(arrays)
     np.savez(tmp_path / "false.npz", **arrays)
@@ -47,7 +47,7 @@ def move_a_footprint(arrays):
 
 
 def drop_a_triangle(arrays):
-    """One whose corners lie inside a sheet, so that a hole remains."""
+    """Drops a triangle whose corners all lie inside a sheet, so that a hole remains."""
     inner = np.all(arrays["role"][arrays["triangles"]] == 0, axis=1)
     arrays["triangles"] = np.delete(arrays["triangles"], np.flatnonzero(inner)[0], axis=0)
     for name in ("triangle_separation_angle", "triangle_sheet"):
@@ -63,7 +63,7 @@ def add_a_vertex(arrays):
 
 
 def change_metadata(arrays, **changes):
-    """Changes values of the metadata, and drops those that become None."""
+    """Changes values of the metadata and drops values that become None."""
     pairs = json.loads(str(arrays["metadata"])) | changes
     arrays["metadata"] = np.array(json.dumps({key: value for key, value in pairs.items() if value is not None}))
 
@@ -118,7 +118,7 @@ def change_angles(arrays):
     (drop_a_triangle, "the solid has 0 tunnels, the axis 1"),
     (add_a_vertex, "the solid has 1 component, the axis 2"),
 ], ids=lambda value: getattr(value, "__name__", ""))
-def test_a_falsified_axis_is_found_out(solids, axes, tmp_path, change, reason):
+def test_a_falsified_axis_is_rejected(solids, axes, tmp_path, change, reason):
     false = falsified(axes, tmp_path, "box.npz", change)
     out, err = run("verify", solids / "box.obj", false, "--json", "-", status=3)
     assert "NOT certified" in err and reason in err
@@ -129,29 +129,29 @@ def test_a_falsified_axis_is_found_out(solids, axes, tmp_path, change, reason):
     assert not re.search(r"[1-9]\d{6}", err), "six digits say enough"
 
 
-def test_an_axis_that_was_not_falsified_is_not_found_out(solids, axes, tmp_path):
+def test_an_unchanged_copy_of_an_axis_is_certified(solids, axes, tmp_path):
     run("verify", solids / "box.obj", falsified(axes, tmp_path, "box.npz", lambda arrays: None))
 
 
-def test_the_axis_of_another_solid_is_found_out(solids, axes):
+def test_the_axis_of_another_solid_is_rejected(solids, axes):
     assert "NOT certified" in run("verify", solids / "sphere.ply", axes / "torus.npz", status=3)[1]
     assert "1 tunnel" in run("verify", solids / "torus.obj", axes / "box.npz", status=3)[1]
 
 
-def test_the_solid_that_a_file_names_is_said_first_where_another_one_is_given(solids, axes, tmp_path):
+def test_an_error_first_names_the_solid_of_the_file_if_another_is_given(solids, axes, tmp_path):
     said = "blum: error: NOT certified: the file names 'box.obj' as its solid; "
     assert run("verify", solids / "torus.obj", axes / "box.npz", status=3)[1].startswith(said)
     false = falsified(axes, tmp_path, "box.npz", scale_radii)
     assert "as its solid" not in run("verify", solids / "box.obj", false, status=3)[1]
 
 
-def test_a_mesh_that_encloses_nothing_has_no_solid(axes, tmp_path):
+def test_a_mesh_without_inside_has_no_solid(axes, tmp_path):
     triangle = tmp_path / "triangle.obj"
     triangle.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     assert "so there is no solid" in run("verify", triangle, axes / "box.npz", status=1)[1]
 
 
-def test_the_axis_of_another_label_is_found_out(solids, tmp_path):
+def test_the_axis_of_another_label_is_rejected(solids, tmp_path):
     run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 1)
     run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 1)
     _, err = run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 2, status=3, warns=True)
@@ -160,7 +160,7 @@ def test_the_axis_of_another_label_is_found_out(solids, tmp_path):
 
 @pytest.mark.parametrize("selection", [("--label", 2), ("--threshold", 2.5)], ids=lambda s: s[0])
 @pytest.mark.parametrize("end", ["vtp", "ply", "npz"])
-def test_the_file_tells_which_voxels_it_is_of(solids, tmp_path, end, selection):
+def test_the_file_records_its_selection_of_voxels(solids, tmp_path, end, selection):
     axis = tmp_path / f"b.{end}"
     run("medial", solids / "balls.npy", "-o", axis, *selection)
     assert run_json("verify", solids / "balls.npy", axis)["certificate"]["certified"]
@@ -171,7 +171,7 @@ def test_the_file_tells_which_voxels_it_is_of(solids, tmp_path, end, selection):
     assert f"was computed with {selection[0]} {selection[1]}; --label 1 is used" in err
 
 
-def test_a_file_that_does_not_tell_which_voxels_asks_for_the_option(solids, tmp_path):
+def test_a_file_without_a_selection_needs_the_option(solids, tmp_path):
     for end in ("obj", "ma"):
         run("medial", solids / "balls.npy", "-o", tmp_path / f"b.{end}", "--label", 2)
         assert "repeat --label, --threshold or --smooth" in run("verify", solids / "balls.npy", tmp_path / f"b.{end}",
@@ -180,7 +180,7 @@ def test_a_file_that_does_not_tell_which_voxels_asks_for_the_option(solids, tmp_
     assert "--threshold" not in run("verify", solids / "balls.npy", tmp_path / "b.ma", "--label", 1, status=3)[1]
 
 
-def test_the_file_tells_how_the_mesh_was_welded(solids, tmp_path):
+def test_the_file_records_the_weld_tolerance(solids, tmp_path):
     lines = (solids / "box.obj").read_text().splitlines()
     points = [line for line in lines if line.startswith("v ")]
     soup = [points[int(word.split("/")[0]) - 1] for line in lines if line.startswith("f ") for word in line.split()[1:]]
@@ -212,7 +212,7 @@ def frame(path, window):
     path.write_text("\n".join([*(f"v {x} {y} {z}" for x, y, z in corners), *faces]) + "\n")
 
 
-def test_a_weld_tolerance_that_changes_the_solid_is_warned_of(tmp_path):
+def test_a_weld_tolerance_that_changes_the_solid_causes_a_warning(tmp_path):
     part = tmp_path / "part.obj"
     frame(part, 0.02)
     told = "welding within 0.03 removed 6 of 16 vertices: the surface has 1 component and the Euler number"
@@ -228,7 +228,7 @@ def test_a_weld_tolerance_that_changes_the_solid_is_warned_of(tmp_path):
     assert run_json("verify", part, tmp_path / "q.npz")["warnings"] == []
 
 
-def test_files_of_before_that_tell_no_selection_are_read(solids, tmp_path):
+def test_older_files_without_a_selection_are_read(solids, tmp_path):
     run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 2)
     arrays = dict(np.load(tmp_path / "b.npz"))
     metadata = json.loads(str(arrays["metadata"]))
@@ -238,7 +238,7 @@ def test_files_of_before_that_tell_no_selection_are_read(solids, tmp_path):
     run("verify", solids / "balls.npy", tmp_path / "old.npz", status=3)
 
 
-def test_files_of_other_programs_are_checked_as_far_as_they_go(solids, axes, tmp_path):
+def test_files_of_other_programs_are_checked_by_their_columns(solids, axes, tmp_path):
     def foreign(*names):
         def change(arrays):
             for name in ("metadata", *names):
@@ -253,7 +253,7 @@ def test_files_of_other_programs_are_checked_as_far_as_they_go(solids, axes, tmp
     assert "sites: not in the file" in certificate["not_checked"]
 
 
-def test_what_the_file_claims_to_be_is_told(solids, axes):
+def test_the_claims_of_a_file_are_reported(solids, axes):
     out, _ = run("verify", solids / "box.obj", axes / "box.npz", "--verbose")
     assert "theta 60 degrees, lambda 0, voxels of 0.0625" in out
     certificate = run_json("verify", solids / "box.obj", axes / "box.npz")["certificate"]
@@ -262,7 +262,7 @@ def test_what_the_file_claims_to_be_is_told(solids, axes):
     assert "claims" not in run("verify", solids / "box.obj", axes / "box.obj", "--verbose")[0]
 
 
-def test_the_voxels_that_an_open_mesh_is_taken_as_are_told(solids, axes, tmp_path):
+def test_the_voxels_of_an_open_mesh_are_reported(solids, axes, tmp_path):
     out, _ = run("verify", solids / "open.obj", axes / "open.npz")
     assert "topology of the voxels of the winding number of side 0.0625 (" in out
     false = falsified(axes, tmp_path, "open.npz", lambda arrays: change_metadata(arrays, spacing="0.03125"))
@@ -270,7 +270,7 @@ def test_the_voxels_that_an_open_mesh_is_taken_as_are_told(solids, axes, tmp_pat
                                                                             status=3)[1]
 
 
-def test_where_random_points_show_nothing_that_is_not_checked(solids, axes, tmp_path):
+def test_missing_parts_are_not_checked_if_random_points_show_nothing(solids, axes, tmp_path):
     false = falsified(axes, tmp_path, "box.npz", lambda arrays: change_metadata(arrays, **{"lambda": "1.7"}))
     out, _ = run("verify", solids / "box.obj", false, "--verbose")
     assert "lambda 1.7" in out and "missing parts: random points show nothing above 90 degrees" in out
@@ -280,7 +280,7 @@ def test_where_random_points_show_nothing_that_is_not_checked(solids, axes, tmp_
     assert "missing parts: random points show nothing above 90 degrees" in certificate["not_checked"]
 
 
-def test_nested_axes_are_not_checked_and_that_is_told(solids, tmp_path):
+def test_nested_axes_are_reported_as_not_checked(solids, tmp_path):
     run("medial", solids / "box.obj", "-o", tmp_path / "nested.npz", "--resolution", 16, "--nested")
     out, _ = run("verify", solids / "box.obj", tmp_path / "nested.npz")
     assert "nested columns: the axes of other angles" in out
@@ -320,7 +320,7 @@ def test_the_topology_of_files_without_geometry_is_verified(solids, axes, tmp_pa
 
 
 @pytest.mark.parametrize("end", ["obj", "ma"])
-def test_what_files_without_labels_do_not_tell_is_not_told(solids, axes, end):
+def test_counts_that_a_file_lacks_are_not_reported(solids, axes, end):
     out, _ = run("verify", solids / "box.obj", axes / f"box.{end}")
     assert "0 edges of curves (no sheets in the file)" in out and "rims" not in out and "1 sheet" not in out
     counts = run_json("verify", solids / "box.obj", axes / f"box.{end}")["axis"]["counts"]
@@ -335,7 +335,7 @@ def test_radii_of_files_without_footprints_are_verified(solids, axes, tmp_path):
     assert "a radius differs" in run("verify", solids / "box.obj", tmp_path / "false.ma", status=3)[1]
 
 
-def test_a_field_is_no_axis_and_an_axis_no_field(solids, axes, tmp_path):
+def test_fields_and_axes_are_not_confused(solids, axes, tmp_path):
     assert "it holds a distance field" in run("verify", solids / "sphere.ply", solids / "sphere.npz", status=1)[1]
     assert "blum surface" in run("reconstruct", solids / "sphere.npz", "-o", tmp_path / "x.ply", status=2)[1]
     assert "is a medial axis; a mesh" in run("slice", axes / "box.npz", "-o", tmp_path / "x.png", status=1)[1]
@@ -379,7 +379,7 @@ def test_several_axes_are_verified_at_once(solids, axes, tmp_path):
     assert run("verify", solids / "box.obj", files[0], tmp_path / "none.vtp", status=1)[0] == ""
 
 
-def test_an_axis_of_voxels_needs_a_file_that_says_which(solids, tmp_path):
+def test_an_axis_of_voxels_needs_a_file_that_records_them(solids, tmp_path):
     for end in ("obj", "ma"):
         run("medial", solids / "open.obj", "-o", tmp_path / f"o.{end}", "--resolution", 12, warns=True)
         _, err = run("verify", solids / "open.obj", tmp_path / f"o.{end}", status=1)
@@ -387,7 +387,7 @@ def test_an_axis_of_voxels_needs_a_file_that_says_which(solids, tmp_path):
         assert "Verify the .vtp, .ply or .npz file of the same run" in err
 
 
-def test_an_open_mesh_that_faces_inwards_is_told_of(solids, tmp_path):
+def test_an_open_mesh_that_faces_inwards_is_reported(solids, tmp_path):
     lines = (solids / "inverted.obj").read_text().splitlines()
     (tmp_path / "in.obj").write_text("\n".join(lines[:-1]) + "\n")
     _, err = run("medial", tmp_path / "in.obj", "-o", tmp_path / "o.vtp", "--resolution", 12, status=1)
@@ -395,7 +395,7 @@ def test_an_open_mesh_that_faces_inwards_is_told_of(solids, tmp_path):
 
 
 def several_boxes(solids, path, places):
-    """The box of `solids` at several places, each a factor and an offset in sides of the box."""
+    """Writes the box of `solids` at several places; a place is a factor and an offset in sides of the box."""
     lines = (solids / "box.obj").read_text().splitlines()
     corners = np.array([[float(x) for x in line.split()[1:]] for line in lines if line.startswith("v ")])
     faces = np.array([[int(v) for v in line.split()[1:]] for line in lines if line.startswith("f ")])
@@ -411,7 +411,7 @@ def test_a_mesh_that_crosses_itself_is_resolved(solids, tmp_path):
     repaired = run_json("info", two)["repaired"]
     assert (repaired["rule"], repaired["betti"]) == ("polyhedron", [1, 0, 0])
     assert repaired["resolved"]["crossing"] > 0 and repaired["resolved"]["new_vertices"] > 0
-    assert "repaired  1 part, 0 tunnels" in run("info", two)[0]
+    assert "repaired  1 component, 0 tunnels" in run("info", two)[0]
     run("medial", two, "-o", tmp_path / "t.npz", "--resolution", 16)
     certificate = run_json("verify", two, tmp_path / "t.npz")["certificate"]
     assert certificate["against"] == "polyhedron" and certificate["solid_betti"] == [1, 0, 0]
@@ -419,7 +419,7 @@ def test_a_mesh_that_crosses_itself_is_resolved(solids, tmp_path):
     assert "it is 'polyhedron'" in run("verify", two, false, status=3)[1]
 
 
-def test_a_mesh_that_crosses_itself_unresolved_is_no_polyhedron_whatever_the_axis_says(solids, tmp_path):
+def test_an_unresolved_self_crossing_mesh_is_not_a_polyhedron(solids, tmp_path):
     two = tmp_path / "two.obj"
     several_boxes(solids, two, [(1, (0, 0, 0)), (1, (0.3, 0.3, 0.3))])
     lines = two.read_text().splitlines()
@@ -441,7 +441,7 @@ def test_a_mesh_that_crosses_itself_unresolved_is_no_polyhedron_whatever_the_axi
         assert reason in run("verify", two, false, status=1)[1]
 
 
-def test_files_that_are_no_axis_are_refused(solids, axes, tmp_path):
+def test_files_without_an_axis_are_rejected(solids, axes, tmp_path):
     (tmp_path / "cut.npz").write_bytes((axes / "box.npz").read_bytes()[:5000])
     (tmp_path / "empty.vtp").write_bytes(b"")
     for name in ("cut.npz", "empty.vtp", "none.ply"):
@@ -454,7 +454,7 @@ def test_files_that_are_no_axis_are_refused(solids, axes, tmp_path):
 
 def test_balls_of_an_axis_become_a_field_and_a_mesh_near_the_solid(solids, axes, tmp_path):
     summary = run_json("reconstruct", axes / "box.vtp", "-o", tmp_path / "box.ply", "--input", solids / "box.obj",
-                       "--resolution", 40)  # finer grids see between the balls
+                       "--resolution", 40)  # a finer grid resolves gaps between the balls
     assert summary["surface"]["triangles"] > 1000
     distance = summary["distance"]
     assert 0 < distance["mean_solid_to_balls"] < distance["solid_to_balls"] < 0.1, "voxels are 1/16 long"
@@ -466,13 +466,13 @@ def test_balls_of_an_axis_become_a_field_and_a_mesh_near_the_solid(solids, axes,
     assert field.min() < -0.4 and field[0, 0, 0] > 0, "negative in the balls, of which the largest has radius 1/2"
 
 
-def test_reconstruct_refuses_what_has_no_balls(solids, axes, tmp_path):
+def test_reconstruct_rejects_files_without_radii(solids, axes, tmp_path):
     assert "AXIS" in run("reconstruct", axes / "box.obj", "-o", tmp_path / "x.ply", status=2)[1]
     assert "--output" in run("reconstruct", axes / "box.vtp", "-o", tmp_path / "x.png", status=2)[1]
     assert names(tmp_path) == []
 
 
-def test_reconstruct_writes_nothing_where_its_input_is_of_no_use(solids, axes, tmp_path):
+def test_reconstruct_writes_nothing_if_its_input_is_useless(solids, axes, tmp_path):
     (tmp_path / "x.ply").write_bytes(b"old")
     (tmp_path / "text.obj").write_text("hello\n")
     for name in ("text.obj", "none.obj"):

@@ -1,4 +1,4 @@
-"""`blum voronoi` writes walls and surface in every format, and nothing that is not certified."""
+"""Proves that `blum voronoi` writes walls, surface and medial axes in every format, and only if certified."""
 
 import json
 import re
@@ -9,21 +9,21 @@ from tool import BLUM, names, run, run_json
 
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
-SITES = 6  # of a box
+SITES = 6  # number of sites of a box
 CERTIFIED = "certified  yes"
 TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8"}
 
 
 @pytest.fixture(scope="module")
 def parts(tmp_path_factory):
-    """A folder with a box, the same in STL, a bracket and a gear."""
+    """A folder with a box as PLY and STL, a bracket and a gear."""
     folder = tmp_path_factory.mktemp("parts")
     for name in ("box.ply", "box.stl", "bracket.ply", "gear.ply"):
         run("make", name.split(".")[0], "-o", folder / name)
     return folder
 
 
-# ---- Readers of our own ----
+# ---- Readers without Blum ----
 
 
 def read_npz(path):
@@ -39,7 +39,7 @@ def read_npz(path):
 
 
 def rough_box():
-    """A box of side 1 over 6 x 6 squares on each side, turned, in 32 bits; in the upper side each square has a needle."""
+    """A rotated unit box in 32 bits with 6 x 6 squares on each side; each square of the upper side has a needle."""
     n, vertices, triangles = 6, {}, []
 
     def vertex(p):
@@ -109,7 +109,7 @@ def read_vtp(path):
     start = body.index(b"_") + 1
 
     def array(name):
-        # Of lines and polys, the last one is that of the polys.
+        # Lines come before polys, so the last match belongs to the polys.
         tag = re.findall(rb'<DataArray type="(\w+)" Name="%s"[^>]* offset="(\d+)"/>' % name.encode(), head)[-1]
         at = start + int(tag[1])
         size = int(np.frombuffer(body, "<u8", 1, at)[0])
@@ -138,7 +138,7 @@ def read_obj(path):
 READERS = {"npz": read_npz, "ply": read_ply, "vtp": read_vtp, "obj": read_obj}
 
 
-# ---- What is written ----
+# ---- Output ----
 
 
 def test_a_box_is_certified(parts, tmp_path):
@@ -174,7 +174,7 @@ def test_every_format_holds_the_complex(parts, tmp_path, end):
     assert (len(found["vertices"]), len(found["triangles"])) == (counts["vertices"], counts["triangles"])
 
 
-def test_columns_and_metadata_say_what_there_is(parts, tmp_path):
+def test_columns_and_metadata_describe_the_diagram(parts, tmp_path):
     run("voronoi", parts / "box.ply", "-o", tmp_path / "box.npz", "--quiet")
     found = read_npz(tmp_path / "box.npz")
     on_surface = found["site_a"] == -1
@@ -213,7 +213,7 @@ def test_a_medial_axis_has_the_topology_of_the_solid(parts, tmp_path):
     site_a, site_b = file["triangle_site_a"], file["triangle_site_b"]
     assert len(site_a) == found["axis"]["counts"]["triangles"]
     assert 0 <= site_a.min()
-    # Of walls between faces and edges those stay that are of other faces.
+    # A wall between a face and an edge stays if the edge is not an edge of the face.
     is_face_and_edge = (site_a < found["faces"]) & (site_b >= found["faces"])
     assert 0 < is_face_and_edge.sum() < len(site_a)
     run("verify", parts / "bracket.ply", tmp_path / "axis.npz")
@@ -234,7 +234,7 @@ def test_medial_axes_of_angles_in_every_format(parts, tmp_path, extension):
     assert triangles[0] > triangles[1] > triangles[2]
 
 
-def test_what_medial_axes_refuse(parts, tmp_path):
+def test_wrong_options_of_medial_axes_are_rejected(parts, tmp_path):
     box, out = parts / "box.ply", tmp_path / "out.vtp"
     assert "--medial" in run("voronoi", box, "-o", out, "--theta", 60, status=2)[1]
     assert "--output" in run("voronoi", box, "--medial", "--theta", 60, status=2)[1]
@@ -272,12 +272,12 @@ def test_json_goes_to_a_file_beside_the_text(parts, tmp_path):
     assert run("voronoi", parts / "box.ply", "--quiet") == ("", "")
 
 
-# ---- What is not certified ----
+# ---- Failed certificates ----
 
 COARSE = ["--depth", 3]
 
 
-def test_what_is_not_certified_is_not_written(parts, tmp_path):
+def test_an_uncertified_diagram_is_not_written(parts, tmp_path):
     (tmp_path / "gear.vtp").write_bytes(b"old")
     out, err = run("voronoi", parts / "gear.ply", "-o", tmp_path / "gear.vtp", *COARSE, "--json", "-", status=3)
     assert "NOT certified" in err and "nothing was written" in err and "--depth" in err
@@ -290,7 +290,7 @@ def test_what_is_not_certified_is_not_written(parts, tmp_path):
     assert f"{len(found['failing'])} cubes" in found["mismatches"][0]
 
 
-def test_what_is_not_certified_is_written_where_that_is_asked_for(parts, tmp_path):
+def test_an_uncertified_diagram_is_written_on_request(parts, tmp_path):
     out = tmp_path / "gear.npz"
     text, err = run("voronoi", parts / "gear.ply", "-o", out, *COARSE, "--allow-uncertified", status=3)
     assert "certified  NO" in text and "NOT certified" in err and "nothing was written" not in err
@@ -306,7 +306,7 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(parts, tmp_pat
     assert np.ptp(lengths) < 1e-9 * lengths.max()
 
 
-def test_what_faces_the_wrong_way_is_turned(solids, tmp_path):
+def test_parts_that_face_the_wrong_way_are_reversed(solids, tmp_path):
     found = run_json("voronoi", solids / "inverted.obj", warns=True)
     assert found["certified"] and found["reversed_shells"] == 1 and found["reversed_triangles"] == 0
     assert found["warnings"] == [
@@ -324,10 +324,10 @@ def test_what_faces_the_wrong_way_is_turned(solids, tmp_path):
     assert cleaned["warnings"] == found["warnings"]
 
 
-# ---- What is wrong ----
+# ---- Errors ----
 
 
-def test_meshes_that_bound_no_solid(solids, tmp_path):
+def test_meshes_that_bound_no_solid_are_rejected(solids, tmp_path):
     _, err = run("voronoi", solids / "open.obj", "-o", tmp_path / "o.vtp", status=1)
     assert "open.obj" in err and "bounds no solid" in err and "closed" in err
     _, err = run("voronoi", solids / "ball.nrrd", "-o", tmp_path / "o.vtp", status=1)
@@ -335,12 +335,12 @@ def test_meshes_that_bound_no_solid(solids, tmp_path):
     assert names(tmp_path) == []
 
 
-def test_bad_options_are_said(parts, tmp_path):
+def test_bad_options_are_rejected(parts, tmp_path):
     box, out = parts / "box.ply", tmp_path / "o.vtp"
     for option, value in (("--depth", 0), ("--depth", 25), ("--resolution", 0), ("--max-cubes", 10), ("--weld", -1)):
         assert option in run("voronoi", box, "-o", out, option, value, status=2)[1]
     for option, value in (("--resolution", 1000), ("--tolerance", 0.002)):
-        assert "raise max_cubes" in run("voronoi", box, "-o", out, option, value, status=2)[1]
+        assert "raise --max-cubes" in run("voronoi", box, "-o", out, option, value, status=2)[1]
     assert "--output" in run("voronoi", box, "-o", tmp_path / "o.xyz", status=2)[1]
     assert "give one" in run("voronoi", box, "--walls", "--medial", status=2)[1]
     assert "--allow-uncertified" in run("voronoi", box, "--allow-uncertified", status=2)[1]
@@ -385,8 +385,7 @@ def test_options_of_graphs(parts, tmp_path):
 
 
 def test_cleaned_meshes(tmp_path):
-    """A box whose sides are of many triangles, turned and rounded to 32 bits, with needles 1e-6 high: its diagram is
-    that of the twelve triangles that cleaning leaves."""
+    """The diagram of a cleaned box with many triangles and needles 1e-6 high is that of a box of twelve triangles."""
     rough, clean, out = tmp_path / "rough.off", tmp_path / "clean.ply", tmp_path / "axis.npz"
     rough.write_text(rough_box())
     found = run_json("voronoi", rough, "--clean", 1e-4, "--cleaned", clean)
@@ -412,7 +411,7 @@ def test_options_of_cleaning(parts, tmp_path):
 
 
 def test_a_mesh_that_crosses_itself(tmp_path):
-    """Its diagram is that of the solid without the crossings, whose mesh is written where it is asked for."""
+    """The diagram is that of the resolved solid; --cleaned writes the mesh of this solid."""
     corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
     squares = [(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)]
     lines = []

@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <functional>
 #include <optional>
+#include <regex>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "blum/core/error.hpp"
 #include "common/options.hpp"
 
 namespace blum::cli {
@@ -72,8 +74,31 @@ void Command::footer(const std::string& text) const {
   app_->footer(text);
 }
 
+namespace {
+
+/// Replaces names of members in a message of the library, for example "max_cubes", by the options that set them.
+std::string with_option_names(std::string text, const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      std::string member = name;
+      std::replace(member.begin(), member.end(), '-', '_');
+      if (member == name) continue;  // One word may mean something else.
+      text = std::regex_replace(text, std::regex("\\b" + member + "\\b"), "--" + name);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
 void Command::callback(std::function<void()> run) const {
-  app_->callback(std::move(run));
+  app_->callback([app = app_, run = std::move(run)] {
+    try {
+      run();
+    } catch (const InvalidOption& error) {
+      throw InvalidOption(with_option_names(error.what(), *app));
+    }
+  });
 }
 
 namespace {

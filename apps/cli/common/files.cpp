@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "blum/core/error.hpp"
 #include "common/options.hpp"
@@ -17,6 +20,14 @@ namespace blum::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Returns the last `parts` parts of a path.
+std::string tail_of(const fs::path& path, std::size_t parts) {
+  const std::vector<fs::path> all(path.begin(), path.end());
+  fs::path out;
+  for (std::size_t k = all.size() - std::min(parts, all.size()); k < all.size(); ++k) out /= all[k];
+  return out.string();
+}
 
 fs::path resolved(const fs::path& path) {
   std::error_code error;
@@ -133,6 +144,29 @@ void check_memory(double bytes, std::string_view what, std::string_view advice) 
   if (bytes <= there) return;
   throw OutOfMemory(std::string(what) + " needs " + bytes_text(bytes) + " of memory, but only " + bytes_text(there) +
                     " are free; " + std::string(advice));
+}
+
+std::vector<std::string> distinct_names(const std::vector<std::string>& files) {
+  std::vector<std::size_t> parts(files.size(), 1);
+  std::vector<std::string> names(files.size());
+  for (bool is_longer = true; is_longer;) {
+    is_longer = false;
+    std::map<std::string, std::vector<std::size_t>> of_name;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      names[k] = tail_of(files[k], parts[k]);
+      of_name[names[k]].push_back(k);
+    }
+    for (const auto& same : of_name) {
+      const auto is_other = [&](std::size_t k) { return files[k] != files[same.second.front()]; };
+      if (std::none_of(same.second.begin(), same.second.end(), is_other)) continue;
+      for (const std::size_t k : same.second) {
+        if (names[k] == fs::path(files[k]).string()) continue;  // already the whole path
+        ++parts[k];
+        is_longer = true;
+      }
+    }
+  }
+  return names;
 }
 
 }  // namespace blum::cli

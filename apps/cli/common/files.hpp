@@ -22,6 +22,9 @@ void check_may_be_field(const std::filesystem::path& path);
 /// Returns the extensions of several contents for help texts: "Mesh (.obj .off .stl .ply) or image (.nrrd .npy)".
 [[nodiscard]] std::string extensions_help(const std::vector<FileContent>& contents, FileAccess access);
 
+/// Returns short names of files: as many last parts of their paths as distinguish different paths.
+[[nodiscard]] std::vector<std::string> distinct_names(const std::vector<std::string>& files);
+
 /// Returns the file name for one label: OUT-label3.nrrd for OUT.nrrd.
 [[nodiscard]] std::filesystem::path with_label(const std::filesystem::path& path, std::int64_t label);
 

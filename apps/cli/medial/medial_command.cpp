@@ -313,7 +313,8 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
   run.warnings.insert(run.warnings.end(), made.warnings.begin(), made.warnings.end());
   run.is_kept.push_back((certificate.holds() && model_passes) || r.allow_uncertified);
   const MedialCounts counts = count(made.axis.axis);
-  run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
+  add_certificate(run.table, " at theta " + rounded_text(theta), certificate, r.nested);
+  add_axis_counts(run.table, "", counts, true);
   add_decimated(run.table, made);
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
@@ -323,7 +324,6 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
                   {"graph", add_graph(run, r, input, made.axis.axis, metadata, name, context)},
                   {"extended", add_extended(run, r, input, made.axis.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate, r.nested)}});
-  add_certificate(run.table, certificate, r.nested);
 }
 
 MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, const Context& context) {

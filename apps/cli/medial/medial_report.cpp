@@ -306,24 +306,32 @@ std::string counts_text(const MedialCounts& counts, bool has_labels) {
   if (!has_labels) {
     return cells + ", " + plural(counts.curve_edges, "edge", "edges") + " of curves (no sheets in the file)";
   }
-  return cells + " in " + plural(counts.sheets, "sheet", "sheets") + "; edges: " + count_text(counts.curve_edges) +
-         " of curves, " + count_text(counts.rim_edges) + " of rims, " + count_text(counts.seam_edges) + " of seams; " +
-         plural(counts.junctions, "junction", "junctions");
+  return cells + "; " + plural(counts.sheets, "sheet", "sheets") + ", " +
+         plural(counts.junctions, "junction", "junctions") +
+         (counts.curve_edges > 0 ? ", " + plural(counts.curve_edges, "edge", "edges") + " of curves" : "");
+}
+
+void add_axis_counts(TextTable& table, const std::string& before, const MedialCounts& counts, bool has_labels) {
+  table.add("axis", before + counts_text(counts, has_labels));
+  if (!has_labels) return;
+  table.detail("edges", count_text(counts.curve_edges) + " of curves, " + count_text(counts.rim_edges) + " of rims, " +
+                            count_text(counts.seam_edges) + " of seams");
 }
 
 std::string angles_text(double least_theta) {
   return "all from " + rounded_text(least_theta) + " degrees on";
 }
 
-void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
+void add_certificate(TextTable& table, const std::string& of, const Certificate& c, bool has_nested) {
   if (c.holds()) {
-    table.add("certified", "yes: topology of " + against_text(c) + " (" + betti_text(c.axis) + ")" +
+    table.add("certified", "yes" + of + ": topology of " + against_text(c) + " (" + betti_text(c.axis) + ")" +
                                (c.bodies.size() > 1 ? ", in each of " + count_text(c.bodies.size()) + " bodies" : "") +
                                "; inside the solid" + medial_share_text(c));
   } else {
     // The error message gives the reasons.
-    table.add("certified", c.topology_holds ? "NO: the topology is that of the solid, but another check fails"
-                                            : "NO: " + betti_text(c.axis) + "; the solid has " + betti_text(c.solid));
+    table.add("certified", c.topology_holds
+                               ? "NO" + of + ": the topology is that of the solid, but another check fails"
+                               : "NO" + of + ": " + betti_text(c.axis) + "; the solid has " + betti_text(c.solid));
   }
   table.detail("homology", c.homology.shown);
   if (const std::string claims = claims_text(c.checked); !claims.empty()) table.detail("claims", claims);

@@ -70,7 +70,11 @@ class SolidVerifier {
 
 /// Adds the number of vertices before decimation and the largest move, if the axis was decimated.
 void add_decimated(TextTable& table, const CertifiedAxis& made);
+/// Adds the counts of an axis; those of edges only for --verbose.
+/// @param before  text before the counts, for example the name of the file.
+void add_axis_counts(TextTable& table, const std::string& before, const MedialCounts& counts, bool has_labels);
 /// Adds the result of a certificate, its solid and its errors. The message of NotCertified gives reasons for failure.
-void add_certificate(TextTable& table, const Certificate& certificate, bool has_nested);
+/// @param of  text after "yes" or "NO", for example " at theta 60".
+void add_certificate(TextTable& table, const std::string& of, const Certificate& certificate, bool has_nested);
 
 }  // namespace blum::cli

@@ -134,7 +134,7 @@ void run(const Arguments& a) {
   const double field_seconds = watch.lap();
 
   TextTable table;
-  table.add("axis", r.axis.string() + ": " + counts_text(count(file.complex), file.has_labels));
+  add_axis_counts(table, r.axis.string() + ": ", count(file.complex), file.has_labels);
   table.add("grid", size_text(grid) + " nodes, spacing " + rounded_text(grid.spacing.x));
   Json json = answer_json("reconstruct",
                           {{"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}}, {"grid", to_json(grid)}});

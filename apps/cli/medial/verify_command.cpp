@@ -81,8 +81,8 @@ class Verifier {
     }
     warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
     const MedialCounts counts = count(file.complex);
-    table_.add("axis", axis.string() + ": " + counts_text(counts, file.has_labels));
-    add_certificate(table_, certificate, file.nested.has_value());
+    add_certificate(table_, "", certificate, file.nested.has_value());
+    add_axis_counts(table_, axis.string() + ": ", counts, file.has_labels);
     results_.push_back(
         answer_json("verify", {{"input", solid.json},
                                {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},

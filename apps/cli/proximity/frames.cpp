@@ -187,7 +187,7 @@ struct Answer {
 };
 
 std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
-  std::string text = count_text(answer.pairs);
+  std::string text = plural(answer.pairs, "pair", "pairs");
   if (answer.first) {
     text += "; the first from '" + a.scene[*answer.first] + "' to '" + a.scene[*answer.first + 1] + "', at time " +
             rounded_text(answer.first_time);
@@ -201,7 +201,7 @@ std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
 
 TextTable table_of(const ProximityArguments& a, const Answer& answer, const PhaseSummary& spent) {
   TextTable table;
-  table.add("pairs", pairs_text(a, answer));
+  table.add("found", pairs_text(a, answer));
   table.add("frames", count_text(a.scene.size()));
   for (std::size_t k = 0; k < std::min(answer.skipped.size(), most_rows); ++k) {
     table.add("skipped", answer.skipped[k]["reason"].text());

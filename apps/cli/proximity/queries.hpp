@@ -100,9 +100,6 @@ void run_frames(const ProximityArguments& a, const SceneQuery& query);
 
 [[nodiscard]] Json penetration_json(const Penetration& part);
 
-/// Returns short names of files: as many last parts of their paths as distinguish different paths.
-[[nodiscard]] std::vector<std::string> distinct_names(const std::vector<std::string>& files);
-
 /// Returns the names of two objects; "name, itself" if they are the same.
 [[nodiscard]] std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second);
 

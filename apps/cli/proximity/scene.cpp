@@ -200,19 +200,24 @@ std::string scene_text(const Answer& answer) {
          (others > 0 ? ", " + plural(others, "segment or point", "segments and points") : "");
 }
 
-std::string pairs_text(const Answer& answer) {
+std::string found_text(const Answer& answer, bool has_rows) {
   if (answer.kind == "penetration") {
     return answer.parts.empty() ? "none: no two solids overlap"
                                 : plural(answer.parts.size(), "common part", "common parts");
   }
   const bool meet = answer.kind == "collision";
-  return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
+  const char* const one = meet ? "pair of primitives that meets" : has_rows ? "pair of objects" : "pair of primitives";
+  const char* const many = meet       ? "pairs of primitives that meet"
+                           : has_rows ? "pairs of objects"
+                                      : "pairs of primitives";
+  return plural(answer.found.pairs.size(), one, many) +
          (answer.asked.max_distance && !meet ? " within " + rounded_text(*answer.asked.max_distance) : "");
 }
 
 TextTable table_of(const ProximityArguments& a, const SceneQuery& query, const Answer& answer) {
   TextTable table;
-  table.add("pairs", pairs_text(answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
+  table.add("found",
+            found_text(answer, query.has_rows) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
   if (answer.kind == "penetration") {
     add_penetrations(answer, table);
   } else if (query.has_rows) {

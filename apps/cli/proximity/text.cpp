@@ -16,14 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the last `parts` parts of a path.
-std::string tail_of(const fs::path& path, std::size_t parts) {
-  const std::vector<fs::path> all(path.begin(), path.end());
-  fs::path out;
-  for (std::size_t k = all.size() - std::min(parts, all.size()); k < all.size(); ++k) out /= all[k];
-  return out.string();
-}
-
 /// Keeps at most `left` first entries, and subtracts their number from `left`.
 template <class T>
 void cut(std::vector<T>& entries, std::size_t& left) {
@@ -32,29 +24,6 @@ void cut(std::vector<T>& entries, std::size_t& left) {
 }
 
 }  // namespace
-
-std::vector<std::string> distinct_names(const std::vector<std::string>& files) {
-  std::vector<std::size_t> parts(files.size(), 1);
-  std::vector<std::string> names(files.size());
-  for (bool is_longer = true; is_longer;) {
-    is_longer = false;
-    std::map<std::string, std::vector<std::size_t>> of_name;
-    for (std::size_t k = 0; k < files.size(); ++k) {
-      names[k] = tail_of(files[k], parts[k]);
-      of_name[names[k]].push_back(k);
-    }
-    for (const auto& same : of_name) {
-      const auto is_other = [&](std::size_t k) { return files[k] != files[same.second.front()]; };
-      if (std::none_of(same.second.begin(), same.second.end(), is_other)) continue;
-      for (const std::size_t k : same.second) {
-        if (names[k] == fs::path(files[k]).string()) continue;  // already the whole path
-        ++parts[k];
-        is_longer = true;
-      }
-    }
-  }
-  return names;
-}
 
 std::string point_text(const Vec3d& point, double size) {
   constexpr double rounding = 1e-14;

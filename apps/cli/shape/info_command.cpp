@@ -97,7 +97,7 @@ Json topology_json(const Topology& t, const SelfIntersections& contacts) {
 
 std::string parts_text(const BettiNumbers& betti) {
   const auto& [components, tunnels, voids] = betti;
-  return plural(static_cast<std::uint64_t>(components), "part", "parts") + ", " +
+  return plural(static_cast<std::uint64_t>(components), "component", "components") + ", " +
          plural(static_cast<std::uint64_t>(tunnels), "tunnel", "tunnels") + ", " +
          plural(static_cast<std::uint64_t>(voids), "void", "voids") + " (Betti numbers " + std::to_string(components) +
          ", " + std::to_string(tunnels) + ", " + std::to_string(voids) + ")";
@@ -151,7 +151,7 @@ std::string cells_text(const Topology& t) {
                      plural(t.triangles, "triangle", "triangles");
   if (t.segments > 0) text += ", " + plural(t.segments, "segment", "segments");
   if (t.points > 0) text += ", " + plural(t.points, "point", "points");
-  return text + "; " + plural(t.pieces, "piece", "pieces");
+  return text + "; " + plural(t.pieces, "component", "components");
 }
 
 /// Lists the defects of a mesh: everything that a clean closed surface does not have.
@@ -335,7 +335,8 @@ void run_field(const Arguments& a) {
   TextTable table;
   table.add("file", a.input + ": distance field");
   add_grid(table, field.grid);
-  table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum));
+  table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
+                            (field.sign_rule == SignRule::none ? "" : ", negative inside"));
   if (field.band) table.add("band", "+-" + rounded_text(*field.band));
   table.add("sign",
             std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));

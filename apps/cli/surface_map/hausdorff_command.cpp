@@ -192,16 +192,17 @@ void run(const Arguments& a) {
   if (!a.one_sided) json["backward"] = sides[1].json();
   add_run_facts(json, spent, context, {}, a.output ? Json::array({*a.output}) : Json::array());
   TextTable table;
-  table.add("distance", interval_text(both.lower, both.upper) + (a.one_sided ? ", from a to b" : ""));
-  table.add("between", vector_text(both.points[0]) + " of a and " + vector_text(both.points[1]) + " of b");
-  add_side(table, "a to b", sides[0]);
-  if (!a.one_sided) add_side(table, "b to a", sides[1]);
+  const std::vector<std::string> names = distinct_names({paths[0].string(), paths[1].string()});
+  const std::string there = names[0] + " to " + names[1];
+  table.add("distance", interval_text(both.lower, both.upper) + (a.one_sided ? ", from " + there : ""));
+  table.add("between", vector_text(both.points[0]) + " of " + names[0] + " and " + vector_text(both.points[1]) +
+                           " of " + names[1]);
+  add_side(table, there, sides[0]);
+  if (!a.one_sided) add_side(table, names[1] + " to " + names[0], sides[1]);
   for (std::size_t k = 0; k < sides.size() && !a.only_distance; ++k) {
-    if (!sides[k].deviation)
-      table.add("", std::string(k == 0 ? "a" : "b") + " has no area, so means by area are not defined");
+    if (!sides[k].deviation) table.add("", names[k] + " has no area, so means by area are not defined");
   }
-  table.add("a", paths[0].string() + ": " + size_text(first));
-  table.add("b", paths[1].string() + ": " + size_text(second));
+  table.add("inputs", names[0] + ": " + size_text(first) + "; " + names[1] + ": " + size_text(second));
   if (a.output) table.add("wrote", *a.output);
   spent.add_to(table);
   report(a.report, json, table);

@@ -131,6 +131,20 @@ std::optional<std::size_t> furthest_texel(const SurfaceMap& map) {
 }
 
 /// Returns for example "0.25 at (1, 2, 3)".
+std::string quantity_text(SurfaceQuantity quantity) {
+  switch (quantity) {
+    case SurfaceQuantity::distance:
+      return "distance";
+    case SurfaceQuantity::self_distance:
+      return "distance to the mesh itself";
+    case SurfaceQuantity::ray_thickness:
+      return "thickness along rays";
+    case SurfaceQuantity::ball_thickness:
+      return "thickness by balls";
+  }
+  return {};
+}
+
 std::string place_text(const Json& place) {
   const Json& p = place["point"];
   return rounded_text(place["distance"].number()) + " at " + vector_text({p[0].number(), p[1].number(), p[2].number()});
@@ -220,8 +234,8 @@ void run(const Arguments& a) {
   for (const fs::path& output : asked.outputs) written.push_back(output.string());
   add_run_facts(json, spent, context, map.warnings, written);
   TextTable table;
-  table.add("map", quantity + ", " + std::to_string(map.atlas->width) + " x " + std::to_string(map.atlas->height) +
-                       " texels, " + count_text(facts.texels) + " of them used");
+  table.add("map", quantity_text(map.quantity) + ", " + std::to_string(map.atlas->width) + " x " +
+                       std::to_string(map.atlas->height) + " texels, " + count_text(facts.texels) + " of them used");
   const std::string unit = a.units.empty() ? "" : " " + a.units;
   if (!map.error.empty()) table.add("error", "at most " + rounded_text(facts.largest_error) + unit + " between texels");
   if (facts.without > 0) table.add("no value", plural(facts.without, "texel", "texels"));

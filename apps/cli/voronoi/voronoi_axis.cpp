@@ -93,7 +93,8 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
   const MedialCounts counts = count(made.axis.axis);
   out.warnings = made.warnings;
   out.mismatches = made.certificate.mismatches;
-  out.table.add("axis", counts_text(counts, true));
+  add_certificate(out.table, " (the axis)", made.certificate, false);
+  add_axis_counts(out.table, "", counts, true);
   add_decimated(out.table, made);
   out.json = {{"theta", options.theta},
               {"counts", counts_json(counts, true)},
@@ -101,7 +102,6 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
               {"vertices_before", made.axis.vertices_before},
               {"graph", add_graph(out, made.axis.axis, input, options, made.metadata, context)},
               {"certificate", certificate_json(made.certificate, false)}};
-  add_certificate(out.table, made.certificate, false);
   return out;
 }
 
