@@ -1,4 +1,4 @@
-// Narrow bands of +-3 voxels: Blum, which writes the full dense grid, against OpenVDB, which writes a sparse one.
+// Times bands of +-3 voxels: Blum, which writes a dense grid, against OpenVDB, which writes a sparse one.
 #include <cmath>
 
 #include "blum/field/field.hpp"
@@ -43,7 +43,7 @@ void openvdb_case(benchmark::State& state, const std::string& name, int n, bool 
   }
   report(state, median(runs), static_cast<double>(grid.node_count()));
   state.counters["active_nodes"] = band->active_nodes;
-  // Its error in voxels is told, not judged: it grows its bands through the triangles of neighbours.
+  // OpenVDB's error in voxels is reported, not limited: its bands grow through the triangles of neighbouring voxels.
   double worst = 0;
   for (const BandSample& sample : band->samples) {
     const Vec3d position = grid.position(sample.node[0], sample.node[1], sample.node[2]);
@@ -61,7 +61,7 @@ const bool registered = [] {
       const std::string prefix = "band/" + name + "/" + std::to_string(n) + "/";
       add(prefix + "blum", [=](benchmark::State& state) { blum_case(state, name, n, SignMode::none); });
       add(prefix + "openvdb", [=](benchmark::State& state) { openvdb_case(state, name, n, false); });
-      if (name == "bunny") continue;  // open: what OpenVDB calls inside means nothing there
+      if (name == "bunny") continue;  // an open mesh: OpenVDB's inside is meaningless
       add("signed-" + prefix + "blum", [=](benchmark::State& state) { blum_case(state, name, n, SignMode::normals); });
       add("signed-" + prefix + "openvdb", [=](benchmark::State& state) { openvdb_case(state, name, n, true); });
     }

@@ -1,5 +1,5 @@
-// How long cancelled work goes on: calls are cancelled at moments spread over their run, and the longest wait from the
-// request to the exception is told. The promise is 200 ms.
+// Measures how long cancelled calls continue. Calls are cancelled at moments spread over their run. The result is the
+// longest time from request to exception; the limit is 200 ms.
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -23,7 +23,7 @@ using Work = std::function<void(const Context&)>;
 
 constexpr int moments = 24;
 
-/// Seconds from a request to cancel, made `delay` after the start, to the call's end; none where it ended before.
+/// Seconds from a request to cancel, `delay` after the start, to the end of the call; nullopt if it ended before.
 std::optional<double> latency(const Work& work, std::chrono::duration<double> delay) {
   std::stop_source source;
   std::atomic<Clock::time_point> requested{Clock::time_point::max()};

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Charts of culling, from what proximity_bench measured:
+"""Draws charts of culling from results of proximity_bench:
 
     build/bench/bin/proximity_bench --benchmark_filter=culling/ --benchmark_out=culling.json --benchmark_out_format=json
     bench/culling_charts.py culling.json -o docs/pictures/culling.svg
 
-For each scene: pairs left to the exact test per primitive, and the seconds of each stage, with the hierarchy and with
-Voronoi culling for several sizes of cells.
+The charts show exact tests per primitive and the seconds of each stage, for each scene. They compare culling by the
+hierarchy with Voronoi culling for several cell sizes.
 """
 
 import argparse

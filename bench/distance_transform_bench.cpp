@@ -1,5 +1,5 @@
-// Times the distance transform of images: seconds per image, voxels per second, CPU seconds. Compare with
-// bench/peers/image_peers.py, which runs other programs on the same shapes.
+// Times the distance transform of images: seconds per image, voxels per second, CPU seconds.
+// bench/peers/image_peers.py runs other programs on the same shapes.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -20,8 +20,8 @@ const char* name_of(int shape) {
   return names[shape];
 }
 
-/// shell: a bumpy surface one or two voxels thick around a fifth of the image, as a voxelised scan has; ball: solid, 20
-/// % of the voxels; sparse and half: 1 % and 50 % of the voxels at random.
+/// An image of one shape. Shell: a bumpy surface around a fifth of the image, one or two voxels thick, as in a
+/// voxelised scan. Ball: solid, 20 % of the voxels. Sparse and half: 1 % and 50 % of the voxels at random.
 blum::VoxelImage make_image(std::int64_t n, int shape) {
   blum::VoxelImage image;
   image.grid.size = {n, n, n};

@@ -1,5 +1,5 @@
-// Distance and closest site, unsigned, on the full grid: Blum against Embree and CGAL on the same mesh and grid, one
-// thread against all, and one instruction set against the other.
+// Times unsigned distances and closest sites on the full grid: Blum against Embree and CGAL on the same mesh and grid.
+// Also compares one thread with two, and instruction sets with each other.
 #include "blum/field/field.hpp"
 #include "field/cpu/tile_kernel.hpp"
 #include "peers/peers.hpp"
@@ -45,7 +45,7 @@ void peer_case(benchmark::State& state, const std::string& name, int n, Peer pee
   report(state, median(runs), static_cast<double>(grid.node_count()), result->fraction);
   state.counters["phase build"] = result->build_wall;
   state.counters["build_cpu_s"] = result->build_cpu;
-  // The peers' floats carry about six digits.
+  // The peers use single precision, about six digits.
   spot_check(state, input, result->field, 1e-5);
   state.SetLabel(input.note);
 }
@@ -59,7 +59,7 @@ void add_cases(const std::string& name, std::initializer_list<int> sizes) {
   }
 }
 
-/// One thread and two in turn, so that other work on the machine disturbs both alike.
+/// Runs one thread and two threads in turn, so that other work on the machine disturbs both alike.
 void thread_case(benchmark::State& state, const std::string& name, int n) {
   const Shape& input = shape(name);
   const GridSpec grid = cube_grid(input.mesh, n);
@@ -94,7 +94,7 @@ void simd_case(benchmark::State& state, const std::string& name, int n, const st
   state.SetLabel(input.note + ", against " + cpu::simd_targets().front());
 }
 
-/// The second site of every node, against the first alone, in turn, on one thread.
+/// Runs first and second sites of every node, and first sites alone, in turn, on one thread.
 void second_case(benchmark::State& state, const std::string& name, int n, SignMode sign) {
   const Shape& input = shape(name);
   const GridSpec grid = cube_grid(input.mesh, n);

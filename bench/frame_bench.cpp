@@ -1,5 +1,5 @@
-// A deforming mesh of 2,000 triangles on one grid, frame after frame, through FieldSolver: the whole frame, from moved
-// vertices to distance and site (and sign) at every node.
+// Times FieldSolver on a deforming mesh of 2,000 triangles and one grid, frame by frame. A frame includes all work from
+// moved vertices to distance, site and, if requested, sign at every node.
 #include <cmath>
 
 #include "blum/field/field.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int frames = 30;
 
-/// A body that sways: vertices turn about z by an angle that waves along z and in time.
+/// Deforms a body: vertices rotate about z by an angle that oscillates along z and in time.
 void deform(const TriangleMesh& rest, double time, TriangleMesh& moved) {
   for (std::size_t v = 0; v < rest.vertices.size(); ++v) {
     const Vec3d& p = rest.vertices[v];
@@ -43,7 +43,7 @@ void frame_case(benchmark::State& state, int n, SignMode sign) {
   report(state, times, static_cast<double>(grid.node_count()));
   report_phases(state, field->phases);
   state.counters["frames_per_s"] = 1 / times.wall;
-  // What it would be with both cores to itself.
+  // The rate if both cores worked only for this process.
   state.counters["frames_per_s_by_cpu"] = 2 / times.cpu;
   spot_check(state, moved, *field);
   state.SetLabel(rest.note);

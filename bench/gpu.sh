@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds, tests and measures the CUDA back end on a machine with a GPU, nvcc, CMake and g++, and nothing else of what
-# Blum can use: no package is looked for, nothing is downloaded. Takes less than ten minutes.
+# Builds, tests and measures the CUDA back end on a machine with a GPU, nvcc, CMake and g++. Uses no other packages of
+# Blum and downloads nothing. Takes less than ten minutes.
 #   bench/gpu.sh [OUT]   figures go to OUT (default: out/gpu): check.txt, sanitizer-*.txt, times.txt, times.json
-# BLUM_GPU_MESH: an OFF or OBJ file for the 69 k triangles (default: a generated mesh of that size).
-# BLUM_GPU_SKIP=sanitizers: leave compute-sanitizer out.
-# BLUM_GPU_BUILD_ONLY=1: only build. BLUM_GPU_ARCHITECTURE: what for, such as 80 (default: what the GPU here is, else 90).
-# JOBS: compilers at once. CUDACXX: nvcc, if it is not in PATH (default: the one that tools/cuda.sh installs).
+# BLUM_GPU_MESH: an OFF or OBJ file for the case with 69 k triangles (default: a generated mesh of that size).
+# BLUM_GPU_SKIP=sanitizers: do not run compute-sanitizer.
+# BLUM_GPU_BUILD_ONLY=1: only build. BLUM_GPU_ARCHITECTURE: target, for example 80 (default: that of the GPU, else 90).
+# JOBS: number of parallel compilers. CUDACXX: nvcc, if it is not in PATH (default: that of tools/cuda.sh).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=${1:-out/gpu}

@@ -1,5 +1,5 @@
-// Medial axes, from the mesh or image to the certificate: seconds of each phase, time against the solid's voxels, and
-// peak memory. Other programs on the same images: bench/peers/skeleton_peers.py.
+// Times medial axes of meshes and images: seconds of each phase, time per voxel of the solid, and peak memory. Meshes
+// include the certificate. bench/peers/skeleton_peers.py runs other programs on the same images.
 #include <sys/resource.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double theta = 60;
 
-/// Of the process, so far.
+/// Peak memory of this process so far.
 double peak_mib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -51,7 +51,7 @@ void mesh_case(benchmark::State& state, const std::string& name, int resolution)
   state.SetLabel(solid.note);
 }
 
-/// Six axes of one solid, certified by one verifier and by one each.
+/// Certifies six axes of one solid with one shared verifier, and with one verifier each.
 void verifier_case(benchmark::State& state, const std::string& name) {
   const Shape& solid = shape(name);
   const MedialAxis axis = medial_axis(solid.mesh, {.resolution = 128});
@@ -82,7 +82,7 @@ void verifier_case(benchmark::State& state, const std::string& name) {
   state.SetLabel(solid.note);
 }
 
-/// A smooth body with bumps: a fifth of the voxels.
+/// A smooth, bumpy body of a fifth of the voxels.
 VoxelImage bumpy_image(std::int64_t n) {
   VoxelImage image;
   image.grid.size = {n, n, n};
@@ -120,7 +120,7 @@ void image_case(benchmark::State& state, std::int64_t side) {
   report_phases(state, phases);
   state.counters["solid_voxels"] = voxels;
   state.counters["ns_per_solid_voxel"] = 1e9 * times.wall / voxels;
-  // Sides rise, so that the largest so far is this one's.
+  // Cases run in ascending order of side, so that the peak so far belongs to this case.
   state.counters["peak_MiB_beyond_image"] = peak_mib() - image_mib;
 }
 

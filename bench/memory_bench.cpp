@@ -1,4 +1,4 @@
-// Peak memory beyond the input and the output arrays; each case in a process of its own (see peak_memory.cpp).
+// Measures peak memory beyond the input and output arrays. Each case runs in its own process (see peak_memory.cpp).
 #include <sys/wait.h>
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace blum::bench {
 namespace {
 
-/// Runs peak_memory, which prints lines "name value"; empty where it fails.
+/// Runs peak_memory, which prints lines "name value". Returns an empty map if it fails.
 std::map<std::string, double> probe(const std::string& arguments) {
   const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "peak_memory";
   std::map<std::string, double> figures;
@@ -38,7 +38,7 @@ void memory_case(benchmark::State& state, const std::string& name, int n, const 
 const bool registered = [] {
   for (const std::string name : {"bunny", "fandisk", "noisy-1.6M"}) {
     for (const std::string mode : {"none", "winding", "normals"}) {
-      if (name == "bunny" && mode == "normals") continue;  // open
+      if (name == "bunny" && mode == "normals") continue;  // an open mesh
       add("memory/" + name + "/512/" + mode, [=](benchmark::State& state) { memory_case(state, name, 512, mode); });
     }
   }

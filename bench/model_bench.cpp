@@ -1,5 +1,5 @@
-// Cellular models of solids: seconds over resolutions and triangles, and nanoseconds for each cube that the surface
-// cuts.
+// Times cellular models of solids for several resolutions and numbers of triangles. Also reports nanoseconds per cube
+// that the surface cuts.
 #include <string>
 
 #include "blum/solid/solid.hpp"

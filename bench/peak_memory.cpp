@@ -1,4 +1,4 @@
-// Computes one field and prints, in MiB, its peak memory beyond the input and the output arrays:
+// Computes one field and prints its peak memory, in MiB, beyond the input and output arrays:
 //   peak_memory bunny|fandisk|noisy-1.6M|organic-N|image N none|normals|winding|unsigned
 #include <malloc.h>
 #include <sys/resource.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double mib = 1024.0 * 1024.0;
 
-/// The memory that this process holds now (VmRSS) or held at most (VmHWM).
+/// The present (VmRSS) or peak (VmHWM) memory of this process.
 double status_mib(const std::string& key) {
   std::ifstream status("/proc/self/status");
   std::string word;
@@ -28,7 +28,7 @@ double status_mib(const std::string& key) {
   return 0;
 }
 
-/// Forgets the peak so far, which reading or generating the input may have set.
+/// Resets the peak, which may come from reading or generating the input.
 void reset_peak() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";

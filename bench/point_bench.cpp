@@ -1,5 +1,5 @@
-// Closest points and signed distances of scattered points: a million all over the box and near the surface, frames of a
-// mesh that deforms, and one call with few points.
+// Times closest points and signed distances of scattered points: a million in a box, and a million near the surface.
+// Also times frames of a deforming mesh, and one call with few points.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t a_million = 1000000;
 
-/// All over a box 1.2 times the mesh's.
+/// Random points in a box 1.2 times the mesh's bounds.
 std::vector<Vec3d> in_box(const TriangleMesh& mesh, std::size_t count) {
   const Box3 box = bounds(mesh);
   Random random(1);
@@ -32,7 +32,7 @@ std::vector<Vec3d> in_box(const TriangleMesh& mesh, std::size_t count) {
   return points;
 }
 
-/// Points of the surface, moved by normally distributed offsets of 0.5 % of the diagonal, in no order.
+/// Points of the surface in random order, with normally distributed offsets of 0.5 % of the diagonal.
 std::vector<Vec3d> near_surface(const TriangleMesh& mesh, std::size_t count) {
   NearSampleOptions options;
   options.sigma = 0.005 * bounds(mesh).diagonal();
@@ -44,7 +44,7 @@ std::vector<Vec3d> places(const TriangleMesh& mesh, const std::string& where, st
   return where == "box" ? in_box(mesh, count) : near_surface(mesh, count);
 }
 
-/// Some points against brute force: distances, and sides by the full winding number.
+/// Compares some points with brute force: distances, and sides by the full winding number.
 void check_points(benchmark::State& state, const Shape& input, const std::vector<Vec3d>& points,
                   const std::vector<ClosestPoint>& found, bool is_signed) {
   const double tolerance = 1e-9 * bounds(input.mesh).diagonal();
@@ -94,7 +94,7 @@ void numbers_case(benchmark::State& state, const std::string& name, const std::s
   state.SetLabel(input.note);
 }
 
-/// Whole frames: moved vertices, refit, 10,000 points near the surface.
+/// Times whole frames: refit to moved vertices, and 10,000 points near the surface.
 void frame_case(benchmark::State& state, SignMode sign) {
   const Shape& rest = shape("organic-100000");
   TriangleMesh moved = rest.mesh;
@@ -127,7 +127,7 @@ void frame_case(benchmark::State& state, SignMode sign) {
   state.SetLabel(rest.note);
 }
 
-/// One call: 10,000 points and a mesh of 2,000 triangles that nobody has seen before.
+/// Times one call with 10,000 points and a new mesh of 2,000 triangles.
 void call_case(benchmark::State& state, const std::string& where, SignMode sign) {
   const Shape& input = shape("organic-2000");
   const std::vector<Vec3d> points = places(input.mesh, where, 10000);

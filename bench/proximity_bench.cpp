@@ -1,5 +1,5 @@
-// Proximity of two bodies of 100,000 triangles each, and of one with itself: Blum and its peers on the same input, one
-// thread unless said otherwise.
+// Times proximity of two bodies of 100,000 triangles each, and of one body with itself: Blum and peers on the same
+// input. Cases use one thread, unless their names state a number.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -57,7 +57,7 @@ RigidTransform turned(double angle, Vec3d axis) {
   return out;
 }
 
-/// Ten ways to hold the second body, moved along x until it is about that far from the first one.
+/// Ten orientations of the second body, each moved along x to about the given distance from the first body.
 std::vector<RigidTransform> poses(double gap) {
   ProximityScene scene;
   const ObjectId first = scene.add(bodies().first);
@@ -84,7 +84,7 @@ void tell(benchmark::State& state, const Times& times, double items) {
   state.counters["ms"] = times.wall * 1e3 / items;
 }
 
-/// Bodies that keep their shape: the mean over ten poses.
+/// Bodies of constant shape: the mean over ten poses.
 void rigid_case(benchmark::State& state, double gap, bool is_fcl) {
   const std::vector<RigidTransform> places = poses(gap);
   const Context one = with_threads(1);
@@ -123,7 +123,7 @@ void deform(const TriangleMesh& rest, double time, const Vec3d& place, TriangleM
   }
 }
 
-/// What keeps two bodies that deform.
+/// A program that keeps two deforming bodies between frames.
 struct Deforming {
   virtual ~Deforming() = default;
   virtual double frame(const TriangleMesh& first, const TriangleMesh& second) = 0;
@@ -153,7 +153,7 @@ struct FclDeforming : Deforming {
   std::unique_ptr<PeerBodies> bodies_of_fcl;
 };
 
-/// Ten frames of both bodies deforming: what follows from moved vertices to the distance.
+/// Both bodies deform for ten frames. A frame includes all work from moved vertices to the distance.
 template <class Keeper, class... Arguments>
 void deforming_case(benchmark::State& state, Arguments... arguments) {
   Keeper keeper(arguments...);
@@ -182,7 +182,7 @@ void self_case(benchmark::State& state, int threads) {
   state.counters["pairs"] = static_cast<double>(pairs);
 }
 
-/// From the vertices on: a scene of one frame.
+/// A new scene for one frame: building and collisions.
 void self_anew_case(benchmark::State& state) {
   std::size_t pairs = 0;
   const Context one = with_threads(1);
@@ -203,7 +203,7 @@ void cgal_self_case(benchmark::State& state) {
   state.counters["pairs"] = static_cast<double>(pairs->size());
 }
 
-/// The first body again, crossing itself: its points move by waves as long as a fifth of it.
+/// The first body, deformed so that it crosses itself. Waves as long as a fifth of the body displace its points.
 TriangleMesh crumpled(double height) {
   TriangleMesh mesh = bodies().first;
   for (Vec3d& p : mesh.vertices) {
@@ -212,7 +212,7 @@ TriangleMesh crumpled(double height) {
   return mesh;
 }
 
-/// Both bodies in one mesh, lying in each other.
+/// Both bodies in one mesh, overlapping.
 TriangleMesh joined_bodies() {
   TriangleMesh mesh = bodies().first;
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -221,7 +221,7 @@ TriangleMesh joined_bodies() {
   return mesh;
 }
 
-/// Meshes that cross themselves: the pairs of Blum and CGAL, which must be the same.
+/// A mesh that crosses itself. Blum and CGAL must find the same pairs.
 void crossing_case(benchmark::State& state, const TriangleMesh& mesh) {
   const auto expected = cgal_self_intersections(mesh);
   if (!expected) return state.SkipWithError("CGAL is not installed");
@@ -246,7 +246,7 @@ void n_body_case(benchmark::State& state, int threads) {
   state.counters["exact_tests"] = static_cast<double>(found.report.exact_tests);
 }
 
-/// Two bodies that lie in each other: pairs of triangles closer than a hundredth of their size.
+/// Pairs of triangles of two overlapping bodies that are closer than a hundredth of the bodies' size.
 void closer_case(benchmark::State& state, int threads) {
   ProximityScene scene;
   scene.add(bodies().first);
@@ -274,8 +274,8 @@ void penetration_case(benchmark::State& state) {
   state.counters["depth"] = found.parts.empty() ? 0 : found.parts.front().depth;
 }
 
-/// What both ways of culling leave to the exact test, and how long their stages take: for a body with itself, two
-/// bodies in each other, and a soup.
+/// Counts the exact tests after culling by hierarchy or by Voronoi cells, and times the stages. Scenes: a body with
+/// itself, two overlapping bodies, and a soup.
 void culling_case(benchmark::State& state, const std::string& scene_name, std::optional<double> cell_size) {
   ProximityScene scene(cell_size ? SceneOptions{Culling::voronoi, *cell_size} : SceneOptions{Culling::bvh, 2});
   if (scene_name == "body") {

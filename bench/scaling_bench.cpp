@@ -1,4 +1,4 @@
-// Time against nodes and against triangles, and the floor: what it costs to write 8 bytes a node.
+// Times fields for several numbers of nodes and triangles. The floor is the time to write 8 bytes per node.
 #include <cstdint>
 
 #include "blum/core/parallel.hpp"
@@ -25,7 +25,7 @@ void field_case(benchmark::State& state, const std::string& name, int n) {
   state.SetLabel(input.note);
 }
 
-/// Writes a float and an id per node: to new memory, as one field needs, or to memory that was written before.
+/// Writes a float and an id per node, to new memory as for a first field, or to memory that was written before.
 void floor_case(benchmark::State& state, int n, bool fresh) {
   const std::size_t nodes = static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
   Buffer<float> distance;

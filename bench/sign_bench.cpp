@@ -1,4 +1,4 @@
-// The extra time of signs over the unsigned field, and of winding numbers against one query per node.
+// Times signed fields against unsigned ones, and winding numbers against one query per node.
 #include "blum/field/field.hpp"
 #include "peers/peers.hpp"
 #include "support/check.hpp"
@@ -8,7 +8,7 @@
 namespace blum::bench {
 namespace {
 
-/// Signed and unsigned in turn. Counters unsigned_*: seconds of the unsigned field.
+/// Runs signed and unsigned fields in turn. Counters unsigned_*: seconds of the unsigned field.
 void sign_case(benchmark::State& state, const std::string& name, int n, SignMode sign) {
   const Shape& input = shape(name);
   const GridSpec grid = cube_grid(input.mesh, n);

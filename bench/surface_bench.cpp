@@ -1,5 +1,5 @@
-// Distances over surfaces: maps of four million texels, Hausdorff distances to a ten-thousandth of the diagonal, frames
-// of meshes that deform.
+// Times distances over surfaces: maps of four million texels, and Hausdorff distances to a ten-thousandth of the
+// diagonal. Also times thickness, and frames of deforming meshes.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t many_texels = 4'000'000;
 
-/// A mesh, brought to the middle of another one and as large.
+/// A mesh, moved and scaled to the centre and diagonal of another one.
 TriangleMesh fitted(TriangleMesh mesh, const MeshView& to) {
   const Box3 from = bounds(mesh);
   const Box3 goal = bounds(to);
@@ -31,7 +31,7 @@ TriangleMesh fitted(TriangleMesh mesh, const MeshView& to) {
   return mesh;
 }
 
-/// The other mesh of a pair: "rocker-arm" fitted; "shifted-X", "noisy-X" copies, by X of the diagonal.
+/// The other mesh of a pair: a fitted shape, or a copy "shifted-X" or "noisy-X" by X of the diagonal.
 TriangleMesh other_of(const TriangleMesh& mesh, const std::string& name) {
   const std::size_t dash = name.rfind('-');
   const double diagonal = bounds(mesh).diagonal();
@@ -64,7 +64,7 @@ void map_case(benchmark::State& state, const std::string& name, const std::strin
   state.SetLabel(input.note);
 }
 
-/// The same texels by Embree, one query for each.
+/// Computes the same texels by Embree, with one query each.
 void embree_map_case(benchmark::State& state, const std::string& name, const std::string& other_name, bool is_hinted) {
   const Shape& input = shape(name);
   const TriangleMesh other = other_of(input.mesh, other_name);
@@ -111,8 +111,8 @@ void cgal_case(benchmark::State& state, const std::string& name, const std::stri
   state.SetLabel(input.note);
 }
 
-/// What sampling alone would take to be as certain: distances at points no further from any other than the tolerance,
-/// by the fastest way there is here (a part of them, scaled).
+/// Estimates the time of sampling with the same certainty: each surface point has a sample within the tolerance. Runs a
+/// part of the samples with Blum's closest points, and scales the time.
 void sampling_case(benchmark::State& state, const std::string& name, const std::string& other_name) {
   const Shape& input = shape(name);
   const TriangleMesh other = other_of(input.mesh, other_name);
@@ -121,7 +121,7 @@ void sampling_case(benchmark::State& state, const std::string& name, const std::
   const SurfaceAtlas atlas = surface_atlas_of_size(input.mesh, many_texels);
   const SurfaceTexels part = surface_texels(input.mesh, atlas);
   const SurfaceDeviation area = surface_deviation(input.mesh, other, {.pieces = 1000});
-  // Hexagons with this radius cover a surface with the fewest points.
+  // Hexagons with the tolerance as radius cover a surface with the fewest points.
   const double needed = 2 * area.area / (1.5 * std::sqrt(3.0) * tolerance * tolerance);
   const Times times = time_runs([&] { (void)to_other.nearest(part.points); });
   const double fraction = static_cast<double>(part.points.size()) / needed;
@@ -138,7 +138,7 @@ void thickness_case(benchmark::State& state, const std::string& name, ThicknessK
   state.SetLabel(input.note);
 }
 
-/// Two meshes of 20,000 triangles that deform, a million texels.
+/// Two deforming meshes of 20,000 triangles, a million texels.
 void frame_case(benchmark::State& state) {
   const Shape& rest = shape("organic-20000");
   TriangleMesh target = rest.mesh;

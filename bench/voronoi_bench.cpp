@@ -1,5 +1,6 @@
-// Voronoi complexes of polyhedra and their parts: cubes, and what one takes, over shapes of 12 to 10,000 triangles, as
-// made and turned; prisms beside CGAL's diagrams of their cross-sections; medial axes beside those of the grid.
+// Times Voronoi complexes of polyhedra and their parts: number of cubes and time per cube. Shapes have 12 to 10,000
+// triangles, as generated and rotated. Compares prisms with CGAL's diagrams of their cross-sections, and medial axes
+// with those of the grid.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +27,7 @@
 namespace blum::bench {
 namespace {
 
-/// Turned about two axes, which bends faces of several triangles by rounding.
+/// Rotates a mesh about two axes. Rounding bends faces of several triangles.
 TriangleMesh turned(TriangleMesh mesh) {
   constexpr double about_z = 0.3;
   constexpr double about_x = 0.5;
@@ -60,7 +61,7 @@ void add_case(const std::string& name, const TriangleMesh& mesh, const VoronoiOp
       [mesh = turned(mesh), options](benchmark::State& state) { voronoi_case(state, mesh, options); });
 }
 
-/// The medial axis by exact walls, and that of the grid, at one angle.
+/// Medial axes from exact walls and from the grid, at one angle.
 void axis_cases(const std::string& name, const TriangleMesh& mesh) {
   constexpr double theta = 60;
   add("axis/" + name + "/walls", [=](benchmark::State& state) {
@@ -81,7 +82,7 @@ void axis_cases(const std::string& name, const TriangleMesh& mesh) {
   });
 }
 
-/// Counterclockwise around the origin, with reflex corners; no four sides or corners are equally far from a point.
+/// A counterclockwise polygon around the origin, with reflex corners. No point is equally far from four sites.
 std::vector<Point2> random_polygon(std::size_t corners) {
   Random random(7);
   std::vector<Point2> out;
@@ -94,8 +95,8 @@ std::vector<Point2> random_polygon(std::size_t corners) {
   return out;
 }
 
-/// Which sides and corners of a polygon have a wall in common in the middle half of a prism over it: numbered as
-/// SegmentVoronoiEdge has them.
+/// Pairs of sides and corners of a polygon that share a wall in the middle half of a prism over it. SegmentVoronoiEdge
+/// defines their numbers.
 std::set<std::array<std::uint32_t, 2>> walls_of_prism(const TriangleMesh& mesh, const std::vector<Point2>& polygon,
                                                       const Complex& walls, double height) {
   const auto count = static_cast<std::uint32_t>(polygon.size());
@@ -130,8 +131,8 @@ std::set<std::array<std::uint32_t, 2>> walls_of_prism(const TriangleMesh& mesh, 
   return out;
 }
 
-/// The Voronoi diagram of a prism beside CGAL's of its cross-section. All pairs of sites that the prism's walls lie
-/// between are pairs of CGAL's, and all of CGAL's are there whose edges are longer than cubes.
+/// Compares the Voronoi diagram of a prism with CGAL's diagram of its cross-section. All pairs of sites that share a
+/// wall of the prism must be pairs of CGAL. Each of CGAL's pairs must share a wall if its edge is longer than a cube.
 void prism_cases(std::size_t corners) {
   const std::vector<Point2> polygon = random_polygon(corners);
   constexpr double height = 4;

@@ -1,6 +1,6 @@
-// Compares fields of a CUDA device with brute force in double and with the same kernels run on the host: promise,
-// signs, bands, slabs, determinism, arrays on the device. Needs a compiler and CUDA alone; prints a line per case,
-// exits with 1 where one fails.
+// Compares fields of a CUDA device with brute force in double, and with the same kernels on the host. The cases cover
+// precision, signs, bands, slabs, determinism and arrays on the device. The program requires only a compiler and CUDA.
+// It prints a line per case, and exits with 1 if a case fails.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,7 +52,7 @@ Result compute(Device& device, const TriangleMesh& mesh, FieldRequest request,
   return out;
 }
 
-/// The same from arrays on the device, as others hold them, to arrays there.
+/// Computes the field from the caller's arrays on the device into arrays on the device.
 Result compute_there(cuda::CudaDevice& device, const TriangleMesh& mesh, FieldRequest request) {
   cuda::CudaArray<Vec3d> vertices;
   cuda::CudaArray<Triangle> triangles;
@@ -153,14 +153,14 @@ bool run(cuda::CudaDevice& device, const Case& c) {
   return is_good;
 }
 
-/// A sphere with a wide opening.
+/// An open sphere.
 TriangleMesh bowl(int frequency) {
   TriangleMesh mesh = make_sphere({.frequency = frequency});
   std::erase_if(mesh.triangles, [&](const Triangle& t) { return mesh.vertices[t[0]].z > 0.4; });
   return mesh;
 }
 
-/// @param is_quick  few and small, for compute-sanitizer.
+/// @param is_quick  true for few, small cases, for compute-sanitizer.
 std::vector<Case> cases(bool is_quick) {
   SoupOptions soup;
   soup.triangles = 500;
@@ -183,7 +183,7 @@ std::vector<Case> cases(bool is_quick) {
           {"segments", make_segments(), 40}};
 }
 
-/// One engine on meshes and grids that grow and shrink, in many slabs: buffers are used again and again.
+/// Runs one engine on meshes and grids that grow and shrink, in many slabs, so that it reuses its buffers.
 bool run_frames(cuda::CudaDevice& device, bool is_quick) {
   kernels::FieldEngine<cuda::CudaDevice> engine(device, 1);
   bool is_same = true;
@@ -192,7 +192,7 @@ bool run_frames(cuda::CudaDevice& device, bool is_quick) {
     const TriangleMesh mesh = noisy_knot(triangles);
     FieldRequest request;
     request.grid = grid_around(bounds(mesh), resolution, 0.1);
-    // Along z, where slabs are cut: 32 slices each.
+    // The size along z, where slabs are divided: 32 slices per slab.
     request.grid.size[2] = is_quick ? 70 : 170;
     request.sign = sign::Method::sums;
     Result out;
@@ -211,7 +211,7 @@ bool run_frames(cuda::CudaDevice& device, bool is_quick) {
   return is_same;
 }
 
-/// Images against the host's kernels, which the tests hold to brute force.
+/// Compares images with the kernels on the host, which the tests compare with brute force.
 bool run_image(cuda::CudaDevice& device, const std::array<std::int64_t, 3>& size, const Vec3d& spacing,
                const DistanceTransformOptions& options) {
   VoxelImage image;

@@ -1,4 +1,4 @@
-// Blum: what the programs for graphics processors compute with. SPDX-License-Identifier: Apache-2.0
+// Blum: meshes for the programs for graphics processors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace blum::bench {
 
-/// A knotted tube of about this many triangles, with noise, so that no symmetry helps.
+/// A knotted tube of about this many triangles. Noise removes its symmetry.
 inline TriangleMesh noisy_knot(int triangles) {
   TorusKnotOptions options;
   options.tube_segments = std::max(8, static_cast<int>(std::sqrt(triangles / 80.0)));
@@ -20,7 +20,7 @@ inline TriangleMesh noisy_knot(int triangles) {
   return make_noisy(make_torus_knot(options), 0.002);
 }
 
-/// Vertices and triangles of an OFF or OBJ file, without its other records: enough for a machine that has no zlib.
+/// Vertices and triangles of an OFF or OBJ file, without its other records. Requires no zlib.
 inline TriangleMesh read_plain_mesh(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw std::runtime_error("cannot open " + path);

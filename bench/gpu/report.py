@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Turns the figures of bench/gpu.sh into docs/generated/gpu.md and plots in docs/pictures.
+"""Writes docs/generated/gpu.md and plots in docs/pictures from the figures of bench/gpu.sh.
 
     bench/gpu/report.py [TIMES.json]      default: out/gpu/times.json
 
-The floor is what it takes to write a field, 8 bytes a node, at the device's memory bandwidth.
+The floor is the time to write a field, 8 bytes per node, at the device's memory bandwidth.
 """
 
 import json

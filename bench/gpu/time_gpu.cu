@@ -1,5 +1,6 @@
-// Times fields on a CUDA device, results left in its memory: medians of many warm runs, shares of the steps, and the
-// same field by one query of the hierarchy per node. Prints a table; --json FILE writes the figures.
+// Times fields on a CUDA device, with results in its memory: medians of many warm runs and times of the steps. The
+// baseline computes the same field by one query of the hierarchy per node. Prints a table; --json FILE writes the
+// figures.
 //   time_gpu [--json FILE] [--mesh FILE.off|FILE.obj] [--runs N] [--quick]
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ using cuda::CudaArray;
 using cuda::CudaDevice;
 using kernels::warp_size;
 
-/// The baseline: each node by itself goes down the same trees, nearest distance bound only.
+/// The baseline: each node searches the same trees by itself, and descends to the nearest box first.
 struct QueryPerNode {
   kernels::Forest forest;
   const kernels::NormalFrame* frame;
@@ -43,7 +44,7 @@ struct QueryPerNode {
     const Vec3f query = kernels::to_float(Vec3d{frame->at(0, x), frame->at(1, y), frame->at(2, z)});
     std::uint32_t stack[kernels::SearchStack::capacity];
     std::uint32_t top = 0;
-    for (std::uint32_t kind = kernels::kind_count; kind-- > 0;) {  // vertices on top, as in NearestSearch
+    for (std::uint32_t kind = kernels::kind_count; kind-- > 0;) {  // vertices on top of the stack, as in NearestSearch
       const kernels::Tree& tree = forest.trees[kind];
       if (tree.levels > 0) stack[top++] = kernels::Entry::make(kind, tree.levels, 0).code;
     }
@@ -89,7 +90,7 @@ struct QueryPerNode {
   }
 };
 
-/// An image to transform: balls on a lattice, of sizes that grow along x.
+/// Draws an image of balls on a lattice. Their sizes grow along x.
 struct DrawBalls {
   std::uint32_t side;
   std::uint8_t* values;
@@ -104,7 +105,7 @@ struct DrawBalls {
   }
 };
 
-/// Events around steps of one run.
+/// Measures the steps of one run by events.
 class Laps {
  public:
   Laps() {
@@ -117,7 +118,7 @@ class Laps {
   }
   void start() { mark(count_ = 0); }
   void lap() { mark(++count_); }
-  /// Milliseconds of each step; waits for the last.
+  /// Milliseconds of each step. Waits for the last step.
   [[nodiscard]] std::vector<double> milliseconds() const {
     check(cudaEventSynchronize(events_[count_]), "waiting");
     std::vector<double> out;
@@ -135,7 +136,7 @@ class Laps {
   int count_ = 0;
 };
 
-/// Gigabytes per second of the current device's memory, as its clock and width have it.
+/// Memory bandwidth of the current device in gigabytes per second, from its clock and bus width.
 double bandwidth() {
   int device = 0;
   int kilohertz = 0;
@@ -158,12 +159,12 @@ struct Case {
   double must = 0;  ///< milliseconds
   double aim = 0;
   bool has_baseline = false;
-  bool is_frame = false;  ///< a deforming mesh: its connectivity is there already
+  bool is_frame = false;  ///< a deforming mesh: its connectivity exists already
 };
 
 struct Timing {
   double total = 0;
-  std::vector<double> steps;  ///< upload and connectivity, records and trees, tiles, and for itself: signs
+  std::vector<double> steps;  ///< upload and connectivity; records and trees; tiles; signs, which total excludes
   double baseline = 0;
 };
 
@@ -183,7 +184,7 @@ class Timer {
     request.site = site_.data();
     std::vector<std::vector<double>> samples;
     Laps laps;
-    for (int k = -3; k < runs_; ++k) {  // three to warm up
+    for (int k = -3; k < runs_; ++k) {  // the first three runs warm up
       laps.start();
       const kernels::DeviceMesh mesh = upload(c, k == -3 || !c.is_frame);
       if (k == -3 || !c.is_frame) {
@@ -215,7 +216,7 @@ class Timer {
     return timing;
   }
 
-  /// Milliseconds of a signed transform of an image with a few balls, from its values on the device.
+  /// Milliseconds of a signed transform of an image of balls. Its values are on the device.
   double run_image(std::int64_t side) {
     const auto count = static_cast<std::size_t>(side * side * side);
     CudaArray<std::uint8_t> values;

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Times distances of bodies and close pairs against coal, python-fcl and ipctk on the same input, in one run, on one
-thread.
+"""Times distances between bodies and close pairs against coal, python-fcl and ipctk.
 
     PYTHONPATH=build/release/python bench/peers/body_peers.py FIRST SECOND [--json FILE]
 
-FIRST and SECOND are meshes, brought to unit size. Bodies that keep their shape: the mean over ten poses for each of a
-few gaps. Close pairs: both bodies in one mesh, one in the other, all pairs closer than a hundredth of the size; ipctk's
-are pairs of a vertex and a face or of two edges, with its exact distances (its candidates by LBVH), Blum's are pairs of
-triangles.
+All programs get the same input, in one run, on one thread. FIRST and SECOND are meshes, scaled to unit size.
+
+Distances are between bodies of constant shape: the mean over ten poses for each of a few gaps.
+
+Close pairs are all pairs closer than a hundredth of the size. Both bodies are in one mesh and overlap. Blum finds
+pairs of triangles. ipctk finds pairs of a vertex and a face or of two edges, with its exact distances and candidates
+by LBVH.
 """
 
 import argparse
@@ -38,7 +40,7 @@ def turned(angle, axis):
 
 
 def poses(scene, gap):
-    """Ten rotations, each with the translation along x at which the bodies are about that far apart."""
+    """Ten rotations, each with a translation along x that makes the distance of the bodies about `gap`."""
     out = []
     for k in range(10):
         rotation, low, high = turned(0.6 * k, [1, 0.3 * k, 0.5]), 0.0, 3.0

@@ -12,15 +12,15 @@
 
 namespace blum::bench {
 
-/// Rows along x in bundles of 8 x 8. Within a bundle rows run there and back, so that every node follows a neighbour.
-/// Of all bundles about peer_nodes() worth of nodes is taken, spread evenly.
+/// Bundles of 8 x 8 rows along x. Rows of a bundle alternate in direction, so that each node follows a neighbour. The
+/// chosen bundles contain about peer_nodes() nodes, and are spread evenly over the grid.
 class Bundles {
  public:
   explicit Bundles(const GridSpec& grid) : grid_(grid), along_y_((grid.size[1] + 7) / 8) {
     const std::int64_t along_z = (grid.size[2] + 7) / 8;
     const double part = std::max(1.0, static_cast<double>(grid.node_count()) / peer_nodes());
     const auto stride = static_cast<std::int64_t>(std::floor(part + 1e-9));
-    // A lattice of slope 0.38 in the plane of bundles: no two that are taken share a row or a column closely.
+    // A lattice of slope 0.38 in the plane of bundles keeps chosen bundles of the same row or column far apart.
     const auto slope = std::max<std::int64_t>(1, std::lround(0.38 * static_cast<double>(stride)));
     for (std::int64_t z = 0; z < along_z; ++z) {
       for (std::int64_t y = 0; y < along_y_; ++y) {
@@ -69,7 +69,7 @@ class Bundles {
   std::int64_t nodes_ = 0;
 };
 
-/// An empty result for a peer; its output pages are touched before the clock starts, in the peer's favour.
+/// An empty result for a peer. Its output pages are touched before the clock starts, which favours the peer.
 inline PeerField empty_result(const GridSpec& grid) {
   PeerField result;
   result.field.grid = grid;
@@ -79,7 +79,7 @@ inline PeerField empty_result(const GridSpec& grid) {
   return result;
 }
 
-/// Builds with build(), then runs query(bundles, bundle, field) over all bundles, threaded, and fills in the times.
+/// Calls build(), then query(bundles, bundle, field) for all bundles, with several threads. Fills in the times.
 template <class Build, class Query>
 void run_peer(PeerField& result, const Context& context, const Build& build, const Query& query) {
   const Bundles bundles(result.field.grid);

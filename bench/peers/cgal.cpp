@@ -1,4 +1,4 @@
-// CGAL's AABB tree: closest point and primitive, hinted. CGAL is GPL: it is linked to benchmarks, to nothing else.
+// CGAL's AABB tree: closest point and primitive, with hints. CGAL is GPL: only benchmarks link to it.
 #include "peers/bundles.hpp"
 
 #ifdef BLUM_BENCH_CGAL

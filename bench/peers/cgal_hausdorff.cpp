@@ -1,4 +1,4 @@
-// CGAL's Hausdorff distance with a bounded error. CGAL is GPL: it is linked to benchmarks, to nothing else.
+// CGAL's Hausdorff distance with a bounded error. CGAL is GPL: only benchmarks link to it.
 #include "peers/peers.hpp"
 
 #ifdef BLUM_BENCH_CGAL

@@ -1,4 +1,4 @@
-// CGAL's Voronoi diagram of segments in the plane. CGAL is GPL: it is linked to benchmarks, to nothing else.
+// CGAL's Voronoi diagram of segments in the plane. CGAL is GPL: only benchmarks link to it.
 #include "peers/segment_voronoi.hpp"
 
 #ifdef BLUM_BENCH_CGAL
@@ -34,7 +34,7 @@ Point2 point(const Kernel::Point_2& p) {
   return {p.x(), p.y()};
 }
 
-/// The ends of an edge and a point between them; nothing for rays and lines, which leave the polygon.
+/// The ends of an edge and a point between them; empty for rays and lines, which leave the polygon.
 std::vector<Point2> sample(const CGAL::Object& edge) {
   Kernel::Segment_2 segment;
   Parabola parabola;

@@ -1,4 +1,4 @@
-// CGAL's self-intersections. CGAL is GPL: it is linked to benchmarks, to nothing else.
+// CGAL's self-intersections. CGAL is GPL: only benchmarks link to it.
 #include "peers/collisions.hpp"
 
 #ifdef BLUM_BENCH_CGAL

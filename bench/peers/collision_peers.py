@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Times continuous collisions against ipctk (broad phase LBVH, narrow phase Tight-Inclusion) on the same input, in one
-run, on one thread.
+"""Times continuous collisions against ipctk: broad phase LBVH, narrow phase Tight-Inclusion.
 
     bench/peers/collision_peers.py BLUM_PROGRAM START END [--queries FOLDER] [--sample N] [--json FILE]
 
-All colliding pairs of a mesh between two frames; ipctk has no call for that, so its test is called for each of its
-candidates, or for a random sample of N of either kind, times their number. What a call from Python takes by itself is
-measured with features that are far apart, and subtracted. With --queries, each question of a folder of files as
-`blum ccd` reads them is answered by both.
+Both programs get the same input, in one run, on one thread. They find all colliding pairs of a mesh between two
+frames. ipctk has no call for that, so its test is called for each candidate. With --sample N, N random candidates of
+each kind are tested, and the time is scaled to all. The overhead of a call from Python is measured with features that
+are far apart, and subtracted. With --queries, both programs run each query of a folder of files for `blum ccd`.
 """
 
 import argparse
@@ -32,7 +31,7 @@ def ours(blum, *arguments):
 
 
 def read_ply(path):
-    """Vertices and triangles, by Blum's own conversion to OFF: any format of a mesh will do."""
+    """Vertices and triangles of a mesh file, read by trimesh."""
     import trimesh
 
     mesh = trimesh.load(path, process=False)
@@ -40,7 +39,7 @@ def read_ply(path):
 
 
 class Peer:
-    """Tight-Inclusion, as ipctk calls it without its rescaling of times."""
+    """Tight-Inclusion of ipctk, without its rescaling of times."""
 
     def __init__(self):
         ipctk.set_num_threads(1)
@@ -50,7 +49,7 @@ class Peer:
         return self.ccd.point_triangle_ccd if kind == "vertex_face" else self.ccd.edge_edge_ccd
 
     def overhead(self, kind):
-        """Seconds of a call that finds nothing at once: the features are far apart."""
+        """Seconds of a call that returns at once, because the features are far apart."""
         test, points = self.test(kind), [np.zeros(3), FAR, FAR + [1, 0, 0], FAR + [0, 1, 0]]
         if kind == "edge_edge":
             points[1] = np.array([0, 0, 1.0])

@@ -1,5 +1,4 @@
-// Blum: other programs that answer questions about close triangles; each is optional. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: optional other programs for proximity queries. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -13,29 +12,29 @@
 
 namespace blum::bench {
 
-/// Two bodies of a peer, the first of which rests.
+/// Two bodies of a peer. The first one rests.
 class PeerBodies {
  public:
   virtual ~PeerBodies() = default;
-  /// The distance of the second body from the first one.
+  /// The distance between the bodies, with the second one at the given place.
   [[nodiscard]] virtual double separation(const RigidTransform& second) = 0;
-  /// The same triangles with other vertices: what the peer does for that, which gives right distances afterwards.
+  /// Replaces the vertices and keeps the triangles. Distances are right afterwards.
   virtual void deform(const TriangleMesh& first, const TriangleMesh& second) = 0;
 };
 
-/// How FCL is to keep a body.
+/// FCL's representation of a body.
 enum class FclBodies {
-  oriented,  ///< oriented boxes and swept spheres: its fastest for bodies that keep their shape; rebuilt where they
-             ///< deform, as refitted ones give wrong distances in 0.7
-  aligned    ///< boxes along the axes, which are refitted: its fastest for bodies that deform
+  oriented,  ///< oriented boxes and swept spheres: the fastest for bodies of constant shape. Deformed bodies are
+             ///< rebuilt, because refitted ones give wrong distances in 0.7
+  aligned    ///< boxes along the axes, which are refitted: the fastest for bodies that deform
 };
 
-/// FCL's BVH models; nullptr where it was not installed when the benchmarks were configured.
+/// FCL's BVH models; nullptr if FCL was not installed when the benchmarks were configured.
 [[nodiscard]] std::unique_ptr<PeerBodies> fcl_bodies(const TriangleMesh& first, const TriangleMesh& second,
                                                      FclBodies kind);
 
-/// The pairs of triangles that CGAL's self_intersections() finds, with exact predicates: the smaller first, sorted;
-/// nullopt where it was not installed. @param mesh  an orientable manifold.
+/// The pairs of triangles from CGAL's self_intersections(), with exact predicates. They are sorted, each with the
+/// smaller index first. Returns nullopt if CGAL was not installed. @param mesh  an orientable manifold.
 [[nodiscard]] std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> cgal_self_intersections(
     const TriangleMesh& mesh);
 

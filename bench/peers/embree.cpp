@@ -1,4 +1,4 @@
-// Embree point queries, with the closest point on a triangle as the user callback.
+// Embree point queries. The user callback computes the closest point on a triangle.
 #include "peers/bundles.hpp"
 
 #ifdef BLUM_BENCH_EMBREE
@@ -74,7 +74,7 @@ struct Scene {
     if (device != nullptr) rtcReleaseDevice(device);
   }
 
-  /// Coordinates become float32 around `centre`.
+  /// Builds the scene. Coordinates become float32 relative to `centre`.
   void build(const MeshView& mesh, const Vec3d& centre, int threads) {
     device = rtcNewDevice(("threads=" + std::to_string(threads)).c_str());
     if (device == nullptr) throw std::runtime_error("Embree gives no device");
@@ -104,7 +104,7 @@ struct Scene {
     rtcCommitScene(scene);
   }
 
-  /// Starts from the distance to search.triangle; squared and triangle are the result.
+  /// Starts from the distance to search.triangle. Writes the result to search.squared and search.triangle.
   void closest(Search& search) const {
     search.squared = squared_distance(search.point, search.triangles[search.triangle]);
     RTCPointQueryContext context;

@@ -1,4 +1,4 @@
-// The Flexible Collision Library (BSD-3): distances of bodies.
+// The Flexible Collision Library (BSD-3): distances between bodies.
 #include "peers/collisions.hpp"
 
 #ifdef BLUM_BENCH_FCL

@@ -1,10 +1,11 @@
-"""Times Blum, SciPy and seung-lab's edt on the same image, and prints the ratios; JSON on request.
+"""Times Blum, SciPy and seung-lab's edt on the same image. Prints the ratios, and writes JSON if requested.
 
     python3 bench/peers/image_peers.py [--side 512] [--shape shell] [--repeat 3] [--json FILE] [--skip-scipy]
 
 Needs NumPy, SciPy, `pip install edt`, and distance_transform_sample (BLUM_DISTANCE_TRANSFORM_SAMPLE, or below build/).
-SciPy computes distance and indices on one thread (it has no more); edt squared distances without indices; Blum distance
-and closest voxel. Reading and writing files is not timed. Peak memory is that of the whole process, image included.
+SciPy computes distances and indices, on its only thread. edt computes squared distances without indices. Blum computes
+distances and closest voxels. Reading and writing of files are not timed. Peak memory is that of the whole process,
+including the image.
 """
 
 import argparse
@@ -35,7 +36,7 @@ def sample_program():
 
 
 def make_image(side, shape):
-    """The shapes of bench/distance_transform_bench.cpp (random ones from another generator)."""
+    """The shapes of bench/distance_transform_bench.cpp, with another random generator."""
     mask = numpy.empty((side, side, side), dtype=bool)
     centre = (numpy.arange(side) + 0.5) / side - 0.5
     y, x = numpy.meshgrid(centre, centre, indexing="ij")
@@ -75,7 +76,7 @@ def in_child(connection, peer, path, threads):
 
 
 def run_peer(peer, path, threads):
-    """One run in a process of its own, so that peak memory is its own."""
+    """Runs a peer in its own process, so that peak memory covers only this run."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
     process = context.Process(target=in_child, args=(there, peer, path, threads))

@@ -1,4 +1,4 @@
-// OpenVDB's conversion of meshes to narrow bands.
+// OpenVDB's conversion of meshes to sparse bands.
 #include "peers/peers.hpp"
 
 #ifdef BLUM_BENCH_OPENVDB
@@ -9,7 +9,7 @@
 namespace blum::bench {
 namespace {
 
-/// A mesh as OpenVDB asks for it: in index space.
+/// Adapts a mesh to OpenVDB's interface, in index space.
 struct Adapter {
   const MeshView& mesh;
   const GridSpec& grid;

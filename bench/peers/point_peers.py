@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Times closest points and signed distances of scattered points against Open3D (Embree), FCPW and libigl on the same input,
-in one run.
+"""Times closest points and signed distances of scattered points against Open3D (Embree), FCPW and libigl.
 
     PYTHONPATH=build/release/python bench/peers/point_peers.py MESH [--points N] [--threads N] [--json FILE]
 
-MESH is a closed mesh. Points: all over a box 1.2 times the mesh's, and within some hundredths of the diagonal of its
-surface. Each time is the best of a few; hierarchies are built before, but what Blum builds for many points is told
-apart. Open3D computes in single precision, FCPW too; what they find is compared with Blum's.
+All programs get the same input, in one run. MESH is a closed mesh. Points lie in a box 1.2 times the mesh's bounds,
+and within some hundredths of the diagonal from its surface. Times are the best of a few runs. They exclude building
+the hierarchies, except for libigl, which builds its own in each call. The time of Blum's first call, which builds
+structures for many points, is a separate figure. Open3D and FCPW compute in single precision. Results of Open3D are
+compared with Blum's.
 """
 
 import argparse

@@ -1,16 +1,19 @@
-"""Times Blum's medial axis or centreline of an image against thinning by other programs on the same image; JSON on
-request.
+"""Times Blum's medial axis or centreline of an image against thinning by other programs on the same image.
 
     python3 bench/peers/skeleton_peers.py [--side 512] [--shape bumpy] [--verb medial] [--json FILE]
         [--peers scikit-image,scikit-image-radii,kimimaro,itk]
 
-Needs NumPy, SciPy, the blum tool (BLUM_CLI, or below build/) and the peers: `pip install scikit-image kimimaro
-itk-thickness3d`; one that is missing is left out and said to be. Shapes hold a fifth of the voxels: `bumpy`, one smooth
-body; `organs`, a few thick ones; `pores`, many thin ones. scikit-image and ITK thin to curves, one thread; kimimaro
-traces trees, all threads; Blum's axis (theta 60) has surfaces, curves, radii and footprints. Reading, writing and Blum's
-certificate are not timed; its own row tells the certificate. CPU seconds of Blum are those of the whole run.
-`--verb centreline` times Blum's graph of curves with radii instead; `scikit-image-radii` is thinning and SciPy's distance
-transform, from which its users take radii.
+Requires NumPy, SciPy, the blum tool (BLUM_CLI, or below build/) and the peers: `pip install scikit-image kimimaro
+itk-thickness3d`. A missing peer is left out and reported. --json FILE writes the figures.
+
+Shapes occupy a fifth of the voxels: `bumpy`, one smooth body; `organs`, a few thick ones; `pores`, many thin ones.
+
+scikit-image and ITK thin to curves, on one thread. kimimaro traces trees, on all threads. Blum's axis (theta 60) has
+surfaces, curves, radii and footprints. `--verb centreline` times Blum's graph of curves with radii instead.
+`scikit-image-radii` is thinning and SciPy's distance transform, from which its users take radii.
+
+Reading, writing and Blum's certificate are not timed. Blum's row lists the seconds of the certificate. Blum's CPU
+seconds cover the whole run.
 """
 
 import argparse
@@ -41,7 +44,7 @@ def blum_tool():
 
 
 def smooth_noise(side, length):
-    """The fifth of a periodic random field, smooth over `length` voxels, that is largest."""
+    """The voxels with the largest fifth of the values of a periodic random field, smooth over `length` voxels."""
     from scipy import ndimage
 
     step = 4 if length >= 32 else 1
@@ -67,7 +70,7 @@ def make_image(side, shape):
 
 
 def thin(peer, mask, threads):
-    """Wall-clock and CPU seconds, and the number of voxels or vertices that are left."""
+    """Wall-clock and CPU seconds, and the number of remaining voxels or vertices."""
     if peer == "scikit-image":
         from skimage.morphology import skeletonize
 
@@ -105,7 +108,7 @@ def in_child(connection, peer, path, threads):
 
 
 def run_peer(peer, path, threads):
-    """One run in a process of its own, so that peak memory is its own; None where the peer is not installed."""
+    """Runs a peer in its own process, so that peak memory covers only this run; None if it is not installed."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
     process = context.Process(target=in_child, args=(there, peer, path, threads))

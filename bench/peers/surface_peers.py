@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Times certain Hausdorff distances against MeshLab's sampling (through PyMeshLab) on the same two meshes, in one run.
+"""Times certified Hausdorff distances against MeshLab's sampling (PyMeshLab) on the same two meshes, in one run.
 
     PYTHONPATH=build/release/python bench/peers/surface_peers.py MESH OTHER [--tolerance PART] [--samples N] [--json FILE]
 
-What sampling finds is a lower bound. It is within a tolerance for certain where every point of the surface has a sample
-no further away than that: hexagons with that radius cover it with the fewest. MeshLab is timed with N samples a side,
-and its time scaled to as many as that takes. OTHER is brought to MESH's middle and size with --fit.
+Sampling finds a lower bound. The bound is certainly within a tolerance if each point of the surface has a sample within
+the tolerance. Hexagons with this radius cover the surface with the fewest samples. MeshLab is timed with N samples per
+side, and its time is scaled to this number. --fit moves and scales OTHER to the centre and diagonal of MESH.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from timing import best_of
 
 
 def fitted(vertices, goal):
-    """Vertices moved and scaled so that their box has the middle and the diagonal of the goal's."""
+    """Vertices, moved and scaled so that their bounds have the centre and the diagonal of the goal's bounds."""
     lower, upper = vertices.min(0), vertices.max(0)
     to_lower, to_upper = goal.min(0), goal.max(0)
     scale = np.linalg.norm(to_upper - to_lower) / np.linalg.norm(upper - lower)
@@ -33,7 +33,7 @@ def area_of(vertices, triangles):
 
 
 def time_meshlab(meshes, samples, out):
-    """The larger of both one-sided distances that so many samples of faces, edges and vertices find."""
+    """Times the larger of both one-sided distances, with this many samples of faces per side."""
     try:
         import pymeshlab
     except ImportError as error:

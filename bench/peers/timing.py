@@ -1,10 +1,10 @@
-"""Timing that the benchmarks of peers share."""
+"""Shared timing of the benchmarks of peers."""
 
 import time
 
 
 def best_of(runs, body):
-    """The shortest time of several runs, in seconds, and what the last one returned."""
+    """The shortest time of several runs, in seconds, and the result of the last run."""
     times = []
     for _ in range(runs):
         start = time.perf_counter()

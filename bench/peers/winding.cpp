@@ -1,4 +1,4 @@
-// One fast winding number query per node; and how much of a grid peers work on.
+// One fast winding number query per node, and the number of nodes that peers compute.
 #include <cstdlib>
 #include <string_view>
 

@@ -1,4 +1,4 @@
-// Blum: spot checks, so that no wrong answer counts as a fast one. SPDX-License-Identifier: Apache-2.0
+// Blum: spot checks, so that no wrong result counts as a fast one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -8,11 +8,11 @@
 
 namespace blum::bench {
 
-/// Compares random nodes of a field (100, fewer on meshes above 400,000 sites) with brute force in double: distance,
-/// the distance of the site or triangle that the field names, and, when signed, the side by the full winding number.
-/// Nodes whose distance is NaN were not computed and are passed over; so is the site where it is none().
-/// Adds the counters checked and worst_error (relative to the diagonal of mesh and grid), and fails the benchmark when
-/// an error is above the tolerance.
+/// Compares random nodes of a field with brute force in double: 100 nodes, fewer on meshes above 400,000 sites. Checks
+/// the distance, the distance of the reported site or triangle and, if signed, the side by the full winding number.
+/// Skips nodes whose distance is NaN, which were not computed, and sites that are none().
+/// Adds the counters checked and worst_error (relative to the diagonal of mesh and grid). Fails the benchmark if an
+/// error is above the tolerance.
 void spot_check(benchmark::State& state, const Shape& shape, const Field& field, double tolerance = 1e-6);
 
 }  // namespace blum::bench

@@ -12,22 +12,22 @@ namespace blum::bench {
 
 struct Shape {
   TriangleMesh mesh;
-  std::string note;  ///< where it comes from, and how many triangles it has
-  /// Brute force over the mesh, for spot checks; made at the first call.
+  std::string note;  ///< its source and number of triangles
+  /// Brute force over the mesh, for spot checks. Built at the first call.
   const reference::BruteForce& brute_force() const;
 
  private:
   mutable std::unique_ptr<reference::BruteForce> brute_force_;
 };
 
-/// A shape by name, made or read at the first call and kept.
-/// - "bunny", "fandisk", "rocker-arm": the real ones where the data folder (BLUM_DATA_DIR) has them, else generated
-/// twins;
-/// - "organic": closed, 69,620 triangles; "organic-N": closed, about N triangles;
-/// - "noisy-1.6M": a closed organic shape, subdivided twice, each vertex moved by up to 5 % of an edge.
+/// A shape by name, read or generated at the first call and kept:
+///
+/// - `bunny`, `fandisk`, `rocker-arm`: real shapes if the data folder (BLUM_DATA_DIR) has them, else generated ones.
+/// - `organic`: closed, 69,620 triangles. `organic-N`: closed, about N triangles.
+/// - `noisy-1.6M`: a closed organic shape, subdivided twice. Each vertex is moved by up to 5 % of an edge.
 const Shape& shape(const std::string& name);
 
-/// The grid that fields are compared on: a cube of side 1.2 times the longest extent, centred, n^3 nodes.
+/// The grid for comparisons of fields: a centred cube with side 1.2 times the longest extent, n^3 nodes.
 GridSpec cube_grid(const MeshView& mesh, int n);
 
 }  // namespace blum::bench

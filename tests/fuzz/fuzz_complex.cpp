@@ -1,4 +1,4 @@
-// Reads any bytes as a complex and as a medial axis: the readers must refuse them, or give sound complexes.
+// Reads arbitrary bytes as a complex and as a medial axis. The readers must reject them or return sound complexes.
 #include "blum/complex/medial_columns.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/medial_io.hpp"

@@ -1,4 +1,4 @@
-// Reads any bytes as a field: the reader must refuse them, or give a field that fits its grid.
+// Reads arbitrary bytes as a field. The reader must reject them or return a field that fits its grid.
 #include "blum/io/field_io.hpp"
 #include "fuzz.hpp"
 

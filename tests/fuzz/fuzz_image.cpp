@@ -1,4 +1,4 @@
-// Reads any bytes as an image: the reader must refuse them, or give an image that validate() passes.
+// Reads arbitrary bytes as an image. The reader must reject them or return an image that validate() accepts.
 #include "blum/io/image_io.hpp"
 #include "fuzz.hpp"
 

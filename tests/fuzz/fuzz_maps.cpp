@@ -1,4 +1,4 @@
-// Reads any bytes as a surface map: the reader must refuse them, or give a map that fits its mesh and its atlas.
+// Reads arbitrary bytes as a surface map. The reader must reject them or return a map that fits its mesh and atlas.
 #include "blum/io/surface_map_io.hpp"
 #include "fuzz.hpp"
 
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const blum::TriangleId triangle : atlas.triangle) {
       require(!triangle.has_value() || triangle.value < file.mesh.triangles.size());
     }
-    // What is read can be written, and its points are there.
+    // The map can be coloured, and its texels have points.
     if (atlas.size() < 100'000) {
       static_cast<void>(blum::color_texture(map, blum::color_scale_of(map)));
       static_cast<void>(blum::surface_texels(file.mesh, atlas));

@@ -1,4 +1,4 @@
-// Reads any bytes as a mesh: the reader must refuse them, or give a sound mesh whose size is in proportion to theirs.
+// Reads arbitrary bytes as a mesh. The reader must reject them or return a sound mesh no larger than the input.
 #include "blum/io/mesh_io.hpp"
 #include "fuzz.hpp"
 

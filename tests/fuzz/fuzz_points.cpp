@@ -1,4 +1,4 @@
-// Reads any bytes as rows of points: the reader must refuse them, or give finite points, no more than there are rows.
+// Reads arbitrary bytes as rows of points. The reader must reject them or return finite points, at most one per row.
 #include <algorithm>
 
 #include "blum/io/point_io.hpp"

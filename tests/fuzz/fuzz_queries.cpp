@@ -1,5 +1,5 @@
-// Reads any bytes as questions about continuous collisions: the reader must refuse them, or give finite points, for
-// which an answer is found.
+// Reads arbitrary bytes as queries of continuous collisions. The reader must reject them or return finite points, for
+// which the queries succeed.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     blum::fuzz::require(queries.points.size() == queries.truth.size());
     constexpr std::size_t most_asked = 4;
     for (std::size_t k = 0; k < std::min(queries.points.size(), most_asked); ++k) {
-      // With coordinates that are not finite, these throw.
+      // These calls throw if coordinates are not finite.
       const auto time = blum::vertex_face_impact(queries.points[k]);
       blum::fuzz::require(!time || (*time >= 0 && *time <= 1));
       static_cast<void>(blum::edge_edge_impact(queries.points[k]));

@@ -1,6 +1,6 @@
-// Proves that cleaned meshes keep the bound that they tell: hausdorff_distance(), which knows nothing of how they were
-// made, finds no more, for generated shapes as they are, subdivided, jittered and rounded, for thin solids, and for
-// real meshes; and that they are valid and have the topology that they had.
+// Proves that cleaned meshes keep the reported bound: the independent hausdorff_distance() finds no larger distance.
+// The tests use real meshes, thin solids, and generated shapes as they are, subdivided, jittered and rounded. Cleaned
+// meshes are valid and keep their topology.
 #include "blum/solid/clean_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -26,12 +26,12 @@
 namespace blum {
 namespace {
 
-/// Whether a mesh is what cleaning takes.
+/// True if cleaning accepts the mesh.
 bool bounds_a_solid(const MeshView& mesh) {
   return topology(mesh, SiteTable(mesh)).betti.has_value() && find_self_intersections(mesh, 1).pairs.empty();
 }
 
-/// @return  the part of triangles that are left.
+/// @return  the share of triangles that remain.
 double check_cleaning(const MeshView& mesh, double part, const std::string& name) {
   const double tolerance = part * bounds(mesh).diagonal();
   const CleanedMesh out = clean_mesh(mesh, tolerance);
@@ -40,9 +40,9 @@ double check_cleaning(const MeshView& mesh, double part, const std::string& name
   EXPECT_LE(out.report.deviation, tolerance) << name;
   HausdorffOptions options;
   options.tolerance = 0.1 * tolerance;
-  options.max_points = 300'000;  // the lower bound is right at any number
+  options.max_points = 300'000;  // the lower bound is right for any number
   const HausdorffDistance found = hausdorff_distance(mesh, out.mesh, options);
-  // Rounding of the distances themselves.
+  // The tolerance covers the rounding of the distances themselves.
   EXPECT_LE(found.lower, out.report.deviation * (1 + 1e-9) + 1e-14 * bounds(mesh).largest_coordinate()) << name;
   return static_cast<double>(out.report.triangles) / static_cast<double>(out.report.triangles_before);
 }

@@ -1,6 +1,6 @@
-// Proves the precision promise on real meshes, on every back end: every node of a 64^3 grid against the exact
-// hierarchy, random nodes of it against brute force, and random nodes of a 200^3 grid against both. On the host, where
-// kernels are slow, the grids have 32^3 and 64^3 nodes.
+// Proves the precision promise on real meshes, on every back end. Every node of a 64^3 grid is compared with the exact
+// hierarchy, random nodes also with brute force. Random nodes of a 200^3 grid are compared with both. On the host,
+// where kernels are slow, the grids have 32^3 and 64^3 nodes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

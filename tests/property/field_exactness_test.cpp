@@ -1,6 +1,6 @@
-// Proves the precision promise on every back end: distance, site and sign at every node, against double-precision brute
-// force and the exact hierarchy, on every generated shape and on soups made to break float32. Grids have 64^3 nodes,
-// on the host 32^3: kernels are slow there.
+// Proves the precision promise on every back end: distance, site and sign at every node. Results are compared with
+// double-precision brute force and the exact hierarchy. The tests use every generated shape and soups made to break
+// float32. Grids have 64^3 nodes, on the host 32^3, because kernels are slow there.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +31,7 @@ TriangleMesh soup(std::size_t triangles) {
   return make_soup(options);
 }
 
-/// Every node by the hierarchy, some by brute force with winding numbers.
+/// Compares every node with the hierarchy, and some with brute force and winding numbers.
 void expect_exact(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options, const Context& context,
                   std::size_t brute_nodes) {
   const Field field = distance_field(mesh, grid, options, context);
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(SlowShapes, CatalogFields,
                          testing::Combine(testing::ValuesIn(test::catalog_names()),
                                           testing::Values(test::BackEnd::cpu, test::BackEnd::device)),
                          test::name_and_back_end);
-// Small enough for the sanitizers.
+// These grids are small enough for the sanitizers.
 INSTANTIATE_TEST_SUITE_P(Shapes, CatalogFields,
                          testing::Combine(testing::ValuesIn(test::catalog_names()),
                                           testing::Values(test::BackEnd::host)),
@@ -93,8 +93,8 @@ TEST_P(FieldExactness, NastySoups) {
 }
 
 TEST_P(FieldExactness, TriangulatedStripsOfSliversThatShareVertices) {
-  // A fan of slivers around one vertex and a strip of caps: neighbouring domains meet at angles that float32 cannot
-  // tell.
+  // In a fan of slivers around one vertex and a strip of caps, neighbouring domains meet at angles that float32 cannot
+  // resolve.
   TriangleMesh mesh;
   mesh.vertices.push_back({0, 0, 0});
   for (int k = 0; k <= 400; ++k) {
@@ -133,7 +133,7 @@ TEST_P(FieldExactness, PointsSegmentsAndMixtures) {
 }
 
 TEST_P(FieldExactness, NodesOnSitesAndOnBordersOfDomains) {
-  // A box aligned with the grid: nodes lie exactly on vertices, edges, faces, and on the planes between domains.
+  // The box is aligned with the grid: nodes lie exactly on vertices, edges, faces, and on the planes between domains.
   const TriangleMesh mesh = make_box({.size = {1, 1, 1}, .segments = {4, 4, 4}});
   const Box3 box = bounds(mesh);
   const Vec3d margin{0.5, 0.5, 0.5};
@@ -196,7 +196,7 @@ TEST_P(FieldExactness, Bands) {
   for (const double band : {0.01, 0.2, 100.0}) expect_exact(mesh, grid_for(mesh, 40), {.band = band}, 50);
 }
 
-TEST_P(FieldExactness, VerticesThatNothingNamesAreNoSites) {
+TEST_P(FieldExactness, UnusedVerticesAreNotSites) {
   TriangleMesh mesh = make_sphere({.frequency = 4});
   mesh.vertices.insert(mesh.vertices.begin(), {0, 0, 0});
   for (Triangle& t : mesh.triangles) {
@@ -213,7 +213,7 @@ TEST_P(FieldExactness, OnePointIsEnough) {
 }
 
 TEST_P(FieldExactness, TiesGoToTheSmallerId) {
-  // Two coincident points, and a node half way between two others.
+  // Two points coincide, and a node lies half way between two others.
   TriangleMesh mesh;
   mesh.vertices = {{1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
   mesh.points = {2, 1, 0};

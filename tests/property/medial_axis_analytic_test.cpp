@@ -1,5 +1,6 @@
-// Proves that medial axes of meshes are where theory puts them: boxes, cylinders, extruded polygons, balls and
-// ellipsoids of revolution, whose axes, radii and separation angles are known, both ways within a voxel's diagonal.
+// Proves that medial axes of meshes are where theory puts them, within a voxel's diagonal in both directions. The tests
+// use boxes, cylinders, extruded polygons, balls and ellipsoids of revolution, whose axes, radii and separation angles
+// are known.
 #include <gtest/gtest.h>
 
 #include "support/known_axes.hpp"
@@ -48,7 +49,7 @@ void expect_known_axes(const KnownCase& known_case, int resolution) {
 }
 
 TEST(SlowMedialAnalyticRod, TheAxisOfARodIsAsLongAtLargeAngles) {
-  // Both footprints of the axis, on opposite sides, are seen at 180 degrees from all of it.
+  // The footprints of each axis point lie on opposite sides, so the separation angle is 180 degrees everywhere.
   const KnownAxis rod = test::known_cylinder(0.4, 2, 0.01);
   const MedialAxis axis = medial_axis(rod.mesh);
   const double missing = test::furthest_from(test::shape_of(axis.simplify(150)), cloud(above(rod.axis, 150)).vertices);

@@ -1,5 +1,5 @@
-// Proves how medial_axis() behaves as a call: options out of range are refused by name, progress rises, and a call that
-// is asked to stop does so in every phase.
+// Proves the behaviour of calls of medial_axis(). Options out of range are rejected by name, and progress rises. A
+// cancelled call stops in every phase.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -81,7 +81,7 @@ TEST(MedialCall, TheLeastAndTheMostResolutionWork) {
   test::expect_certified(medial_axis(make_box({}), {.spacing = 1.7}), make_box({}), {1, 0, 0});
 }
 
-/// Fractions that were told, by phase, in the order that phases began.
+/// The reported fractions of a phase. Phases are listed in the order in which they began.
 struct Told {
   std::string phase;
   std::vector<double> fractions;
@@ -111,8 +111,8 @@ TEST(MedialCall, ProgressRisesInEveryPhase) {
 
 using Clock = std::chrono::steady_clock;
 
-/// Seconds that a call takes to end from the moment, in seconds, at which it is asked to; nullopt where it ended
-/// before.
+/// Returns the seconds from the request to stop, made at `moment` seconds, to the end of the call; nullopt if the call
+/// ended before.
 std::optional<double> seconds_to_stop(const MeshView& mesh, double moment, double* whole = nullptr) {
   std::stop_source source;
   Clock::time_point asked = Clock::time_point::max();
@@ -138,7 +138,7 @@ std::optional<double> seconds_to_stop(const MeshView& mesh, double moment, doubl
 }
 
 TEST(SlowMedialCall, StopsSoonWheneverItIsAskedTo) {
-  // 200 ms are promised; the bound leaves room for a machine that is busy with other things.
+  // The promise is 200 ms; the bound leaves room for a busy machine.
   constexpr double bound = 1.0;
   const TriangleMesh mesh = make_bracket({});
   double whole = 0;

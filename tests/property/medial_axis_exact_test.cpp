@@ -1,6 +1,6 @@
-// Proves that axes as the tool writes them, fitted and with few vertices, are next to the exact ones of boxes, L's,
-// prisms, cylinders, cones, capsules, tori and ellipsoids, at 20 and 60 degrees: both ways within 1.1 voxels, 99 %
-// within a tenth; seams, rims and the radii of tubes within a tenth.
+// Proves that fitted, decimated axes as the tool writes them are close to the exact ones at 20 and 60 degrees. The
+// solids are boxes, L's, prisms, cylinders, cones, capsules, tori and ellipsoids. In both directions, all distances are
+// within 1.1 voxels and 99 % within a tenth. Seams, rims and the radii of tubes are within a tenth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,10 +19,10 @@ using test::ExactAxis;
 using test::ExactCase;
 
 constexpr int resolution = 64;
-constexpr double off = 0.001;  ///< of facets from what is round, voxels
-constexpr double most = 1.1;   ///< of axes, seams and rims, voxels
+constexpr double off = 0.001;  ///< deviation of facets from round surfaces, voxels
+constexpr double most = 1.1;   ///< largest distance of axes, seams and rims, voxels
 
-/// Edges of a role, and with the curves the triangles.
+/// Returns the edges of a role; with curves also the triangles.
 TriangleMesh part_of(const Complex& axis, MedialRole role) {
   TriangleMesh part;
   part.vertices = axis.positions;
@@ -38,7 +38,7 @@ struct Distances {
   double largest = 0, of_most = 0;  ///< voxels
 };
 
-/// @param share  of the points that `of_most` is for.
+/// @param share  of the points that lie within `of_most`.
 Distances distances(const TriangleMesh& from, const TriangleMesh& to, double voxel, double share) {
   const std::vector<Vec3d> points = test::points_on(from, 0.5 * voxel);
   std::vector<double> all;
@@ -50,7 +50,7 @@ Distances distances(const TriangleMesh& from, const TriangleMesh& to, double vox
   return {all.back(), all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))]};
 }
 
-/// Both ways.
+/// Checks the distances in both directions.
 void expect_next_to(const TriangleMesh& found, const TriangleMesh& exact, double voxel, double share) {
   const Distances beyond = distances(found, exact, voxel, share);
   const Distances missing = distances(exact, found, voxel, share);
@@ -72,7 +72,7 @@ void expect_tube_radius(const Complex& axis, double radius, double voxel) {
 
 class SlowExactAxes : public testing::TestWithParam<ExactCase> {};
 
-TEST_P(SlowExactAxes, AreNextToWhatTheToolWrites) {
+TEST_P(SlowExactAxes, AreCloseToTheOutputOfTheTool) {
   const ExactCase& known = GetParam();
   const test::Fineness fineness{off * known.size / resolution};
   const MedialAxis axis = medial_axis(known.make(60, fineness).solid, {.resolution = resolution});

@@ -1,6 +1,6 @@
-// Proves that the borders of fitted axes are where theory puts them: sheets, seams and rims within a tenth of a voxel
-// nearly everywhere, rims at theta, round rods as curves, the same sheets however a solid is turned; and that fitting
-// keeps the topology, and depends on no number of threads.
+// Proves that the borders of fitted axes are where theory puts them. Sheets, seams and rims are within a tenth of a
+// voxel nearly everywhere. Rims lie at theta, and round rods give curves. A rotated solid has the same sheets. Fitting
+// keeps the topology and gives the same result for any number of threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ double quantile(std::vector<double> values, double part) {
   return values.empty() ? 0 : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 
-/// How far points are from a shape, in voxels.
+/// Returns the distances of points from a shape, in voxels.
 std::vector<double> distances(const MeshView& shape, std::span<const Vec3d> points, double voxel) {
   const ClosestPointQuery nearest(shape, {.sign = SignMode::none});
   std::vector<double> out;
@@ -40,7 +40,7 @@ std::vector<double> distances(const MeshView& shape, std::span<const Vec3d> poin
   return out;
 }
 
-/// The vertices of an axis, and the middles of its edges.
+/// Returns the vertices of an axis and the midpoints of its edges.
 std::vector<Vec3d> points_of(const Complex& axis) {
   std::vector<Vec3d> points = axis.positions;
   const Incidence incidence(axis.view());
@@ -57,7 +57,7 @@ TEST_P(FittedAxis, IsNextToTheExactOne) {
   constexpr double step = 0.15;  // voxels
   const KnownAxis known = GetParam().make(step * voxel);
   const MedialAxis axis = medial_axis(known.mesh, {.resolution = resolution});
-  // Where round things have facets, rims and ends lie where the angle of these is theta.
+  // On faceted round solids, rims and ends lie where the angle of the facets is theta.
   const bool is_ball = GetParam().name == "Ball";
   const bool is_round = is_ball || GetParam().name.find("late") != std::string::npos;
   for (const double theta : {60.0, 120.0}) {
@@ -80,7 +80,7 @@ TEST_P(FittedAxis, IsNextToTheExactOne) {
 INSTANTIATE_TEST_SUITE_P(Solids, FittedAxis, testing::ValuesIn(test::known_cases()),
                          [](const testing::TestParamInfo<KnownCase>& info) { return info.param.name; });
 
-/// Vertices of edges of a role.
+/// Returns the vertices of the edges of a role.
 std::vector<Vec3d> on_edges(const Complex& axis, MedialRole role) {
   const MedialView view(axis);
   std::vector<Vec3d> points;
@@ -101,7 +101,7 @@ TEST(FittedAxisOfABox, HasItsSheetsSeamsAndRimsHoweverItIsTurned) {
     EXPECT_EQ(count(fitted).sheets, 13U);
     const DecimatedAxis lean = decimate(fitted, 0.25 * voxel);
     EXPECT_LE(lean.axis.triangles.size(), 80U);
-    // Each seam is as far from three walls, each rim next to an edge of the box.
+    // Each seam is equally far from three walls, and each rim is next to an edge of the box.
     const auto walls = [&](const Vec3d& at) {
       const Vec3d own = turn.transposed_times(at);
       std::array<double, 6> out{0.75 - own.x, 0.75 + own.x, 0.5 - own.y, 0.5 + own.y, 0.3 - own.z, 0.3 + own.z};
@@ -116,7 +116,7 @@ TEST(FittedAxisOfABox, HasItsSheetsSeamsAndRimsHoweverItIsTurned) {
   }
 }
 
-// Few vertices of the cells lie next to a corner, and these know of walls by luck: a rim may cut it.
+// Few vertices of the cells lie next to a corner, and these may miss a wall. A rim may then cut the corner.
 TEST(FittedAxisOfABox, RimsCutFewCorners) {
   constexpr int count_of_boxes = 24;
   Random random(7);
@@ -146,7 +146,7 @@ TEST(FittedAxisOfABox, RimsCutFewCorners) {
   EXPECT_LE(with_other_sheets, 2);
 }
 
-/// Between two points of a rim beside a hole the solid has a corner of its facets.
+/// Beside a hole, the solid has a corner of its facets between two points of a rim.
 TEST(FittedAxisOfHoles, HasRimsNextToTheirEdges) {
   const TriangleMesh mesh = make_bracket({});
   const MedialAxis axis = medial_axis(mesh, {.resolution = 96});
@@ -194,13 +194,13 @@ TEST(FittedAxisOfALens, EndsWhereTheAngleIsTheta) {
       if (vertex.role == MedialRole::rim) errors.push_back(std::abs(vertex.separation_angle - theta));
     }
     ASSERT_GT(errors.size(), 50U);
-    // Where curvature is largest, at small angles, it jumps from facet to facet.
+    // At small angles, rims lie where curvature is largest, and the angle jumps from facet to facet.
     EXPECT_LE(quantile(errors, theta < 80 ? 0.5 : 0.9), 3) << theta;
   }
 }
 
-/// Contractions are chosen by many threads at a time, those of one thread one by one: crumpled sheets of thin parts
-/// have many, and next to each other.
+/// Many threads choose many contractions at a time, one thread chooses them one by one. Crumpled sheets of thin parts
+/// have many contractions next to each other.
 TEST(FittedAxisOfAnything, IsTheSameForAnyNumberOfThreads) {
   std::vector<test::NamedMesh> solids = test::thin_solids();
   solids.resize(std::min<std::size_t>(solids.size(), 12));
@@ -222,8 +222,8 @@ TEST(FittedAxisOfAnything, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-/// What is thinned out before fitting changes neither the topology nor the sheets, nor what is said of both; and it is
-/// the same for any number of threads.
+/// Thinning before fitting changes neither the topology nor the sheets, nor the report of either. The result is the
+/// same for any number of threads.
 TEST(FittedAxisOfAnything, LeanIsAsDecimatedAfterwards) {
   for (const TriangleMesh& mesh : {make_bracket(), make_void_cube(), make_box({.size = {1.5, 1, 0.6}})}) {
     const MedialAxis axis = medial_axis(mesh, {.resolution = 64});
@@ -263,7 +263,7 @@ TEST(FittedAxisOfAnything, IsCertifiedForAllAngles) {
   }
 }
 
-TEST(FittedAxisOfAnything, ThatIsNoPolyhedronStaysAtTheCells) {
+TEST(FittedAxisOfAnything, OfANonPolyhedronStaysAtTheCells) {
   TriangleMesh open = make_box({});
   open.triangles.pop_back();
   const MedialAxis axis = medial_axis(open, {.resolution = 24});

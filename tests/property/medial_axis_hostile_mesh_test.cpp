@@ -1,5 +1,5 @@
-// Proves what medial_axis() does with meshes that are no clean solids: turned and nested shells, open and crossing
-// surfaces, parts thinner than a voxel, bodies that touch; and that it says no to what has no interior.
+// Proves the results of medial_axis() for meshes that are not clean solids. The tests use reversed and nested shells,
+// open and crossing surfaces, parts thinner than a voxel, and touching bodies. Meshes without an interior are rejected.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using test::VertexRow;
 
 constexpr MedialAxisOptions coarse{.resolution = 48};
 
-TEST(MedialHostileMesh, ShapesThatFaceInwardsAreTurned) {
+TEST(MedialHostileMesh, ShapesThatFaceInwardsAreReversed) {
   for (const char* const name : {"box", "torus", "plate", "void_cube", "linked_tori"}) {
     SCOPED_TRACE(name);
     TriangleMesh mesh = make_shape(name);
@@ -48,7 +48,7 @@ TEST(MedialHostileMesh, NestedShellsMayFaceEitherWay) {
   }
 }
 
-TEST(MedialHostileMesh, TurningShellsMovesNothing) {
+TEST(MedialHostileMesh, ReversingShellsMovesNothing) {
   TriangleMesh mesh = make_shape("bracket");
   const AxisRows straight = medial_axis(mesh, coarse).simplify(60);
   reverse_triangles(mesh);
@@ -56,8 +56,8 @@ TEST(MedialHostileMesh, TurningShellsMovesNothing) {
   EXPECT_EQ(test::positions(turned), test::positions(straight));
 }
 
-/// Coordinates of 1e10 have steps of 2e-6, a millionth of the box: search and placing then end on the surface, which
-/// once read beyond the end of a list. A bracket at 1e9 took minutes, and had no certificate.
+/// At 1e10, coordinates have steps of 2e-6, a millionth of the box. Search and placement then end on the surface, which
+/// once caused a read beyond the end of a list. A bracket at 1e9 took minutes and got no certificate.
 TEST(MedialHostileMesh, FarFromTheOriginItIsRightOrRefused) {
   for (const double place : {1e5, 3e6}) {
     const TriangleMesh mesh = test::box_between({place, place, 0}, {place + 2, place + 1, 0.5}, false);
@@ -70,7 +70,7 @@ TEST(MedialHostileMesh, FarFromTheOriginItIsRightOrRefused) {
   }
 }
 
-/// The voxels whose centres a mesh that is no polyhedron winds around.
+/// Returns the voxels whose centres lie inside, by winding number, a mesh that does not bound a polyhedron.
 VoxelSet wound_voxels(const MeshView& mesh, const GridSpec& grid) {
   const Field field = distance_field(mesh, grid, {.sign = SignMode::winding});
   VoxelSet voxels(grid.size);
@@ -80,7 +80,7 @@ VoxelSet wound_voxels(const MeshView& mesh, const GridSpec& grid) {
   return voxels;
 }
 
-/// No polyhedron: the axis has the topology of its voxels.
+/// Expects that a mesh that does not bound a polyhedron gives an axis with the topology of its voxels.
 void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& options) {
   const MedialAxis axis = medial_axis(mesh, options);
   EXPECT_EQ(axis.report().rule, SolidRule::winding);
@@ -94,7 +94,7 @@ void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& option
   for (const std::string& mismatch : certificate.mismatches) ADD_FAILURE() << mismatch;
 }
 
-TEST(MedialHostileMesh, OpenSurfacesAreSolidWhereTheyWindMostly) {
+TEST(MedialHostileMesh, OpenSurfacesAreSolidWhereTheWindingNumberExceedsOneHalf) {
   for (const int holes : {1, 6, 12}) {
     SCOPED_TRACE(holes);
     expect_axis_of_voxels(make_organic({.frequency = 24, .holes = holes}), coarse);
@@ -114,7 +114,8 @@ TEST(MedialHostileMesh, ABoxWithoutALidIsABox) {
   EXPECT_EQ(medial_axis(mesh, coarse).report().betti, (BettiNumbers{1, 0, 0}));
 }
 
-/// What is missing is asked of balls between the walls of the mesh: the faces of voxels that close the hole are none.
+/// The certificate looks for missing parts with balls between the walls of the mesh. The voxel faces that close the
+/// hole are not walls.
 TEST(MedialHostileMesh, ABoxWithoutALidIsJudgedByItsWalls) {
   TriangleMesh mesh = make_box({});
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
@@ -133,7 +134,7 @@ TEST(MedialHostileMesh, ABoxWithoutALidIsJudgedByItsWalls) {
   }
 }
 
-TEST(MedialHostileMesh, SurfacesThatCrossThemselvesAreTheUnionOfWhatTheyBound) {
+TEST(MedialHostileMesh, SelfCrossingSurfacesBoundTheUnionOfTheirParts) {
   TriangleMesh boxes = test::box_between({0, 0, 0}, {2, 1, 1});
   append(boxes, test::box_between({1.3, 0.2, 0.2}, {3, 0.8, 1.7}));
   test::expect_certified(medial_axis(boxes, coarse), boxes, {1, 0, 0});
@@ -142,12 +143,13 @@ TEST(MedialHostileMesh, SurfacesThatCrossThemselvesAreTheUnionOfWhatTheyBound) {
   test::expect_certified(medial_axis(tori, coarse), tori, {1, 3, 0});
 }
 
-TEST(MedialHostileMesh, TrianglesThatDisagreeWithTheirNeighboursAreTurned) {
+TEST(MedialHostileMesh, InconsistentTrianglesAreReversed) {
   TriangleMesh mesh = make_sphere({.frequency = 10});
   TriangleMesh agreeing = mesh;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
-    // Turned back, it begins at its second corner: rounding tells which of a sphere's triangles is closer.
+    // A triangle that is reversed back starts at its second corner. That matters, because rounding decides which of a
+    // sphere's triangles is closer.
     std::rotate(agreeing.triangles[t].begin(), agreeing.triangles[t].begin() + 1, agreeing.triangles[t].end());
   }
   const AxisRows right = medial_axis(agreeing, coarse).simplify(60);
@@ -156,7 +158,7 @@ TEST(MedialHostileMesh, TrianglesThatDisagreeWithTheirNeighboursAreTurned) {
   EXPECT_EQ(test::positions(axis.simplify(60)), test::positions(right));
 }
 
-TEST(MedialHostileMesh, TrianglesThatRepeatAreNoPolyhedron) {
+TEST(MedialHostileMesh, DuplicateTrianglesAreNotAPolyhedron) {
   TriangleMesh mesh = make_box({.size = {1, 2, 1}, .segments = {4, 4, 4}});
   mesh.triangles.push_back(mesh.triangles.front());
   expect_axis_of_voxels(mesh, coarse);
@@ -174,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(Data, MedialHostileRealMesh,
                          testing::Values("stanford-bunny.obj", "featuretype.STL", "not_convex.obj"),
                          [](const auto& info) { return test::test_name(info.param); });
 
-/// The message of the error that a call throws; empty where it throws none.
+/// Returns the message of the error that a call throws; empty if it throws none.
 template <class Thrown, class Call>
 std::string message_of(const Call& call) {
   try {
@@ -191,7 +193,7 @@ void expect_no_interior(const MeshView& mesh, const char* why) {
   EXPECT_NE(message.find("interior"), std::string::npos) << "message: " << message;
 }
 
-TEST(MedialHostileMesh, WhatHasNoInteriorIsRefused) {
+TEST(MedialHostileMesh, MeshesWithoutInteriorAreRejected) {
   expect_no_interior(make_points({.points = 50}), "points");
   expect_no_interior(make_segments({.segments = 50}), "segments");
   TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}}, {}, {}};
@@ -209,20 +211,20 @@ TEST(MedialHostileMesh, WhatHasNoInteriorIsRefused) {
   expect_no_interior(mesh, "triangles without size");
 }
 
-TEST(MedialHostileMesh, ARealMeshWhoseTrianglesDisagreeIsTwoBodies) {
+TEST(MedialHostileMesh, ARealMeshWithInconsistentTrianglesIsTwoBodies) {
   const auto file = test::data_file("meshes/multibody.stl");
   if (!file) GTEST_SKIP() << test::no_data("meshes/multibody.stl");
   test::expect_certified(medial_axis(read_mesh(*file), coarse), read_mesh(*file), {2, 0, 0});
 }
 
-TEST(MedialHostileMesh, WhatIsInsideOutAndNoPolyhedronIsRefused) {
+TEST(MedialHostileMesh, OpenMeshesThatFaceInwardsAreRejected) {
   TriangleMesh mesh = make_box({.size = {1, 2, 1}, .segments = {4, 4, 4}});
   mesh.triangles.pop_back();
   reverse_triangles(mesh);
   expect_no_interior(mesh, "an open box that faces inwards");
 }
 
-TEST(MedialHostileMesh, MeshesThatAreNoneAreRefused) {
+TEST(MedialHostileMesh, InvalidMeshesAreRejected) {
   EXPECT_THROW((void)medial_axis(MeshView{}), InvalidMesh);
   TriangleMesh mesh = make_box({});
   mesh.vertices[3].y = std::nan("");
@@ -243,7 +245,8 @@ TEST(MedialHostileMesh, LooseTrianglesAreRefusedOrHaveTheAxisOfTheirVoxels) {
   }
 }
 
-/// The middle of a box whose sides are 1 or thin: a grid of points, a thin side from the borders.
+/// Returns a grid of points in the mid-surface of a box whose sides are 1 or `thin`. The points keep a distance of
+/// `thin` from its borders.
 std::vector<Vec3d> middle_of(const Vec3d& size, double thin) {
   std::vector<Vec3d> points;
   const auto steps = [&](double side) { return side > thin ? 40 : 0; };
@@ -269,7 +272,7 @@ TEST(MedialHostileMesh, PartsThinnerThanAVoxelAreKeptWhole) {
         std::vector<double> radii;
         for (const VertexRow& vertex : complex.vertices) radii.push_back(vertex.radius);
         std::sort(radii.begin(), radii.end());
-        // The axis of a wire has sheets towards its edges as well.
+        // The axis of a wire also has sheets towards the wire's edges.
         const bool is_wire = size.y < 1;
         EXPECT_GT(radii[radii.size() / (is_wire ? 10 : 20)], (is_wire ? 0.02 : 0.1) * thickness)
             << "inside, and not on the surface";
@@ -285,12 +288,12 @@ TEST(MedialHostileMesh, PartsThinnerThanAVoxelAreKeptWhole) {
 
 TEST(MedialHostileMesh, AThinFinOnABlockIsKeptWhole) {
   TriangleMesh mesh = make_box({.size = {1, 1, 1}, .segments = {1, 1, 3}});
-  // The middle third of a side, drawn out: the vertices at z = +-1/6 come together where the fin begins.
+  // The fin is the middle third of a side, drawn out. The vertices at z = +-1/6 move together where the fin begins.
   constexpr double half = 5e-4;
   for (Vec3d& p : mesh.vertices) {
     if (std::abs(p.z) < 0.4) p.z = std::copysign(half, p.z);
   }
-  std::uint32_t corner[2][2] = {};  // of the side x = 1/2: y, z
+  std::uint32_t corner[2][2] = {};  // on the side x = 1/2: y, z
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3d& p = mesh.vertices[v];
     if (p.x > 0.4 && std::abs(p.z) < 0.1) corner[p.y > 0][p.z > 0] = v;
@@ -333,8 +336,8 @@ TEST(MedialHostileMesh, AThinPlateKeepsItsHoles) {
   }
 }
 
-/// Two vertices on either side of a narrow hole may see each other: edges and triangles must still run as the solid
-/// does.
+/// Vertices on opposite sides of a narrow hole may see each other. Edges and triangles must still follow the solid
+/// around the hole.
 TEST(MedialHostileMesh, NoTriangleSpansAHoleNarrowerThanAVoxel) {
   for (const double radius : {0.02, 0.005}) {
     for (const int holes : {1, 2}) {

@@ -1,5 +1,6 @@
-// Proves that medial axes of images have the topology of the union of the selected voxels, whatever these are: single
-// voxels, voxels that touch in corners, full images, noise, any spacing and direction, generated and real images.
+// Proves that medial axes of images have the topology of the union of the selected voxels. The tests use single voxels,
+// voxels that touch in corners, full images and noise. They vary spacing and direction, and include generated and real
+// images.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -45,7 +46,7 @@ VoxelImage full_image(const Size& size) {
   return image;
 }
 
-/// The axis has these Betti numbers, the voxels' own, and its balls are those of the voxels' union.
+/// Expects the given Betti numbers of both the voxels and the axis, and exact balls in the voxels' union.
 void expect_axis(const VoxelImage& image, const BettiNumbers& betti, const MedialAxisOptions& options = {}) {
   const VoxelSet voxels = selected_voxels(image, options.selection);
   ASSERT_EQ(betti_numbers(voxels), betti);
@@ -101,7 +102,7 @@ TEST(MedialImage, VoxelsThatTouchInACornerOrAnEdgeAreOneComponent) {
   expect_axis(image_of({4, 4, 4}, {{1, 1, 1}, {2, 2, 1}}), {1, 0, 0});
   expect_axis(image_of({6, 4, 4}, {{1, 1, 1}, {3, 1, 1}}), {2, 0, 0});
   expect_axis(image_of({5, 5, 5}, {{1, 1, 2}, {2, 2, 2}, {1, 3, 2}, {0, 2, 2}}), {1, 1, 0});
-  // The six neighbours of a voxel that is not there: a void, closed by edges alone.
+  // The six neighbours of a missing voxel enclose a void that is closed only by edges.
   expect_axis(image_of({5, 5, 5}, {{1, 2, 2}, {3, 2, 2}, {2, 1, 2}, {2, 3, 2}, {2, 2, 1}, {2, 2, 3}}), {1, 0, 1});
 }
 
@@ -114,7 +115,7 @@ TEST(MedialImage, OfRandomVoxelsHasTheirTopology) {
 }
 
 TEST(MedialImage, NoEdgeCrossesTheGapOfAU) {
-  // The tips of a U of voxels, in both layers of an image; its middle is in the upper one only.
+  // The tips of this U of voxels lie in both layers of the image, its middle only in the upper one.
   const VoxelImage u = image_of(
       {3, 2, 2}, {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {2, 1, 0}, {0, 0, 1}, {2, 0, 1}, {0, 1, 1}, {1, 1, 1}, {2, 1, 1}});
   expect_axis(u, {1, 0, 0});
@@ -184,7 +185,7 @@ TEST(MedialImage, SpacingAndDirectionChangeNoTopology) {
   }
 }
 
-/// How far the axis of a ball reaches, in diagonals of a voxel.
+/// Returns how far the axis of a ball reaches from its centre, in diagonals of a voxel.
 double reach(const VoxelImage& image, double theta, const MedialAxisOptions& options = {}) {
   const Vec3d middle = bounds(image.grid).center();
   double furthest = 0;
@@ -201,14 +202,16 @@ TEST(MedialImage, OfASmallBallLiesInItsMiddle) {
 }
 
 TEST(MedialImage, OfALargerBallLiesInItsMiddle) {
-  // The flat tops end in corners one or two voxels wide, whose own axis is seen at 180 degrees.
+  // The ball's flat tops end in corners one or two voxels wide. The axis of such a corner has a separation angle of 180
+  // degrees.
   const VoxelImage image = make_ball_image({.size = 96});
   EXPECT_LE(reach(image, 150, {.lambda = 3}), 2);
   EXPECT_LE(reach(image, 150), 2);
 }
 
 TEST(MedialImage, OfABallOfFlatVoxelsLiesInItsMiddle) {
-  // Steps three times as high as voxels are wide pass the floor of noise, which counts the shortest side of a voxel.
+  // Steps three times as high as voxels are wide exceed the noise floor, which is based on the shortest side of a
+  // voxel.
   const VoxelImage image = make_ball_image({.size = 48, .spacing = {1, 1, 3}});
   EXPECT_LE(reach(image, 60), 2);
 }
@@ -216,7 +219,7 @@ TEST(MedialImage, OfABallOfFlatVoxelsLiesInItsMiddle) {
 struct RealImage {
   std::string file;
   MedialAxisOptions options;
-  std::optional<BettiNumbers> betti;  ///< where they are known from elsewhere
+  std::optional<BettiNumbers> betti;  ///< if they are known from elsewhere
 };
 
 class MedialRealImage : public testing::TestWithParam<RealImage> {};

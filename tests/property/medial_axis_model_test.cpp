@@ -1,6 +1,6 @@
 // Proves that medial axes of solids with walls, gaps and tunnels far thinner than a voxel have the topology of the
-// solid at every angle, as complexes and as they are written: where the cellular model passes, nothing on the way to
-// the axis changes it.
+// solid. The proof covers every angle, complexes and written files. If the cellular model passes, no step towards the
+// axis changes the topology.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -41,7 +41,7 @@ std::int64_t euler_of(const CellComplex& complex) {
   return sum;
 }
 
-/// Whether each cell of a complex has its whole border in it: two ends, three or four sides, four to six faces.
+/// Expects that each cell of a complex has its whole border in it: two ends, three or four sides, or four to six faces.
 void expect_closed(const CellComplex& complex) {
   complex.for_each_cell([&](Cell cell) {
     int faces = 0;
@@ -53,7 +53,7 @@ void expect_closed(const CellComplex& complex) {
   });
 }
 
-/// The model of a body, and what is left of it step by step.
+/// Checks the Euler number of a body's model and of the complex that remains after each step.
 void expect_same_euler_numbers(const SolidBody& body, double spacing) {
   const Voxelized made = voxelize_body(body, spacing, {});
   if (!made.report.topology_matches) return;
@@ -108,7 +108,7 @@ TEST(MedialModel, AxesOfThinSolidsHaveTheirBettiNumbersAtEveryAngle) {
   EXPECT_GT(seen, 20U);
 }
 
-/// A ring of which nothing is there but a thin wall.
+/// Returns a hollow ring with a thin wall.
 TriangleMesh hollow_ring(double tube_radius, double wall, int ring_segments, int tube_segments) {
   const auto ring = [&](double radius) { return make_torus({1, radius, ring_segments, tube_segments}); };
   TriangleMesh mesh = ring(tube_radius);
@@ -119,8 +119,8 @@ TriangleMesh hollow_ring(double tube_radius, double wall, int ring_segments, int
 }
 
 TEST(MedialModel, AxesOfThinTubesNarrowerThanVoxelsStayInThem) {
-  // In a voxel the wall of a tube runs back and forth: triangles between its ends crossed what is hollow, until the
-  // model is made finer there.
+  // Within a voxel, the wall of a tube runs back and forth. Triangles between its ends crossed the hollow until the
+  // model was refined there.
   for (const auto& [resolution, wall] : {std::pair{8, 1e-5}, std::pair{16, 1e-4}}) {
     SCOPED_TRACE(testing::Message() << "a wall of " << wall << " at " << resolution);
     const TriangleMesh mesh = hollow_ring(0.05, wall, 24, 8);

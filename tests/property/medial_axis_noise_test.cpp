@@ -1,5 +1,5 @@
-// Proves that noise on the surface leaves the 60 degree axis where it is: boxes and spheres whose vertices are moved by
-// up to 1 % of their size, with edges of at least eight times that, both ways within two voxels.
+// Proves that noise on the surface moves the 60-degree axis by less than two voxels, in both directions. The vertices
+// of boxes and spheres move by up to a voxel, and edges are at least eight times as long.
 #include <gtest/gtest.h>
 
 #include "blum/shapes/generators.hpp"
@@ -46,13 +46,13 @@ TEST(MedialNoise, OnASphereMovesTheAxisByLessThanTwoVoxels) {
 }
 
 TEST(SlowMedialNoise, OnABoxMovesTheAxisByLessThanTwoVoxelsByDefault) {
-  // Noise of about a voxel: the axis moves with the surface.
+  // The noise is one voxel, so the axis moves with the surface.
   const int resolution = MedialAxisOptions{}.resolution;
   expect_stable(make_box({.size = {1, 0.7, 0.4}, .segments = {24, 16, 10}}), 1.0 / resolution, resolution);
 }
 
-// Noise of a voxel is too much for this bound: the noisy sphere is no ball, its points with S > 60 degrees are up to a
-// voxel from the middle, and cells of the lattice reach a diagonal further. One seed of three comes to 2.4 voxels.
+// Noise of a whole voxel exceeds this bound. The noisy sphere is not a ball, and its points with S > 60 degrees are up
+// to a voxel from the middle. Cells of the lattice reach a diagonal further. One seed of three reaches 2.4 voxels.
 TEST(SlowMedialNoise, OfHalfAVoxelOnASphereMovesTheAxisByLessThanTwoVoxelsByDefault) {
   const int resolution = MedialAxisOptions{}.resolution;
   expect_stable(make_sphere({.frequency = 14}), 1.0 / resolution, resolution);

@@ -1,5 +1,5 @@
-// Proves the order among medial axes: what a larger angle or a larger lambda keeps is part of what a smaller one keeps,
-// and the number of threads changes no byte.
+// Proves that the axis of a larger angle or a larger lambda is a subset of that of a smaller one. The number of threads
+// changes no byte.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -22,7 +22,7 @@ using test::VertexRow;
 
 using Place = std::array<double, 3>;
 
-/// Cells as sets of points: the places of their corners, in rising order. Cells with two corners at one place are
+/// Represents cells by the positions of their corners, in rising order. Cells with two corners at one position become
 /// points or edges.
 struct Cells {
   std::vector<Place> vertices;
@@ -81,14 +81,14 @@ void expect_nested(const MedialAxis& axis) {
 
 class MedialOrderOfShapes : public testing::TestWithParam<std::string> {};
 
-TEST_P(MedialOrderOfShapes, LargerAnglesKeepPartsOfWhatSmallerOnesKeep) {
+TEST_P(MedialOrderOfShapes, AxesOfLargerAnglesAreSubsets) {
   expect_nested(medial_axis(make_shape(GetParam()), {.resolution = 64}));
 }
 INSTANTIATE_TEST_SUITE_P(Catalogue, MedialOrderOfShapes,
                          testing::Values("box", "ellipsoid", "plate", "star", "organic", "void_cube"),
                          [](const auto& info) { return info.param; });
 
-TEST(MedialOrder, LargerAnglesKeepPartsOfWhatSmallerOnesKeepInRealMeshes) {
+TEST(MedialOrder, AxesOfLargerAnglesAreSubsetsInRealMeshes) {
   for (const char* const name : {"meshes/fandisk.obj", "meshes/rocker-arm.obj"}) {
     const auto file = test::data_file(name);
     if (!file) GTEST_SKIP() << test::no_data(name);
@@ -96,7 +96,7 @@ TEST(MedialOrder, LargerAnglesKeepPartsOfWhatSmallerOnesKeepInRealMeshes) {
   }
 }
 
-TEST(MedialOrder, LargerAnglesKeepPartsOfWhatSmallerOnesKeepInImages) {
+TEST(MedialOrder, AxesOfLargerAnglesAreSubsetsInImages) {
   expect_nested(medial_axis(make_tube_image({.nodes = 2, .pitch = 16})));
   expect_nested(medial_axis(make_ball_image({.size = 48, .spacing = {1, 1.5, 0.8}, .inner_radius = 0.5})));
 }
@@ -108,7 +108,7 @@ void expect_same(const AxisRows& a, const AxisRows& b) {
   EXPECT_EQ(a.sheet_count, b.sheet_count);
 }
 
-/// @param make  gives the axis, made as a context says.
+/// @param make  computes the axis in a given context.
 void expect_same_for_all_threads(const std::function<MedialAxis(const Context&)>& make) {
   const MedialAxis one = make({.threads = 1});
   for (const int threads : {2, 7}) {
@@ -126,7 +126,7 @@ TEST(MedialThreads, ChangeNoByteOfTheAxisOfAMesh) {
   }
 }
 
-TEST(MedialThreads, ChangeNoByteOfTheAxisOfAMeshThatIsNoPolyhedron) {
+TEST(MedialThreads, ChangeNoByteOfTheAxisOfANonPolyhedron) {
   const TriangleMesh mesh = make_organic({.frequency = 20, .holes = 3});
   expect_same_for_all_threads([&](const Context& context) { return medial_axis(mesh, {.resolution = 48}, context); });
 }
@@ -150,7 +150,7 @@ TEST(MedialOrder, ALeastAngleChangesNoTopologyAndKeepsTheNesting) {
   }
 }
 
-/// Cells with a separation angle above an angle: kept for themselves, and not for the topology alone.
+/// Keeps edges and triangles with a separation angle above theta, without those kept for the topology alone.
 AxisRows kept_for_themselves(AxisRows complex, double theta) {
   std::erase_if(complex.edges, [&](const EdgeRow& e) { return !(e.separation_angle > theta); });
   std::erase_if(complex.triangles, [&](const TriangleRow& t) { return !(t.separation_angle > theta); });
@@ -163,7 +163,7 @@ double footprint_distance(const VertexRow& vertex) {
 
 class MedialLambda : public testing::TestWithParam<std::string> {};
 
-TEST_P(MedialLambda, LeavesLessTheLargerItIs) {
+TEST_P(MedialLambda, LargerValuesKeepLess) {
   const TriangleMesh mesh = make_shape(GetParam());
   const double extent = bounds(mesh).diagonal();
   constexpr double theta = 30;
@@ -181,8 +181,8 @@ TEST_P(MedialLambda, LeavesLessTheLargerItIs) {
 }
 
 TEST_P(MedialLambda, KeepsPiecesWhoseFootprintsAreFurtherApart) {
-  // A corner of a triangle is within a diagonal of the point whose footprints lambda judged, and footprints that belong
-  // to one wall move no more than that where the wall is flat.
+  // Lambda judged the footprints of a point within a diagonal of each corner of a triangle. On a flat wall, footprints
+  // move no further than that.
   const TriangleMesh mesh = make_shape(GetParam());
   const double lambda = 0.06 * bounds(mesh).diagonal();
   const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .lambda = lambda});

@@ -1,5 +1,6 @@
-// Proves that sheets are those that an engineer counts, and that each has the same number wherever the part lies, where
-// the grid lies, and on a grid twice as fine: of a box, an L-profile, a cylinder, a box with fillets and a bracket.
+// Proves that sheets are those that an engineer counts. Each sheet keeps its number wherever the part lies, wherever
+// the grid lies, and on a grid twice as fine. The parts are a box, an L-profile, a cylinder, a box with fillets and a
+// bracket.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace {
 
 constexpr double theta = 60;
 
-/// Puts points together that are the same but for rounding.
+/// Merges points that are equal up to rounding.
 class PointIndex {
  public:
   explicit PointIndex(std::vector<Vec3d>& points) : points_(points) {}
@@ -42,12 +43,13 @@ class PointIndex {
   std::map<std::array<long long, 3>, std::uint32_t> known_;
 };
 
-/// A box whose edges and corners are rounded: all points within `radius` of a smaller box, with facets.
-/// @param parts  of a quarter of a circle, half as many.
+/// Returns a box with rounded edges and corners: all points within `radius` of a smaller box, with facets.
+/// @param parts  half the number of facets of a quarter of a circle.
 TriangleMesh filleted_box(const Vec3d& size, double radius, int parts) {
   TriangleMesh mesh;
   PointIndex index(mesh.vertices);
-  // Along an axis: a direction, and which end of the smaller box it starts from. The middle is there for both ends.
+  // Along an axis: a direction, and the end of the smaller box from which it starts. The middle direction exists for
+  // both ends.
   std::vector<std::pair<double, double>> places;
   for (int k = -parts; k <= parts; ++k) {
     const double slope = std::tan(std::numbers::pi / 4 * k / parts);
@@ -85,7 +87,7 @@ TriangleMesh filleted_box(const Vec3d& size, double radius, int parts) {
 struct Part {
   std::string name;
   TriangleMesh mesh;
-  std::size_t sheets = 0;  ///< that an engineer counts, at theta
+  std::size_t sheets = 0;  ///< the number that an engineer counts, at theta
 
   friend std::ostream& operator<<(std::ostream& out, const Part& part) { return out << part.name; }
 };
@@ -94,7 +96,8 @@ std::vector<Part> parts() {
   return {{"Box", make_box({.size = {1.5, 1, 0.6}}), 13},  // the middle, four into each pair of ends, four upright ones
           {"L", test::known_l_beam(0.6, 1).mesh, 16},
           {"Cylinder", make_cylinder({}), 2},  // the cones at its ends, and a curve between
-          // As of the box: the facets of fillets are seen at less than theta, and have no sheets of their own.
+          // These parts have the sheets of the box. The facets of fillets have angles below theta and no sheets of
+          // their own.
           {"FilletedBox", filleted_box({1.5, 1, 0.6}, 0.15, 4), 13},
           {"FinelyFilletedBox", filleted_box({1.5, 1, 0.6}, 0.15, 12), 13},
           {"Bracket", make_bracket(), 30}};
@@ -105,7 +108,8 @@ struct Sheet {
   Vec3d centroid;
 };
 
-/// What tells sheets apart, by their numbers. @param turn  of the part, which is turned back.
+/// Returns the area and centroid of each sheet, by its number.
+/// @param turn  rotation of the part, which is undone.
 std::vector<Sheet> sheets_of(const Complex& axis, const Mat3& turn = {}) {
   std::vector<Sheet> sheets(sheet_count(axis));
   const MedialView view(axis);
@@ -121,10 +125,10 @@ std::vector<Sheet> sheets_of(const Complex& axis, const Mat3& turn = {}) {
   return sheets;
 }
 
-/// How far centroids and areas of what is the same sheet may be apart.
+/// The largest allowed differences between centroids and areas of a sheet in two axes.
 struct Tolerance {
   double distance = 0;
-  double area = 0;  ///< parts
+  double area = 0;  ///< relative
 };
 
 void expect_same(std::span<const Sheet> found, std::span<const Sheet> expected, const Tolerance& tolerance) {
@@ -135,7 +139,7 @@ void expect_same(std::span<const Sheet> found, std::span<const Sheet> expected, 
   }
 }
 
-/// Else expect_same() would not see that two have each other's numbers.
+/// Expects sheets so far apart that expect_same() would notice two swapped numbers.
 void expect_apart(std::span<const Sheet> sheets, const Tolerance& tolerance) {
   for (std::size_t a = 0; a < sheets.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
@@ -144,7 +148,7 @@ void expect_apart(std::span<const Sheet> sheets, const Tolerance& tolerance) {
   }
 }
 
-/// Areas are off where sheets end at the facets of what is round, and by up to a voxel all around.
+/// Areas differ where sheets end at the facets of round surfaces, and by up to a voxel all around.
 Tolerance tolerance_of(const TriangleMesh& mesh) {
   return {0.008 * bounds(mesh).diagonal(), 0.1};
 }
@@ -169,7 +173,7 @@ class SheetNumbers : public testing::TestWithParam<Part> {
                 tolerance_of(GetParam().mesh));
   }
 
-  /// The grid goes with the mesh.
+  /// Expects the same sheets after a move by parts of a voxel. The grid moves with the mesh.
   static void expect_same_when_moved(std::span<const Sheet> sheets, int resolution) {
     TriangleMesh moved = GetParam().mesh;
     const Vec3d by = Vec3d{0.3, 0.3, 0.3} * (bounds(moved).size().x / resolution);
@@ -218,7 +222,8 @@ INSTANTIATE_TEST_SUITE_P(Parts, SlowSheetNumbers, testing::ValuesIn(parts()), na
 
 // ---- Axes whose borders stay at the cells ----
 
-/// Without those of less than a thousandth of the area, which a grid may show or not, and which come last.
+/// Removes sheets with less than a thousandth of the area. A grid may or may not contain them, and they have the last
+/// numbers.
 std::vector<Sheet> without_crumbs(std::vector<Sheet> sheets) {
   double all = 0;
   for (const Sheet& sheet : sheets) all += sheet.area;
@@ -245,7 +250,7 @@ TEST(SlowSheetNumbersAtTheCells, AreTheSameButForCrumbs) {
   }
 }
 
-/// A ball of facets without the smaller one inside of it.
+/// Returns a faceted ball without a smaller concentric ball.
 TriangleMesh thin_shell(double thickness, int longitudes) {
   TriangleMesh mesh = make_uv_sphere({.longitudes = longitudes, .latitudes = longitudes / 2});
   const auto count = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -299,7 +304,7 @@ TEST(SheetNumbersOfAnything, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(SheetNumbersOfAnything, FollowTheGridOfAnImage) {
-  // Of an image, sheets are numbered as its voxels are ordered: the first triangle has the first number.
+  // Sheets of an image are numbered in the order of its voxels, so the first triangle has the first number.
   VoxelImage image;
   image.grid.size = {24, 20, 16};
   std::vector<std::uint8_t> values(image.grid.node_count(), 0);

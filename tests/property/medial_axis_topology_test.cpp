@@ -1,5 +1,5 @@
-// Proves that medial axes of meshes have the topology of the solid, at every angle: generated shapes whose Betti
-// numbers are known from their construction and from topology(), and real meshes.
+// Proves that medial axes of meshes have the topology of the solid at every angle. The meshes are real ones, and
+// generated shapes whose Betti numbers are known from their construction and from topology().
 #include <gtest/gtest.h>
 
 #include "blum/geometry/topology.hpp"
@@ -18,7 +18,7 @@ struct Shape {
   ShapeParameters parameters = {};
 };
 
-/// Every closed shape of the catalogue, and variants whose topology depends on the parameters.
+/// Returns every closed shape of the catalogue, and variants whose topology depends on the parameters.
 std::vector<Shape> shapes() {
   std::vector<Shape> all;
   for (const ShapeInfo& shape : shape_catalog()) {
@@ -101,13 +101,13 @@ std::string file_of(const testing::TestParamInfo<RealMesh>& info) {
 INSTANTIATE_TEST_SUITE_P(Data, MedialTopologyOfRealMeshes, testing::ValuesIn(real_meshes()), file_of);
 INSTANTIATE_TEST_SUITE_P(Data, SlowMedialTopologyOfRealMeshes, testing::ValuesIn(real_meshes()), file_of);
 
-/// None of them keeps an axis of the lattice.
+/// No rotation maps the lattice to itself.
 std::vector<Mat3> rotations() {
   return {test::rotation({1, 0, 0}, 17), test::rotation({1, 2, 3}, 40), test::rotation({-2, 1, 5}, 101),
           test::rotation({1, -1, 0.3}, 163)};
 }
 
-/// A wedge of 10 degrees, whose sharp edge is thinner than a voxel however small that is.
+/// Tests a wedge of 10 degrees, whose sharp edge is thinner than a voxel of any size.
 void expect_wedge(int resolution) {
   const TriangleMesh wedge = make_shape("wedge", {{"angle", 10}});
   const MedialAxisOptions options{.resolution = resolution};
@@ -136,7 +136,7 @@ TEST_P(MedialTopologyOfMovedShapes, DoesNotDependOnHowTheShapeLies) {
 }
 
 TEST_P(MedialTopologyOfMovedShapes, DoesNotDependOnWhereTheVoxelsLie) {
-  // Voxels follow the box of a body, so that half a voxel more at one end moves them all by a quarter.
+  // The grid follows the box of a body, so half a voxel more at one end moves all voxels by a quarter.
   const TriangleMesh mesh = make_shape(GetParam().name, GetParam().parameters);
   const Vec3d size = bounds(mesh).size();
   const double voxel = std::max({size.x, size.y, size.z}) / 48;

@@ -1,5 +1,6 @@
-// Proves that many queries at once get what each gets alone, bit for bit: points, distances, signs, sites and
-// triangles, however the queries lie, on every generated shape, on soups made to break float32 and on real meshes.
+// Proves that many queries together get the results that each gets alone, bit for bit: points, distances, signs, sites
+// and triangles. The queries have any layout. The tests use every generated shape, soups made to break float32, and
+// real meshes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@
 namespace blum {
 namespace {
 
-/// The named corners of a mesh's primitives, so that what nothing names is not asked about.
+/// Returns the corners of a mesh's primitives, which excludes unused vertices.
 std::vector<std::array<Vec3d, 3>> primitives(const MeshView& mesh) {
   std::vector<std::array<Vec3d, 3>> out;
   const auto& v = mesh.vertices;
@@ -32,8 +33,8 @@ std::vector<std::array<Vec3d, 3>> primitives(const MeshView& mesh) {
   return out;
 }
 
-/// Queries of every layout: all over the box, near the surface and on it (corners, edges, faces), in a tiny ball, on a
-/// line, all in one place, and far away.
+/// Returns queries in every layout: all over the box, near and on the surface (corners, edges, faces), and far away.
+/// Others lie in a tiny ball, on a line, or all in one place.
 std::vector<Vec3d> queries_about(const MeshView& mesh, std::size_t of_each, std::uint64_t seed) {
   Random random(seed);
   const auto all = primitives(mesh);
@@ -70,7 +71,7 @@ bool is_same(const ClosestPoint& a, const ClosestPoint& b) {
   return (is_far || a.distance == b.distance) && a.site == b.site && a.triangle == b.triangle && a.point == b.point;
 }
 
-/// Enough queries that they are looked at together.
+/// Returns a number of queries that is large enough to process them together.
 std::size_t count_for(const MeshView& mesh) {
   return std::max<std::size_t>(mesh.triangles.size(), 4096) / 13 + 50;
 }
@@ -94,7 +95,7 @@ constexpr ClosestPointOptions is_unsigned{.sign = SignMode::none};
 
 class PointSearchOfShapes : public testing::TestWithParam<std::string> {};
 
-TEST_P(PointSearchOfShapes, FindsWhatEachQueryFindsAlone) {
+TEST_P(PointSearchOfShapes, MatchesSingleQueries) {
   const TriangleMesh mesh = make_shape(GetParam());
   expect_as_alone(mesh, is_unsigned, 1);
   expect_as_alone(mesh, {.sign = SignMode::none, .max_distance = 0.05 * bounds(mesh).diagonal()}, 2);
@@ -103,7 +104,7 @@ TEST_P(PointSearchOfShapes, FindsWhatEachQueryFindsAlone) {
 INSTANTIATE_TEST_SUITE_P(Shapes, PointSearchOfShapes, testing::ValuesIn(test::catalog_names()),
                          [](const auto& info) { return test::test_name(info.param); });
 
-TEST(PointSearch, TellsSignsAsEachQueryAlone) {
+TEST(PointSearch, SignsMatchSingleQueries) {
   expect_as_alone(make_sphere({.frequency = 12}), {}, 3);
   expect_as_alone(make_organic({.frequency = 12, .holes = 2}), {}, 4);
   TriangleMesh open = make_sphere({.frequency = 12});
@@ -116,7 +117,7 @@ TEST(PointSearch, TellsSignsAsEachQueryAlone) {
   expect_as_alone(test::nasty_soup(1, 600), {.sign = SignMode::winding}, 23);
 }
 
-TEST(PointSearch, FindsWhatEachQueryFindsAloneInSoups) {
+TEST(PointSearch, MatchesSingleQueriesInSoups) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     SCOPED_TRACE(seed);
     const std::size_t triangles = std::size_t{40} << seed;
@@ -126,8 +127,9 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneInSoups) {
   expect_as_alone(test::unwelded(make_sphere({.frequency = 10})), is_unsigned, 7);
 }
 
-/// Many triangles around a vertex, flat, concave, and almost flat: domains that are empty, or thinner than rounding.
-TEST(PointSearch, FindsWhatEachQueryFindsAloneAroundFans) {
+/// Fans of many triangles around a vertex are flat, concave or almost flat. Their domains are empty, or thinner than
+/// rounding.
+TEST(PointSearch, MatchesSingleQueriesAroundFans) {
   for (const double height : {0.0, 1e-9, -1e-9, 1e-6, -1e-5, 1e-3, -1e-2, 0.5, -2.0}) {
     SCOPED_TRACE(height);
     TriangleMesh fan;
@@ -139,7 +141,7 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneAroundFans) {
       fan.triangles.push_back({0, k + 1, (k + 1) % blades + 1});
     }
     expect_as_alone(fan, is_unsigned, 8);
-    // More than two triangles share edges.
+    // More than two triangles share an edge.
     for (std::uint32_t k = 0; k < 8; ++k) {
       fan.vertices.emplace_back(0.1 * k, 0.3, 1 + height * k);
       fan.triangles.push_back({0, k + 1, static_cast<std::uint32_t>(fan.vertices.size() - 1)});
@@ -148,8 +150,8 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneAroundFans) {
   }
 }
 
-/// Of a grid of coplanar squares, and of two that touch, almost all sites tie with others somewhere.
-TEST(PointSearch, FindsWhatEachQueryFindsAloneWhereSitesTie) {
+/// In two plates of coplanar squares, in doubled plates and in a box, almost all sites tie with others somewhere.
+TEST(PointSearch, MatchesSingleQueriesWhereSitesTie) {
   TriangleMesh plates;
   for (const double z : {0.0, 0.25}) {
     const auto first = static_cast<std::uint32_t>(plates.vertices.size());
@@ -172,7 +174,7 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneWhereSitesTie) {
   expect_as_alone(box, is_unsigned, 12);
 }
 
-TEST(PointSearch, FindsWhatEachQueryFindsAloneAtAnySizeAndPlace) {
+TEST(PointSearch, MatchesSingleQueriesAtAnySizeAndPlace) {
   const TriangleMesh mesh = make_organic({.frequency = 8});
   for (const double scale : {1e-35, 1e-30, 1e-10, 1e-3, 1e10, 1e30, 3e36, 1e60}) {
     SCOPED_TRACE(scale);
@@ -186,9 +188,9 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneAtAnySizeAndPlace) {
   expect_as_alone(point, is_unsigned, 16);
 }
 
-/// Two points far away make the crowd lie in few of the smallest cells that points are sorted into, each of which has
+/// Two distant points concentrate the mesh in few of the smallest cells that points are sorted into. Each such cell has
 /// more points than one cell of the kernel takes, and much of the mesh.
-TEST(PointSearch, FindsWhatEachQueryFindsAloneInACrowd) {
+TEST(PointSearch, MatchesSingleQueriesInACrowd) {
   for (const double far : {300.0, 800.0, 3000.0}) {
     SCOPED_TRACE(far);
     TriangleMesh mesh = make_organic({.frequency = 8, .holes = 2});
@@ -205,8 +207,8 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneInACrowd) {
   }
 }
 
-/// So close to an open sheet that rounding may tell the side: whoever asks gets the same.
-TEST(PointSearch, TellsSignsNextToASheetAsEachQueryAlone) {
+/// These points are so close to an open sheet that rounding may decide the side. All queries must give the same answer.
+TEST(PointSearch, SignsNextToASheetMatchSingleQueries) {
   const TriangleMesh sheet = test::flat_sheet(18);
   for (const double height : {1e-12, 1e-10, 1e-9, 1e-8, 1e-6, 1e-3}) {
     SCOPED_TRACE(height);
@@ -244,7 +246,7 @@ TEST(PointSearch, IsTheSameForAnyThreadsAndInstructions) {
   cpu::use_simd_target("");
 }
 
-TEST(SlowPointSearch, FindsWhatEachQueryFindsAloneOnRealMeshes) {
+TEST(SlowPointSearch, MatchesSingleQueriesOnRealMeshes) {
   for (const char* name : {"stanford-bunny.obj", "fandisk.obj", "multibody.stl", "7_8ths_cube.stl", "soup.stl",
                            "screwdriver.off", "plate_holes.STL"}) {
     SCOPED_TRACE(name);

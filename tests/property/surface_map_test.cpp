@@ -1,5 +1,6 @@
-// Proves that surface maps keep their errors at 100,000 random points of every generated shape and of real meshes, read
-// by the nearest texel and bilinearly, signed and unsigned, also after target and other mesh were deformed.
+// Proves that surface maps keep their errors at 100,000 random points of every generated shape and of real meshes. Maps
+// are read at the nearest texel and bilinearly, signed and unsigned. The errors also hold after target and other mesh
+// were deformed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +27,7 @@ namespace {
 
 constexpr std::size_t samples_per_shape = 100'000;
 
-/// A smooth random motion by up to a part of the mesh's size: a sum of waves.
+/// Returns vertices after a smooth random motion by up to a part of the mesh's size: a sum of waves.
 std::vector<Vec3d> deformed(const MeshView& mesh, double part, std::uint64_t seed) {
   struct Wave {
     Vec3d direction, turns;
@@ -48,7 +49,7 @@ std::vector<Vec3d> deformed(const MeshView& mesh, double part, std::uint64_t see
   return out;
 }
 
-/// A mesh turned, and brought to the middle of another one and to a size like its.
+/// Rotates a mesh, and moves and scales it to the middle and size of another mesh.
 TriangleMesh fitted(TriangleMesh mesh, const MeshView& to) {
   mesh = test::turned(std::move(mesh));
   const Box3 from = bounds(mesh);
@@ -76,7 +77,7 @@ void expect_errors_hold(const SurfaceMap& map, const MeshView& target, const Mes
     }
   }
   EXPECT_EQ(wrong, 0U);
-  // Bounds that hold anything would prove nothing; where signs may jump they are large.
+  // Loose bounds would prove nothing. If signs may jump, bounds are large.
   if (!query.sign_may_jump()) {
     EXPECT_GT(largest_part, 0.2);
   }

@@ -1,5 +1,5 @@
-// Medial axes from exact walls, at several angles, with all vertices and with few: certified by what shares nothing
-// with their construction, and near those of the grid.
+// Proves that medial axes from exact walls are certified at several angles, with all vertices and with few. The
+// certificate is independent of their construction. The axes are close to those of the grid.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ void PrintTo(const Case& of, std::ostream* out) {
   *out << of.name;
 }
 
-/// Teeth with narrow gaps: what lies in one cube belongs to two of them.
+/// Returns teeth with gaps so narrow that one cube contains parts of two teeth.
 TriangleMesh comb() {
   std::vector<Point2> outline{{0, 0}};
   constexpr int teeth = 4;
@@ -88,7 +88,7 @@ TEST_P(Shapes, AreCertifiedFromTheAxisAlone) {
 INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-/// Where all cubes pass, the numbers are right; a mesh that bounds no solid is refused.
+/// Expects that the Betti numbers are right if all cubes pass. A mesh that bounds no solid may be rejected.
 void expect_never_wrong(const test::NamedMesh& solid, std::size_t& certified, std::size_t& all) {
   for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
     SCOPED_TRACE(solid.name + ", " + std::string(to_string(part)));
@@ -113,7 +113,7 @@ TEST(VoronoiSolids, ThinOnesAreNeverCertifiedWrongly) {
   EXPECT_GT(certified, all / 2);
 }
 
-/// Many sites tie there.
+/// In these solids, many sites tie.
 TEST(VoronoiSolids, OnesOfWholeNumbersAreNeverCertifiedWrongly) {
   std::size_t certified = 0;
   std::size_t all = 0;
@@ -121,7 +121,7 @@ TEST(VoronoiSolids, OnesOfWholeNumbersAreNeverCertifiedWrongly) {
   EXPECT_EQ(certified, all);
 }
 
-/// How far the vertices of triangles of one axis are from triangles of the other: the largest, and 95 % of them.
+/// Returns the largest distance, and the 95 % quantile, of the centroids of one axis's triangles from the other axis.
 std::array<double, 2> distances(const Complex& from, const Complex& to) {
   const TriangleMesh target{to.positions, to.triangles};
   const SiteTable table(target);
@@ -136,7 +136,7 @@ std::array<double, 2> distances(const Complex& from, const Complex& to) {
   return {all.back(), all[all.size() * 95 / 100]};
 }
 
-/// At an angle at which no sheet of the solid begins or ends.
+/// At this angle, no sheet of the solid begins or ends.
 TEST(VoronoiAxis, IsNearThatOfTheGrid) {
   const TriangleMesh mesh = make_bracket();
   const double theta = 40;
@@ -151,7 +151,7 @@ TEST(VoronoiAxis, IsNearThatOfTheGrid) {
   EXPECT_LE(std::max(usual, usual_back), 0.05 * side);
 }
 
-/// Scanned parts, of triangles in 32 bits and of vertices with cones of any width.
+/// Scanned parts have 32-bit coordinates, and vertices with cones of any width.
 TEST(VoronoiSolids, OfScans) {
   struct Part {
     std::string file;

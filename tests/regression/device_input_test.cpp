@@ -1,4 +1,4 @@
-// Mesh files that lead to a device were read without end (/dev/zero filled the memory): devices are refused.
+// Proves that mesh files that lead to a device are refused. Without this check, /dev/zero filled the memory.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ TEST(RegressionDeviceInput, RefusesDevices) {
   const std::filesystem::path link = std::filesystem::path(::testing::TempDir()) / "blum_device_input_test.obj";
   std::filesystem::remove(link);
   std::error_code error;
-  std::filesystem::create_symlink("/dev/null", link, error);  // ends at once, should the test ever fail
+  std::filesystem::create_symlink("/dev/null", link, error);  // /dev/null ends at once if the test fails
   if (error) GTEST_SKIP() << "no symbolic links here";
   std::string message;
   try {

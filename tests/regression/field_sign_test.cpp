@@ -1,6 +1,6 @@
-// Proves on every back end that signs are right where float32 pseudonormals alone would not be: knife edges, thin
-// plates, bands narrower than a grid step, grids far away, shapes that cross; and that caps near the limit of float32
-// barycentrics keep the promise at their tips.
+// Proves on every back end that signs are right for input on which float32 pseudonormals alone fail. Such input is
+// knife edges, thin plates, bands narrower than a grid step, grids far away and shapes that cross. Caps near the limit
+// of float32 barycentrics keep the promise at their tips.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ TEST_P(FieldSigns, OfAKnifeEdgeAreRight) {
   }
 }
 
-/// float32 cannot tell which side of the plate is the closer one.
+/// float32 cannot determine which side of the plate is closer.
 TEST_P(FieldSigns, OfAThinPlateAreRight) {
   for (const double thickness : {1e-4, 1e-6, 1e-7, 1e-8, 1e-10}) {
     TriangleMesh mesh = make_box({.segments = {4, 4, 4}});
@@ -50,7 +50,7 @@ TEST_P(FieldSigns, OfAThinPlateAreRight) {
   }
 }
 
-/// Seen from so far away, all sides of the mesh are equally close.
+/// All sides of the mesh are equally close from so far away.
 TEST_P(FieldSigns, FarFromASmallMeshAreRight) {
   const TriangleMesh mesh = make_star({});
   expect_right_signs(mesh, grid_in({{-1e8, -1e8, -1e8}, {1e8, 1e8, 1e8}}, 21));
@@ -67,7 +67,7 @@ TriangleMesh overlapping_ring() {
   return mesh;
 }
 
-/// Wrong pseudonormals whose nodes only the surface separates from right ones, and nodes without neighbours.
+/// Only the surface separates nodes with wrong pseudonormals from right ones. Some nodes have no neighbours.
 TEST_P(FieldSigns, OfAShellThatCrossesItselfAreRightOnCoarseAndFlatGrids) {
   const TriangleMesh mesh = overlapping_ring();
   bool were_normals_wrong = false;
@@ -103,8 +103,8 @@ TEST_P(FieldSigns, OfCrumpledMeshesAreRightOnCoarseGrids) {
   }
 }
 
-/// Asked for explicitly, normals of a mesh that is inside out call the outside inside.
-TEST_P(FieldSigns, OfThinPlatesThatAreInsideOutFollowTheirNormals) {
+/// Explicitly requested normals of a mesh that is inside out make the outside negative.
+TEST_P(FieldSigns, OfInsideOutThinPlatesFollowTheirNormals) {
   for (const double thickness : {1e-7, 1e-9}) {  // no node inside
     TriangleMesh mesh = make_box({.size = {1, 0.9, thickness}});
     reverse_triangles(mesh);
@@ -116,7 +116,7 @@ TEST_P(FieldSigns, OfThinPlatesThatAreInsideOutFollowTheirNormals) {
   }
 }
 
-/// So many crossings that the CPU does not count them one by one (at 65^3 nodes, from 350 boxes on).
+/// The CPU does not count so many crossings one by one (at 65^3 nodes, from 350 boxes on).
 TEST_P(FieldSigns, OfHeapsOfCoincidentBoxesAreRightEitherWayRound) {
   TriangleMesh mesh;
   for (int k = 0; k < 400; ++k) append(mesh, make_box({}));

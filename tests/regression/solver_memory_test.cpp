@@ -1,4 +1,5 @@
-// A solver that ran out of memory between its two buffers once wrote the next frame's sites through a null pointer.
+// Proves that a solver stays usable after it ran out of memory between its two buffers. Once, the next frame wrote its
+// sites through a null pointer.
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -20,7 +21,7 @@
 namespace blum {
 namespace {
 
-/// Bytes of address space in use; 0 where the system does not say.
+/// Bytes of address space in use; 0 if the system does not report them.
 std::size_t address_space() {
   std::ifstream statm("/proc/self/statm");
   std::size_t pages = 0;
@@ -33,7 +34,7 @@ TEST(RegressionSolverMemory, StaysUsableAfterOnlyOneBufferFitted) {
   GTEST_SKIP() << "a sanitizer's shadow memory does not go with a limit on the address space";
 #endif
 #if defined(__GLIBC__)
-  malloc_trim(0);  // what earlier tests left behind would be room for the second buffer
+  malloc_trim(0);  // memory of earlier tests would have room for the second buffer
 #endif
   const std::size_t in_use = address_space();
   if (in_use == 0) GTEST_SKIP() << "the address space in use is not known here";

@@ -17,10 +17,10 @@
 
 namespace blum::test {
 
-/// What computes a test's fields.
+/// The back end that computes the fields of a test.
 enum class BackEnd : std::uint8_t {
   cpu,
-  host,    ///< CUDA's kernels, blocks and lists, run on the CPU: slow
+  host,    ///< the CUDA kernels, blocks and lists, run on the CPU: slow
   device,  ///< the first CUDA device
 };
 
@@ -40,10 +40,10 @@ inline auto cuda_back_ends() {
   return testing::Values(BackEnd::host, BackEnd::device);
 }
 
-/// Base of fixtures whose tests run on one back end or another. SetUp() calls use().
+/// Base of fixtures whose tests run on several back ends. SetUp() calls use().
 class OnBackEnd : public testing::Test {
  protected:
-  /// Lets context() ask for a back end until the test ends. Skips the test where the back end is not there.
+  /// Makes context() select a back end until the test ends. Skips the test if the back end is not available.
   void use(BackEnd back_end) {
     back_end_ = back_end;
     if (back_end == BackEnd::host) emulated_.emplace();
@@ -62,7 +62,7 @@ class OnBackEnd : public testing::Test {
     return other;
   }
 
-  /// How much a test does: less on the host, which is slow.
+  /// The amount of work of a test: less on the host, which is slow.
   template <class T>
   [[nodiscard]] T usually(T amount, T on_host) const {
     return back_end_ == BackEnd::host ? on_host : amount;
@@ -81,7 +81,7 @@ class BackEndTest : public OnBackEnd, public testing::WithParamInterface<BackEnd
 
 using NameAndBackEnd = std::tuple<std::string, BackEnd>;
 
-/// Fixture of tests whose parameters are a name, of a shape or a file, and the back end.
+/// Fixture of tests whose parameters are the name of a shape or file, and the back end.
 class NamedBackEndTest : public OnBackEnd, public testing::WithParamInterface<NameAndBackEnd> {
  protected:
   void SetUp() override { use(std::get<1>(GetParam())); }

@@ -1,4 +1,4 @@
-// Blum: where tests find real shapes and images. SPDX-License-Identifier: Apache-2.0
+// Blum: paths of real shapes and images for tests. SPDX-License-Identifier: Apache-2.0
 #include "support/data.hpp"
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Blum: where tests find real shapes and images. SPDX-License-Identifier: Apache-2.0
+// Blum: paths of real shapes and images for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,12 +10,12 @@
 
 namespace blum::test {
 
-/// The folder of real shapes: the environment variable BLUM_DATA_DIR, else what CMake was given, else
-/// ../shared/data beside the project. It is no part of the project, and may be absent. (Target blum_test_data.)
+/// The folder of real shapes: the environment variable BLUM_DATA_DIR, else the folder given to CMake, else
+/// ../shared/data beside the project. The project does not contain it, and it may be absent. Target: blum_test_data.
 std::filesystem::path data_directory();
 
-/// The file of that name in the data folder; nullopt where there is no data folder, and only then: where there is one,
-/// a file that is missing in it fails the test, so that a test that needs data cannot be passed over unseen.
+/// The file of that name in the data folder; nullopt only if the data folder is absent. If the folder exists but the
+/// file does not, the test fails, so that no test that needs data is skipped unnoticed.
 inline std::optional<std::filesystem::path> data_file(const std::string& name) {
   const std::filesystem::path directory = data_directory();
   std::error_code ignored;
@@ -28,8 +28,8 @@ inline std::optional<std::filesystem::path> data_file(const std::string& name) {
   return file;
 }
 
-/// The reason to give to GTEST_SKIP. tools/results.py knows these words: with the data folder present, a test that was
-/// skipped for want of data counts as failed.
+/// The reason for GTEST_SKIP. tools/results.py recognises its words: if the data folder is present, a test skipped for
+/// lack of data counts as failed.
 inline std::string no_data(const std::string& name) {
   return "no data folder: " + name + " is not there (set BLUM_DATA_DIR)";
 }

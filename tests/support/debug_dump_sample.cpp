@@ -1,4 +1,4 @@
-// Writes what debug_dump() makes of a mesh, of points and of a complex, for readers of other programs.
+// Writes the files of debug_dump() for a mesh, points and a complex. Tests read them with other programs.
 //   debug_dump_sample DIR   mesh.vtp, points.vtp, complex.vtp
 #include <exception>
 #include <iostream>

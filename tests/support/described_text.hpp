@@ -1,4 +1,4 @@
-// Blum: all that a described struct holds, as text. SPDX-License-Identifier: Apache-2.0
+// Blum: the members of a described struct, as text. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -72,7 +72,7 @@ void put(std::ostream& out, const T& value) {
 
 }  // namespace detail
 
-/// A line for each member, with every bit of numbers: equal structs have equal texts, and no others.
+/// One line per member, with every bit of numbers. Texts are equal exactly if the structs are equal.
 template <DescribedStruct T>
 [[nodiscard]] std::string described_text(const T& value) {
   std::ostringstream out;

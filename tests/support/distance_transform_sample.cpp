@@ -1,9 +1,9 @@
-// Runs the distance transform on a raw image of bytes, so that other languages can compare its result with their own.
+// Runs the distance transform on a raw image of bytes. Programs in other languages compare its result with their own.
 //
 //   distance_transform_sample IN NX NY NZ SX SY SZ signed|unsigned THREADS OUT
 //
-// IN holds NX * NY * NZ bytes, x fastest; non-zero is selected. OUT gets the distances (float32), then the sites
-// (int32), in the same order. Prints the seconds of the transform.
+// IN contains NX * NY * NZ bytes, x fastest; non-zero bytes are selected. OUT receives the distances (float32), then
+// the sites (int32), in the same order. The program prints the seconds of the transform.
 #include <chrono>
 #include <cstdint>
 #include <exception>

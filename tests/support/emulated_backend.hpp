@@ -5,11 +5,10 @@
 
 namespace blum::test {
 
-/// While it is alive, CUDA device 0 is the host: everything above the kernels' launches and the device's memory is what
-/// runs on a CUDA device.
+/// During its lifetime, CUDA device 0 is the host. Only kernel launches and device memory differ from a CUDA device.
 class EmulatedCuda {
  public:
-  /// @param slab_nodes  of a slab of a field; 0: as many as on a device.
+  /// @param slab_nodes  nodes per slab of a field; 0: as many as on a device.
   explicit EmulatedCuda(std::size_t slab_nodes = 0);
   EmulatedCuda(const EmulatedCuda&) = delete;
   EmulatedCuda& operator=(const EmulatedCuda&) = delete;

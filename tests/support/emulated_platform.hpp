@@ -12,7 +12,7 @@
 
 namespace blum::test {
 
-/// One device, whose memory is the host's, and which has done everything as soon as it is queued.
+/// One device that uses the host's memory and completes work as soon as it is queued.
 struct EmulatedPlatform {
   using Device = kernels::EmulatedDevice;
 

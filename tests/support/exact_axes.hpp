@@ -1,5 +1,4 @@
-// Blum: exact theta-medial axes as shapes that distances are measured to, for tests. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: exact theta-medial axes as meshes, for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -20,16 +19,16 @@
 
 namespace blum::test {
 
-/// A solid and its exact axis of one theta. Round parts of the axis are of 720 flat ones, which are off by 1e-5 of
-/// their radius.
+/// A solid and its exact axis of one theta. Round parts of the axis consist of 720 flat parts, which are off by 1e-5
+/// of their radius.
 struct ExactAxis {
   TriangleMesh solid;
   TriangleMesh axis;         ///< triangles and segments
   TriangleMesh seams, rims;  ///< segments
-  double tube_radius = 0;    ///< of what has a curve in its middle, where all of that is of one radius
+  double tube_radius = 0;    ///< radius along the curve of the axis, if it is constant
 };
 
-/// How fine round solids are: facets of a circle of radius 1 are at most this far from it.
+/// The resolution of round solids. Facets are at most `off` away from the circle they approximate.
 struct Fineness {
   double off = 1e-4;
   [[nodiscard]] int sides(double radius) const {
@@ -56,7 +55,7 @@ inline void add_quad(TriangleMesh& mesh, const Vec3d& a, const Vec3d& b, const V
 
 // ---- Prisms ----
 
-/// A point of the axis of a planar region, one of its footprints, and whether the axis branches or ends there.
+/// A point of the axis of a planar region, and one of its footprints.
 struct Rib {
   Point2 wall, middle;
   [[nodiscard]] double depth() const { return std::hypot(middle[0] - wall[0], middle[1] - wall[1]); }
@@ -66,14 +65,13 @@ struct Rib {
   }
 };
 
-/// The axis of a prism below and above a planar region of which it is told by ribs. All angles of it are 90 or more, or
-/// those between the walls of the region.
+/// The axis of a prism that extends a planar region up and down. Ribs describe the axis of the region. The separation
+/// angles are 90 degrees or more, or those of the region's walls.
 class PrismAxis {
  public:
   PrismAxis(ExactAxis& out, double half) : out_(out), half_(half) {}
 
-  /// What lies between two ribs beside each other. @param is_wall  whether the walls at both differ: else it is a
-  /// reflex corner.
+  /// Adds the axis between two neighbouring ribs. If both have the same wall point, it is a reflex corner.
   void add(const Rib& a, const Rib& b) {
     const double over_a = a.depth() - half_;
     const double over_b = b.depth() - half_;
@@ -102,11 +100,11 @@ class PrismAxis {
       add_quad(out_.axis, a.at(da, half_ - da), b.at(db, half_ - db), b.at(db, db - half_), a.at(da, da - half_));
     }
   }
-  /// Where three or more lines of the region's axis meet.
+  /// Adds the seam at which three or more lines of the region's axis meet.
   void add_branch(const Point2& at, double depth) {
     if (depth < half_) add_segment(out_.seams, {at[0], at[1], depth - half_}, {at[0], at[1], half_ - depth});
   }
-  /// An upright rim: a convex corner of the region.
+  /// Adds the upright rim at a convex corner of the region.
   void add_corner(const Point2& at) { add_segment(out_.rims, {at[0], at[1], -half_}, {at[0], at[1], half_}); }
 
  private:
@@ -114,7 +112,7 @@ class PrismAxis {
   double half_;
 };
 
-/// Between two ribs whose ends move along lines.
+/// Adds the axis between two ribs whose ends move along lines.
 inline void add_straight(PrismAxis& prism, const Point2& wall_a, const Point2& middle_a, const Point2& wall_b,
                          const Point2& middle_b) {
   prism.add({wall_a, middle_a}, {wall_b, middle_b});
@@ -216,8 +214,8 @@ inline void add_circle(TriangleMesh& mesh, const ProfilePoint& p) {
   }
 }
 
-/// The closed surface of a profile that begins and ends at the axis of revolution (r = 0), turned around it.
-/// The profile runs with the solid on its left: from the lower end outwards.
+/// The closed surface of revolution of a profile that begins and ends at the axis of revolution (r = 0).
+/// The profile starts at the lower end and runs outwards, with the solid on its left.
 inline TriangleMesh revolved(const std::vector<ProfilePoint>& profile, int sides) {
   TriangleMesh mesh;
   const auto rings = static_cast<std::uint32_t>(profile.size() - 2);
@@ -245,8 +243,8 @@ inline TriangleMesh revolved(const std::vector<ProfilePoint>& profile, int sides
   return mesh;
 }
 
-/// Wider than high: a disc in the middle with a seam around it, and cones from there to both edges. Else: a segment
-/// in the middle, and cones from its ends.
+/// If the cylinder is wider than high, the axis is a disc, and cones from its border seam to both edges. Else it is a
+/// segment, and cones from its ends.
 inline ExactAxis exact_cylinder(double radius, double half, const Fineness& fineness) {
   ExactAxis out;
   out.solid = make_cylinder({.radius = radius, .height = 2 * half, .sides = fineness.sides(radius)});
@@ -265,9 +263,9 @@ inline ExactAxis exact_cylinder(double radius, double half, const Fineness& fine
   return out;
 }
 
-/// A cone of radius r and height h, its base at z = 0. With the half angle A at its tip, tan A = r / h: the middle sees
-/// the lateral surface at 180 - 2 A, and base and lateral surface are seen at 90 + A from the sheet between them. That
-/// runs from the edge of the base to the ball that touches all, at the height rho = r h / (r + sqrt(r^2 + h^2)).
+/// A cone of radius r and height h, with its base at z = 0. A is the half angle at its tip: tan A = r / h. The segment
+/// in the middle has the separation angle 180 - 2 A. The sheet between base and lateral surface has 90 + A. This sheet
+/// runs from the edge of the base to the centre of the inscribed ball, at height rho = r h / (r + sqrt(r^2 + h^2)).
 inline ExactAxis exact_cone(double radius, double height, const Fineness& fineness) {
   ExactAxis out;
   out.solid = revolved({{0, 0}, {radius, 0}, {0, height}}, fineness.sides(radius));
@@ -278,7 +276,7 @@ inline ExactAxis exact_cone(double radius, double height, const Fineness& finene
   return out;
 }
 
-/// A cylinder with half balls on both ends: the segment between their centres.
+/// A cylinder with half balls on both ends. Its axis is the segment between their centres.
 inline ExactAxis exact_capsule(double radius, double half, const Fineness& fineness) {
   ExactAxis out;
   const int sides = fineness.sides(radius);
@@ -297,7 +295,7 @@ inline ExactAxis exact_capsule(double radius, double half, const Fineness& finen
   return out;
 }
 
-/// The core circle.
+/// The axis of a torus is its core circle.
 inline ExactAxis exact_torus(double ring, double tube, const Fineness& fineness) {
   ExactAxis out;
   out.solid = make_torus({.ring_radius = ring,
@@ -309,8 +307,8 @@ inline ExactAxis exact_torus(double ring, double tube, const Fineness& fineness)
   return out;
 }
 
-/// Of an ellipse with half axes 1 and b, where the long axis is seen at theta (see on_ellipse()): the last s with
-/// tan(theta / 2) = sqrt(1 - s^2) / (b s), at x = s (1 - b^2).
+/// The end of the theta-axis of an ellipse with half axes 1 and b: x = s (1 - b^2). The parameter s solves
+/// tan(theta / 2) = sqrt(1 - s^2) / (b s); see on_ellipse().
 inline double end_of_ellipse(double b, double theta) {
   const double slope = std::tan(0.5 * theta / degrees);
   const double s = 1 / std::sqrt(1 + b * b * slope * slope);
@@ -341,7 +339,7 @@ inline ExactAxis exact_oblate(double b, double theta, const Fineness& fineness) 
 
 struct ExactCase {
   std::string name;
-  double size = 0;  ///< of the longest side
+  double size = 0;  ///< length of the longest side
   std::function<ExactAxis(double theta, const Fineness& fineness)> make;
 };
 
@@ -363,7 +361,7 @@ inline std::vector<ExactCase> exact_cases() {
           {"Oblate", 2, [](double theta, F fine) { return exact_oblate(0.4, theta, fine); }}};
 }
 
-/// Points of segments and triangles, no two neighbours further apart than a step.
+/// Points on segments and triangles. Neighbours are at most a step apart.
 inline std::vector<Vec3d> points_on(const MeshView& shape, double step) {
   std::vector<Vec3d> points;
   for (const auto& [a, b] : shape.segments) {

@@ -1,4 +1,4 @@
-// Blum: what a field promises, checked node by node, for tests. SPDX-License-Identifier: Apache-2.0
+// Blum: checks of the precision of fields, node by node, for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,17 +28,17 @@ inline Vec3d node_position(const GridSpec& grid, std::size_t node) {
   return grid.position(n % grid.size[0], n / grid.size[0] % grid.size[1], n / (grid.size[0] * grid.size[1]));
 }
 
-/// Whether two fields have the same distances and sites, bit for bit.
+/// True if two fields have the same distances and sites, bit for bit.
 inline bool same_bytes(const Field& a, const Field& b) {
   return a.distance.size() == b.distance.size() &&
          std::memcmp(a.distance.data(), b.distance.data(), a.distance.span().size_bytes()) == 0 &&
          std::memcmp(a.site.data(), b.site.data(), a.site.span().size_bytes()) == 0;
 }
 
-/// The worst violations over a set of nodes, as fractions of the diagonal.
+/// The largest errors over a set of nodes, as fractions of the diagonal.
 struct FieldError {
   double distance = 0;          ///< | |distance| - exact |
-  double site = 0;              ///< the reported site's own distance minus the exact one
+  double site = 0;              ///< distance of the reported site minus the exact distance
   std::size_t wrong_signs = 0;  ///< at nodes further than 1e-6 of the diagonal from the surface
   std::size_t missing_sites = 0;
   std::size_t worst_node = 0;
@@ -59,7 +59,7 @@ inline std::vector<std::size_t> random_nodes(const GridSpec& grid, std::size_t c
 
 /// Compares a field with a source of exact distances.
 /// @param exact      callable: query -> exact distance to the mesh, in double.
-/// @param is_inside  callable: query -> bool, looked at only where the field is signed.
+/// @param is_inside  callable: query -> bool, used only if the field is signed.
 template <class Exact, class IsInside>
 FieldError compare(const Field& field, const MeshView& mesh, const std::vector<std::size_t>& nodes, Exact exact,
                    IsInside is_inside) {
@@ -102,7 +102,7 @@ FieldError compare(const Field& field, const MeshView& mesh, const std::vector<s
   return total;
 }
 
-/// The precision promise of docs/theory/fields.md.
+/// Checks the precision that docs/theory/fields.md promises.
 inline void expect_promise(const FieldError& error) {
   EXPECT_LE(error.distance, 1e-6) << "at node " << error.worst_node;
   EXPECT_LE(error.site, 1e-6);
@@ -110,7 +110,7 @@ inline void expect_promise(const FieldError& error) {
   EXPECT_EQ(error.missing_sites, 0U);
 }
 
-/// Against brute force over all triangles, segments and points, in double.
+/// Compares with brute force over all triangles, segments and points, in double.
 inline FieldError compare_with_brute_force(const Field& field, const MeshView& mesh,
                                            const std::vector<std::size_t>& nodes) {
   return compare(
@@ -130,8 +130,8 @@ inline FieldError compare_with_brute_force(const Field& field, const MeshView& m
       [&](const Vec3d& q) { return reference::winding_number(mesh, q) > 0.5; });
 }
 
-/// Against the bounding-volume hierarchy (itself tested against brute force), which makes every node of large fields
-/// affordable; signs against the winding number's hierarchy, likewise.
+/// Compares with the bounding-volume hierarchy, and signs with the hierarchy of winding numbers. Other tests check both
+/// against brute force. They are fast enough for all nodes of large fields.
 inline FieldError compare_with_bvh(const Field& field, const MeshView& mesh, const std::vector<std::size_t>& nodes) {
   const SiteTable sites(mesh);
   const Bvh bvh(mesh, sites);

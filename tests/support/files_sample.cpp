@@ -1,7 +1,7 @@
-// Writes fields and images for readers of other programs, and shows what Blum reads from files of other programs.
-//   files_sample all DIR        samples into DIR, with NAME.expected.json and the raw values NAME.*.bin beside
-//   them files_sample image IN OUT   reads an image; writes its values to OUT.bin, its type and geometry to
-//   OUT.json files_sample field IN OUT   the same for a field: OUT.distance.bin, OUT.site.bin
+// Writes fields and images for other programs, and converts files of other programs that Blum reads.
+//   `files_sample all DIR`        writes samples, NAME.expected.json and the raw values NAME.*.bin into DIR.
+//   `files_sample image IN OUT`   reads an image; writes its values to OUT.bin, its type and geometry to OUT.json.
+//   `files_sample field IN OUT`   reads a field; writes OUT.distance.bin, OUT.site.bin and its geometry to OUT.json.
 // The .bin and .json files are written without Blum's writers.
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@ std::string json_list(const Vec3d& v) {
   return out.str();
 }
 
-/// Geometry with the columns of the direction, one list for each axis.
+/// Writes the geometry, with the direction as one column per axis.
 void write_geometry(const std::filesystem::path& path, const GridSpec& grid, const std::string& more) {
   std::ofstream out(path);
   out << "{\"size\": [" << grid.size[0] << ", " << grid.size[1] << ", " << grid.size[2]

@@ -27,7 +27,7 @@ inline VoxelImage read_text(const std::string& bytes, ImageFormat format) {
   return read_image(std::as_bytes(std::span(bytes)), format, "sample");
 }
 
-/// The message of the error that reading gives; empty where it gives none.
+/// The error message of reading the bytes; empty if reading succeeds.
 inline std::string error_of(const std::string& bytes, ImageFormat format) {
   try {
     (void)read_text(bytes, format);
@@ -37,7 +37,7 @@ inline std::string error_of(const std::string& bytes, ImageFormat format) {
   return {};
 }
 
-/// Deflates as gzip (window bits 31) or zlib (15).
+/// Compresses as gzip (window bits 31) or zlib (15).
 inline std::string compressed(const std::string& bytes, int window_bits) {
   z_stream z{};
   EXPECT_EQ(deflateInit2(&z, 9, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY), Z_OK);
@@ -66,7 +66,7 @@ std::string bytes_of(const std::vector<T>& values, std::endian order) {
   return out;
 }
 
-/// Puts a file into a folder.
+/// Writes a file into a folder.
 inline std::filesystem::path put_in(const TemporaryFolder& folder, const std::string& name, const std::string& bytes) {
   put_file(folder / name, bytes);
   return folder / name;
@@ -84,7 +84,7 @@ inline std::string npy_bytes(const std::string& dtype, const std::string& shape,
   return out + dict + data;
 }
 
-/// A NIfTI-1 header of 352 bytes for a 4 x 3 x 2 image; numbers are set in its byte order.
+/// A NIfTI-1 header of 352 bytes for a 4 x 3 x 2 image. Its numbers have the chosen byte order.
 struct Nifti {
   std::endian order = std::endian::little;
   std::string bytes = std::string(352, '\0');

@@ -24,7 +24,7 @@ struct KnownSample {
   double angle = 0;  ///< separation angle, degrees
 };
 
-/// A solid and its exact axis, no point of which is further than `step` from a sample.
+/// A solid and samples of its exact axis. Each point of the axis is at most `step` away from a sample.
 struct KnownAxis {
   TriangleMesh mesh;
   std::vector<KnownSample> axis;
@@ -33,7 +33,7 @@ struct KnownAxis {
 
 // ---- Prisms: solids below and above a planar region ----
 
-/// A planar region: how deep points are in it (negative outside), and its own medial axis.
+/// A planar region: the depth of points in it (negative outside), and its medial axis.
 struct Region {
   std::function<double(const Point2&)> depth;
   Point2 lower;
@@ -54,8 +54,8 @@ inline void add_line(Region& region, const Point2& from, const Point2& to, doubl
   }
 }
 
-/// A point of the axis of a prism of half a height has footprints on the walls alone, or on walls and a lid, which are
-/// at right angles, or on both lids.
+/// The axis of a prism with half height `half`. Each point has footprints on walls only, on both lids, or on a wall and
+/// a lid, which are perpendicular.
 inline std::vector<KnownSample> axis_of_prism(const Region& region, double half, double step) {
   std::vector<KnownSample> axis;
   for (const Region::OnAxis& s : region.axis) {
@@ -115,12 +115,12 @@ inline const std::vector<Point2>& l_outline() {
   return outline;
 }
 
-/// Adds half of the axis of the L: that of the arm along one axis.
+/// Adds the half of the L's axis that belongs to one arm.
 inline void add_arm(Region& region, std::size_t along, double step) {
   const auto point = [&](double s, double t) { return along == 0 ? Point2{s, t} : Point2{t, s}; };
-  const double meet = 2 - std::numbers::sqrt2;  // as far from two outer walls as from the inner corner
+  const double meet = 2 - std::numbers::sqrt2;  // equally far from two outer walls and from the inner corner
   for (double s = meet; s <= 1; s += step) {
-    // The parabola around the inner corner (1, 1), whose directrix is the outer wall.
+    // A parabola: its focus is the inner corner (1, 1), its directrix the outer wall.
     const double t = 0.5 * (1 + (s - 1) * (s - 1));
     region.axis.push_back({point(s, t), 180 - degrees * std::atan2(1 - s, 1 - t)});
   }
@@ -149,28 +149,29 @@ inline KnownAxis known_l_beam(double thickness, double step) {
 
 // ---- Round solids ----
 
-/// Facets lie less than 0.0001 inside of the ball: what is measured is the axis, not they.
+/// Facets lie less than 0.0001 inside the ball, so that they do not affect the measured axis.
 inline KnownAxis known_ball(double step) {
   return {make_sphere({.frequency = 48}), {{{0, 0, 0}, 1, 180}}, step};
 }
 
-/// A point of the axis of an ellipse with half axes 1 and b, and how the ellipse is seen from there: normals at (s, t)
-/// meet the long axis at s (1 - b^2).
+/// A point of the axis of an ellipse with half axes 1 and b, with its radius and separation angle. The normal at (s, t)
+/// meets the long axis at s (1 - b^2).
 inline KnownSample on_ellipse(double b, double s) {
   const double x = s * (1 - b * b);
   const double t = b * std::sqrt(std::max(0.0, 1 - s * s));
   return {{x, 0, 0}, std::hypot(s - x, t), 2 * degrees * std::atan2(t, std::abs(s - x))};
 }
 
-/// Around its long axis: a segment.
+/// An ellipsoid of revolution around its long axis. Its medial axis is a segment.
 inline KnownAxis known_prolate(double step) {
   KnownAxis known{make_ellipsoid({.radii = {1, 0.5, 0.5}, .frequency = 64}), {}, step};
   for (double s = -1; s <= 1; s += step) known.axis.push_back(on_ellipse(0.5, s));
   return known;
 }
 
-/// Around its short axis: a disc. Its curvature is strongest at the rim, where S is lowest: with facets of 1/64 the rim
-/// at 40 degrees is 1.02 diagonals off at 256, with 1/96 and less within one.
+/// An ellipsoid of revolution around its short axis. Its medial axis is a disc. Curvature is largest at the rim, where
+/// the separation angle is smallest. At resolution 256, the rim at 40 degrees is 1.02 diagonals off with
+/// facets of 1/64. With facets of 1/96 or less, it is off by at most one diagonal.
 inline KnownAxis known_oblate(double step) {
   KnownAxis known{make_ellipsoid({.radii = {1, 1, 0.4}, .frequency = 128}), {}, step};
   for (double s = 0; s <= 1; s += step) {

@@ -11,7 +11,7 @@
 
 namespace blum::test {
 
-/// A polyhedron with what its labels need.
+/// A polyhedron with the data that its labels require.
 struct LabelledSolid {
   explicit LabelledSolid(TriangleMesh given)
       : mesh(std::move(given)), table(mesh), sites(polyhedron_sites(mesh, table)), labels(mesh, table, sites) {}

@@ -1,4 +1,4 @@
-// Blum: reading surface maps at points of the surface, slowly. SPDX-License-Identifier: Apache-2.0
+// Blum: simple, slow reading of surface maps at points of the surface. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace blum::test {
 
-/// Where a point of a triangle is in the texture.
+/// The place of a point of a triangle in the texture.
 inline TexturePlace place_of(const MeshView& mesh, const SurfaceAtlas& atlas, std::uint32_t t, const Vec3d& point) {
   const auto [a, b, c] = triangle_corners(mesh, t);
-  // About 1 long, so that products are numbers.
+  // Vectors have a length of about 1, so that products neither overflow nor underflow.
   const double size = std::max({length(b - a), length(c - a), length(c - b)});
   const Vec3d to_b = (b - a) / size;
   const Vec3d to_c = (c - a) / size;

@@ -1,4 +1,4 @@
-// Blum: what the tests ask of medial axes. SPDX-License-Identifier: Apache-2.0
+// Blum: checks of medial axes for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,21 +19,21 @@
 
 namespace blum::test {
 
-/// From nothing left out to almost nothing kept; 90 degrees is the angle of many sheets.
+/// Angles from the full axis to almost none of it. Many sheets have an angle of 90 degrees.
 inline constexpr std::array<double, 6> angles{0, 20, 60, 90, 120, 170};
 
-/// Betti numbers of a complex as it is written.
+/// Betti numbers of a complex, without changes to it.
 inline BettiNumbers betti_of(const Complex& complex) {
   return homology(complex.view());
 }
 
-/// At every angle.
+/// Checks the Betti numbers at every angle.
 inline void expect_betti(const MedialAxis& axis, const BettiNumbers& betti) {
   for (const double theta : angles) EXPECT_EQ(betti_of(axis.simplify(theta)), betti) << "theta " << theta;
 }
 
-/// A certificate holds for an axis as it is given out: all of it at the smallest angle, of whose parts the others are
-/// made, and body by body at the largest one.
+/// Checks that certificates hold at the smallest angle, whose axis contains all others, and at the largest angle, body
+/// by body.
 inline void expect_certificates(const MedialAxis& axis, const MeshView& mesh, double least_theta = 0) {
   for (const double theta : {least_theta, angles.back()}) {
     const Certificate certificate = certify(axis.simplify(theta), mesh, {.balls = false});
@@ -41,7 +41,7 @@ inline void expect_certificates(const MedialAxis& axis, const MeshView& mesh, do
   }
 }
 
-/// A mesh that was taken as a polyhedron, and whose axis is certified.
+/// Checks that the mesh was treated as a polyhedron, and that its axis is certified.
 inline void expect_certified(const MedialAxis& axis, const MeshView& mesh, const BettiNumbers& betti) {
   EXPECT_EQ(axis.report().rule, SolidRule::polyhedron) << axis.report().reason;
   EXPECT_TRUE(axis.report().topology_matches);
@@ -50,7 +50,7 @@ inline void expect_certified(const MedialAxis& axis, const MeshView& mesh, const
   expect_certificates(axis, mesh);
 }
 
-/// A complex as a shape that distances can be measured to; vertices keep their order.
+/// A complex as a mesh, for distance queries. Vertices keep their order.
 inline TriangleMesh shape_of(const Complex& complex) {
   TriangleMesh mesh;
   mesh.vertices = complex.positions;
@@ -64,7 +64,7 @@ inline std::vector<Vec3d> positions(const Complex& complex) {
   return complex.positions;
 }
 
-/// The largest distance of any of some points from a shape.
+/// The largest distance of the points from a shape.
 inline double furthest_from(const MeshView& shape, std::span<const Vec3d> points) {
   double furthest = 0;
   for (const ClosestPoint& at : closest_points(shape, points, {.sign = SignMode::none})) {
@@ -73,14 +73,14 @@ inline double furthest_from(const MeshView& shape, std::span<const Vec3d> points
   return furthest;
 }
 
-/// The diagonal of the largest voxel that any body was given.
+/// The diagonal of the largest voxel of any body.
 inline double voxel_diagonal(const MedialAxis& axis) {
   double spacing = 0;
   for (const BodyReport& body : axis.report().bodies) spacing = std::max(spacing, body.spacing);
   return std::sqrt(3.0) * spacing;
 }
 
-/// Footprints lie on the surface, and as far from their vertex as the surface is: all within 1e-6 of the diagonal.
+/// Checks that footprints lie on the surface, at the surface's distance from their vertex, within 1e-6 of the diagonal.
 inline void expect_exact_balls(const Complex& complex, const MeshView& mesh) {
   const double tolerance = 1e-6 * bounds(mesh).diagonal();
   const MedialView axis(complex);
@@ -101,7 +101,7 @@ inline void expect_exact_balls(const Complex& complex, const MeshView& mesh) {
   EXPECT_LE(footprint_error, tolerance);
 }
 
-/// The matrix that turns by an angle, in degrees, around an axis.
+/// The rotation matrix for an angle, in degrees, around an axis.
 inline Mat3 rotation(const Vec3d& axis, double degrees) {
   const Vec3d u = axis / length(axis);
   const double radians = degrees * 3.14159265358979323846 / 180;

@@ -1,8 +1,7 @@
-// Writes a small medial axis for readers of other programs, and shows what Blum reads from files of other programs.
-//   medial_files_sample all DIR       the sample as DIR/axis.{vtp,ply,obj,ma,npz}, and empty.*, an axis of nothing;
-//   what
-//                                     they hold as axis.expected.json, written without Blum's writers
-//   medial_files_sample show IN OUT   reads an axis; writes what it holds to OUT, as JSON
+// Writes a small medial axis for other programs, and converts axes of other programs that Blum reads.
+//   `medial_files_sample all DIR`       writes axis.{vtp,ply,obj,ma,npz} and the empty axes empty.*; also
+//                                       axis.expected.json, without Blum's writers.
+//   `medial_files_sample show IN OUT`   reads an axis; writes its contents to OUT, as JSON.
 #include <exception>
 #include <filesystem>
 #include <fstream>

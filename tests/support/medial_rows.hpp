@@ -1,4 +1,4 @@
-// Blum: medial axes row by row, for tests that make or compare them by hand. SPDX-License-Identifier: Apache-2.0
+// Blum: medial axes as rows, for tests that build or compare them. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -42,13 +42,13 @@ struct TriangleRow {
   friend bool operator==(const TriangleRow&, const TriangleRow&) = default;
 };
 
-/// A medial axis as rows; becomes a complex with all columns wherever one is asked for.
+/// A medial axis as rows. It converts implicitly to a complex with all columns.
 struct AxisRows {
   std::vector<VertexRow> vertices;
   std::vector<EdgeRow> edges;
   std::vector<TriangleRow> triangles;
-  std::uint32_t sheet_count = 0;  ///< as the complex had
-  bool has_levels = false;        ///< whether `from` and `until` are columns
+  std::uint32_t sheet_count = 0;  ///< sheets of the complex
+  bool has_levels = false;        ///< true if the columns `from` and `until` exist
 
   AxisRows() = default;
   AxisRows(const Complex& given) {  // NOLINT(google-explicit-constructor): tests read better so

@@ -1,4 +1,4 @@
-// Blum: a small medial axis with everything that one can have. SPDX-License-Identifier: Apache-2.0
+// Blum: a small medial axis with all kinds of elements. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace blum::test {
 
-/// Three triangles around a seam (one sheet each), their rims, two curve edges that begin at the seam, and a vertex of
-/// nothing. Every number differs, and few are short in the decimal or the binary system.
+/// Three triangles around a seam (one sheet each), their rims, two curve edges that begin at the seam, and an isolated
+/// vertex. All numbers differ, and few have a short decimal or binary form.
 inline AxisRows sample_complex() {
   AxisRows complex;
   const auto add = [&](const Vec3d& position, MedialRole role) {
@@ -58,7 +58,7 @@ inline MedialMetadata sample_metadata() {
   grid.direction.columns[1] = {0.6, 0, -0.8};
   grid.direction.columns[2] = {-0.8, 0, -0.6};
   metadata.grid = grid;
-  metadata.label = -9007199254740993;  // no double
+  metadata.label = -9007199254740993;  // not representable as double
   metadata.weld = 1e-6;
   return metadata;
 }

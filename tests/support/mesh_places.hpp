@@ -1,4 +1,4 @@
-// Blum: meshes moved about, and places to ask them. SPDX-License-Identifier: Apache-2.0
+// Blum: transformed meshes and query points for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ inline TriangleMesh moved(TriangleMesh mesh, double scale, const Vec3d& offset =
   return mesh;
 }
 
-/// A point after turns about two axes, by angles that no grid likes.
+/// A point rotated about two axes, by angles without symmetry.
 inline Vec3d turned(const Vec3d& p) {
   constexpr double about_z = 0.3;
   constexpr double about_x = 0.5;
@@ -27,13 +27,13 @@ inline Vec3d turned(const Vec3d& p) {
   return {q.x, std::cos(about_x) * q.y - std::sin(about_x) * q.z, std::sin(about_x) * q.y + std::cos(about_x) * q.z};
 }
 
-/// A mesh after the same turns: faces of several triangles are bent by rounding.
+/// A mesh after the same rotation. Rounding bends faces of several triangles.
 inline TriangleMesh turned(TriangleMesh mesh) {
   for (Vec3d& v : mesh.vertices) v = turned(v);
   return mesh;
 }
 
-/// Each triangle with its own three vertices.
+/// A mesh in which each triangle has its own three vertices.
 inline TriangleMesh unwelded(const MeshView& mesh) {
   TriangleMesh out;
   for (const Triangle& t : mesh.triangles) {
@@ -61,7 +61,7 @@ inline TriangleMesh flat_sheet(std::uint32_t n) {
   return out;
 }
 
-/// Triangles of every awkward kind, with free segments and points among them.
+/// Triangles of every awkward kind, with free segments and points.
 inline TriangleMesh awkward_soup(std::size_t triangles, std::uint64_t seed) {
   TriangleMesh mesh = make_soup({.triangles = triangles, .awkward = 0.7, .seed = seed});
   append(mesh, make_segments({.segments = triangles / 8 + 1, .seed = seed + 1}));
@@ -69,7 +69,7 @@ inline TriangleMesh awkward_soup(std::size_t triangles, std::uint64_t seed) {
   return mesh;
 }
 
-/// Random places around a shape: in its box and half its size beyond, and a few at its vertices and far away.
+/// Random points in the box of a shape and half its size beyond, and a few at its vertices and far away.
 inline std::vector<Vec3d> places_around(const MeshView& mesh, std::size_t count, std::uint64_t seed) {
   const Box3 box = bounds(mesh);
   const double size = box.diagonal() > 0 ? box.diagonal() : 1.0;
@@ -94,7 +94,7 @@ inline std::vector<Vec3d> places_around(const MeshView& mesh, std::size_t count,
   return places;
 }
 
-/// A box from corner to corner; turned inside out where asked, and its triangles starting at another one.
+/// A box between two corners, optionally reversed. Its triangles start with number `first`.
 inline TriangleMesh box_between(const Vec3d& lower, const Vec3d& upper, bool is_reversed = false, int first = 0) {
   TriangleMesh mesh = make_box({});
   const Box3 box = bounds(mesh);

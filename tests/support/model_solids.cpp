@@ -13,7 +13,7 @@ namespace {
 
 using Outline = std::vector<Point2>;
 
-/// A mesh with another inside of it that faces inwards.
+/// A mesh with a void: another mesh inside it, reversed.
 TriangleMesh with_void(TriangleMesh outer, TriangleMesh inner) {
   inner.triangles = reversed_triangles(inner.triangles);
   append(outer, inner);
@@ -28,7 +28,7 @@ Outline rectangle(double x, double y, double width, double height) {
   return {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
 }
 
-/// A block with a slit from above that leaves little at the bottom.
+/// A block with a slit from above. Little material remains at the bottom.
 Outline slit(double width) {
   return {{-1, -1}, {1, -1}, {1, 1}, {width / 2, 1}, {width / 2, -0.9}, {-width / 2, -0.9}, {-width / 2, 1}, {-1, 1}};
 }
@@ -109,7 +109,7 @@ std::vector<NamedMesh> thin_solids() {
 std::vector<NamedMesh> whole_solids() {
   std::vector<NamedMesh> out;
   const auto add = [&](const char* name, const TriangleMesh& mesh) {
-    // Rounding may make a solid cross itself.
+    // Rounding may produce a solid that crosses itself.
     if (Solid::of(mesh).rule() == SolidRule::polyhedron) out.push_back({name, mesh});
   };
   add("box", make_box({.size = {2, 4, 6}, .segments = {1, 2, 3}}));

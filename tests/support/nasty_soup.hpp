@@ -1,4 +1,4 @@
-// Blum: triangles that break float32, for tests. SPDX-License-Identifier: Apache-2.0
+// Blum: triangles for which float32 is too imprecise, for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace blum::test {
 
-/// Triangles of extreme shapes: needles, caps, duplicates, coplanar and coincident pieces, zero areas.
+/// Triangles of extreme shapes: needles, caps, duplicates, coplanar and coincident triangles, zero areas.
 inline TriangleMesh nasty_soup(std::uint64_t seed, std::size_t count) {
   Random random(seed);
   TriangleMesh mesh;

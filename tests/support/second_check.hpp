@@ -1,4 +1,4 @@
-// Blum: what fields of order 2 promise, checked node by node, for tests. SPDX-License-Identifier: Apache-2.0
+// Blum: checks of fields of order 2, node by node, for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace blum::test {
 
-/// The smallest vertex that each vertex hangs together with, found the slow way.
+/// For each vertex, the smallest vertex of its component, by a simple slow search.
 inline std::vector<std::uint32_t> slow_parts(const MeshView& mesh) {
   std::vector<std::uint32_t> part(mesh.vertices.size());
   for (std::uint32_t v = 0; v < part.size(); ++v) part[v] = v;
@@ -34,12 +34,12 @@ inline std::vector<std::uint32_t> slow_parts(const MeshView& mesh) {
   return part;
 }
 
-/// The worst violations of the second order's promise, distances as fractions of the diagonal.
+/// The largest errors of the second order. Distances are fractions of the diagonal.
 struct SecondError {
   double distance = 0;
-  double site = 0;               ///< the reported site's own distance minus that of the closest that may be second
-  std::size_t not_allowed = 0;   ///< second sites that share a label with the first
-  std::size_t wrong_absent = 0;  ///< a site where there is none, none where there is one, another value than promised
+  double site = 0;               ///< distance of the reported site minus that of the closest allowed second site
+  std::size_t not_allowed = 0;   ///< number of second sites that share a label with the first
+  std::size_t wrong_absent = 0;  ///< number of nodes with an extra or missing second site, or a wrong value
   std::size_t worst_node = 0;
 };
 
@@ -78,7 +78,7 @@ inline void check_second(const Field& field, const reference::BruteForce& brute,
 }
 
 /// Compares the second order with brute force over all sites, given the first sites that the field reports.
-/// @param labels  those of the rule, one per vertex; empty: each vertex its own.
+/// @param labels  labels of the rule, one per vertex; empty: each vertex has its own label.
 inline SecondError compare_second(const Field& field, const MeshView& mesh, std::span<const std::uint32_t> labels,
                                   const std::vector<std::size_t>& nodes) {
   const reference::BruteForce brute(mesh);

@@ -1,4 +1,4 @@
-// Blum: the generated shapes, as names of tests. SPDX-License-Identifier: Apache-2.0
+// Blum: names of generated shapes, as names of tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cctype>
@@ -9,7 +9,7 @@
 
 namespace blum::test {
 
-/// Letters and digits, as names of tests may have.
+/// Replaces all characters that names of tests may not contain.
 inline std::string test_name(std::string name) {
   for (char& c : name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
@@ -17,7 +17,7 @@ inline std::string test_name(std::string name) {
   return name;
 }
 
-/// Those of all shapes.
+/// The names of all shapes.
 inline std::vector<std::string> catalog_names() {
   std::vector<std::string> names;
   for (const ShapeInfo& shape : shape_catalog()) names.push_back(shape.name);

@@ -14,7 +14,7 @@ namespace {
 
 using Point2 = std::array<double, 2>;
 
-/// Loops or shells that enclose less than this part of the square or cube of their size may be rounded to another side.
+/// A loop or shell that encloses less than this part of the square or cube of its size may be inverted by rounding.
 constexpr double least_part = 1e-13;
 
 /// One connected part of a face.
@@ -23,13 +23,13 @@ struct Region {
   std::vector<const VertexLoop*> holes;
 };
 
-/// What closes a cut, seen from outside.
+/// The face that closes a cut, seen from outside.
 class Cap {
  public:
   Cap(const std::vector<Vec3d>& vertices, std::size_t axis, bool faces_up)
       : vertices_(vertices), first_((axis + (faces_up ? 1U : 2U)) % 3), second_((axis + (faces_up ? 2U : 1U)) % 3) {}
 
-  /// @return  nothing where it is not clear what lies in what.
+  /// @return  nullopt if rounding makes the nesting of the loops ambiguous.
   [[nodiscard]] std::optional<std::vector<Region>> regions(const std::vector<VertexLoop>& loops) const {
     std::vector<Region> out;
     for (const VertexLoop& loop : loops) {
@@ -98,11 +98,11 @@ class Cutter {
   SolidPart take() { return std::move(out_); }
 
  private:
-  /// Where a loop passes the plane, along the cut.
+  /// A point at which a loop passes the plane; `at` is its place along the cut.
   struct Pass {
     double at = 0;
     std::uint32_t vertex = 0;
-    bool leaves = false;  ///< the part that is kept
+    bool leaves = false;  ///< true if the loop leaves the kept part
     [[nodiscard]] bool operator<(const Pass& other) const { return at < other.at; }
   };
 
@@ -124,7 +124,7 @@ class Cutter {
   void cut(const FlatFace& face) {
     FlatFace kept{face.axis, {}};
     std::vector<Pass> passes;
-    std::map<std::uint32_t, VertexLoop> chains;  // by the vertex that they begin with
+    std::map<std::uint32_t, VertexLoop> chains;  // keys: first vertices
     for (const VertexLoop& loop : face.loops) {
       const auto outside = std::find_if(loop.begin(), loop.end(), [&](std::uint32_t v) { return !is_kept(v); });
       if (outside == loop.end()) {
@@ -140,7 +140,7 @@ class Cutter {
         if (is_kept(a) == is_kept(b)) continue;
         const std::uint32_t v = vertex_between(a, b);
         chain.push_back(v);
-        // Parts of triangles are convex: it does not matter where both passes lie along the cut.
+        // Parts of triangles are convex: the order of both passes along the cut does not matter.
         passes.push_back({face.axis < 3 ? out_.vertices[v][3 - axis_ - face.axis] : 0, v, is_kept(a)});
         if (is_kept(a)) {
           const std::uint32_t begin = chain.front();
@@ -153,7 +153,7 @@ class Cutter {
     if (!kept.loops.empty()) out_.faces.push_back(std::move(kept));
   }
 
-  /// From each second pass along the cut to the next the cut lies in the face.
+  /// Joins passes in pairs along the cut. The cut lies in the face between the two passes of a pair.
   void join(std::vector<Pass>& passes, std::map<std::uint32_t, VertexLoop>& chains, FlatFace& kept) {
     std::sort(passes.begin(), passes.end());
     std::map<std::uint32_t, std::uint32_t> link;
@@ -196,7 +196,7 @@ class Cutter {
   std::map<std::uint32_t, std::uint32_t> around_cap_;
 };
 
-/// Drops vertices that no face has.
+/// Removes vertices that belong to no face.
 void compact(SolidPart& part) {
   constexpr std::uint32_t nothing = 0xffffffffU;
   std::vector<std::uint32_t> place(part.vertices.size(), nothing);
@@ -256,7 +256,7 @@ PartShape shape_of(const SolidPart& part, const Vec3d& high) {
   const auto join = [&](const VertexLoop& loop) {
     for (const std::uint32_t v : loop) joined.join(loop.front(), v);
   };
-  std::map<std::uint32_t, int> twice_euler;  // of shells, by any vertex of their parts
+  std::map<std::uint32_t, int> twice_euler;  // of each shell; keys: any of its vertices
   for (std::uint32_t v = 0; v < vertices.size(); ++v) twice_euler[v] = 2;
   for (const FlatFace& face : part.faces) {
     for (const VertexLoop& loop : face.loops) {

@@ -12,7 +12,7 @@ namespace {
 
 using Number = boost::multiprecision::cpp_rational;
 
-/// Coefficients from the constant on, the last not zero.
+/// Coefficients in ascending order of degree. The last one is not zero.
 using Polynomial = std::vector<Number>;
 using Vector = std::array<Polynomial, 3>;
 
@@ -89,7 +89,7 @@ int sign(const Number& x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-/// Counts the roots of a polynomial that has no multiple ones.
+/// Counts the roots of a polynomial without multiple roots.
 class Roots {
  public:
   explicit Roots(const Polynomial& p) : sequence_{p, derivative(p)} {
@@ -100,7 +100,7 @@ class Roots {
       sequence_.push_back(std::move(next));
     }
   }
-  /// In (low, high].
+  /// The number of roots in (low, high].
   [[nodiscard]] int in(const Number& low, const Number& high) const { return variations(low) - variations(high); }
   [[nodiscard]] bool are_at(const Number& t) const { return value(sequence_[0], t) == 0; }
   [[nodiscard]] const Polynomial& polynomial() const { return sequence_[0]; }
@@ -124,12 +124,12 @@ Polynomial square_free(const Polynomial& p) {
   return p.size() < 2 ? p : divided(p, greatest_common_divisor(p, derivative(p))).quotient;
 }
 
-/// A root of a polynomial in [0, 1], alone in (low, high]; or `high` itself, where both are equal.
+/// A root of a polynomial in [0, 1]: the only one in (low, high], or `high` itself if both are equal.
 class Time {
  public:
   Time(Roots roots, Number low, Number high) : roots_(std::move(roots)), low_(std::move(low)), high_(std::move(high)) {}
 
-  /// Narrows it as far as is needed.
+  /// The sign of another polynomial at this root. Narrows the interval as far as needed.
   [[nodiscard]] int sign_of(const Polynomial& other) {
     if (other.empty()) return 0;
     if (low_ == high_ || other.size() == 1) return sign(value(other, high_));
@@ -191,15 +191,15 @@ Polynomial dot(const Vector& a, const Vector& b) {
   return sum(sum(product(a[0], b[0]), product(a[1], b[1]), 1), product(a[2], b[2]), 1);
 }
 
-/// What says whether a point is on a segment.
+/// Polynomials that decide if a point is on a segment.
 struct OnSegment {
   OnSegment(const Vector& p, const Vector& a, const Vector& b) : area(cross(b - a, p - a)), beyond(dot(p - a, p - b)) {}
   Vector area;
   Polynomial beyond;
 };
 
-/// Features meet where all of `inside` are at least zero, `volume` is zero, and `normal` is not; or where a point is on
-/// a segment.
+/// Features meet if all of `inside` are at least zero, `volume` is zero, and `normal` is not zero. They also meet if a
+/// point is on a segment.
 std::optional<ContactTime> first_contact(const Polynomial& volume, const Vector& normal,
                                          const std::vector<Polynomial>& inside, const std::vector<OnSegment>& touches) {
   std::vector<Polynomial> all{volume, dot(normal, normal)};
@@ -228,15 +228,15 @@ std::optional<ContactTime> first_contact(const Polynomial& volume, const Vector&
   return first;
 }
 
-/// Two parts of features that are close where `excess` is not positive, all of `inside` are at least zero and `size` is
-/// not zero.
+/// Two parts of features. They are close if `excess` is not positive, all of `inside` are at least zero and `size` is
+/// positive.
 struct CloseParts {
   Polynomial excess;
   std::vector<Polynomial> inside;
   Polynomial size;
 };
 
-/// Asks at all roots of all polynomials whether any parts are close.
+/// Checks at all roots of all polynomials if any parts are close.
 std::optional<ContactTime> first_approach(const std::vector<CloseParts>& all) {
   std::vector<Time> times{Time(Roots({0, 1}), 0, 0)};
   const auto add = [&](const Polynomial& one) {
@@ -276,7 +276,7 @@ CloseParts point_and_segment(const Vector& p, const Vector& a, const Vector& b, 
   return {sum(dot(area, area), scaled(size, square), -1), {dot(b - a, p - a), dot(a - b, p - b)}, size};
 }
 
-/// @param inside  how the closest points of plane and feature, or of two lines, lie on the features.
+/// @param inside  at least zero if the closest points of plane and point, or of two lines, lie on the features.
 CloseParts of_plane(const Vector& normal, const Vector& between, std::vector<Polynomial> inside, const Number& square) {
   const Polynomial volume = dot(normal, between);
   const Polynomial size = dot(normal, normal);

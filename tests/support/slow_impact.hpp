@@ -1,4 +1,4 @@
-// Blum: when moving features meet, slowly and obviously. SPDX-License-Identifier: Apache-2.0
+// Blum: simple, slow times of impact of moving features. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
@@ -7,19 +7,19 @@
 
 namespace blum::test {
 
-/// An interval of times that holds the first contact, and is no wider than 2^-60; of width zero where it is met
-/// exactly.
+/// An interval that contains the time of the first contact. It is at most 2^-60 wide, and has width zero if the time is
+/// exact.
 struct ContactTime {
   double low;
   double high;
 };
 
-/// By rational arithmetic: whether the features meet is asked at all roots of all polynomials that say it, as it can
-/// begin nowhere else but at the start. Shares nothing with the library.
+/// Uses rational arithmetic and shares no code with the library. Contact can begin only at the start, or at a root of
+/// one of the polynomials that decide it. The function checks all these times.
 [[nodiscard]] std::optional<ContactTime> slow_vertex_face_impact(const FourMovingPoints& points);
 [[nodiscard]] std::optional<ContactTime> slow_edge_edge_impact(const FourMovingPoints& points);
 
-/// The first time at which they are no further apart than a distance, which is positive.
+/// The first time at which the features are at most a positive distance apart.
 [[nodiscard]] std::optional<ContactTime> slow_vertex_face_approach(const FourMovingPoints& points, double distance);
 [[nodiscard]] std::optional<ContactTime> slow_edge_edge_approach(const FourMovingPoints& points, double distance);
 

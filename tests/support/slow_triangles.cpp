@@ -37,7 +37,7 @@ Q of_point_and_segment(const V& p, const V& a, const V& b) {
   return square(minus(p, along(a, way, t)));
 }
 
-/// Whether a point of the plane of a triangle with an area lies in it.
+/// True if a point in the plane of a triangle lies in the triangle. Its area must not be zero.
 bool is_inside(const V& p, const T& t, const V& normal) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (times(cross(minus(t[(k + 1) % 3], t[k]), minus(p, t[k])), normal) < 0) return false;
@@ -49,7 +49,7 @@ void offer(Q& best, const Q& other) {
   if (other < best) best = other;
 }
 
-/// The insides of two edges.
+/// Offers the distance between interior points of two edges.
 void offer_edges(const V& a, const V& b, const V& c, const V& d, Q& best) {
   const V u = minus(b, a);
   const V v = minus(d, c);
@@ -64,7 +64,7 @@ void offer_edges(const V& a, const V& b, const V& c, const V& d, Q& best) {
   offer(best, height * height / size);
 }
 
-/// The corners of one triangle, its edges that pass through the other, and that one's inside.
+/// Offers the distances of the corners of one triangle from the interior of the other; 0 if an edge passes through it.
 void offer_face(const T& a, const T& b, Q& best) {
   const V normal = cross(minus(b[1], b[0]), minus(b[2], b[0]));
   const Q size = square(normal);

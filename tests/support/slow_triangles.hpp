@@ -1,4 +1,4 @@
-// Blum: how far triangles are apart, slowly and obviously. SPDX-License-Identifier: Apache-2.0
+// Blum: simple, slow distances of triangles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace blum::test {
 
-/// The square of the distance of two triangles, which may be segments or points: the least one of all pairs of their
-/// parts, in rational numbers; 0 where an edge of one passes through the other. Shares nothing with the library.
+/// The squared distance of two triangles, which may be segments or points, in rational numbers. It is the minimum over
+/// all pairs of their parts, and 0 if an edge of one passes through the other. Shares no code with the library.
 [[nodiscard]] boost::multiprecision::cpp_rational slow_squared_distance(const std::array<Vec3d, 3>& a,
                                                                         const std::array<Vec3d, 3>& b);
 

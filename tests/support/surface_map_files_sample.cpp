@@ -1,4 +1,4 @@
-// Writes a surface map for readers of other programs: map.npz, map.png, map.glb, map.ply, map.vtp into a folder.
+// Writes a surface map for other programs: map.npz, map.png, map.glb, map.ply, map.vtp in a folder.
 //   surface_map_files_sample DIR
 #include <exception>
 #include <filesystem>

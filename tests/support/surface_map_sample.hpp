@@ -1,4 +1,4 @@
-// Blum: a surface map that is known everywhere. SPDX-License-Identifier: Apache-2.0
+// Blum: a surface map with known values. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@
 
 namespace blum::test {
 
-/// A box whose six sides have a square chart each, three in a row; and the values of a linear function on it, which
-/// reading the texture bilinearly gives back.
+/// A box with one square chart per side, three in a row. The map contains a linear function, which bilinear reading of
+/// the texture reproduces.
 class BoxMap {
  public:
   static constexpr std::uint32_t side = 16;   ///< texels of a chart
-  static constexpr std::uint32_t gutter = 8;  ///< texels around each
+  static constexpr std::uint32_t gutter = 8;  ///< texels around each chart
   static constexpr std::uint32_t cell = side + 2 * gutter;
 
   TriangleMesh mesh;
   SurfaceMap map;
 
-  /// @param first    of the values, at the middle of the box.
-  /// @param nothing  a side whose texels have no distance, 0 to 5; or none.
+  /// @param first    the value at the centre of the box.
+  /// @param nothing  a side whose texels have no distance, 0 to 5; -1: none.
   explicit BoxMap(double first, int nothing = -1) : first_(first) {
     for (std::uint32_t v = 0; v < 8; ++v) mesh.vertices.push_back(corner(v));
     auto atlas = std::make_shared<SurfaceAtlas>();
@@ -44,7 +44,7 @@ class BoxMap {
     map.sign_reason = "made for tests";
   }
 
-  /// Between first - 2.75 and first + 2.75 on the box.
+  /// The value at a point: between first - 2.75 and first + 2.75 on the box.
   [[nodiscard]] double value_at(const Vec3d& p) const { return first_ + p.x + 2 * p.y + 3 * p.z; }
 
  private:
@@ -53,7 +53,7 @@ class BoxMap {
   }
 
   void add_side(SurfaceAtlas& atlas, std::uint32_t s, bool is_nothing) {
-    // The corners of sides, counter-clockwise seen from outside.
+    // The corners of each side, counter-clockwise as seen from outside.
     constexpr std::array<std::array<std::uint32_t, 4>, 6> sides{
         {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
     const auto& [a, b, c, d] = sides[s];
@@ -68,7 +68,7 @@ class BoxMap {
     const Vec3d origin = mesh.vertices[a];
     const Vec3d u_step = (mesh.vertices[b] - origin) / double{side};
     const Vec3d v_step = (mesh.vertices[d] - origin) / double{side};
-    for (int v = -1; v <= static_cast<int>(side); ++v) {  // a texel more than the chart on each side is read
+    for (int v = -1; v <= static_cast<int>(side); ++v) {  // bilinear reading uses one more texel on each side
       for (int u = -1; u <= static_cast<int>(side); ++u) {
         const auto x = static_cast<std::size_t>(left) + static_cast<std::size_t>(u + 1) - 1;
         const auto y = static_cast<std::size_t>(top) + static_cast<std::size_t>(v + 1) - 1;

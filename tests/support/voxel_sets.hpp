@@ -1,4 +1,4 @@
-// Blum: sets of voxels, and grids, for tests. SPDX-License-Identifier: Apache-2.0
+// Blum: sets of voxels and grids for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace blum::test {
 
-/// Calls visit(i, j, k) for the voxels of a box, all but the outermost `margin` layers.
+/// Calls visit(i, j, k) for the voxels of a box, except the outermost `margin` layers.
 template <class Visit>
 void for_each_voxel(const std::array<std::int64_t, 3>& size, std::int64_t margin, const Visit& visit) {
   for (std::int64_t k = margin; k + margin < size[2]; ++k) {
@@ -21,7 +21,7 @@ void for_each_voxel(const std::array<std::int64_t, 3>& size, std::int64_t margin
   }
 }
 
-/// The voxels for which is_in(i, j, k) is true, off the outermost layer.
+/// The voxels for which is_in(i, j, k) is true, except in the outermost layer.
 template <class IsIn>
 VoxelSet voxels_where(const std::array<std::int64_t, 3>& size, const IsIn& is_in) {
   VoxelSet voxels(size);
@@ -31,12 +31,12 @@ VoxelSet voxels_where(const std::array<std::int64_t, 3>& size, const IsIn& is_in
   return voxels;
 }
 
-/// Each voxel off the outermost layer with the same probability.
+/// A random set that contains each voxel with the same probability, except the outermost layer.
 inline VoxelSet random_voxels(const std::array<std::int64_t, 3>& size, double density, Random& random) {
   return voxels_where(size, [&](auto...) { return random.uniform() < density; });
 }
 
-/// A turned grid with voxels of three different sides.
+/// A rotated grid whose voxels have three different side lengths.
 inline GridSpec turned_grid(const std::array<std::int64_t, 3>& size) {
   const double c = std::cos(0.7);
   const double s = std::sin(0.7);

@@ -11,7 +11,7 @@
 
 namespace blum::test {
 
-/// One entry of a zip archive, its local header and its line in the directory.
+/// One entry of a zip archive, for its local header and its line in the directory.
 struct ZipPart {
   std::string name, data;
   bool deflate = false;

@@ -1,5 +1,5 @@
-// Proves that the graph of a medial axis holds each of its parts once: hand-made cases with all numbers, and axes of
-// solids whose sums, edges and junctions are those of the complex.
+// Proves that the graph of a medial axis contains each part once. Axes made by hand are compared number by number. For
+// axes of solids, sums, edges and junctions equal those of the complex.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -43,7 +43,7 @@ std::uint32_t add_vertex(AxisRows& axis, const Vec3d& position, double radius = 
   return static_cast<std::uint32_t>(axis.vertices.size() - 1);
 }
 
-/// A band of squares between two rows of vertices.
+/// Adds a strip of squares between two rows of vertices.
 void add_band(AxisRows& axis, const Numbers& low, const Numbers& high) {
   for (std::size_t k = 0; k + 1 < low.size(); ++k) {
     axis.triangles.push_back({{low[k], low[k + 1], high[k + 1]}, 90, 0});
@@ -51,14 +51,14 @@ void add_band(AxisRows& axis, const Numbers& low, const Numbers& high) {
   }
 }
 
-/// Points along x.
+/// Adds points along x.
 Numbers add_row(AxisRows& axis, int count, const Vec3d& from) {
   Numbers row;
   for (int k = 0; k < count; ++k) row.push_back(add_vertex(axis, from + Vec3d{static_cast<double>(k), 0, 0}));
   return row;
 }
 
-/// A square of side 2 around the z axis, the first vertex again at the end.
+/// Adds a square around the z axis. The first vertex is repeated at the end.
 Numbers add_square(AxisRows& axis, double side, double z) {
   Numbers row;
   for (const auto& [x, y] : {std::array{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}) {
@@ -68,10 +68,10 @@ Numbers add_square(AxisRows& axis, double side, double z) {
   return row;
 }
 
-/// What holds of every axis.
+/// Checks the facts that hold for every axis.
 void expect_whole(const Complex& complex, const AxisGraph& graph) {
   const MedialView axis(complex);
-  std::map<std::array<std::uint32_t, 2>, int> listed;  // by their role
+  std::map<std::array<std::uint32_t, 2>, int> listed;  // 1 for seams, 2 for curves
   for (std::size_t e = 0; e < axis.edges.size(); ++e) {
     const auto [low, high] = std::minmax(axis.edges[e][0], axis.edges[e][1]);
     if (axis.edge_role(e) == MedialRole::seam) listed[{low, high}] = 1;
@@ -152,7 +152,7 @@ TEST(AxisGraph, VerticesAloneArePoints) {
 }
 
 TEST(AxisGraph, CurvesAreChainsWithTheirRadii) {
-  AxisRows axis;  // a Y of three curves, and a closed one
+  AxisRows axis;  // a Y of three curves, and a closed curve
   const std::uint32_t centre = add_vertex(axis, {0, 0, 0}, 4);
   for (const Vec3d& way : {Vec3d{1, 0, 0}, Vec3d{0, 2, 0}, Vec3d{0, 0, 3}}) {
     const std::uint32_t middle = add_vertex(axis, way, 2);
@@ -169,7 +169,7 @@ TEST(AxisGraph, CurvesAreChainsWithTheirRadii) {
   EXPECT_EQ(graph.curves[1].arc_length, (std::vector<double>{0, 2, 8}));
   EXPECT_EQ(graph.curves[1].radii, (std::vector<double>{4, 2, 1}));
   EXPECT_EQ(graph.curves[1].radius.minimum, 1);
-  // From 2 to 1 over three quarters of the length, then from 2 to 4.
+  // Three quarters of the length run from 2 to 1, the rest from 2 to 4.
   EXPECT_NEAR(graph.curves[1].radius.median, 1 + 2.0 / 3, 1e-12);
   EXPECT_EQ(graph.curves[1].radius.maximum, 4);
   EXPECT_TRUE(graph.curves[3].closed);
@@ -182,7 +182,7 @@ TEST(AxisGraph, CurvesAreChainsWithTheirRadii) {
   EXPECT_EQ(graph.junctions[2].kind, JunctionKind::curve_end);
 }
 
-TEST(AxisGraph, ACurveThatReturnsToItsJunctionIsThereTwice) {
+TEST(AxisGraph, AJunctionListsACurveThatReturnsToItTwice) {
   AxisRows axis;
   const Numbers loop = add_square(axis, 2, 0);
   for (std::size_t k = 0; k < 4; ++k) axis.edges.push_back({{loop[k], loop[k + 1]}});
@@ -193,7 +193,7 @@ TEST(AxisGraph, ACurveThatReturnsToItsJunctionIsThereTwice) {
   EXPECT_EQ(graph.junctions[0].curves, (Numbers{0, 0, 1}));
 }
 
-TEST(AxisGraph, DiscsRingsAndSpheresAreToldApart) {
+TEST(AxisGraph, DistinguishesDiscsRingsAndSpheres) {
   AxisRows disc;
   add_band(disc, add_row(disc, 6, {0, 0, 0}), add_row(disc, 6, {0, 1, 0}));
   for (std::size_t v = 0; v < disc.vertices.size(); ++v) {
@@ -266,7 +266,7 @@ TEST(AxisGraph, ASeamAllAroundIsClosed) {
 }
 
 TEST(AxisGraph, ASheetThatMeetsItselfIsCutThere) {
-  AxisRows axis;  // a ring on a plate that goes around: the wall of the ring meets the line twice
+  AxisRows axis;  // a ring on a plate along a line: the wall of the ring meets the line twice
   const Numbers line = add_row(axis, 3, {0, 0, 0});
   const Numbers left = add_row(axis, 3, {0, -1, 1});
   const Numbers right = add_row(axis, 3, {0, 1, 1});
@@ -282,7 +282,7 @@ TEST(AxisGraph, ASheetThatMeetsItselfIsCutThere) {
   EXPECT_EQ(graph.seams[0].sheets, (Numbers{0, 1}));
 }
 
-TEST(AxisGraph, CurvesOnSheetsAndSheetsThatTouchAreSaid) {
+TEST(AxisGraph, ReportsCurvesOnSheetsAndTouchingSheets) {
   AxisRows axis;
   const Numbers low = add_row(axis, 3, {0, 0, 0});
   add_band(axis, low, add_row(axis, 3, {0, 1, 0}));
@@ -299,7 +299,7 @@ TEST(AxisGraph, CurvesOnSheetsAndSheetsThatTouchAreSaid) {
   EXPECT_EQ(graph.curves[0].sheets, (Numbers{0}));
 }
 
-TEST(AxisGraph, SheetsOfNoTriangleAreNotListed) {
+TEST(AxisGraph, SheetsWithoutTrianglesAreNotListed) {
   AxisRows axis;
   add_band(axis, add_row(axis, 3, {0, 0, 0}), add_row(axis, 3, {0, 1, 0}));
   Complex complex = labelled(axis);
@@ -309,7 +309,7 @@ TEST(AxisGraph, SheetsOfNoTriangleAreNotListed) {
   EXPECT_EQ(graph.sheets[0].sheet, 3U);
 }
 
-TEST(AxisGraph, WhatIsMissingIsNamed) {
+TEST(AxisGraph, RejectsMissingAndInvalidColumns) {
   AxisRows axis;
   add_band(axis, add_row(axis, 3, {0, 0, 0}), add_row(axis, 3, {0, 1, 0}));
   Complex complex = labelled(axis);
@@ -333,7 +333,7 @@ AxisSpread spread_of(const std::vector<LinearPart>& parts) {
   return spread;
 }
 
-TEST(AxisGraph, LowValuesAndMediansAreOfWeights) {
+TEST(AxisGraph, LowValuesAndMediansAreWeighted) {
   const auto constant = [](double value, double weight) { return LinearPart::on_edge(value, value, weight); };
   const AxisSpread some = spread_of({constant(5, 1), constant(1, 1), constant(3, 3)});
   EXPECT_NEAR(some.low, 1, 1e-12);
@@ -345,16 +345,16 @@ TEST(AxisGraph, LowValuesAndMediansAreOfWeights) {
   EXPECT_NEAR(crumb.low, 4, 1e-12) << "one small triangle is no wall";
 }
 
-TEST(AxisGraph, LowValuesAndMediansAreThoseOfLinearNumbers) {
+TEST(AxisGraph, LowValuesAndMediansAreThoseOfLinearFunctions) {
   const AxisSpread edge = spread_of({LinearPart::on_edge(3, 1, 7)});
   EXPECT_NEAR(edge.low, 1.1, 1e-12);
   EXPECT_NEAR(edge.median, 2, 1e-12);
   const AxisSpread triangle = spread_of({LinearPart::on_triangle({1, 0, 0}, 2)});
   EXPECT_NEAR(triangle.low, 1 - std::sqrt(0.95), 1e-12);
   EXPECT_NEAR(triangle.median, 1 - std::sqrt(0.5), 1e-12);
-  // However it is cut: by its middle edges, into four.
+  // The result is the same if the middle edges cut the triangle into four.
   const std::array<double, 3> whole{0.2, 1.3, 0.7};
-  const std::array<double, 3> middles{0.75, 1.0, 0.45};  // of the edges 01, 12, 20
+  const std::array<double, 3> middles{0.75, 1.0, 0.45};  // on the edges 01, 12, 20
   const AxisSpread one = spread_of({LinearPart::on_triangle(whole, 4)});
   const AxisSpread four =
       spread_of({LinearPart::on_triangle({whole[0], middles[0], middles[2]}, 1),
@@ -364,8 +364,8 @@ TEST(AxisGraph, LowValuesAndMediansAreThoseOfLinearNumbers) {
   EXPECT_NEAR(one.median, four.median, 1e-12);
 }
 
-/// A wall that grows from thin to thick has few triangles once it is simplified.
-TEST(AxisGraph, SimplificationKeepsHowThicknessIsSpread) {
+/// A wall of increasing thickness has few triangles after simplification.
+TEST(AxisGraph, SimplificationKeepsTheDistributionOfThickness) {
   const std::vector<Point2> outline{{0, 0}, {6, 0}, {6, 1.5}, {0, 0.3}};
   const TriangleMesh mesh = make_extrusion(outline, {}, {.thickness = 5});
   const MedialAxis axis = medial_axis(mesh, {.resolution = 64});
@@ -382,8 +382,8 @@ TEST(AxisGraph, SimplificationKeepsHowThicknessIsSpread) {
   EXPECT_NEAR(lean.separation_angle.low, whole.separation_angle.low, 1);
 }
 
-/// An L of a thick and a thin plate: above 90 degrees no sheet runs into the corner, and both are one.
-TEST(AxisGraph, TheLowThicknessIsThatOfTheThinnerOfTwoWalls) {
+/// An L of a thick and a thin plate. Above 90 degrees no sheet runs into the corner, and both plates are one sheet.
+TEST(AxisGraph, LowThicknessIsThatOfTheThinnerOfTwoWalls) {
   const std::vector<Point2> outline{{0, 0}, {4, 0}, {4, 0.6}, {0.5, 0.6}, {0.5, 3}, {0, 3}};
   const TriangleMesh mesh = make_extrusion(outline, {}, {.thickness = 5});
   const AxisGraph graph = axis_graph(medial_axis(mesh, {.resolution = 64}).fitted(120), mesh);
@@ -423,7 +423,7 @@ TEST(AxisGraph, AWallOfABoxLiesBetweenItsTwoFaces) {
   EXPECT_EQ(graph.patches[pair.second[0]].normal, -normal);
 }
 
-TEST(AxisGraph, TellsWhatIsThereForHomotopyAlone) {
+TEST(AxisGraph, ReportsCellsKeptOnlyForHomotopy) {
   AxisRows axis;
   const Numbers line = add_row(axis, 5, {0, 0, 0});
   for (const Vec3d& way : {Vec3d{0, 1, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}})
@@ -461,7 +461,7 @@ TEST(AxisGraph, TellsWhatIsThereForHomotopyAlone) {
 }
 
 TEST(AxisGraph, CountsMembranesAsTheCertificateDoes) {
-  // The surface around a void stays closed, also where nothing sees 150 degrees.
+  // The surface around a void stays closed, even if no vertex has a separation angle of 150 degrees.
   const TriangleMesh mesh = make_shape("void_cube", {});
   MedialAxisOptions options;
   options.resolution = 32;
@@ -482,7 +482,7 @@ TEST(AxisGraph, CountsMembranesAsTheCertificateDoes) {
   }
 }
 
-TEST(AxisGraph, PatchesGoAroundFacetsUpToTheirAngle) {
+TEST(AxisGraph, PatchesJoinFacetsUpToTheirAngle) {
   const TriangleMesh cylinder = make_shape("cylinder", {{"sides", 12}});
   Complex nothing;
   EXPECT_EQ(axis_graph(nothing, cylinder).patches.size(), 3U) << "bends by 30 degrees are smooth";

@@ -1,5 +1,5 @@
-// Collapses of walls by their angles: what goes, what stays for homotopy, that larger angles leave parts of what
-// smaller ones do, and what is refused.
+// Proves that walls collapse by their angles from free edges, and that cells needed for homotopy stay. Larger angles
+// leave a part of the result of smaller ones, and invalid input is rejected.
 #include "blum/axis/collapse_axis.hpp"
 
 #include <gtest/gtest.h>
@@ -45,19 +45,19 @@ std::size_t triangles_at(const Complex& walls, double theta) {
   return collapse_axis(walls, theta).triangles.size();
 }
 
-TEST(CollapseAxis, DropsWhatIsSeenAtLessFromFreeEdges) {
+TEST(CollapseAxis, RemovesSmallerAnglesFromFreeEdges) {
   const Complex walls = strip({10, 20, 30, 40}, false);
   EXPECT_EQ(triangles_at(walls, 0), 8U);
   EXPECT_EQ(triangles_at(walls, 15), 6U);
   EXPECT_EQ(triangles_at(walls, 30), 2U);
-  // All of it is contractible: a vertex is left.
+  // The strip is contractible, so a vertex remains.
   const Complex nothing = collapse_axis(walls, 180);
   EXPECT_EQ(nothing.positions.size(), 1U);
   EXPECT_TRUE(nothing.triangles.empty() && nothing.edges.empty());
   EXPECT_TRUE(problem_of_medial(nothing).empty());
 }
 
-TEST(CollapseAxis, LeavesWhatHomotopyNeeds) {
+TEST(CollapseAxis, LeavesCellsThatHomotopyNeeds) {
   const Complex ring = collapse_axis(strip({10, 20, 50, 20, 10, 50}, true), 30);
   EXPECT_EQ(ring.triangles.size(), 4U) << "squares of 50 degrees";
   EXPECT_EQ(homology(ring.view()), (BettiNumbers{1, 1, 0}));
@@ -70,8 +70,8 @@ TEST(CollapseAxis, LeavesWhatHomotopyNeeds) {
   EXPECT_EQ(homology(curve.view()), (BettiNumbers{1, 1, 0}));
 }
 
-/// Along a seam vertices may see more than the triangles beside it: then it stays, as a curve.
-TEST(CollapseAxis, LeavesSeamsThatAreSeenAtMore) {
+/// Vertices on a seam may have larger separation angles than the triangles beside it. The seam then stays as a curve.
+TEST(CollapseAxis, LeavesSeamsOfLargerAngles) {
   AxisRows axis;
   for (int k = 0; k <= 4; ++k) {
     for (const Vec3d& side : {Vec3d{0, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 1}, Vec3d{0, -1, -1}}) {
@@ -94,7 +94,7 @@ TEST(CollapseAxis, LeavesSeamsThatAreSeenAtMore) {
   EXPECT_TRUE(collapse_axis(axis, 130).edges.empty());
 }
 
-/// A closed surface has no free edge.
+/// A closed surface does not have a free edge.
 TEST(CollapseAxis, LeavesClosedSurfaces) {
   AxisRows axis;
   for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
@@ -107,7 +107,7 @@ TEST(CollapseAxis, LeavesClosedSurfaces) {
   EXPECT_EQ(triangles_at(axis, 180), 4U);
 }
 
-TEST(CollapseAxis, LeavesPartsOfWhatSmallerAnglesDo) {
+TEST(CollapseAxis, LargerAnglesLeavePartsOfTheResultOfSmallerOnes) {
   const Complex walls = strip({40, 5, 33, 12, 28, 19, 7, 50, 3}, true);
   std::set<std::array<double, 9>> before;
   const auto places = [](const Complex& axis) {
@@ -128,7 +128,7 @@ TEST(CollapseAxis, LeavesPartsOfWhatSmallerAnglesDo) {
   }
 }
 
-TEST(CollapseAxis, RefusesWhatItCannotTell) {
+TEST(CollapseAxis, RejectsInvalidAnglesColumnsAndTriangles) {
   const Complex walls = strip({10, 20}, false);
   EXPECT_THROW((void)collapse_axis(walls, -1), InvalidOption);
   EXPECT_THROW((void)collapse_axis(walls, 181), InvalidOption);

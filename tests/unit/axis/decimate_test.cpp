@@ -1,5 +1,5 @@
-// Proves that axes with fewer triangles stay within the tolerance, measured by an independent search, and keep their
-// topology, their sheets and their certificate; and that contracting edges does what it does in sets of simplices.
+// Proves that decimated axes stay within the tolerance, measured by an independent search. They keep their topology,
+// sheets and certificate. Contraction of edges equals that in sets of simplices.
 #include "blum/axis/decimate.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ using detail::ShrinkingComplex;
 using test::AxisRows;
 using test::VertexRow;
 
-/// All of an axis as a mesh to measure distances to.
+/// All cells of an axis as a mesh, for distance queries.
 TriangleMesh mesh_of(const Complex& axis) {
   TriangleMesh mesh;
   mesh.vertices = axis.positions;
@@ -48,7 +48,7 @@ TriangleMesh mesh_of(const Complex& axis) {
   return mesh;
 }
 
-/// The largest distance of points of an axis, a third of a step apart, from another one.
+/// The largest distance of sampled points of an axis from another axis. The points are a third of a step apart.
 double furthest(const Complex& from, const Complex& to, double step) {
   std::vector<Vec3d> points;
   for (const AxisSample& sample : sample_axis(MedialView(from), step / 3)) points.push_back(sample.position);
@@ -89,7 +89,7 @@ TEST_P(Decimate, KeepsTopologySheetsAndCertificateWithinTheTolerance) {
   }
 }
 
-TEST_P(Decimate, KeepsVerticesWithAllOfTheirColumnsAndTheAnglesOfSheets) {
+TEST_P(Decimate, KeepsColumnsOfVerticesAndAnglesOfSheets) {
   MedialAxisOptions options;
   options.resolution = GetParam().resolution;
   const MedialAxis axis = medial_axis(make_shape(GetParam().shape), options);
@@ -106,7 +106,7 @@ TEST_P(Decimate, KeepsVerticesWithAllOfTheirColumnsAndTheAnglesOfSheets) {
     return largest;
   };
   EXPECT_EQ(angles(lean), angles(whole));
-  // Labelling anew finds what there is.
+  // New labels equal the existing ones.
   Complex again = lean;
   again.edges.clear();
   again.edge_columns = {};
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Decimate,
                            return info.param.shape + "_" + std::to_string(static_cast<int>(info.param.theta));
                          });
 
-/// A flat square sheet of n by n squares, with a height at each vertex, and radii.
+/// A flat square sheet of n by n squares, with a height and a radius at each vertex.
 template <class Height, class Radius>
 Complex square(std::uint32_t n, const Height& height, const Radius& radius) {
   AxisRows rows;
@@ -163,7 +163,7 @@ TEST(DecimateSquare, FlatBecomesTwoTriangles) {
   EXPECT_LT(lean.deviation, 1e-9);
 }
 
-TEST(DecimateSquare, RadiiCountAsPlacesDo) {
+TEST(DecimateSquare, RadiiCountLikePlaces) {
   const auto ridge = [](double x, double) { return 1000 - std::abs(x - 10); };
   const DecimatedAxis lean = decimate(square(20, flat, ridge), 0.01);
   EXPECT_EQ(lean.axis.triangles.size(), 4U) << "the ridge of the radii must stay";
@@ -179,7 +179,7 @@ TEST(DecimateSquare, ThinPartsMoveLess) {
   EXPECT_GT(thin, 100U);
 }
 
-TEST(DecimateSquare, ToleranceOfZeroKeepsAllAndAbsurdOnesAreRefused) {
+TEST(DecimateSquare, ZeroToleranceKeepsAllAndInvalidTolerancesAreRejected) {
   const Complex axis = square(4, flat, deep);
   EXPECT_EQ(decimate(axis, 0).axis.triangles, axis.triangles);
   for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
@@ -188,7 +188,7 @@ TEST(DecimateSquare, ToleranceOfZeroKeepsAllAndAbsurdOnesAreRefused) {
   EXPECT_THROW((void)decimate(Complex{{{0, 0, 0}}, {}, {}, {}, {}, {}}, 1), InvalidOption) << "no columns";
 }
 
-TEST(DecimateSquare, AClosedTubeOfThreeSidesStays) {
+TEST(DecimateSquare, AClosedTubeOfThreeSidesKeepsItsTopology) {
   AxisRows rows;
   constexpr std::uint32_t rings = 12;
   for (std::uint32_t k = 0; k <= rings; ++k) {
@@ -213,7 +213,7 @@ TEST(DecimateSquare, AClosedTubeOfThreeSidesStays) {
   EXPECT_LT(lean.axis.triangles.size(), 6 * rings / 2);
 }
 
-TEST(DecimateSquare, StopsWhenAskedTo) {
+TEST(DecimateSquare, CancelStopsIt) {
   std::stop_source source;
   source.request_stop();
   Context context;
@@ -237,7 +237,7 @@ void add_closure(Simplices& all, const Cells& cells) {
   }
 }
 
-/// What is linked to a simplex: what has no vertex of it, and is one together with it.
+/// The link of a simplex: all simplices that share no vertex with it and form a simplex together with it.
 Simplices link_of(const Simplices& all, const std::set<std::uint32_t>& of) {
   Simplices link;
   for (const auto& simplex : all) {
@@ -248,7 +248,7 @@ Simplices link_of(const Simplices& all, const std::set<std::uint32_t>& of) {
   return link;
 }
 
-TEST(ShrinkingComplex, ContractsAsSetsOfSimplicesDo) {
+TEST(ShrinkingComplex, ContractsLikeSetsOfSimplices) {
   Random random(7);
   const auto below = [&](std::size_t most) { return static_cast<std::uint32_t>(random.below(most)); };
   std::size_t contracted = 0;
@@ -307,7 +307,8 @@ TEST(ShrinkingComplex, ContractsAsSetsOfSimplicesDo) {
         if (moved.erase(from) > 0) moved.insert(to);
         expected.insert(moved);
       }
-      // A side that only a triangle had that went is no cell of its own: the decimation takes none such.
+      // A side that belonged only to a removed triangle does not become an edge. The decimation makes no such
+      // contraction.
       Simplices found;
       found.insert({to});
       for (std::uint32_t e = 0; e < edges.size(); ++e) {
@@ -326,7 +327,7 @@ TEST(ShrinkingComplex, ContractsAsSetsOfSimplicesDo) {
   EXPECT_GT(refused, 200U);
 }
 
-TEST(SampleAxis, LeavesNoPointFurtherThanTheStep) {
+TEST(SampleAxis, EveryPointHasASampleWithinTheStep) {
   AxisRows rows;
   for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{7, 1, 0}, Vec3d{2, 5, 3}, Vec3d{2, 5, 9}}) {
     rows.vertices.emplace_back().position = p;

@@ -1,5 +1,5 @@
-// Proves that extended axes cover plates and profiles up to their borders, stay in the solid, keep the topology and the
-// orientation of the axis, and say what they could not do.
+// Proves that extended axes cover plates and profiles up to their borders and stay in the solid. They keep the topology
+// and orientation of the axis, and report the parts that they did not reach.
 #include "blum/axis/extend_axis.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TriangleMesh extruded(const Outline& outline, double thickness, const std::vecto
   return make_extrusion(outline, holes, options);
 }
 
-/// As `blum medial` writes it.
+/// The axis that `blum medial` writes.
 Complex axis_of(const TriangleMesh& mesh, double theta, int resolution = 64) {
   MedialAxisOptions options;
   options.resolution = resolution;
@@ -72,7 +72,7 @@ Vec3d normal_of(const Complex& complex, std::size_t t) {
   return cross(at[b] - at[a], at[c] - at[a]);
 }
 
-/// What holds of every axis and its extended surface.
+/// Checks the facts that hold for every axis and its extended surface.
 void check(const TriangleMesh& mesh, const Complex& axis, const ExtendedAxis& made) {
   const Complex& surface = made.surface;
   const ExtendReport& report = made.report;
@@ -89,7 +89,7 @@ void check(const TriangleMesh& mesh, const Complex& axis, const ExtendedAxis& ma
   const auto sheet = surface.triangle_columns.get<std::int32_t>(extended_columns::sheet);
   const auto thickness = surface.vertex_columns.get<double>(extended_columns::thickness);
   const auto radius = axis.vertex_columns.get<double>(medial_columns::radius);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> side_of;  // a side as a triangle of the axis goes
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> side_of;  // directed as in the triangle of the axis
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const auto& triangle = surface.triangles[t];
     const Vec3d middle =
@@ -102,7 +102,7 @@ void check(const TriangleMesh& mesh, const Complex& axis, const ExtendedAxis& ma
       if (is_new[t] == 0) {
         side_of.emplace(side, t);
       } else {
-        // A new triangle goes along a rim the other way than the axis does, belongs to its sheet, and is not folded.
+        // A new triangle traverses a rim in the opposite direction, belongs to the same sheet and is not folded.
         EXPECT_FALSE(side_of.contains(side)) << "triangle " << t;
         if (other == side_of.end()) continue;
         EXPECT_EQ(sheet[t], sheet[other->second]);
@@ -141,19 +141,19 @@ TEST(ExtendAxis, CoversAPlateUpToItsCorners) {
   EXPECT_LT(length(box.lower - Vec3d{0, 0, 0}) + length(box.upper - Vec3d{100, 50, 0}), 1e-9);
 }
 
-TEST(ExtendAxis, CoversAPlateWhoseRimHasStairs) {
-  const TriangleMesh plate = extruded({{0, 0}, {30, 4}, {28, 20}, {-2, 16}}, 1.5);  // aslant to the voxels
+TEST(ExtendAxis, CoversAPlateWithAJaggedRim) {
+  const TriangleMesh plate = extruded({{0, 0}, {30, 4}, {28, 20}, {-2, 16}}, 1.5);  // oblique to the voxels
   MedialAxisOptions options;
   options.resolution = 96;
   const Complex axis = medial_axis(plate, options).simplify(110);
   const ExtendedAxis made = extend_axis(axis, plate);
   check(plate, axis, made);
-  double seen_from_above = 0;  // where strips overlapped, it would be too large
+  double seen_from_above = 0;  // overlapping strips would make it too large
   for (std::size_t t = 0; t < made.surface.triangles.size(); ++t) {
     seen_from_above += std::abs(normal_of(made.surface, t).z) / 2;
   }
   EXPECT_NEAR(seen_from_above, area_of({{0, 0}, {30, 4}, {28, 20}, {-2, 16}}), 0.5);
-  EXPECT_NEAR(made.report.area, seen_from_above, 0.015 * seen_from_above);  // the rim's steps are rough
+  EXPECT_NEAR(made.report.area, seen_from_above, 0.015 * seen_from_above);  // the steps of the rim are rough
   EXPECT_EQ(made.report.not_reached, 0U);
 }
 
@@ -172,17 +172,17 @@ TEST(ExtendAxis, ReachesTheWallOfAHole) {
   }
 }
 
-TEST(ExtendAxis, LeavesAHoleOpenThatIsSmallerThanWhatIsOnePoint) {
+TEST(ExtendAxis, LeavesATinyHoleOpen) {
   const TriangleMesh plate = extruded(rectangle(0, 0, 12, 8), 2, {circle({6, 4}, 2e-4, 8)});
   const Complex axis = axis_of(plate, 110);
   ASSERT_EQ(homology(axis.view()), (BettiNumbers{1, 1, 0}));
   const ExtendedAxis made = extend_axis(axis, plate);
   check(plate, axis, made);
-  EXPECT_GE(made.report.left_out, 1U);  // else the hole would be closed
+  EXPECT_GE(made.report.left_out, 1U);  // otherwise the hole would be closed
   EXPECT_NEAR(made.report.area, 96, 1.5);
 }
 
-/// A band along a part of a circle.
+/// A strip along a circular arc.
 Outline arc(double radius, double thickness, double angle, int steps) {
   Outline out;
   for (int k = 0; k <= 2 * steps + 1; ++k) {
@@ -217,7 +217,7 @@ struct Profile {
   const char* name;
   Outline outline;
   std::vector<Outline> holes;
-  double middle_length;  ///< of the line through the middle of its walls, up to its ends
+  double middle_length;  ///< length of the centre line of its walls, up to its ends
 };
 
 void PrintTo(const Profile& profile, std::ostream* out) {
@@ -241,20 +241,20 @@ TEST_P(ExtendedProfile, ReachesItsEnds) {
   check(mesh, axis, made);
   EXPECT_EQ(made.report.not_reached, 0U);
   EXPECT_EQ(made.report.open_length, 0);
-  // The axis cuts the corner where walls meet.
+  // The axis cuts the corner between walls.
   EXPECT_NEAR(made.report.area, 60 * profile.middle_length, 0.02 * 60 * profile.middle_length);
   const Box3 box = box_of(made.surface);
   EXPECT_NEAR(box.lower.z, -30, 1e-9);
   EXPECT_NEAR(box.upper.z, 30, 1e-9);
 }
 
-TEST_P(ExtendedProfile, HasWallsThatMeetWhereTheAxisHasGaps) {
+TEST_P(ExtendedProfile, ClosesGapsOfTheAxisBetweenWalls) {
   const Profile& profile = GetParam();
   const TriangleMesh mesh = extruded(profile.outline, 60, profile.holes);
   const Complex axis = axis_of(mesh, 170, 96);
   const ExtendedAxis made = extend_axis(axis, mesh);
   check(mesh, axis, made);
-  // Not up to the outer side of the corner, which would be 2 to 12 % more.
+  // The surface does not reach the outer side of the corner, which would add 2 to 12 %.
   EXPECT_NEAR(made.report.area, 60 * profile.middle_length, 0.01 * 60 * profile.middle_length);
   EXPECT_LT(made.report.axis_area, 0.9 * made.report.area);
 }
@@ -262,7 +262,7 @@ TEST_P(ExtendedProfile, HasWallsThatMeetWhereTheAxisHasGaps) {
 INSTANTIATE_TEST_SUITE_P(Profiles, ExtendedProfile, ::testing::ValuesIn(profiles),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(ExtendAxis, KeepsTheTopologyOfShapesThatAreNoThinWalls) {
+TEST(ExtendAxis, KeepsTheTopologyOfThickShapes) {
   std::size_t triangles = 0;
   for (const char* const name : {"bracket", "gear", "star", "wedge", "menger", "spoon"}) {
     SCOPED_TRACE(name);
@@ -311,7 +311,7 @@ TEST(ExtendAxis, LeavesRimsAtEdgesOfTheSolid) {
   EXPECT_NEAR(made.report.area, made.report.axis_area, 0.005 * made.report.axis_area);
 }
 
-TEST(ExtendAxis, SaysWhatItDidNotReach) {
+TEST(ExtendAxis, ReportsUnreachedRims) {
   const TriangleMesh plate = extruded(rectangle(0, 0, 20, 10), 2);
   const Complex axis = axis_of(plate, 110);
   ExtendOptions options;
@@ -347,7 +347,7 @@ TEST(ExtendAxis, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(ExtendAxis, RefusesWhatItCannotExtend) {
+TEST(ExtendAxis, RejectsInvalidOptionsColumnsAndImages) {
   const TriangleMesh plate = extruded(rectangle(0, 0, 20, 10), 2);
   const Complex axis = axis_of(plate, 110, 32);
   for (const double wrong : {0.0, -1.0, HUGE_VAL, std::nan("")}) {

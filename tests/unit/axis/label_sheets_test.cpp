@@ -1,4 +1,4 @@
-// Proves that sheets, rims, seams, curves and junctions are told apart, on complexes made by hand.
+// Proves that labels distinguish sheets, rims, seams, curves and junctions of complexes made by hand.
 #include "blum/axis/label_sheets.hpp"
 #include "blum/complex/incidence.hpp"
 #include "support/medial_rows.hpp"
@@ -53,7 +53,7 @@ std::vector<std::uint32_t> sheets_of(const AxisRows& complex) {
   return sheets;
 }
 
-/// The edges of a role, smaller vertex first.
+/// The edges of a role, each with its smaller vertex first.
 std::vector<Edge> edges_of(const AxisRows& complex, MedialRole role) {
   std::vector<Edge> edges;
   for (const EdgeRow& edge : complex.edges) {
@@ -76,7 +76,7 @@ TEST(LabelSheets, AnInnerVertexIsInTheSheet) {
   EXPECT_EQ(roles_of(complex), (std::vector<MedialRole>{rim, rim, rim, rim, sheet}));
 }
 
-/// Vertices 0, 1, 2 lie on the seam; three strips of two squares begin there.
+/// Vertices 0, 1, 2 lie on the seam. Three strips of two squares begin there.
 TEST(LabelSheets, ThreeSheetsMeetInASeam) {
   std::vector<Face> faces;
   for (const std::uint32_t first : {3U, 6U, 9U}) {
@@ -96,14 +96,14 @@ TEST(LabelSheets, ThreeSheetsMeetInASeam) {
   EXPECT_EQ(roles_of(complex), expected);
 }
 
-/// A point at some distance from the x axis, in a plane turned around it.
+/// A point at a given distance from the x axis, in a plane rotated around it.
 Vec3d on_page(double x, double distance, double degrees) {
   const double turn = degrees * std::numbers::pi / 180;
   return {x, distance * std::cos(turn), distance * std::sin(turn)};
 }
 
-/// Puts a narrow strip between the first page and the second one at an edge of the fold, so that the bend is in two
-/// steps. @param edge  its ends; @param to  those of the second page's square there, further out.
+/// Adds a narrow strip between the first and the second page at an edge of the fold, so that the bend has two steps.
+/// @param edge  its ends; @param to  the outer ends of the square of the second page.
 void put_strip(AxisRows& book, double fold, const Edge& edge, const Edge& to) {
   const auto beside = static_cast<std::uint32_t>(book.vertices.size());
   for (const std::uint32_t v : edge) {
@@ -116,8 +116,8 @@ void put_strip(AxisRows& book, double fold, const Edge& edge, const Edge& to) {
   }
 }
 
-/// A book of two pages, folded by some angle along the x axis, with a third page of which one edge, of 16, is missing
-/// at the fold.
+/// A book of two pages, folded by an angle along the x axis, and a third page. At the fold the third page lacks one of
+/// its 16 edges.
 AxisRows torn_book(double fold, bool is_in_two_steps = false) {
   constexpr std::uint32_t steps = 16;
   AxisRows complex;
@@ -161,7 +161,7 @@ TEST(LabelSheets, ATornSeamDoesNotJoinSheetsInSmallSteps) {
   EXPECT_EQ(torn_book(20, true).sheet_count, 2U);
 }
 
-TEST(LabelSheets, ASharpFoldIsOneSheetWhereNoSeamIsNear) {
+TEST(LabelSheets, ASharpFoldFarFromSeamsIsOneSheet) {
   AxisRows complex;
   for (const Vec3d& at : {Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
     complex.vertices.emplace_back().position = at;
@@ -183,17 +183,17 @@ TEST(LabelSheets, EdgesHaveTheLargestAngleOfTheirTriangles) {
   EXPECT_EQ(edges_of(complex, seam), (std::vector<Edge>{{0, 1}}));
 }
 
-TEST(LabelSheets, SheetsThatTouchInAVertexAreApart) {
+TEST(LabelSheets, SheetsThatTouchInAVertexAreSeparate) {
   const AxisRows rims = labelled(5, {{0, 1, 2}, {0, 3, 4}});
   EXPECT_EQ(rims.sheet_count, 2U);
   EXPECT_EQ(roles_of(rims), (std::vector<MedialRole>{junction, rim, rim, rim, rim}));
-  // Two closed surfaces.
+  // Two closed surfaces touch in a vertex.
   const AxisRows closed =
       labelled(7, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 4, 5}, {0, 4, 6}, {0, 5, 6}, {4, 5, 6}});
   EXPECT_EQ(closed.sheet_count, 2U);
   EXPECT_TRUE(closed.edges.empty());
   EXPECT_EQ(roles_of(closed), (std::vector<MedialRole>{junction, sheet, sheet, sheet, sheet, sheet, sheet}));
-  // A rim that touches a closed surface.
+  // A rim touches a closed surface.
   const AxisRows both = labelled(6, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 4, 5}});
   EXPECT_EQ(roles_of(both), (std::vector<MedialRole>{junction, sheet, sheet, sheet, rim, rim}));
 }

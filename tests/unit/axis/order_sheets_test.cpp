@@ -1,5 +1,5 @@
-// Proves by which rule sheets are numbered: by the patches that they lie between, then by their places, crumbs last;
-// and that the numbers of patches follow from the order of faces, and not from where a mesh lies.
+// Proves that sheets are numbered by the patches between which they lie, then by their places, with crumbs last.
+// Numbers of patches follow the order of faces and do not depend on the place of the mesh.
 #include "blum/axis/order_sheets.hpp"
 
 #include <gtest/gtest.h>
@@ -37,14 +37,14 @@ PatchNumbers numbers_of(const TriangleMesh& mesh) {
   return numbers;
 }
 
-/// Of all sites.
+/// The patch numbers of all sites.
 std::vector<std::uint32_t> all_of(const PatchNumbers& numbers, const SiteTable& sites) {
   std::vector<std::uint32_t> out;
   for (std::uint32_t s = 0; s < sites.size(); ++s) out.push_back(numbers.at(SiteId(s)));
   return out;
 }
 
-TEST(PatchNumbers, OfABoxAreThoseOfItsSides) {
+TEST(PatchNumbers, BoxHasOneForEachSide) {
   const TriangleMesh box = make_box({.size = {3, 2, 1}});
   const SiteTable sites(box);
   const PatchNumbers numbers = numbers_of(box);
@@ -54,7 +54,7 @@ TEST(PatchNumbers, OfABoxAreThoseOfItsSides) {
     EXPECT_FALSE(numbers.is_shared(site));
     found.push_back(numbers.at(site));
   }
-  // Two triangles to a side, one after the other; flat parts have even numbers.
+  // Each side has two consecutive triangles. Flat parts have even numbers.
   EXPECT_EQ(found, (std::vector<std::uint32_t>{0, 0, 4, 4, 8, 8, 12, 12, 16, 16, 20, 20}));
   for (std::uint32_t e = 0; e < sites.edge_count(); ++e) {
     const SiteId site = sites.id({SiteKind::edge, e});
@@ -69,8 +69,8 @@ TEST(PatchNumbers, OfABoxAreThoseOfItsSides) {
   }
 }
 
-TEST(PatchNumbers, TellFlatPartsFromWhatIsRound) {
-  // Of 300 sides none is much of the surface, and all are one.
+TEST(PatchNumbers, DistinguishFlatAndRoundParts) {
+  // None of the 300 sides is a large part of the surface, so all of them are one patch.
   const TriangleMesh rod = make_cylinder({.sides = 300});
   const SiteTable sites(rod);
   std::vector<std::uint32_t> found;
@@ -82,7 +82,7 @@ TEST(PatchNumbers, TellFlatPartsFromWhatIsRound) {
   EXPECT_EQ(std::count_if(found.begin(), found.end(), [](std::uint32_t n) { return n % 2 == 0; }), 2) << "both ends";
 }
 
-TEST(PatchNumbers, StayWhereAMeshIsTurned) {
+TEST(PatchNumbers, StayIfAMeshIsRotated) {
   for (const TriangleMesh& mesh : {make_bracket(), make_cylinder({}), make_bodies({})}) {
     const SiteTable sites(mesh);
     const PatchNumbers numbers = numbers_of(mesh);
@@ -97,15 +97,15 @@ TEST(PatchNumbers, StayWhereAMeshIsTurned) {
   }
 }
 
-TEST(PatchNumbers, KnowNoSiteThatIsNone) {
+TEST(PatchNumbers, AbsentSitesHaveNone) {
   EXPECT_EQ(numbers_of(make_box({})).at(SiteId()), PatchNumbers::none);
   EXPECT_TRUE(PatchNumbers().is_empty());
 }
 
-/// A box of which sides have the numbers 0, 4, ... 20, and sheets made by hand.
+/// A box whose sides have the numbers 0, 4, ... 20, and sheets made by hand.
 class OrderSheets : public testing::Test {
  protected:
-  /// Adds a sheet: squares side by side, of which each lies between two sides of the box, by their place.
+  /// Adds a sheet of adjacent squares. Each square lies between two sides of the box, given by their indices.
   void add_sheet(const Vec3d& at, double side, const std::vector<std::array<std::uint32_t, 2>>& between) {
     Vec3d corner = at;
     for (const auto& [first, second] : between) {
@@ -123,7 +123,7 @@ class OrderSheets : public testing::Test {
     ++count_;
   }
 
-  /// The new number of each sheet, in the order in which they were added.
+  /// The new number of each sheet, in the order of addition.
   [[nodiscard]] std::vector<std::int32_t> ordered() const {
     Complex complex = axis_;
     order_sheets(complex, numbers_of(box_));
@@ -146,33 +146,33 @@ class OrderSheets : public testing::Test {
   std::uint32_t count_ = 0;
 };
 
-TEST_F(OrderSheets, ByThePairThatTheyLieBetween) {
+TEST_F(OrderSheets, SortsByThePairOfPatches) {
   add_sheet({0, 0, 0}, 0.1, {{3, 4}});
-  add_sheet({0.5, 0, 0}, 0.1, {{5, 0}});  // 0 and 5: the smaller one counts first
+  add_sheet({0.5, 0, 0}, 0.1, {{5, 0}});  // 0 and 5: the smaller number counts first
   add_sheet({0, 0.5, 0}, 0.1, {{2, 1}});
   EXPECT_EQ(ordered(), (std::vector<std::int32_t>{2, 0, 1}));
 }
 
-TEST_F(OrderSheets, ByTheSmallestPairThatHasAGoodPart) {
+TEST_F(OrderSheets, SortsByTheSmallestPairWithALargePart) {
   add_sheet({0, 0, 0}, 0.1, {{2, 3}});
-  add_sheet({0, 0.2, 0}, 0.1, {{4, 5}, {4, 5}, {1, 3}});          // a half of the largest: it counts
-  add_sheet({0, 0.4, 0}, 0.1, {{4, 5}, {4, 5}, {4, 5}, {1, 2}});  // a third: it does not
+  add_sheet({0, 0.2, 0}, 0.1, {{4, 5}, {4, 5}, {1, 3}});          // half of the largest part: the pair counts
+  add_sheet({0, 0.4, 0}, 0.1, {{4, 5}, {4, 5}, {4, 5}, {1, 2}});  // a third: it does not count
   EXPECT_EQ(ordered(), (std::vector<std::int32_t>{1, 0, 2}));
 }
 
-TEST_F(OrderSheets, ByTheirPlacesWhereThePairIsTheSame) {
-  // The first vertex of the box is a corner: the nearest one comes first.
+TEST_F(OrderSheets, SortsEqualPairsByPlace) {
+  // The first vertex of the box is a corner. The sheet nearest to it comes first.
   const Vec3d corner = box_.vertices[0];
   for (const double part : {0.9, 0.1, 0.5}) add_sheet(corner - corner * (2 * part), 0.1, {{2, 3}});
   EXPECT_EQ(ordered(), (std::vector<std::int32_t>{2, 0, 1}));
 }
 
-TEST_F(OrderSheets, TheSameForPlacesThatAreAsFarFromTheFirstVertex) {
+TEST_F(OrderSheets, EquallyFarPlacesHaveAStableOrder) {
   const Vec3d at = box_.vertices[0];
   add_sheet(at - Vec3d{0.05, 0.05, 0} + Vec3d{1, 0, 0}, 0.1, {{2, 3}});
   add_sheet(at - Vec3d{0.05, 0.05, 0} + Vec3d{0, 1, 0}, 0.1, {{2, 3}});
   const std::vector<std::int32_t> first = ordered();
-  // Whichever is found first, and however they are off by a little.
+  // The result depends neither on the order of triangles nor on small offsets.
   std::swap(axis_.triangles[0], axis_.triangles[2]);
   std::swap(axis_.triangles[1], axis_.triangles[3]);
   EXPECT_EQ(ordered(), first);
@@ -185,14 +185,14 @@ TEST_F(OrderSheets, TheSameForPlacesThatAreAsFarFromTheFirstVertex) {
   }
 }
 
-TEST_F(OrderSheets, CrumbsLast) {
+TEST_F(OrderSheets, PutsCrumbsLast) {
   add_sheet({0, 0, 0}, 0.003, {{0, 1}});  // 0.9 thousandths
   add_sheet({0.2, 0, 0}, 0.1, {{3, 4}});
   add_sheet({0.5, 0, 0}, 0.004, {{2, 3}});  // 1.6 thousandths
   EXPECT_EQ(ordered(), (std::vector<std::int32_t>{2, 1, 0}));
 }
 
-TEST_F(OrderSheets, NotWithoutPatches) {
+TEST_F(OrderSheets, KeepsTheOrderWithoutPatches) {
   add_sheet({0, 0, 0}, 0.1, {{3, 4}});
   add_sheet({0, 1, 0}, 0.1, {{0, 1}});
   Complex complex = axis_;
@@ -200,7 +200,7 @@ TEST_F(OrderSheets, NotWithoutPatches) {
   EXPECT_EQ(numbers_in(complex), (std::vector<std::int32_t>{0, 1}));
 }
 
-TEST_F(OrderSheets, WithoutASingleSiteInAnOrderAllTheSame) {
+TEST_F(OrderSheets, OrdersSheetsWithoutSites) {
   add_sheet({0, 0, 0}, 0.1, {{3, 4}});
   add_sheet({0, 1, 0}, 0.1, {{0, 1}});
   for (test::VertexRow& vertex : axis_.vertices) vertex.sites = {SiteId(), SiteId()};
@@ -209,11 +209,12 @@ TEST_F(OrderSheets, WithoutASingleSiteInAnOrderAllTheSame) {
   EXPECT_EQ(numbers, (std::vector<std::int32_t>{0, 1}));
 }
 
-TEST_F(OrderSheets, AsBeforeInAPart) {
+TEST_F(OrderSheets, FollowsTheNumbersOfAPreviousAxis) {
   add_sheet({0, 0, 0}, 0.1, {{0, 1}, {0, 1}, {0, 1}});
   add_sheet({0, 1, 0}, 0.1, {{0, 1}});
   Complex complex = axis_;
-  // Two thirds of the first one were in sheet 7, where the rest was in 2: that is a good part. The other one was in 5.
+  // Two thirds of the first sheet were in sheet 7, which is a large enough part. The rest was in sheet 2. The second
+  // sheet was in sheet 5.
   order_sheets_as(complex, std::vector<std::int32_t>{7, 7, 7, 7, 2, 2, 5, 5});
   EXPECT_EQ(numbers_in(complex), (std::vector<std::int32_t>{0, 1}));
   order_sheets_as(complex, std::vector<std::int32_t>{7, 7, 7, 7, 7, 2, 5, 5});

@@ -1,3 +1,5 @@
+// Proves that weak sheets are pruned from their free edges, and strong or closed sheets stay. The topology stays, and
+// missing columns are named.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +36,7 @@ BettiNumbers betti_of(const Complex& axis) {
   return homology(axis.view());
 }
 
-/// The corners of each triangle, as places.
+/// The places of the corners of each triangle.
 std::set<std::array<std::array<double, 3>, 3>> places(const AxisRows& axis) {
   std::set<std::array<std::array<double, 3>, 3>> out;
   for (const TriangleRow& t : axis.triangles) {
@@ -54,7 +56,7 @@ std::vector<float> angles_of_sheets(const AxisRows& axis) {
   return angles;
 }
 
-/// A strip of squares along x, each of two triangles, all of one angle.
+/// A strip of squares along x, each made of two triangles. All triangles have the same angle.
 void add_strip(AxisRows& axis, int squares, const Vec3d& from, const Vec3d& across, float angle) {
   const auto first = static_cast<std::uint32_t>(axis.vertices.size());
   for (int k = 0; k <= squares; ++k) {
@@ -69,7 +71,7 @@ void add_strip(AxisRows& axis, int squares, const Vec3d& from, const Vec3d& acro
   }
 }
 
-TEST(PruneSheets, ADiscGoesToAVertexAndAStrongOneStays) {
+TEST(PruneSheets, AWeakDiscBecomesAVertexAndAStrongOneStays) {
   for (const float angle : {30.0F, 90.0F}) {
     AxisRows axis;
     add_strip(axis, 5, {0, 0, 0}, {0, 1, 0}, angle);
@@ -85,7 +87,7 @@ TEST(PruneSheets, ARingLeavesACircle) {
   AxisRows axis;
   add_strip(axis, 6, {0, 0, 0}, {0, 1, 0}, 30);
   for (TriangleRow& t : axis.triangles) {
-    for (std::uint32_t& v : t.vertices) v %= 12;  // the last two vertices are the first two
+    for (std::uint32_t& v : t.vertices) v %= 12;  // the last two vertices equal the first two
   }
   axis.vertices.resize(12);
   label_sheets(axis);
@@ -96,7 +98,7 @@ TEST(PruneSheets, ARingLeavesACircle) {
   EXPECT_EQ(betti_of(left), (BettiNumbers{1, 1, 0}));
 }
 
-TEST(PruneSheets, AClosedSheetStaysWhateverItsAngle) {
+TEST(PruneSheets, AClosedSheetOfAnyAngleStays) {
   AxisRows axis;
   axis.vertices.resize(4);
   axis.triangles = {{{0, 1, 2}, 1, 0}, {{0, 2, 3}, 1, 0}, {{0, 3, 1}, 1, 0}, {{1, 3, 2}, 1, 0}};
@@ -104,14 +106,14 @@ TEST(PruneSheets, AClosedSheetStaysWhateverItsAngle) {
   EXPECT_EQ(prune_sheets(axis, 180).triangles.size(), 4U);
 }
 
-TEST(PruneSheets, AWeakSheetBetweenStrongOnesGoesFromItsRimToTheSeam) {
-  // Three strips at one line: two strong, one weak.
+TEST(PruneSheets, AWeakSheetBetweenStrongOnesIsRemovedUpToTheSeam) {
+  // Three strips meet at one line: two strong ones and a weak one.
   AxisRows axis;
   add_strip(axis, 4, {0, 0, 0}, {0, 1, 0}, 90);
   add_strip(axis, 4, {0, 0, 0}, {0, -1, 0}, 90);
   add_strip(axis, 4, {0, 0, 0}, {0, 0, 1}, 20);
   for (TriangleRow& t : axis.triangles) {
-    for (std::uint32_t& v : t.vertices) v = v % 2 == 0 ? v % 10 : v;  // the lines y = z = 0 are one
+    for (std::uint32_t& v : t.vertices) v = v % 2 == 0 ? v % 10 : v;  // their edges on y = z = 0 are identified
   }
   std::vector<std::uint32_t> number(axis.vertices.size());
   std::vector<VertexRow> used;
@@ -156,13 +158,13 @@ TEST(PruneSheets, KeepsTheTopologyOfSolidsAndLeavesSheetsWhole) {
   }
 }
 
-TEST(PruneSheets, RefusesAnglesThatAreNone) {
+TEST(PruneSheets, RejectsInvalidAngles) {
   EXPECT_THROW(static_cast<void>(prune_sheets(AxisRows{}, -1)), InvalidOption);
   EXPECT_THROW(static_cast<void>(prune_sheets(AxisRows{}, 181)), InvalidOption);
   EXPECT_TRUE(prune_sheets(AxisRows{}, 60).positions.empty());
 }
 
-TEST(PruneSheets, NamesTheColumnThatIsMissingAndInventsNone) {
+TEST(PruneSheets, NamesMissingColumnsAndAddsNone) {
   Complex axis;
   axis.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   axis.triangles = {{0, 1, 2}};

@@ -1,5 +1,5 @@
-// Proves that one verifier gives all axes of a solid the certificates that they get alone, byte for byte: of all shapes
-// and images, whatever the order, from many threads, true axes and wrong ones.
+// Proves that one verifier returns the same certificates for all axes of a solid as separate verifiers, byte for byte.
+// The axes are true and false, in any order, from many threads, for all shapes and images.
 #include "blum/certificate/axis_verifier.hpp"
 
 #include <gtest/gtest.h>
@@ -30,15 +30,15 @@ namespace {
 
 using test::described_text;
 
-constexpr std::array thetas{120.0, 20.0, 60.0};  ///< not rising: what is known of a solid grows and is used again
+constexpr std::array thetas{120.0, 20.0, 60.0};  ///< not ascending: the knowledge of a solid grows and is reused
 
-/// An axis, and what its file would say.
+/// An axis and the claims of its file.
 struct Said {
   Complex axis;
   CertificateOptions options;
 };
 
-/// Lean axes of three angles, one that is not, and two that lie.
+/// Lean axes of three angles, one axis with all vertices, and two false axes.
 std::vector<Said> axes_of(const MedialAxis& axis) {
   std::vector<Said> all;
   const double voxel = axis.report().bodies.front().spacing;
@@ -47,7 +47,7 @@ std::vector<Said> axes_of(const MedialAxis& axis) {
     options.theta = theta;
     options.lambda = 0;
     options.spacing = voxel;
-    if (all.empty()) all.push_back({axis.simplify(theta), options});  // once with all vertices
+    if (all.empty()) all.push_back({axis.simplify(theta), options});  // one axis with all vertices
     DecimatedAxis lean = decimate(axis.simplify(theta), voxel / 4);
     options.deviation = lean.deviation;
     all.push_back({std::move(lean.axis), options});
@@ -62,7 +62,7 @@ std::vector<Said> axes_of(const MedialAxis& axis) {
   return all;
 }
 
-/// @param alone  the certificate of one axis by a fresh verifier.
+/// @param alone  returns the certificate of one axis by a new verifier.
 template <class Alone>
 void expect_as_alone(const AxisVerifier& verifier, const std::vector<Said>& axes, const Alone& alone) {
   for (const Said& said : axes) {
@@ -76,14 +76,14 @@ void expect_as_alone(const AxisVerifier& verifier, const std::vector<Said>& axes
 
 class AxesOfAShape : public testing::TestWithParam<std::string> {};
 
-TEST_P(AxesOfAShape, HaveTheirCertificatesFromOneVerifier) {
+TEST_P(AxesOfAShape, GetTheSameCertificatesFromOneVerifier) {
   const TriangleMesh mesh = make_shape(GetParam());
   if (mesh.triangles.empty()) return;  // bounds nothing
   std::optional<MedialAxis> axis;
   try {
     axis = medial_axis(mesh, {.resolution = 12});
   } catch (const InvalidMesh&) {
-    return;  // the same
+    return;  // bounds nothing
   }
   const std::vector<Said> axes = axes_of(*axis);
   if (axis->report().rule == SolidRule::polyhedron) {
@@ -109,7 +109,7 @@ TEST_P(AxesOfAShape, HaveTheirCertificatesFromOneVerifier) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, AxesOfAShape, testing::ValuesIn(test::catalog_names()),
                          [](const auto& each) { return test::test_name(each.param); });
 
-TEST(AxisVerifier, IsOneForAllAxesOfAnImage) {
+TEST(AxisVerifier, CertifiesAllAxesOfAnImage) {
   for (const ImageInfo& info : image_catalog()) {
     SCOPED_TRACE(info.name);
     const bool is_noise = info.name == "noise_image";
@@ -152,7 +152,7 @@ TEST(AxisVerifier, WorksOnAfterACancelledCall) {
   EXPECT_EQ(described_text(verifier.certify(axes.front().axis)), described_text(certify(axes.front().axis, mesh)));
 }
 
-TEST(AxisVerifier, RefusesWhatIsNoSolid) {
+TEST(AxisVerifier, RejectsInvalidMeshesAndVoxels) {
   TriangleMesh mesh = make_box({});
   mesh.triangles.front()[0] = 1000;
   EXPECT_THROW(AxisVerifier{mesh}, InvalidMesh);
@@ -163,7 +163,7 @@ TEST(AxisVerifier, RefusesWhatIsNoSolid) {
   EXPECT_THROW(AxisVerifier(voxels, grid, nullptr), InvalidOption) << "another size";
 }
 
-TEST(ImageAxisVerifier, KeepsSelectionsApart) {
+TEST(ImageAxisVerifier, SeparatesSelections) {
   const VoxelImage image = make_balls_image({.count = 2, .pitch = 10, .radius = 3});
   const ImageAxisVerifier verifier(image);
   MedialClaims claims;

@@ -1,5 +1,5 @@
-// Proves that the parts of the verifier tell the truth: closest points, distances to the faces of voxels, unions of
-// balls and Betti numbers, each against brute force or against the code that the verifier must not use.
+// Proves that the parts of the verifier are exact: closest points, distances to the faces of voxels, unions of balls
+// and Betti numbers. The references are brute force and code that the verifier must not use.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ VoxelSet random_set(const std::array<std::int64_t, 3>& size, double density, Ran
   return voxels;
 }
 
-/// The voxels of an image that are not 0.
+/// The voxels of an image with a value other than 0.
 VoxelSet set_of(const VoxelImage& image) {
   VoxelSet voxels(image.grid.size);
   const auto visit = [&](const auto& values) {
@@ -55,7 +55,7 @@ VoxelSet set_of(const VoxelImage& image) {
   return voxels;
 }
 
-/// A turned grid with voxels of three different sides.
+/// A rotated grid whose voxels have three different sides.
 GridSpec turned_grid(const std::array<std::int64_t, 3>& size) {
   const double c = std::cos(0.7);
   const double s = std::sin(0.7);
@@ -66,8 +66,8 @@ GridSpec turned_grid(const std::array<std::int64_t, 3>& size) {
   return grid;
 }
 
-TEST(TriangleSearch, FindsWhatTheHierarchyFinds) {
-  // Soups with needles and points among them, and a shape of very uneven triangles: fine teeth on large flat sides.
+TEST(TriangleSearch, EqualsTheHierarchy) {
+  // Soups contain needles and points. The gear has very uneven triangles: fine teeth on large flat sides.
   for (const TriangleMesh& mesh :
        {make_soup({.triangles = 500, .awkward = 0.7, .seed = 3}), make_shape("gear", {{"teeth", 200}}),
         make_shape("menger"), test::moved(make_shape("torus_knot"), 1e-3, {500, 0, 0})}) {
@@ -81,7 +81,7 @@ TEST(TriangleSearch, FindsWhatTheHierarchyFinds) {
   }
 }
 
-TEST(TriangleSearch, AGroupIsAskedAlone) {
+TEST(TriangleSearch, SearchesASingleGroup) {
   TriangleMesh mesh = make_box({});
   const std::size_t first = mesh.triangles.size();
   append(mesh, make_box({}), {3, 0, 0});
@@ -142,7 +142,7 @@ TEST(TriangleSearchSlow, AHundredThousandQueries) {
   }
 }
 
-/// The distance to every face, one by one.
+/// The distance to the closest of all faces, one by one.
 double slow_distance(const VoxelSet& voxels, const GridSpec& grid, const Vec3d& p) {
   const Vec3d q = grid.direction.transposed_times(p - grid.origin);
   double best = HUGE_VAL;
@@ -232,7 +232,7 @@ TEST(BallUnion, GapsAreThoseOfAllBalls) {
   }
 }
 
-TEST(VoxelBetti, RandomSetsAndImagesAgreeWithTheGrid) {
+TEST(VoxelBetti, EqualsBettiNumbersOfTheGrid) {
   Random random(14);
   for (const std::array<std::int64_t, 3>& size : {std::array<std::int64_t, 3>{1, 1, 1},
                                                   {7, 6, 5},

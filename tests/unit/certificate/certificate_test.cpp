@@ -1,5 +1,5 @@
-// Proves that a certificate holds for axes made by hand whose solid is known, and that everything false in an axis is
-// found and named.
+// Proves that a certificate holds for axes made by hand of known solids. Every falsified part of an axis is found and
+// named.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,22 +27,22 @@ using test::AxisRows;
 using test::box_between;
 using test::VertexRow;
 
-constexpr CertificateOptions unlabelled{.labels = false};  ///< axes made by hand have no roles
+constexpr CertificateOptions unlabelled{.labels = false};  ///< axes made by hand lack roles
 
-/// A vertex whose radius and footprint are what the library's own hierarchy tells.
+/// A vertex with the radius and footprint that the library's own hierarchy returns.
 VertexRow vertex_at(const Bvh& bvh, const Vec3d& p) {
   const NearestSite nearest = *bvh.nearest(p);
   return {p, nearest.distance, {nearest.point, nearest.point}, {nearest.site, nearest.site}};
 }
 
-/// An axis of one ball.
+/// An axis of one vertex.
 AxisRows ball_axis(const MeshView& mesh, const Vec3d& p) {
   AxisRows axis;
   axis.vertices = {vertex_at(Bvh(mesh, SiteTable(mesh)), p)};
   return axis;
 }
 
-/// The centre line of a torus of the default sizes, closed.
+/// The closed centre line of a torus of the default size.
 AxisRows torus_axis(const MeshView& mesh, std::uint32_t parts = 96) {
   const Bvh bvh(mesh, SiteTable(mesh));
   AxisRows axis;
@@ -54,7 +54,7 @@ AxisRows torus_axis(const MeshView& mesh, std::uint32_t parts = 96) {
   return axis;
 }
 
-/// What a certificate complains of, in one line.
+/// The mismatches of a certificate as one text.
 std::string complaints(const Certificate& certificate) {
   std::string all;
   for (const std::string& one : certificate.mismatches) all += one + "\n";
@@ -70,7 +70,7 @@ TEST(Certificate, HoldsForTheCentresOfABallAndABox) {
   EXPECT_EQ(c.solid, (BettiNumbers{1, 0, 0}));
   EXPECT_EQ(c.axis, c.solid);
   EXPECT_EQ(c.geometry.vertices, 1U);
-  // Vertices lie on the sphere, the triangles a little within.
+  // Vertices lie on the sphere, and triangles slightly inside.
   const double radius = Bvh(ball, SiteTable(ball)).nearest(Vec3d{})->distance;
   EXPECT_NEAR(c.balls.solid_to_balls, 2 - radius, 1e-12);
   EXPECT_GT(c.balls.mean_solid_to_balls, 0);
@@ -105,7 +105,7 @@ TEST(Certificate, HoldsForTheCentreLineOfATorus) {
 }
 
 TEST(Certificate, SeveralBodiesAndVoids) {
-  // Two boxes that touch in a face, and in the second one a void, with a body in it.
+  // Two boxes touch in a face. The second box has a void that contains a body.
   TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
   append(mesh, box_between({1, 0, 0}, {4, 3, 3}));
   append(mesh, box_between({1.05, 1, 1}, {2, 2, 2}, true));
@@ -119,13 +119,13 @@ TEST(Certificate, SeveralBodiesAndVoids) {
   EXPECT_EQ(c.solid, (BettiNumbers{3, 0, 1}));
   EXPECT_TRUE(c.geometry.holds);
   EXPECT_EQ(complaints(c), "body 2 of 3 (around 2.5 1.5 1.5) has 1 void, the axis in it 0\n");
-  // As many in all, but not in the same bodies.
+  // The total is the same, but not the number in each body.
   axis.vertices[2] = axis.vertices[0];
   EXPECT_TRUE(
       complaints(certify(axis, mesh, unlabelled))
           .starts_with("body 1 of 3 (around 0.5 0.5 0.5) has 1 component, the axis in it 2\nbody 2 of 3 (around 2.5"))
       << complaints(certify(axis, mesh, unlabelled));
-  // In the void is outside.
+  // A point in the void lies outside.
   axis.vertices[2] = vertex_at(bvh, {1.15, 1.5, 1.5});
   c = certify(axis, mesh, unlabelled);
   EXPECT_EQ(c.geometry.outside, 1U);
@@ -135,7 +135,7 @@ TEST(Certificate, SeveralBodiesAndVoids) {
 }
 
 TEST(Certificate, EdgesMayCutCornersButCrossNoGap) {
-  // A U, and an axis from one prong to the other one: over the floor, past the corners between, or across the gap.
+  // A U, and an axis from one prong to the other: over the floor, past the corners between them, or across the gap.
   const auto axis_of = [](const MeshView& mesh, const std::vector<Vec3d>& way) {
     const Bvh bvh(mesh, SiteTable(mesh));
     AxisRows axis;
@@ -157,7 +157,7 @@ TEST(Certificate, EdgesMayCutCornersButCrossNoGap) {
     EXPECT_EQ(c.edges.outside, 1U) << gap;
     EXPECT_NEAR(c.edges.outside_by, gap, gap / 2);
     EXPECT_EQ(complaints(c).substr(0, 38), "of the 1 edges of the axis 1 leave the");
-    // Past the corner by 0.02.
+    // The edge passes the corner by 0.02.
     const double past = 0.02 * std::sqrt(2.0);
     c = certify(axis_of(u, {at(-gap - 0.1 + past, 1.1), at(-gap + 0.1 + past, 0.9)}), u, unlabelled);
     EXPECT_EQ(c.edges.pushed, gap > 0.1 ? 1U : 0U) << complaints(c);
@@ -165,8 +165,8 @@ TEST(Certificate, EdgesMayCutCornersButCrossNoGap) {
   }
 }
 
-TEST(Certificate, ToleratesWhatIsSmallForTheBody) {
-  // Far apart: what is little for the scene is not for a body.
+TEST(Certificate, TolerancesFollowTheSizeOfTheBody) {
+  // The bodies are far apart. A distance that is small for the scene is large for a body.
   TriangleMesh mesh = make_sphere({.radius = 1e-3});
   append(mesh, make_sphere({.radius = 1e-3}), {5000, 0, 0});
   const Bvh bvh(mesh, SiteTable(mesh));
@@ -179,7 +179,7 @@ TEST(Certificate, ToleratesWhatIsSmallForTheBody) {
   EXPECT_EQ(certify(axis, mesh, unlabelled).geometry.outside, 1U);
 }
 
-TEST(Certificate, MeshesThatCrossThemselvesAreResolved) {
+TEST(Certificate, ResolvesMeshesThatCrossThemselves) {
   TriangleMesh mesh = make_sphere({});
   append(mesh, make_sphere({}), {1, 0.1, 0.05});
   EXPECT_EQ(solid_rule(mesh).rule, SolidRule::polyhedron);
@@ -189,7 +189,7 @@ TEST(Certificate, MeshesThatCrossThemselvesAreResolved) {
   EXPECT_TRUE(united.holds()) << complaints(united);
   EXPECT_FALSE(certify(ball_axis(mesh, {3, 0, 0}), mesh, {.radii = false, .labels = false}).holds());
   EXPECT_EQ(solid_rule(make_void_cube({})).rule, SolidRule::polyhedron);
-  // Not where it winds in no direction alone.
+  // Crossings stay if the mesh faces inwards.
   TriangleMesh inwards = mesh;
   inwards.triangles = reversed_triangles(mesh.triangles);
   EXPECT_EQ(solid_rule(inwards).rule, SolidRule::winding);
@@ -197,7 +197,7 @@ TEST(Certificate, MeshesThatCrossThemselvesAreResolved) {
   TriangleMesh open = make_box({});
   open.triangles.pop_back();
   EXPECT_EQ(solid_rule(open).rule, SolidRule::winding);
-  // Two bodies may touch, a body not itself.
+  // Two bodies may touch. Crossings stay if coordinates are too many orders of magnitude apart.
   mesh = box_between({0, 0, 0}, {1, 1, 1});
   append(mesh, box_between({1, 0, 0}, {2, 1, 1}));
   EXPECT_EQ(solid_rule(mesh).rule, SolidRule::polyhedron);
@@ -222,12 +222,12 @@ TEST(Certificate, PositionsAreCheckedWithoutRadii) {
 }
 
 TEST(Certificate, CoarseNumbersEndTheSampling) {
-  // Sides of 1 where numbers are 1/8 apart: no piece is as short as the step.
+  // Sides have length 1 and adjacent numbers differ by 1/8, so no piece is as short as the step.
   const TriangleMesh box = test::moved(make_box({}), 1, {1e15, 1e15, 1e15});
   EXPECT_GT(certify(ball_axis(box, {1e15, 1e15, 1e15}), box, unlabelled).balls.step, 0);
 }
 
-/// A torus' axis that was tampered with.
+/// The axis of a torus, to be falsified.
 class FalsifiedAxis : public testing::Test {
  protected:
   TriangleMesh torus = make_torus({});
@@ -281,7 +281,7 @@ TEST_F(FalsifiedAxis, RadiusWithinTolerance) {
 }
 
 TEST_F(FalsifiedAxis, SmallerBall) {
-  // Everything agrees with itself, but there is no surface where the footprints are.
+  // The numbers are consistent, but the footprints lie off the surface.
   for (Vec3d& foot : axis.vertices[40].footprints) foot = (foot + axis.vertices[40].position) * 0.5;
   axis.vertices[40].radius *= 0.5;
   expect({"a radius differs", "a footprint lies off the surface by", "off the site that it names"});
@@ -290,7 +290,7 @@ TEST_F(FalsifiedAxis, SmallerBall) {
 TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
   VertexRow& vertex = axis.vertices[3];
   const Vec3d off = vertex.footprints[1] - vertex.position;
-  // As far as the radius says, but in a direction in which the surface is further.
+  // The footprint is one radius away, but in a direction in which the surface is farther.
   Vec3d other = cross(off, vertex.position);
   other = other * (vertex.radius / length(other)) + off * 0.2;
   vertex.footprints[1] = vertex.position + other * (vertex.radius / length(other));
@@ -317,7 +317,7 @@ TEST_F(FalsifiedAxis, OtherAngle) {
 }
 
 TEST_F(FalsifiedAxis, ChordsThroughTheHole) {
-  // One tunnel, exact vertices, and nothing of it runs through the solid.
+  // The vertices are exact and form one tunnel, but no edge runs through the solid.
   axis.vertices = {axis.vertices[0], axis.vertices[32], axis.vertices[64]};
   axis.edges = {{{0, 1}}, {{1, 2}}, {{2, 0}}};
   expect({"of the 3 edges of the axis 3 leave the solid between their ends, by up to 0.1"});
@@ -331,7 +331,7 @@ TEST_F(FalsifiedAxis, VertexOutside) {
   expect({"of the 96 vertices of the axis 1 lie outside", "of the 96 edges of the axis 2 leave the solid"});
 }
 
-TEST_F(FalsifiedAxis, NoNumbers) {
+TEST_F(FalsifiedAxis, NonFiniteNumbers) {
   axis.vertices[1].radius = std::numeric_limits<double>::quiet_NaN();
   axis.vertices[2].position.x = std::numeric_limits<double>::infinity();
   axis.vertices[3].footprints[1].z = -std::numeric_limits<double>::infinity();
@@ -346,7 +346,7 @@ TEST_F(FalsifiedAxis, NoAxisAtAll) {
 
 TEST_F(FalsifiedAxis, MissingBallsAreMeasured) {
   const Certificate whole = certify(axis, torus, unlabelled);
-  // Half of the ring without balls: topology is all that is wrong, and the other half is 2 away.
+  // Half of the ring lacks balls. Only the topology is wrong, and the other half is 2 away.
   axis.vertices.resize(48);
   axis.edges.resize(47);
   const Certificate half = certify(axis, torus, unlabelled);
@@ -355,12 +355,12 @@ TEST_F(FalsifiedAxis, MissingBallsAreMeasured) {
   EXPECT_GT(half.balls.mean_solid_to_balls, 10 * whole.balls.mean_solid_to_balls + 0.1);
 }
 
-TEST_F(FalsifiedAxis, NoVertexOfThatNumber) {
+TEST_F(FalsifiedAxis, InvalidVertexNumber) {
   axis.edges.push_back({{0, 96}});
   EXPECT_THROW((void)certify(axis, torus, unlabelled), InvalidOption);
 }
 
-TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
+TEST_F(FalsifiedAxis, UnknownGeometryIsNotChecked) {
   for (VertexRow& vertex : axis.vertices) vertex.radius = 0;
   const Certificate c = certify(axis, torus, {.positions = false});
   EXPECT_TRUE(c.holds()) << complaints(c);
@@ -368,7 +368,7 @@ TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
   EXPECT_FALSE(c.geometry.holds);
 }
 
-TEST_F(FalsifiedAxis, RadiiWithoutFootprintsAreJudgedAlone) {
+TEST_F(FalsifiedAxis, RadiiAreCheckedWithoutFootprints) {
   for (VertexRow& vertex : axis.vertices) vertex.footprints = {};
   const Certificate c = certify(axis, torus, {.footprints = false, .labels = false});
   EXPECT_TRUE(c.holds()) << complaints(c);
@@ -428,7 +428,7 @@ TEST(Certificate, CancelStopsIt) {
 
 // ---- Voxels ----
 
-/// A square ring of voxels 3 x 3 wide, in a turned grid, and its axis through the middles of voxels.
+/// A square ring of voxels 3 x 3 wide in a rotated grid, and its axis through the centres of voxels.
 struct VoxelRing {
   VoxelSet voxels{{11, 11, 5}};
   GridSpec grid{{5, 6, 7}, {1, 1, 1.5}, {11, 11, 5}, {}};
@@ -445,7 +445,7 @@ struct VoxelRing {
         }
       }
     }
-    // Around the ring, from voxel (2, 2, 2) on; all are 1.5 from a side wall.
+    // The path starts at voxel (2, 2, 2) and follows the ring. All vertices are 1.5 from a side wall.
     std::array<std::int64_t, 2> at{2, 2};
     for (const auto& [di, dj] : {std::array{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
       for (int step = 0; step < 6; ++step) {
@@ -459,7 +459,7 @@ struct VoxelRing {
   void add(std::int64_t i, std::int64_t j) {
     const auto count = static_cast<std::uint32_t>(axis.vertices.size());
     const Vec3d p = grid.position(i, j, 2);
-    const bool is_upright = i == 2 || i == 8;  // the outer wall is across
+    const bool is_upright = i == 2 || i == 8;  // the outer wall is crossed along i
     const double side = is_upright ? (i == 2 ? -1.5 : 1.5) : (j == 2 ? -1.5 : 1.5);
     const Vec3d foot = p + grid.direction.columns[is_upright ? 0 : 1] * side;
     axis.vertices.push_back({p, 1.5, {foot, foot}, {}});
@@ -493,7 +493,7 @@ TEST(VoxelCertificate, BodyByBody) {
   add(6.5);
   EXPECT_TRUE(certify(axis, voxels, grid, nullptr, unlabelled).holds())
       << complaints(certify(axis, voxels, grid, nullptr, unlabelled));
-  // The site is the voxel beyond the face, or none.
+  // A site is the voxel beyond the face, or none.
   axis.vertices[0].sites = {SiteId(2 + 9 * (2 + 3 * 1)), SiteId::none()};
   EXPECT_TRUE(certify(axis, voxels, grid, nullptr, unlabelled).holds());
   axis.vertices[0].sites[1] = SiteId(2);
@@ -512,7 +512,7 @@ TEST(VoxelCertificate, BodyByBody) {
   EXPECT_EQ(c.edges.outside, 1U) << complaints(c);
 }
 
-TEST(VoxelCertificate, FindsWhatIsFalse) {
+TEST(VoxelCertificate, FindsFalseRadiiAndTopology) {
   VoxelRing ring;
   ring.axis.vertices[4].radius = 2.25;
   Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled);
@@ -550,7 +550,7 @@ TEST(VoxelCertificate, FindsWhatIsFalse) {
 }
 
 TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
-  // A box that lacks a triangle, and voxels that fill most of it.
+  // A box without one of its triangles, and voxels that fill most of it.
   TriangleMesh mesh = box_between({0, 0, 0}, {4, 4, 4});
   mesh.triangles.pop_back();
   VoxelSet voxels({4, 4, 4});
@@ -569,7 +569,7 @@ TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
   TriangleMesh points = make_points({});
   const MeshView no_surface = points;
   EXPECT_THROW((void)certify(axis, voxels, grid, &no_surface), InvalidMesh);
-  // A single voxel is the solid of nothing.
+  // A single voxel does not cover the mesh.
   VoxelSet one({1, 1, 1});
   one.insert(0, 0, 0);
   axis = ball_axis(mesh, {2, 2, 2});
@@ -577,7 +577,8 @@ TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
 }
 
 TEST(CertificateSlow, ALargeAxis) {
-  // Half of the way from the surface of a ball inwards: not its axis, but as many vertices as one may have.
+  // A sphere halfway between the surface and the centre. It is not the axis of the ball, but has as many vertices as an
+  // axis may have.
   const TriangleMesh ball = make_sphere({.frequency = 70});
   const Bvh bvh(ball, SiteTable(ball));
   const TriangleMesh inner = make_sphere({.radius = 0.5, .frequency = 70});

@@ -1,5 +1,5 @@
-// Proves that complexes without any columns are compared with solids: their Betti numbers body by body, and where their
-// vertices and edges lie.
+// Proves that complexes without columns are compared with solids by their Betti numbers, body by body, and by the
+// places of their vertices and edges.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace blum {
 namespace {
 
-/// Adds a polygon around the z axis; a fan of triangles over it where `is_filled`.
+/// Adds a polygon around the z axis, and a fan of triangles over it if `is_filled`.
 void add_ring(Complex& complex, double radius, bool is_filled, std::uint32_t parts = 96) {
   const auto first = static_cast<std::uint32_t>(complex.positions.size());
   for (std::uint32_t k = 0; k < parts; ++k) {
@@ -37,7 +37,7 @@ bool mentions(const Certificate& certificate, const std::string& text) {
   return false;
 }
 
-TEST(CertifyTopology, ACircleHasThatOfATorus) {
+TEST(CertifyTopology, ACircleHasTheTopologyOfATorus) {
   Complex circle;
   add_ring(circle, 1, false);
   const Certificate found = certify_topology(circle, make_torus());
@@ -77,7 +77,7 @@ TEST(CertifyTopology, OfVoxels) {
   EXPECT_FALSE(certify_topology(point, voxels, image.grid, nullptr).holds());
 }
 
-TEST(CertifyTopology, RefusesWhatIsNoComplex) {
+TEST(CertifyTopology, RejectsInvalidComplexes) {
   Complex wrong;
   wrong.positions = {{1, 0, 0}};
   wrong.edges = {{0, 1}};

@@ -1,5 +1,5 @@
-// Proves that a certificate refuses false labels, false angles of triangles and edges, and false figures of an axis:
-// each test takes a true one and falsifies one thing.
+// Proves that a certificate rejects false labels, false angles of triangles and edges, and false claims of an axis.
+// Each test falsifies one item of a true axis.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using test::EdgeRow;
 using test::TriangleRow;
 using test::VertexRow;
 
-/// A true axis and what its file would say.
+/// A true axis and the claims of its file.
 struct True {
   TriangleMesh mesh;
   AxisRows axis;
@@ -107,7 +107,7 @@ TEST(ColumnLies, ShuffledSheets) {
   expect_refused(lie, "sheets are not connected");
 }
 
-TEST(ColumnLies, NumbersOfSheetsWithGaps) {
+TEST(ColumnLies, GapsInTheNumbersOfSheets) {
   True lie = bracket();
   ASSERT_GT(lie.axis.sheet_count, 10U);
   for (TriangleRow& triangle : lie.axis.triangles) triangle.sheet += triangle.sheet > 3 ? 1 : 0;
@@ -146,7 +146,7 @@ TEST(ColumnLies, FalseRoles) {
   }
 }
 
-TEST(ColumnLies, EdgesThatAreNotListed) {
+TEST(ColumnLies, UnlistedEdges) {
   True lie = bracket();
   lie.axis.edges.erase(lie.axis.edges.begin());
   expect_refused(lie, "1 rims and seams are not listed");
@@ -174,7 +174,7 @@ TEST(ColumnLies, FalseAnglesOfTriangles) {
   expect_refused(lie, "a separation angle");
 }
 
-TEST(ColumnLies, EverythingForHomotopyAlone) {
+TEST(ColumnLies, AllAnglesZero) {
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle = 0;
   for (EdgeRow& edge : lie.axis.edges) edge.separation_angle = 0;
@@ -199,7 +199,7 @@ TEST(ColumnLies, TheAxisOfASmallerAngle) {
   expect_refused(lie, "are rims of sheets without any angle above 120 degrees");
 }
 
-TEST(ColumnLies, FiguresThatCannotBe) {
+TEST(ColumnLies, ImpossibleFigures) {
   const auto refused = [](std::optional<double> MedialMetadata::* const member, double value, const char* what) {
     True lie = bracket();
     lie.claims.metadata.*member = value;

@@ -1,5 +1,5 @@
-// Proves that an edge across a gap is refused however narrow the gap is, and that one which leaves the solid next to a
-// reflex edge, or runs along the surface, is not.
+// Proves that an edge across a gap of any width is rejected. Edges that leave the solid beside a reflex edge, or run
+// along the surface, are accepted.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double slit_end = 0.25;
 
-/// A cube of 1 with a slit in its middle from above, that ends at y = slit_end.
+/// A unit cube with a slit in its middle, from above down to y = slit_end.
 TriangleMesh slit_cube(double width) {
   const double left = 0.5 - width / 2;
   const double right = 0.5 + width / 2;
@@ -51,7 +51,7 @@ Certificate of_path(std::vector<Vec3d> path, const TriangleMesh& mesh) {
   return certify_topology(complex, mesh);
 }
 
-TEST(GapSearch, AcrossASlitHoweverNarrow) {
+TEST(GapSearch, EdgesAcrossSlitsOfAnyWidth) {
   for (const double width : {1e-2, 1e-4, 3e-5, 1e-6, 1e-9, 1e-12}) {
     const TriangleMesh mesh = slit_cube(width);
     const Certificate across = of_path({{0.3, 0.6, 0.4}, {0.7, 0.7, 0.5}}, mesh);
@@ -63,7 +63,7 @@ TEST(GapSearch, AcrossASlitHoweverNarrow) {
   }
 }
 
-TEST(GapSearch, AVertexInASlitJoinsNoWalls) {
+TEST(GapSearch, AVertexInASlitDoesNotJoinWalls) {
   const double width = 1e-6;
   const Certificate across = of_path({{0.3, 0.6, 0.4}, {0.5, 0.65, 0.45}, {0.7, 0.7, 0.5}}, slit_cube(width));
   EXPECT_EQ(across.edges.outside, 0U) << "none is out by more than is allowed";
@@ -90,7 +90,7 @@ TEST(GapSearch, AlongTheSurface) {
   EXPECT_TRUE(of_path({{0.2, 0, 0.2}, {0.7, 0, 0.7}}, mesh).holds()) << "along the side of a triangle";
 }
 
-/// Beside an edge of the mesh that runs along it, closer than rounding can tell.
+/// The path runs along an edge of the mesh, closer than rounding resolves.
 TEST(GapSearch, InAThinWall) {
   const TriangleMesh wall = make_box({.size = {1, 1, 1e-10}});
   const Vec3d middle = bounds(wall).center();

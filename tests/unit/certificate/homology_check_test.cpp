@@ -1,5 +1,5 @@
-// Proves that linking numbers agree with Gauss's integral and ranks with plain elimination, and that an axis with the
-// right numbers of tunnels and voids is refused where its loops and surfaces run around others, or around nothing.
+// Proves that linking numbers equal Gauss's integral, and ranks equal plain elimination. An axis with the right Betti
+// numbers is rejected if its loops or surfaces enclose other tunnels or voids, or none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ constexpr double pi = std::numbers::pi;
 
 using Loop = std::vector<Vec3d>;
 
-/// The solid angle between the pairs of points of two segments, by its sign (Klenin, Langowski 2000).
+/// The signed solid angle between the pairs of points of two segments (Klenin, Langowski 2000).
 double gauss(const Vec3d& p1, const Vec3d& p2, const Vec3d& p3, const Vec3d& p4) {
   const auto unit = [](const Vec3d& v) { return length(v) > 0 ? v / length(v) : v; };
   const std::array<Vec3d, 4> n{unit(cross(p3 - p1, p4 - p1)), unit(cross(p4 - p1, p4 - p2)),
@@ -114,7 +114,7 @@ TEST(Linking, AgreesWithGauss) {
   EXPECT_GT(seen.size(), 4U);
 }
 
-TEST(Linking, TouchingCannotBeTold) {
+TEST(Linking, TouchingIsUndecided) {
   const Loop square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   std::vector<Complement::Step> steps;
   for (std::uint32_t k = 0; k < 4; ++k) steps.push_back({{k, (k + 1) % 4}, 0, 1});
@@ -158,7 +158,7 @@ std::size_t plain_rank_modulo_2(std::vector<SparseRow> rows, std::uint32_t colum
   return rank;
 }
 
-TEST(Elimination, RanksAreRight) {
+TEST(Elimination, RanksEqualThoseOfPlainElimination) {
   Random random(3);
   for (int k = 0; k < 200; ++k) {
     const auto columns = static_cast<std::uint32_t>(1 + random.below(90));
@@ -199,7 +199,7 @@ TEST(Elimination, ThriceIsNotOnceOverTheIntegers) {
   EXPECT_EQ(verifier::rank_modulo_2({{{0, 2}}, {{0, 3}, {1, 4}}}, 2), 1U);
 }
 
-TEST(GeneratingCycles, AreAsManyAsHandlesNeed) {
+TEST(GeneratingCycles, CoverAllHandlesAndClose) {
   for (const auto& [mesh, count] : {std::pair{make_torus(), 2U}, {make_sphere({}), 0U}, {make_plate(), 12U}}) {
     std::vector<std::array<std::uint32_t, 3>> faces;
     for (const Triangle& t : mesh.triangles) faces.push_back({t[0], t[1], t[2]});
@@ -219,7 +219,7 @@ TEST(GeneratingCycles, AreAsManyAsHandlesNeed) {
   }
 }
 
-/// Adds a closed polygon, joined with vertex `from` by an edge unless it is the first one.
+/// Adds a closed polygon. Unless it is the first one, an edge joins it to vertex `from`.
 void add_loop(Complex& complex, const Loop& loop, std::uint32_t from = 0) {
   const auto first = static_cast<std::uint32_t>(complex.positions.size());
   const auto count = static_cast<std::uint32_t>(loop.size());
@@ -277,14 +277,14 @@ TEST(HomologyCheck, LoopsOfAPlate) {
   EXPECT_TRUE(both.holds());
   EXPECT_EQ(both.homology.proven, Proven::homology);
 
-  Complex wrong;  // both around the same hole
+  Complex wrong;  // both loops run around the same hole
   add_loop(wrong, ring(64, left, 0.4, along_x, along_y));
   add_loop(wrong, ring(64, left, 0.35, along_x, along_y));
   const Certificate one = certify_topology(wrong, plate);
   EXPECT_TRUE(one.topology_holds && one.edges.holds);
   EXPECT_TRUE(mentions(one, "loops of the axis run around 1 of the 2 tunnels"));
 
-  Complex across;  // one hole is filled, and a loop beside it makes up for it
+  Complex across;  // one hole is filled, and a loop beside it compensates for it
   add_loop(across, ring(64, left, 0.4, along_x, along_y));
   add_loop(across, ring(64, right, 0.4, -along_x, along_y));
   add_loop(across, ring(8, right + Vec3d{0.42, 0, 0.05}, 0.02, along_x, along_z), 64);
@@ -296,7 +296,7 @@ TEST(HomologyCheck, LoopsOfAPlate) {
   EXPECT_FALSE(filled.edges.holds) << "the edges of the fan cross the hole";
 }
 
-/// A triangle whose sides pass a narrow hole, and a small loop that makes up for what it fills.
+/// The sides of a triangle pass a narrow hole, which it fills. A small loop compensates for the hole.
 TEST(HomologyCheck, TrianglesAcrossAHole) {
   const TriangleMesh plate = make_plate({.holes_x = 1, .holes_y = 1, .hole_radius = 0.1});
   const Vec3d middle = bounds(plate).center();
@@ -313,7 +313,7 @@ TEST(HomologyCheck, TrianglesAcrossAHole) {
   EXPECT_TRUE(mentions(found, "around 0 of the 1 tunnel"));
 }
 
-TEST(HomologyCheck, AFlapAcrossAHoleIsRefused) {
+TEST(HomologyCheck, AFlapAcrossAHoleIsRejected) {
   const TriangleMesh plate = make_plate({.holes_x = 1, .holes_y = 1, .hole_radius = 0.1});
   const Vec3d middle = bounds(plate).center();
   Complex complex;
@@ -327,11 +327,12 @@ TEST(HomologyCheck, AFlapAcrossAHoleIsRefused) {
   EXPECT_EQ(found.homology.proven, Proven::betti_numbers) << "which way round the loop runs is not told";
 }
 
-/// An edge that touches a path exactly says nothing by itself: led past it on the inside, it is linked with nothing.
+/// An edge that touches a path exactly does not decide its linking by itself. Moved past the path on the inside, it is
+/// linked with nothing.
 TEST(HomologyCheck, AnEdgeThatTouchesAPathHidesNothing) {
   const TriangleMesh plate = make_plate({.holes_x = 1, .holes_y = 1, .hole_radius = 0.25, .hole_segments = 4});
   const Vec3d middle = bounds(plate).center();
-  const auto add_touching = [&](Complex& complex) {  // all four upright edges of the hole
+  const auto add_touching = [&](Complex& complex) {  // edges that touch all four upright edges of the hole
     for (const Vec3d& out : {along_x, along_y, -along_x, -along_y}) {
       const Vec3d aside = 0.125 * cross(out, along_z);
       const auto first = static_cast<std::uint32_t>(complex.positions.size());
@@ -348,7 +349,7 @@ TEST(HomologyCheck, AnEdgeThatTouchesAPathHidesNothing) {
   EXPECT_EQ(around.homology.proven, Proven::homology);
   EXPECT_EQ(around.homology.doubtful, 0U);
 
-  Complex small;  // around nothing
+  Complex small;  // loops around nothing
   add_loop(small, ring(16, middle + Vec3d{0.375, 0, 0}, 0.05, along_x, along_z));
   add_touching(small);
   const Certificate nothing = certify_topology(small, plate);
@@ -357,7 +358,7 @@ TEST(HomologyCheck, AnEdgeThatTouchesAPathHidesNothing) {
   EXPECT_LE(nothing.homology.proven, Proven::betti_numbers);
 }
 
-/// Of a mesh, moved and scaled, as an axis.
+/// The surface of a mesh as an axis.
 Complex surface_of(const TriangleMesh& mesh) {
   Complex complex;
   complex.positions = mesh.vertices;
@@ -379,7 +380,7 @@ TEST(HomologyCheck, SurfacesAroundAVoid) {
   EXPECT_TRUE(bubble.topology_holds && bubble.edges.holds);
   EXPECT_TRUE(mentions(bubble, "closed surfaces of the axis enclose 0 of the 1 void"));
 
-  // A punctured surface around the void, and a bubble on it.
+  // A punctured surface around the void, and a bubble attached to it.
   const Complex small = surface_of(test::moved(sphere, 0.1, middle + Vec3d{0.7, 0.7, 0}));
   const auto first = static_cast<std::uint32_t>(around.positions.size());
   around.triangles.pop_back();
@@ -395,7 +396,7 @@ TEST(HomologyCheck, SurfacesAroundAVoid) {
   EXPECT_TRUE(mentions(punctured, "closed surfaces of the axis enclose 0 of the 1 void"));
 }
 
-/// A tetrahedron with a face through the middle of a void is around half of it.
+/// A tetrahedron with a face through the middle of a void encloses half of it.
 TEST(HomologyCheck, ASurfaceThroughAVoidIsNotAroundIt) {
   TriangleMesh mesh = make_box();
   const Vec3d middle = bounds(mesh).center();
@@ -416,14 +417,14 @@ TEST(HomologyCheck, ASurfaceThroughAVoidIsNotAroundIt) {
   }
 }
 
-/// A flat void as wide as the solid nearly, and a surface that cuts it in two away from its middle.
+/// A flat void is nearly as wide as the solid. A surface cuts it in two, away from its middle.
 TEST(HomologyCheck, ASurfaceAroundAPartOfAVoidIsNotAroundIt) {
   TriangleMesh mesh = make_box();
   const Vec3d middle = bounds(mesh).center();
   TriangleMesh hole = make_box({.segments = {8, 8, 1}});
   for (Vec3d& p : hole.vertices) {
     const Vec3d from = p - middle;
-    p = middle + Vec3d{0.8 * from.x, 0.25 + 0.3 * from.y, 0.01 * from.z};  // beside the diagonals of the surface
+    p = middle + Vec3d{0.8 * from.x, 0.25 + 0.3 * from.y, 0.01 * from.z};  // off the diagonals of the surface
   }
   append(mesh, hole);
   for (const double cut : {-0.45, 0.25}) {  // beside the void, and through it
@@ -438,7 +439,7 @@ TEST(HomologyCheck, ASurfaceAroundAPartOfAVoidIsNotAroundIt) {
   }
 }
 
-TEST(Windings, WhereNoPointTellsThatIsSaid) {
+TEST(Windings, ReportsUndecidedIfAllPointsLieOnTheSurface) {
   const Complex complex = surface_of(make_box());
   const ComplexView view = complex.view();
   const Incidence incidence(view);
@@ -457,14 +458,14 @@ TEST(Windings, WhereNoPointTellsThatIsSaid) {
 }
 
 TEST(HomologyCheck, SheetsAcrossAClosedSurface) {
-  // A shell with two voids; its axis a sphere around both, and a wall between them: three sheets, two cycles.
+  // A shell with two voids. Its axis is a sphere around both and a wall between them: three sheets, two cycles.
   TriangleMesh mesh = make_sphere({.radius = 1});
   TriangleMesh left = test::moved(make_sphere({.frequency = 4}), 0.2, {-0.45, 0, 0});
   TriangleMesh right = test::moved(make_sphere({.frequency = 4}), 0.2, {0.45, 0, 0});
   append(mesh, left);
   append(mesh, right);
   const std::uint32_t parts = 24;
-  const auto build = [&](double wall) {  // poles at -x and x, a ring at x = wall, and its middle
+  const auto build = [&](double wall) {  // poles at -x and x, a ring at x = wall, and the centre of the ring
     Complex complex;
     complex.positions = {{-0.85, 0, 0}, {0.85, 0, 0}, {wall, 0, 0}};
     const std::array<double, 5> at{-0.75, -0.4, wall, 0.4, 0.75};
@@ -490,7 +491,7 @@ TEST(HomologyCheck, SheetsAcrossAClosedSurface) {
   EXPECT_EQ(good.solid, (BettiNumbers{1, 0, 2}));
   EXPECT_EQ(good.homology.proven, Proven::homotopy_type);
   Complex complex = build(0);
-  complex.triangles.push_back(complex.triangles.front());  // twice is once
+  complex.triangles.push_back(complex.triangles.front());  // a duplicate counts once
   EXPECT_EQ(certify_topology(complex, mesh).homology.proven, Proven::homotopy_type);
 }
 
@@ -509,7 +510,7 @@ TEST(HomologyCheck, HollowTorusAndChains) {
   EXPECT_FALSE(linked.topology_holds) << "one ring of two";
 }
 
-TEST(HomologyCheck, OfVoxelsNumbersAlone) {
+TEST(HomologyCheck, WithoutPositionsNothingIsProven) {
   Complex nothing;
   nothing.positions = {{0, 0, 0}};
   CertificateOptions options;

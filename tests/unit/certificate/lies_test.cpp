@@ -1,5 +1,5 @@
-// Proves that a certificate refuses axes that lie: each test takes a true one, falsifies one thing, and looks at what
-// is found.
+// Proves that a certificate rejects false axes. Each test falsifies one item of a true axis and checks the reported
+// mismatch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using test::VertexRow;
 
 constexpr double theta = 60;
 
-/// A true axis and what its file would say.
+/// A true axis and the claims of its file.
 struct True {
   TriangleMesh mesh;
   AxisRows axis;
@@ -61,21 +61,21 @@ Certificate verdict(const True& given) {
   return verify(given.axis, given.claims, given.mesh, {.balls = false});
 }
 
-/// What a certificate complains of, in one line.
+/// The mismatches of a certificate as one text.
 std::string complaints(const Certificate& certificate) {
   std::string all;
   for (const std::string& one : certificate.mismatches) all += one + "\n";
   return all;
 }
 
-/// That a lie is refused, saying this.
+/// Expects that a false axis is rejected for a reason.
 void expect_refused(const True& lie, const std::string& reason) {
   const Certificate found = verdict(lie);
   EXPECT_FALSE(found.holds());
   EXPECT_NE(complaints(found).find(reason), std::string::npos) << complaints(found);
 }
 
-/// Moves a vertex, and gives it the radius and the footprint that it has there.
+/// Moves a vertex and sets its exact radius and footprint.
 void put_honestly(VertexRow& vertex, const Vec3d& place, const Bvh& bvh) {
   vertex.position = place;
   const NearestSite nearest = *bvh.nearest(place);
@@ -85,7 +85,7 @@ void put_honestly(VertexRow& vertex, const Vec3d& place, const Bvh& bvh) {
   vertex.separation_angle = 0;
 }
 
-/// The same with all vertices.
+/// Moves all vertices in this way.
 template <class Move>
 void move_honestly(True& lie, const Move& move) {
   const SiteTable sites(lie.mesh);
@@ -113,7 +113,7 @@ TEST(Lies, AllVerticesHalfwayToTheWall) {
   }
 }
 
-TEST(Lies, AllVerticesHalfwayToTheWallThatSayNothingOfAngles) {
+TEST(Lies, AllVerticesHalfwayToTheWallWithoutAngles) {
   True lie = box();
   move_honestly(lie, [](const VertexRow& v) { return (v.position + v.footprints[0]) * 0.5; });
   for (auto& triangle : lie.axis.triangles) triangle.separation_angle = 0;
@@ -207,7 +207,7 @@ TEST(Lies, SitesOfOtherFootprints) {
   expect_refused(lie, "a footprint lies off the site");
 }
 
-TEST(Lies, SitesThatThereAreNot) {
+TEST(Lies, NonexistentSites) {
   True lie = bracket();
   lie.axis.vertices[3].sites[0] = SiteId(1'000'000);
   expect_refused(lie, "names a site that the solid does not have");
@@ -247,7 +247,7 @@ TEST(Lies, FalseAnglesOfVertices) {
   expect_refused(lie, "a separation angle differs from the angle between the footprints");
 }
 
-/// Leaves the triangles that `keep` says, with the edges and vertices that they need.
+/// Keeps only the triangles that `keep` selects, and all edges and vertices.
 template <class Keep>
 void drop_triangles(True& lie, const Keep& keep) {
   std::erase_if(lie.axis.triangles, [&](const test::TriangleRow& t) { return !keep(t); });
@@ -273,8 +273,9 @@ TEST(Lies, HalfOfTheSheetsMissing) {
 }
 
 TEST(Lies, ASmallSheetOffTheMiddle) {
-  // Less than a hundredth of all area, hung on a vertex, so that no topology changes: among all samples it would not
-  // count. Next to the apex of the upper pyramid of the box, between whose walls it is nowhere in the middle.
+  // The sheet has less than a hundredth of the total area, so among all samples it would not count. It hangs on a
+  // vertex, so the topology stays. It lies beside the apex of the upper pyramid of the box, and nowhere in the middle
+  // between its walls.
   True lie = box();
   const SiteTable sites(lie.mesh);
   const Bvh bvh(lie.mesh, sites);
@@ -295,8 +296,8 @@ TEST(Lies, ASmallSheetOffTheMiddle) {
   expect_refused(lie, "are mostly off the middle");
 }
 
-TEST(Lies, ATreeInPlaceOfTheAxis) {
-  // The centre of the box, with a curve to it, and nothing else: a ball has no more homotopy than that.
+TEST(Lies, ATreeInsteadOfTheAxis) {
+  // A curve that ends at the centre of the box replaces the axis. It has the homotopy type of the box.
   True lie = box();
   const SiteTable sites(lie.mesh);
   const Bvh bvh(lie.mesh, sites);
@@ -311,7 +312,7 @@ TEST(Lies, ATreeInPlaceOfTheAxis) {
   expect_refused(lie, "the axis misses");
 }
 
-/// One vertex in place of an axis.
+/// Replaces the axis by one vertex.
 void leave_one_vertex(True& lie, const Vec3d& at) {
   const SiteTable sites(lie.mesh);
   const NearestSite nearest = *Bvh(lie.mesh, sites).nearest(at);
@@ -328,15 +329,15 @@ TEST(Lies, OneVertexOfACoarseGrid) {
   expect_refused(lie, "the axis misses");
 }
 
-TEST(Lies, OneVertexInPlaceOfAThinPlate) {
-  // Less than 3 voxels thick.
+TEST(Lies, OneVertexInsteadOfAThinPlate) {
+  // The plate is less than 3 voxels thick.
   True thin = axis_of(make_box({.size = {1, 0.7, 0.03}}), 64);
   EXPECT_EQ(complaints(verdict(thin)), "");
   leave_one_vertex(thin, {-0.49, -0.34, -0.005});
   expect_refused(thin, "the axis misses");
 }
 
-/// A large box and a small one, less than 3 voxels thick.
+/// A large box and a small one that is less than 3 voxels thick.
 TriangleMesh box_and_bar() {
   TriangleMesh both = make_box({});
   const TriangleMesh bar = make_box({.size = {0.5, 0.05, 0.05}});
@@ -351,7 +352,7 @@ TEST(Lies, OneVertexInASmallBody) {
   const Certificate found = verdict(lie);
   EXPECT_EQ(complaints(found), "");
   EXPECT_EQ(found.medial.bodies_unseen, 0U);
-  AxisRows own;  // of the box alone
+  AxisRows own;  // the axis of the large box only
   std::vector<std::uint32_t> number(lie.axis.vertices.size(), 0);
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (lie.axis.vertices[v].position.y > 0.75) continue;
@@ -377,7 +378,7 @@ TEST(Lies, OneVertexInASmallBody) {
   expect_refused(lie, "in 1 of the bodies the axis misses");
 }
 
-TEST(Lies, WithALambdaAsLargeAsTheSolidNothingIsMissingAndThatIsSaid) {
+TEST(Lies, ALambdaAsLargeAsTheSolidSkipsTheCheckForMissingParts) {
   True point = box();
   leave_one_vertex(point, {0.01, 0.02, 0});
   EXPECT_FALSE(verdict(point).holds());
@@ -409,7 +410,7 @@ TEST(Lies, FalseRuleOfTheSolid) {
   expect_refused(lie, "the file says that its solid is 'voxels'");
 }
 
-TEST(Lies, WithholdsWhatBlumWrites) {
+TEST(Lies, MissingColumnsThatBlumWrites) {
   for (bool MedialClaims::* const has :
        {&MedialClaims::has_radii, &MedialClaims::has_footprints, &MedialClaims::has_angles, &MedialClaims::has_sites}) {
     True lie = box();

@@ -1,5 +1,5 @@
-// Proves that the Betti numbers that a certificate finds for solids are those known of them, and those that topology()
-// finds, and that what bounds no solid is refused.
+// Proves that certificates compute the known Betti numbers of solids, equal to those of topology(). Meshes that do not
+// bound a solid are rejected.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 using test::box_between;
 
-/// The Betti numbers that the verifier finds for a mesh as it is.
+/// The Betti numbers that the verifier computes for an unchanged mesh.
 BettiNumbers solid_of(const MeshView& mesh) {
   BettiNumbers sum{};
   for (const BettiNumbers& body : verifier::solid_of_mesh(mesh, mesh, {}).bodies) {
@@ -31,10 +31,10 @@ BettiNumbers solid_of(const MeshView& mesh) {
   return sum;
 }
 
-/// Turns some of the shells of a mesh around.
+/// Reverses some of the shells of a mesh.
 TriangleMesh some_shells_turned(TriangleMesh mesh, std::uint64_t seed) {
   Random random(seed);
-  // Parts that share no vertex are turned as a whole, so the mesh stays consistently oriented.
+  // Parts that share no vertex are reversed as a whole, so the mesh stays consistently oriented.
   std::vector<std::uint32_t> part(mesh.vertices.size());
   for (std::uint32_t v = 0; v < part.size(); ++v) part[v] = v;
   const auto root = [&](std::uint32_t v) {
@@ -53,7 +53,7 @@ TriangleMesh some_shells_turned(TriangleMesh mesh, std::uint64_t seed) {
   return mesh;
 }
 
-TEST(SolidBetti, CatalogueShapesHaveTheirNumbersWhicheverWayTheyFace) {
+TEST(SolidBetti, CatalogueShapesHaveTheirNumbersInAnyOrientation) {
   int shapes = 0;
   for (const ShapeInfo& shape : shape_catalog()) {
     const ShapeParameters parameters = complete_parameters(shape, {});
@@ -68,36 +68,36 @@ TEST(SolidBetti, CatalogueShapesHaveTheirNumbersWhicheverWayTheyFace) {
   EXPECT_GT(shapes, 15);
 }
 
-TEST(SolidBetti, ManyShellsInEachOther) {
+TEST(SolidBetti, NestedShells) {
   EXPECT_EQ(solid_of(make_nested_shells({.shells = 60, .frequency = 2})), (BettiNumbers{30, 0, 30}));
   EXPECT_EQ(solid_of(some_shells_turned(make_bodies({.count = 1000}), 1)), (BettiNumbers{1000, 0, 0}));
   TriangleMesh mesh = make_torus({});
   append(mesh, make_torus({.tube_radius = 0.2}));
   append(mesh, make_torus({.tube_radius = 0.1}));
-  append(mesh, make_box({{0.2, 0.2, 0.2}, {1, 1, 1}}));  // in the hole of the ring, and so in none of its shells
+  append(mesh, make_box({{0.2, 0.2, 0.2}, {1, 1, 1}}));  // in the hole of the ring and therefore in none of its shells
   EXPECT_EQ(solid_of(mesh), (BettiNumbers{3, 3, 1}));
 }
 
 TEST(SolidBetti, ShellsThatTouch) {
-  // Stacked, beside each other, corner on corner: bodies stay apart.
+  // Boxes lie on each other, side by side and corner to corner. Bodies stay separate.
   TriangleMesh stacked = box_between({0, 0, 0}, {1, 1, 1});
   append(stacked, box_between({0, 0, 1}, {1, 1, 2}));
   append(stacked, box_between({1, 0, 0}, {2, 1, 1}));
   append(stacked, box_between({2, 1, 1}, {3, 2, 2}));
   EXPECT_EQ(solid_of(stacked), (BettiNumbers{4, 0, 0}));
-  // A void that reaches the walls from within, and one that touches them in a face and an edge.
+  // One void reaches the walls from within. Another touches them in a face and an edge.
   TriangleMesh hollow = box_between({0, 0, 0}, {2, 2, 2});
   append(hollow, box_between({0, 0.5, 0.5}, {1, 1, 1}, true));
   append(hollow, box_between({1, 0, 1}, {1.5, 0.5, 2}, true));
   EXPECT_EQ(solid_of(hollow), (BettiNumbers{1, 0, 2}));
-  // A body in the void that touches it from within.
+  // A body in the void touches it from within.
   append(hollow, box_between({0, 0.5, 0.5}, {0.5, 0.75, 1}));
   EXPECT_EQ(solid_of(hollow), (BettiNumbers{2, 0, 2}));
   EXPECT_EQ(solid_of(some_shells_turned(hollow, 2)), (BettiNumbers{2, 0, 2}));
 }
 
-/// Cuts a box into parts along random planes, puts shells into some of them that fill their part or nearly so, and goes
-/// on in these: shells touch their neighbours and those around them in whole faces. Counts shells by depth.
+/// Cuts a box into parts along random planes. Some parts get a shell that fills them or nearly so, and are cut again.
+/// Shells touch their neighbours and the shells around them in whole faces. Counts shells by depth.
 void add_nested_boxes(const Vec3d& lower, const Vec3d& upper, int depth, Random& random, TriangleMesh& mesh,
                       BettiNumbers& betti) {
   append(mesh, box_between(lower, upper, random.uniform() < 0.5));
@@ -138,7 +138,7 @@ TEST(SolidBetti, RealMeshes) {
   }
 }
 
-/// The message with which a mesh is refused.
+/// The message with which a mesh is rejected.
 std::string refusal(const MeshView& mesh) {
   try {
     (void)solid_of(mesh);
@@ -148,7 +148,7 @@ std::string refusal(const MeshView& mesh) {
   return {};
 }
 
-TEST(SolidBetti, DoesNotDependOnHowTrianglesFace) {
+TEST(SolidBetti, DoesNotDependOnTheOrientationOfTriangles) {
   TriangleMesh torus = make_torus({});
   Random random(31);
   for (Triangle& t : torus.triangles) {
@@ -157,7 +157,7 @@ TEST(SolidBetti, DoesNotDependOnHowTrianglesFace) {
   EXPECT_EQ(certify({}, torus, {.positions = false}).solid, (BettiNumbers{1, 1, 0}));
 }
 
-TEST(SolidBetti, RefusesWhatBoundsNoSolid) {
+TEST(SolidBetti, RejectsMeshesThatBoundNoSolid) {
   const auto says = [](const MeshView& mesh, const std::string& words) {
     const std::string message = refusal(mesh);
     EXPECT_NE(message.find(words), std::string::npos) << words << " in: " << message;
@@ -165,7 +165,7 @@ TEST(SolidBetti, RefusesWhatBoundsNoSolid) {
   TriangleMesh open = make_box({});
   open.triangles.pop_back();
   says(open, "not closed and manifold");
-  // The least projective plane, six vertices in general position: closed, manifold, and with one side only.
+  // The smallest projective plane: six vertices in general position. It is closed and manifold, and has one side only.
   TriangleMesh one_sided;
   one_sided.vertices = {{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0.3}, {0.4, 0.3, 1}, {1, 1.1, 0.9}, {0.1, 0.7, 1.2}};
   one_sided.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},

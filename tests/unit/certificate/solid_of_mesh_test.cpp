@@ -1,5 +1,5 @@
-// Proves that the verifier's solid of a mesh tells inside from outside next to faces, edges and corners of every kind,
-// also in thin walls: as the solid angles of all triangles do, added up.
+// Proves that the verifier's solid of a mesh distinguishes inside from outside beside faces, edges and corners of every
+// kind, also in thin walls. The reference is the sum of the solid angles of all triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace blum {
 namespace {
 
-/// How often a surface goes round a point (van Oosterom and Strackee 1983).
+/// The winding number of a surface around a point (van Oosterom and Strackee 1983).
 double winding_number(const MeshView& mesh, const Vec3d& p) {
   double sum = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -34,7 +34,7 @@ double winding_number(const MeshView& mesh, const Vec3d& p) {
   return sum / (4 * std::numbers::pi);
 }
 
-/// A point beside a random point of a corner, an edge or a face.
+/// A point beside a random point on a corner, an edge or a face.
 Vec3d beside_surface(const MeshView& mesh, double diagonal, Random& random) {
   const auto [a, b, c] = verifier::corners_of(mesh, static_cast<std::uint32_t>(random.below(mesh.triangles.size())));
   const double s = random.uniform();
@@ -54,8 +54,8 @@ TEST(SolidOfMesh, DepthsHaveTheSignOfTheWindingNumber) {
   for (const test::NamedMesh& named : meshes) {
     const Solid solid = Solid::of(named.mesh);
     if (solid.rule() != SolidRule::polyhedron || solid.bodies().size() != 1) continue;
-    const MeshView mesh = solid.bodies()[0].mesh;  // without crossings
-    // A void that rounding shrinks to a point bounds nothing; certify() leaves it out first.
+    const MeshView mesh = solid.bodies()[0].mesh;  // crossings are resolved
+    // Rounding may shrink a void to a point that bounds nothing. certify() removes such a void first.
     if (named.name == "shell") continue;
     SCOPED_TRACE(named.name);
     const verifier::KnownSolid known = verifier::solid_of_mesh(mesh, mesh, {});
@@ -77,8 +77,8 @@ TEST(SolidOfMesh, DepthsHaveTheSignOfTheWindingNumber) {
   EXPECT_GT(at_edges, 1000U) << "points whose closest one lies on an edge";
 }
 
-/// Beside a corner, as close as rounding, not all faces there are found: two of them that overhang would tell that what
-/// is beyond the corner is inside.
+/// As close to a corner as rounding, the search misses some faces. Two overhanging faces alone would place points
+/// beyond the corner inside.
 TEST(SolidOfMesh, BeyondAnObliqueApexIsOutside) {
   Random random(4);
   std::size_t looked_at = 0;
@@ -94,7 +94,7 @@ TEST(SolidOfMesh, BeyondAnObliqueApexIsOutside) {
       if (corner > 0 && corner < 5) pyramid.triangles.push_back({1, 2 + corner, 1 + corner});
     }
     TriangleMesh mesh = test::turned(pyramid, random.bits());
-    const Vec3d move = random.in_cube() * 3e3;  // more rounding
+    const Vec3d move = random.in_cube() * 3e3;  // increases rounding
     for (Vec3d& v : mesh.vertices) v += move;
     const verifier::KnownSolid known = verifier::solid_of_mesh(mesh, mesh, {});
     const Vec3d apex = mesh.vertices[0];

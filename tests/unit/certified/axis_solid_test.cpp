@@ -1,4 +1,4 @@
-// Options of a solid beside what its axis says of it: what is used, and what is warned of in which words.
+// Proves which options of a solid are used if they differ from the claims of its axis, and which warnings are reported.
 
 #include "blum/certified/axis_solid.hpp"
 
@@ -14,7 +14,7 @@ AxisSolid of_image(const SolidSelection& given, const MedialMetadata& axis) {
   return solid_of_axis(given, true, axis, "the axis", OptionStyle::python);
 }
 
-TEST(AxisSolid, WhatTheAxisSaysIsUsedWhereNothingIsGiven) {
+TEST(AxisSolid, ClaimsOfTheAxisReplaceMissingOptions) {
   MedialMetadata axis;
   axis.label = 3;
   axis.weld = 0.5;
@@ -23,7 +23,7 @@ TEST(AxisSolid, WhatTheAxisSaysIsUsedWhereNothingIsGiven) {
   EXPECT_TRUE(of_image({}, axis).warnings.empty());
 }
 
-TEST(AxisSolid, OptionsGoFirstAndContradictionsAreWarnedOf) {
+TEST(AxisSolid, OptionsTakePrecedenceAndContradictionsCauseWarnings) {
   MedialMetadata axis;
   axis.label = 3;
   const auto [used, warnings] = of_image({.threshold = 2.5}, axis);
@@ -34,14 +34,14 @@ TEST(AxisSolid, OptionsGoFirstAndContradictionsAreWarnedOf) {
   EXPECT_TRUE(of_image({.label = 1}, {}).warnings.empty()) << "the axis says nothing";
 }
 
-TEST(AxisSolid, NumbersAreComparedAndNotTheirTexts) {
+TEST(AxisSolid, ComparesNumbersInsteadOfTheirTexts) {
   MedialMetadata axis;
   axis.threshold = 1;
   const double close = 1 + std::numeric_limits<double>::epsilon();
   EXPECT_FALSE(of_image({.threshold = close}, axis).warnings.empty());
 }
 
-TEST(AxisSolid, EachInputIsAskedForItsOwnOptions) {
+TEST(AxisSolid, EachInputUsesOnlyItsOwnOptions) {
   MedialMetadata axis;
   axis.label = 3;
   axis.weld = 1e-6;

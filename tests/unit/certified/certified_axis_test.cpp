@@ -1,5 +1,5 @@
-// Proves that an axis is taken in the best of its forms that is certified, on the best of its grids, and that warnings
-// say why not in a better one.
+// Proves that the best certified form of an axis on the best grid is returned. Warnings give the reasons against better
+// forms.
 #include "blum/certified/certified_axis.hpp"
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ TEST(CertifiedAxis, TheBestFormOfABoxIsCertified) {
   EXPECT_EQ(found.certificate.checked.lambda, 0);
 }
 
-/// Nothing is seen at more than 180 degrees, so that nothing of it can be missing.
-TEST(CertifiedAxis, AtTheLargestAngleOnlyTheTopologyIsLeft) {
+/// No vertex has a separation angle above 180 degrees, so nothing can be missing.
+TEST(CertifiedAxis, AtTheLargestAngleOnlyTheTopologyRemains) {
   const TriangleMesh plate = make_box({.size = {4, 2, 0.5}});
   const CertifiedAxis found = certified_axis(plate, 180, {.resolution = 32});
   EXPECT_EQ(found.axis.axis.positions.size(), 1U);
@@ -68,14 +68,14 @@ TEST(CertifiedAxis, WithoutAToleranceAllVerticesStay) {
   EXPECT_THROW(static_cast<void>(certified_axis(axis, box, 60, -1.0)), InvalidOption);
 }
 
-TEST(CertifiedAxis, OfAMeshIsThatOfItsAxis) {
+TEST(CertifiedAxis, OfAMeshEqualsThatOfItsAxis) {
   const TriangleMesh box = make_box({});
   const CertifiedAxis found = certified_axis(box, 60, {.resolution = 24});
   EXPECT_TRUE(found.warnings.empty());
   expect_same(found.axis.axis, certified_axis(medial_axis(box, {.resolution = 24}), box, 60).axis.axis);
 }
 
-TEST(CertifiedAxis, OfAnotherSolidIsRefused) {
+TEST(CertifiedAxis, RejectsTheAxisOfAnotherSolid) {
   const TriangleMesh box = make_box({});
   const TriangleMesh other = make_box({.size = {3, 1, 1}});
   try {
@@ -88,7 +88,7 @@ TEST(CertifiedAxis, OfAnotherSolidIsRefused) {
   }
 }
 
-/// Axes of a box whose certificates are made up.
+/// Axes of a box with made-up certificates.
 class TriedAxes : public testing::Test {
  protected:
   using Judge = FunctionRef<Certificate(const AxisCandidate&)>;
@@ -102,7 +102,7 @@ class TriedAxes : public testing::Test {
     };
     return certified_axes({grid_shift, may_move, make}, judge, options);
   }
-  /// Certificates that hold from the n-th on.
+  /// Certificates that hold from the n-th one on.
   CertifiedAxes held_from(int n, const CertifiedAxisOptions& options = {}, double grid_shift = 0,
                           bool may_move = true) {
     return tried([&](const AxisCandidate&) { return n-- > 0 ? failing("something is wrong") : Certificate{}; }, options,
@@ -114,7 +114,7 @@ class TriedAxes : public testing::Test {
   std::vector<double> shifts;
 };
 
-TEST_F(TriedAxes, FormsAreTriedInTurnAndWarningsSayWhatFailed) {
+TEST_F(TriedAxes, TriesFormsInOrderAndWarnsOfFailures) {
   const double tolerance = 0.25 * least_spacing(axis->report());
   const CertifiedAxes first = held_from(0);
   EXPECT_TRUE(first.axes.front().warnings.empty());
@@ -137,7 +137,7 @@ TEST_F(TriedAxes, FormsAreTriedInTurnAndWarningsSayWhatFailed) {
   }
 }
 
-TEST_F(TriedAxes, GridsAreMovedInTurnWhereNoFormHolds) {
+TEST_F(TriedAxes, MovesTheGridIfNoFormHolds) {
   const CertifiedAxes third = held_from(6);
   EXPECT_EQ(shifts, (std::vector<double>{0, 0.3, -0.3}));
   EXPECT_EQ(third.grid_shift, -0.3);
@@ -161,7 +161,7 @@ TEST_F(TriedAxes, GridsAreMovedInTurnWhereNoFormHolds) {
 }
 
 TEST_F(TriedAxes, TheGridWithTheFewestMismatchesIsKept) {
-  // At both angles nothing holds on the first grid, one angle on the second, and as many on the third.
+  // On the first grid neither angle is certified. On each other grid, one angle is.
   const CertifiedAxes found = tried(
       [&](const AxisCandidate& candidate) {
         const bool is_right = candidate.grid_shift != 0 && *candidate.metadata.theta == 90;
@@ -177,7 +177,7 @@ TEST_F(TriedAxes, TheGridWithTheFewestMismatchesIsKept) {
   EXPECT_EQ(texts_of(found.warnings).size(), 1U);
 }
 
-TEST_F(TriedAxes, SheetsArePrunedFromAngleToAngle) {
+TEST_F(TriedAxes, PrunesSheetsFromAngleToAngle) {
   const CertifiedAxes found = held_from(0, {.thetas = {60, 100}, .tolerance = 0.0, .prunes_sheets = true});
   const Complex first = prune_sheets(axis->simplify(0), 60);
   expect_same(found.axes[0].axis.axis, first);
@@ -188,7 +188,7 @@ TEST_F(TriedAxes, SheetsArePrunedFromAngleToAngle) {
   EXPECT_THROW(static_cast<void>(held_from(0, {.tolerance = HUGE_VAL})), InvalidOption);
 }
 
-TEST_F(TriedAxes, AComplexIsWrittenWithFewVerticesIfItIsCertifiedSo) {
+TEST_F(TriedAxes, AComplexIsDecimatedIfTheResultIsCertified) {
   const Complex whole = axis->simplify(60);
   const MedialMetadata metadata = medial_metadata(*axis, 60);
   std::vector<PhaseTime> phases;
@@ -209,7 +209,7 @@ TEST_F(TriedAxes, AComplexIsWrittenWithFewVerticesIfItIsCertifiedSo) {
             std::vector<std::string>{"at theta 60 the axis keeps all vertices, because with fewer something is wrong"});
 }
 
-TEST(CertifiedAxes, OfSeveralAnglesAreThoseOfEach) {
+TEST(CertifiedAxes, EqualThoseOfEachAngle) {
   const TriangleMesh plate = make_box({.size = {3, 2, 1}});
   const CertifiedAxes found = certified_axes(plate, {.thetas = {100, 60}}, {.resolution = 24});
   EXPECT_TRUE(found.holds());
@@ -218,7 +218,7 @@ TEST(CertifiedAxes, OfSeveralAnglesAreThoseOfEach) {
   expect_same(found.axes[1].axis.axis, certified_axis(plate, 60, {.resolution = 24}).axis.axis);
 }
 
-TEST(CertifiedAxes, OfTwoBodiesSayTheSmallestVoxel) {
+TEST(CertifiedAxes, NameTheSmallestVoxelOfTwoBodies) {
   TriangleMesh both = make_box({.size = {8, 8, 8}});
   const TriangleMesh thin = make_box({.size = {4, 4, 0.05}});
   const auto first = static_cast<std::uint32_t>(both.vertices.size());
@@ -231,7 +231,7 @@ TEST(CertifiedAxes, OfTwoBodiesSayTheSmallestVoxel) {
             std::min(found.report.bodies[0].spacing, found.report.bodies[1].spacing));
 }
 
-TEST(CertifiedAxes, OfAnOpenMeshAreThoseOfItsVoxels) {
+TEST(CertifiedAxes, UseTheVoxelsOfAnOpenMesh) {
   TriangleMesh box = make_box({});
   box.triangles.pop_back();
   const CertifiedAxes found = certified_axes(box, {}, {.resolution = 16});
@@ -239,7 +239,7 @@ TEST(CertifiedAxes, OfAnOpenMeshAreThoseOfItsVoxels) {
   EXPECT_EQ(found.axes.front().certificate.against, SolidRule::winding);
 }
 
-TEST(CertifiedAxes, OfAnImageAreOfItsSelectedVoxels) {
+TEST(CertifiedAxes, UseTheSelectedVoxelsOfAnImage) {
   const VoxelImage image = make_balls_image({});
   const CertifiedAxes found = certified_axes(image, {.thetas = {60, 120}});
   EXPECT_TRUE(found.holds()) << found.mismatches.front();
@@ -247,7 +247,7 @@ TEST(CertifiedAxes, OfAnImageAreOfItsSelectedVoxels) {
   EXPECT_EQ(found.axes.front().certificate.against, SolidRule::voxels);
 }
 
-/// A cube with a square hole through it, far too narrow for its slant: no model opens it.
+/// A cube with a square oblique hole through it. The hole is so narrow that no model opens it.
 TriangleMesh block_with_needle() {
   TriangleMesh out;
   constexpr double width = 1e-9;
@@ -272,8 +272,8 @@ TriangleMesh block_with_needle() {
   return out;
 }
 
-/// Its certificate may hold by luck, as at angles at which nothing is seen: that is not enough.
-TEST(CertifiedAxes, AreNotWhereTheModelDoesNotPass) {
+/// Its certificate may hold by chance, for example at angles that no vertex has. This is not sufficient.
+TEST(CertifiedAxes, FailIfTheModelDoesNotPass) {
   const TriangleMesh block = block_with_needle();
   const auto axis = std::make_shared<const MedialAxis>(medial_axis(block, {.resolution = 8, .max_resolution = 8}));
   ASSERT_FALSE(axis->report().topology_matches);

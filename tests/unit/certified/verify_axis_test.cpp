@@ -1,5 +1,5 @@
-// Proves that what is said of an axis is held against its solid: false rules, sides of voxels and missing attributes
-// are refused, and what is true is not.
+// Proves that claims of an axis are compared with its solid. False rules, false sides of voxels and missing attributes
+// are rejected, and true claims are accepted.
 #include "blum/certified/verify_axis.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ MedialClaims claims_for(const MedialAxis& axis) {
   return claims;
 }
 
-TEST(VerifyMedial, FalseClaimsOfAnAxisOfAMeshAreRefused) {
+TEST(VerifyMedial, RejectsFalseClaimsOfAnAxisOfAMesh) {
   const TriangleMesh mesh = make_box({});
   const MedialAxis axis = medial_axis(mesh, {.resolution = 16});
   const auto piece = axis.simplify(60);
@@ -59,7 +59,7 @@ TEST(VerifyMedial, VoxelsOfAnOpenMeshMustBeNamed) {
   EXPECT_THROW((void)verify(axis.simplify(60), claims, mesh), UnknownVoxels);
 }
 
-TEST(VerifyMedial, TheGridOfAnOpenMeshIsFineEnoughAndHasTheSpacing) {
+TEST(VerifyMedial, RejectsCoarseGridsAndOtherSpacingsOfAnOpenMesh) {
   TriangleMesh mesh = make_box({});
   mesh.triangles.pop_back();
   const MedialAxis axis = medial_axis(mesh, {.resolution = 16});
@@ -74,14 +74,14 @@ TEST(VerifyMedial, TheGridOfAnOpenMeshIsFineEnoughAndHasTheSpacing) {
   ASSERT_EQ(other.mismatches.size(), 1U);
   EXPECT_NE(other.mismatches.front().find("but its grid has a spacing of"), std::string::npos)
       << other.mismatches.front();
-  // Steps of 1/4 along one side, which the grid covers nonetheless.
+  // Steps of 1/4 along one side. The grid still covers the mesh.
   GridSpec& grid = *claims.metadata.grid;
   grid.spacing.x = 0.25;
   claims.metadata.spacing.reset();
   EXPECT_THROW((void)verify(piece, claims, mesh), InvalidGrid);
 }
 
-TEST(VerifyMedial, SidesOfVoxelsAreThoseOfTheImage) {
+TEST(VerifyMedial, SidesOfVoxelsEqualThoseOfTheImage) {
   VoxelImage image;
   image.grid = {{0, 0, 0}, {1, 1, 1}, {8, 8, 8}, {}};
   std::vector<std::uint8_t> values(512, 0);

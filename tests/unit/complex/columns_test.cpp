@@ -1,5 +1,5 @@
-// Proves that columns keep names, types and rows in order, say what is wrong with what they are asked for, and that a
-// complex tells what is wrong with it.
+// Proves that columns keep names, types and rows in order, and reject invalid requests. A complex reports its own
+// problem.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +34,7 @@ TEST(Columns, AreFoundByNameAndType) {
   EXPECT_THROW((void)columns.get<std::int32_t>("site"), InvalidOption);
 }
 
-TEST(Columns, RefuseWhatDoesNotFit) {
+TEST(Columns, RejectInvalidColumns) {
   Columns columns = two_columns();
   EXPECT_THROW(columns.add({"radius", 1, std::vector<double>(3)}), InvalidOption);
   EXPECT_THROW(columns.add({"", 1, std::vector<double>(3)}), InvalidOption);
@@ -65,7 +65,7 @@ TEST(Columns, RowsArePickedAppendedAndDropped) {
   EXPECT_EQ(depth[5], 0.5F);
 }
 
-TEST(Complex, SaysWhatIsWrongWithIt) {
+TEST(Complex, ReportsItsProblem) {
   Complex complex;
   complex.positions.resize(3);
   complex.edges = {{0, 1}};

@@ -1,5 +1,5 @@
-// Proves that homology() counts components, tunnels and voids over Z/2: against ranks from dense Gaussian elimination
-// on random complexes, and on spaces whose Betti numbers are known; and that it says no to complexes that are none.
+// Proves that homology() counts components, tunnels and voids over Z/2. The references are dense Gaussian elimination
+// on random complexes, and spaces of known Betti numbers. Invalid complexes are rejected.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ BettiNumbers homology_of(const Cells& c, const Context& context = {}) {
 constexpr std::size_t most_rows = 1024;
 using Column = std::bitset<most_rows>;
 
-/// Rank of a matrix over Z/2, given by its columns: plain elimination, row by row.
+/// The rank over Z/2 of a matrix given by its columns, by plain elimination row by row.
 std::int64_t dense_rank(std::vector<Column> columns) {
   std::int64_t rank = 0;
   for (std::size_t row = 0; row < most_rows; ++row) {
@@ -51,7 +51,7 @@ std::int64_t dense_rank(std::vector<Column> columns) {
   return rank;
 }
 
-/// Betti numbers as the definition says: cells less the ranks of the two boundary maps.
+/// Betti numbers by definition: numbers of cells minus the ranks of the two boundary maps.
 BettiNumbers dense_homology(const Cells& c) {
   std::set<Face> faces;
   std::set<Edge> edges;
@@ -83,7 +83,7 @@ std::array<std::uint32_t, n> random_cell(std::size_t vertices, Random& random) {
   return cell;
 }
 
-/// A rectangle of quads, each cut in two, whose opposite sides are glued: a torus, or with a flip a Klein bottle.
+/// A rectangle of quads, each cut in two, with opposite sides glued: a torus, or with a flip a Klein bottle.
 Cells glued_rectangle(std::uint32_t m, std::uint32_t n, bool flips) {
   Cells c;
   const auto vertex = [&](std::uint32_t i, std::uint32_t j) {
@@ -104,7 +104,7 @@ Cells sphere() {
   return {4, {}, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};
 }
 
-/// The projective plane of six vertices.
+/// The projective plane with six vertices.
 Cells projective_plane() {
   return {
       6,
@@ -121,7 +121,7 @@ Cells disjoint(const Cells& a, const Cells& b) {
   return sum;
 }
 
-/// The same complex, its vertices renumbered, its cells in another order, turned and named several times.
+/// The same complex with renumbered vertices. Its cells are reordered, rotated and listed several times.
 Cells shuffled(const Cells& c, Random& random) {
   std::vector<std::uint32_t> name(c.vertices);
   for (std::uint32_t v = 0; v < c.vertices; ++v) name[v] = v;
@@ -163,7 +163,7 @@ TEST(Homology, RandomSurfacesWithSeamsHaveTheRanksOfDenseMatrices) {
   for (int trial = 0; trial < 60; ++trial) {
     Cells c = glued_rectangle(5, 6, trial % 2 == 1);
     c = disjoint(c, disjoint(sphere(), projective_plane()));
-    // Vertices are identified at random, so the surfaces meet and fold onto themselves.
+    // Random vertices are identified, so the surfaces meet and fold onto themselves.
     for (std::uint64_t k = random.below(8); k > 0; --k) {
       const Edge pair = random_cell<2>(c.vertices, random);
       for (Face& f : c.faces) std::replace(f.begin(), f.end(), pair[0], pair[1]);
@@ -213,7 +213,8 @@ TEST(Homology, DisjointUnionsAddUp) {
   EXPECT_EQ(homology_of(shuffled(all, random)), expected);
 }
 
-/// Spheres that share a disc each with their neighbours, like rooms along a corridor: as many voids as rooms.
+/// Each sphere shares a disc with its neighbours, like rooms along a corridor. The number of voids equals the number of
+/// rooms.
 TEST(Homology, RoomsWithCommonWallsAreVoids) {
   const std::uint32_t rooms = 50;
   Cells c;
@@ -232,7 +233,7 @@ TEST(Homology, RoomsWithCommonWallsAreVoids) {
   EXPECT_EQ(homology_of(c), (BettiNumbers{1, 0, rooms}));
 }
 
-TEST(Homology, RefusesWhatIsNoComplex) {
+TEST(Homology, RejectsInvalidComplexes) {
   EXPECT_THROW((void)homology_of({3, {{0, 3}}, {}}), InvalidOption);
   EXPECT_THROW((void)homology_of({3, {}, {{0, 1, 0xffffffffU}}}), InvalidOption);
   EXPECT_THROW((void)homology_of({3, {{1, 1}}, {}}), InvalidOption);

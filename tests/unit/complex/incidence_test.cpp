@@ -1,5 +1,5 @@
-// Proves that the incidence of a complex is what counting cell by cell gives, on random complexes with edges and
-// triangles that are listed several times; the same of components, Euler numbers and unions.
+// Proves that the incidence of a complex equals a count cell by cell, on random complexes with repeated edges and
+// triangles. Components, Euler numbers and unions are also tested.
 #include "blum/complex/incidence.hpp"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ void expect_right(const Complex& complex) {
   }
 }
 
-TEST(Incidence, IsWhatASearchOverAllCellsGives) {
+TEST(Incidence, EqualsASearchOverAllCells) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     const auto vertices = 3 + seed % 12;
@@ -110,7 +110,7 @@ TEST(Incidence, IsWhatASearchOverAllCellsGives) {
   }
 }
 
-TEST(Incidence, OfNothingIsEmpty) {
+TEST(Incidence, IsEmptyForAnEmptyComplex) {
   const Incidence incidence(ComplexView{});
   EXPECT_TRUE(incidence.edges().empty());
   EXPECT_EQ(incidence.edges_of_vertex().size(), 0U);
@@ -118,7 +118,7 @@ TEST(Incidence, OfNothingIsEmpty) {
   EXPECT_FALSE(Incidence({3, {}, {}}).find_edge(0, 2).has_value());
 }
 
-TEST(Incidence, RefusesWhatIsNoComplex) {
+TEST(Incidence, RejectsInvalidComplexes) {
   const std::vector<Edge> beyond{{0, 1}, {1, 5}};
   const std::vector<Face> twice{{0, 1, 0}};
   const auto message = [](const ComplexView& view) {
@@ -135,14 +135,14 @@ TEST(Incidence, RefusesWhatIsNoComplex) {
   EXPECT_THROW((void)euler_characteristic({3, {}, twice}), InvalidOption);
 }
 
-TEST(Incidence, StopsWhenItIsToldTo) {
+TEST(Incidence, CancelStopsIt) {
   std::stop_source source;
   source.request_stop();
   const Complex complex = random_complex(1, 10, 10, 10);
   EXPECT_THROW((void)Incidence(complex.view(), {.cancel = source.get_token()}), Cancelled);
 }
 
-/// Components by spreading along edges until nothing changes.
+/// Spreads components along edges until nothing changes.
 std::vector<std::uint32_t> components_by_spreading(const Complex& complex) {
   std::vector<std::uint32_t> least(complex.positions.size());
   for (std::uint32_t v = 0; v < least.size(); ++v) least[v] = v;
@@ -157,7 +157,7 @@ std::vector<std::uint32_t> components_by_spreading(const Complex& complex) {
   return least;
 }
 
-TEST(Components, AreWhatSpreadingAlongEdgesGives) {
+TEST(Components, EqualSpreadingAlongEdges) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     const Complex complex = random_complex(seed, 4 + 2 * seed, seed * 5 % 23, seed * 3 % 17);

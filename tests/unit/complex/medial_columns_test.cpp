@@ -1,5 +1,5 @@
-// Proves that the views of a medial axis's columns show what the columns hold, and that what is missing, of another
-// type or no medial axis is said.
+// Proves that the views of the columns of a medial axis show their contents. Missing columns, columns of other types
+// and other complexes are reported.
 #include "blum/complex/medial_columns.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ Complex small_axis() {
   return axis;
 }
 
-TEST(MedialColumns, AreSeenByName) {
+TEST(MedialColumns, AreFoundByName) {
   const Complex axis = small_axis();
   EXPECT_EQ(problem_of_medial(axis), "");
   const MedialView view(axis);
@@ -48,7 +48,7 @@ TEST(MedialColumns, AreSeenByName) {
   EXPECT_EQ(counts.junctions, 1U);
 }
 
-TEST(MedialColumns, AddingWhatIsMissingKeepsWhatIsThere) {
+TEST(MedialColumns, AddingMissingColumnsKeepsTheOthers) {
   Complex axis = small_axis();
   const Complex before = axis;
   add_missing_medial_columns(axis);
@@ -64,7 +64,7 @@ TEST(MedialColumns, AddingWhatIsMissingKeepsWhatIsThere) {
   EXPECT_EQ(axis.edge_columns.find("role"), nullptr);
 }
 
-TEST(MedialColumns, MissingAndOtherColumnsAreNamed) {
+TEST(MedialColumns, NamesMissingColumnsAndOtherTypes) {
   const auto message = [](const std::function<void(Complex&)>& spoil) {
     Complex axis = small_axis();
     spoil(axis);
@@ -90,7 +90,7 @@ TEST(MedialColumns, MissingAndOtherColumnsAreNamed) {
   EXPECT_NE(problem_of_nested(small_axis()).find("'until'"), std::string::npos);
 }
 
-TEST(MedialColumns, WhatIsNoMedialAxisIsSaid) {
+TEST(MedialColumns, ReportsTheProblemOfInvalidAxes) {
   const auto expect = [](const char* problem, const std::function<void(Complex&)>& spoil) {
     Complex axis = small_axis();
     spoil(axis);

@@ -1,4 +1,4 @@
-// Proves that descriptions name all members of a struct and in their order, and that enumerations have names both ways.
+// Proves that descriptions list all members of a struct in order, and that enumerations convert to names and back.
 #include "blum/core/describe.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ struct Description<Shape> {
 
 namespace {
 
-TEST(Describe, MissingAndSwappedMembersAreSeen) {
+TEST(Describe, MissingAndSwappedMembersAreDetected) {
   constexpr Member colour{"", &Shape::colour, "", ""};
   constexpr Member size{"", &Shape::size, "", ""};
   constexpr Member parts{"", &Shape::parts, "", ""};
@@ -86,7 +86,7 @@ TEST(Describe, EnumerationsHaveNamesBothWays) {
   EXPECT_THROW((void)parse_enum<Colour>("colour", "blue", Description<Shape>::warm), InvalidOption);
 }
 
-TEST(Describe, WhatExcludesEachOtherIsRefused) {
+TEST(Describe, ExclusiveOptionsAreRefused) {
   EXPECT_NO_THROW(exclude(true, "a", false, "b", ""));
   try {
     exclude(true, "--label", true, "--threshold", "each selects the voxels");

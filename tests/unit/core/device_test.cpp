@@ -1,4 +1,4 @@
-// Proves that devices are read and told as the tool and Python name them, and that anything else is refused.
+// Proves that devices convert to the names of the tool and Python and back, and that other names are refused.
 #include "blum/core/device.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace blum {
 namespace {
 
-TEST(Device, NamesAreReadAndTold) {
+TEST(Device, NamesConvertBothWays) {
   for (const Device& device : {Device::cpu(), Device::automatic(), Device::cuda(), Device::cuda(7)}) {
     EXPECT_EQ(parse_device(to_string(device)), device);
   }

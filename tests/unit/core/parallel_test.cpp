@@ -56,7 +56,7 @@ TEST(ParallelFor, ReportsRisingProgressThatEndsAtOne) {
   EXPECT_EQ(last, 1.0);
 }
 
-// Smallest case of a leak: an arena of oneTBB for each loop, 7 KB of which stayed.
+// The smallest case of a leak: each loop had an arena of oneTBB, 7 KB of which stayed.
 TEST(ParallelFor, KeepsNoMemoryFromLoopToLoop) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizers keep memory of their own";

@@ -1,4 +1,5 @@
-// Proves that parts are run once each, large ones by all threads, and that stopping and errors come through.
+// Proves that each part runs once, that large parts run on all threads, and that cancellation and errors reach the
+// caller.
 #include "blum/core/parts.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@
 namespace blum {
 namespace {
 
-/// The threads that each part was given.
+/// The number of threads for each part.
 std::vector<int> threads_of(const std::vector<std::size_t>& sizes, int threads) {
   std::vector<std::atomic<int>> given(sizes.size());
   detail::for_each_part({.threads = threads}, sizes, "", [&](std::size_t part, const Context& own) {
@@ -31,7 +32,7 @@ TEST(Parts, LargeOnesTakeAllThreadsAndTheOthersOneEach) {
   EXPECT_TRUE(threads_of({}, 7).empty());
 }
 
-TEST(Parts, AreNotBegunWhenAskedToStop) {
+TEST(Parts, AreNotBegunAfterCancellation) {
   std::stop_source source;
   std::atomic<int> begun{0};
   const std::vector<std::size_t> sizes(100, 1);

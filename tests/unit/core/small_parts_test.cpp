@@ -1,4 +1,4 @@
-// Proves that bits are counted as std::popcount() counts them, and that short lists in place do what std::vector does.
+// Proves that bit_count() agrees with std::popcount(), and that short lists in place behave like std::vector.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace blum {
 namespace {
 
-TEST(BitCount, IsThatOfTheStandardLibrary) {
+TEST(BitCount, AgreesWithTheStandardLibrary) {
   Random random(1);
   for (const std::uint64_t bits : {std::uint64_t{0}, std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{1} << 63U}) {
     EXPECT_EQ(bit_count(bits), static_cast<std::uint32_t>(std::popcount(bits)));
@@ -31,7 +31,7 @@ struct Item {
   friend bool operator==(const Item&, const Item&) = default;
 };
 
-TEST(InlineList, DoesWhatAVectorDoes) {
+TEST(InlineList, BehavesLikeAVector) {
   Random random(2);
   InlineList<Item, 16> list;
   std::vector<Item> expected;

@@ -1,5 +1,6 @@
-// Proves that ball_union_field equals the smallest of all |x - centre| - radius, for balls of any kind (points, nested,
-// equal, far away, around one point) on grids of any direction, with the same bytes on any number of threads.
+// Proves that ball_union_field() computes the smallest |x - centre| - radius over all balls. Balls are points, nested,
+// equal, far away or around one point. Grids have any direction. The result has the same bytes for any number of
+// threads.
 #include "blum/field/ball_union.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ double smallest(const std::vector<Ball>& balls, const Vec3d& x) {
   return best;
 }
 
-/// Looks at every `step`-th node. Doubles may round another way than here: so floats may differ in their last bit.
+/// Compares every `step`-th node. The library may round doubles differently, so floats may differ in their last bit.
 void expect_smallest(const std::vector<Ball>& balls, const GridSpec& grid, std::size_t step = 1) {
   const Field field = ball_union_field(balls, grid);
   ASSERT_EQ(field.distance.size(), grid.node_count());
@@ -101,7 +102,7 @@ TEST(BallUnion, FlatAndSingleGrids) {
 }
 
 TEST(BallUnion, PointsOnASphere) {
-  // Near the centre all are nearly equally far.
+  // Near the centre, all points are almost equally far.
   Random random(6);
   std::vector<Ball> balls;
   while (balls.size() < 2000) {
@@ -112,7 +113,7 @@ TEST(BallUnion, PointsOnASphere) {
 }
 
 TEST(BallUnion, MedialBallsOfASlab) {
-  // Equal radii on a lattice: ties everywhere.
+  // All radii on the lattice are equal, so that ties occur everywhere.
   std::vector<Ball> balls;
   for (int i = 0; i <= 60; ++i) {
     for (int j = 0; j <= 60; ++j) balls.push_back({{i / 60.0, j / 60.0, 0.5}, 0.125});
@@ -132,7 +133,7 @@ TEST(BallUnion, FarAwayBalls) {
   std::vector<Ball> balls = random_balls(300, 0.1, 7);
   for (Ball& ball : balls) ball.centre += {1e5, -2e5, 1e4};
   expect_smallest(balls, unit_grid(21));
-  // Large balls that nearly touch the grid from far.
+  // Large distant balls nearly touch the grid.
   for (Ball& ball : balls) ball.radius += length(balls.front().centre) - 2;
   expect_smallest(balls, unit_grid(21));
 }
@@ -174,7 +175,7 @@ TEST(BallUnion, SameBytesOnAnyNumberOfThreads) {
   }
 }
 
-TEST(BallUnion, RefusesWhatIsNoUnion) {
+TEST(BallUnion, RejectsInvalidBallsAndGrids) {
   const GridSpec grid = unit_grid(4);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();

@@ -1,5 +1,5 @@
-// Proves that a query that was refitted to moved vertices answers, bit for bit, as a new one does: every rule of signs,
-// many queries at once and few, and that what cannot be refitted changes nothing.
+// Proves that a query that was refitted to moved vertices answers bit for bit as a new query does. The tests cover
+// every sign rule and both few and many points. Invalid vertices leave the query unchanged.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,14 +34,14 @@ void expect_same(const ClosestPointQuery& a, const ClosestPointQuery& b, const s
   for (std::size_t k = 0; k < near_a.found.size(); ++k) EXPECT_EQ(near_a.found[k].primitive, near_b.found[k].primitive);
 }
 
-/// Frames of a mesh that turns, swells, folds over itself and shrinks.
+/// Returns frames in which a mesh rotates, grows, folds over itself and shrinks.
 std::vector<std::vector<Vec3d>> frames_of(const TriangleMesh& mesh) {
   std::vector<std::vector<Vec3d>> frames;
   for (int f = 0; f < 4; ++f) {
     std::vector<Vec3d>& frame = frames.emplace_back();
     for (const Vec3d& p : mesh.vertices) {
       Vec3d q = test::turned(p) * (f == 3 ? 1e-20 : 1.0 + f);
-      if (f == 2) q.x = std::abs(q.x) - 0.7 * q.y;  // crosses itself, and is inside out in part
+      if (f == 2) q.x = std::abs(q.x) - 0.7 * q.y;  // crosses itself and is partly inside out
       frame.push_back(q);
     }
   }
@@ -70,7 +70,7 @@ TEST(ClosestPointRefit, AnswersAsANewQuery) {
   }
 }
 
-TEST(ClosestPointRefit, ChangesNothingWhereItCannotBe) {
+TEST(ClosestPointRefit, ChangesNothingIfVerticesAreInvalid) {
   const TriangleMesh mesh = make_organic({.frequency = 6});
   ClosestPointQuery query(mesh);
   std::vector<Vec3d> frame = frames_of(mesh)[1];

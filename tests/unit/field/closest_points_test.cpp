@@ -1,4 +1,4 @@
-// Proves that closest_points() gives the exact closest point, site, triangle and sign at any points.
+// Proves that closest_points() returns the exact closest point, site, triangle and sign for any query point.
 #include "blum/field/closest_points.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(ClosestPoints, AreThoseOfBruteForce) {
   TriangleMesh with_wires = make_sphere({.frequency = 4});
   append(with_wires, make_segments({.segments = 20, .size = 3}));
   append(with_wires, make_points({.points = 20, .size = 3}));
-  expect_like_brute_force(with_wires, 4, SignRule::winding);  // wires have no sides
+  expect_like_brute_force(with_wires, 4, SignRule::winding);  // wires have no inside
 }
 
 TEST(ClosestPoints, SignsOfPartsThatTouchOrCross) {
@@ -65,7 +65,7 @@ TEST(ClosestPoints, SignsOfPartsThatTouchOrCross) {
   EXPECT_LT(closest_points(crossing, inside_one)[0].distance, 0);
   EXPECT_LT(closest_points(crossing, inside_one, {.sign = SignMode::normals})[0].distance, 0);
 
-  TriangleMesh hollow = test::box_between({0, 1, 1}, {2, 3, 3}, true);  // its void touches the wall from within
+  TriangleMesh hollow = test::box_between({0, 1, 1}, {2, 3, 3}, true);  // its void touches the wall from inside
   append(hollow, test::box_between({0, 0, 0}, {4, 4, 4}));
   EXPECT_EQ(closest_points(hollow, std::vector<Vec3d>{{-5, 2, 2}})[0].distance, 5);
   EXPECT_EQ(closest_points(hollow, std::vector<Vec3d>{{1, 2, 2}})[0].distance, 1);
@@ -114,7 +114,7 @@ TEST(ClosestPoints, HaveGradientsOfLengthOneNextToTheSurface) {
   }
 }
 
-TEST(ClosestPoints, TellFeaturesApart) {
+TEST(ClosestPoints, DistinguishVerticesEdgesAndFaces) {
   const TriangleMesh cube = make_box({});
   const SiteTable sites(cube);
   const Vec3d half = bounds(cube).upper;
@@ -204,8 +204,9 @@ TEST(ClosestPoints, DependOnNeitherThreadsNorNeighbours) {
   }
 }
 
-/// Few queries, which the hierarchy answers, and many, which are looked at together; signs by normals and by windings.
-TEST(ClosestPoints, AreToldOnceEachAsTheyAreKept) {
+/// Few queries are answered by the hierarchy, many queries are answered together. Signs come from normals or winding
+/// numbers.
+TEST(ClosestPoints, AreVisitedOnceEachWithTheSameAnswer) {
   TriangleMesh open = make_organic({.frequency = 6});
   open.triangles.resize(open.triangles.size() - 3);
   for (const TriangleMesh& mesh : {make_organic({.frequency = 6}), open}) {

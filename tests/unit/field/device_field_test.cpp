@@ -1,6 +1,6 @@
-// Proves that fields from and to a device's memory are, byte for byte, those of meshes in the host's memory, whatever
-// types the arrays have; and that wrong arrays, indices and vertices are told of. The device is the host
-// (EmulatedCuda); bench/gpu does the like on a real one.
+// Proves that fields computed in a device's memory have the bytes of fields of meshes in host memory, for all element
+// types. Wrong arrays, indices and vertices are rejected. The device is emulated on the host (EmulatedCuda); bench/gpu
+// runs similar checks on a real device.
 #include "blum/field/device_field.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ constexpr ElementType type_of() {
   return ElementType::int64;
 }
 
-/// A mesh in arrays of some types.
+/// Holds a mesh in arrays of the given element types.
 template <class Real, class Index>
 struct Arrays {
   std::vector<Real> vertices;
@@ -67,7 +67,7 @@ void expect_same(const Output& output, const Field& field) {
   EXPECT_EQ(0, std::memcmp(output.site.data(), field.site.data(), field.site.span().size_bytes()));
 }
 
-/// With vertices that a float holds.
+/// Rounds the vertices to float.
 TriangleMesh rounded(TriangleMesh mesh) {
   for (Vec3d& v : mesh.vertices) v = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   return mesh;
@@ -86,7 +86,7 @@ void expect_field_of(const TriangleMesh& mesh, const FieldOptions& options = {})
   EXPECT_EQ(solver.sign_rule() == SignRule::none, field.sign_rule == SignRule::none);
 }
 
-TEST_F(DeviceField, IsThatOfTheHostForAllTypesOfArrays) {
+TEST_F(DeviceField, EqualsTheHostFieldForAllTypesOfArrays) {
   const TriangleMesh mesh = rounded(make_gear({}));
   expect_field_of<double, std::uint32_t>(mesh);
   expect_field_of<float, std::int32_t>(mesh);
@@ -149,7 +149,7 @@ TEST_F(DeviceField, FollowsADeformingMeshAndANewOne) {
   EXPECT_EQ(solver.progress().finished, solver.progress().queued);
 }
 
-TEST_F(DeviceField, VerticesThatAreNoNumbersGiveNoField) {
+TEST_F(DeviceField, InvalidVerticesGiveNoField) {
   const TriangleMesh mesh = make_torus({});
   const GridSpec grid = grid_around(bounds(mesh), 12);
   for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity(), -1e300, 1e38}) {
@@ -177,13 +177,13 @@ TEST_F(DeviceField, IndicesOutOfRangeAreRefused) {
     solver.set_connectivity(arrays.view());
     arrays.triangles[5] = wrong;
     EXPECT_THROW(solver.set_connectivity(arrays.view()), InvalidMesh) << wrong;
-    // What was there before is no more.
+    // The earlier connectivity is gone.
     Output output(grid);
     EXPECT_THROW(solver.compute(arrays.view().vertices, output.view()), InvalidOption);
   }
 }
 
-TEST_F(DeviceField, WrongArgumentsAreToldOf) {
+TEST_F(DeviceField, WrongArgumentsAreRejected) {
   const TriangleMesh mesh = make_box({});
   const GridSpec grid = grid_around(bounds(mesh), 8);
   const Arrays<double, std::int32_t> arrays(mesh);

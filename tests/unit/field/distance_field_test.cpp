@@ -1,6 +1,6 @@
-// Proves what distance_field promises beside exactness, on every back end: the same bytes on any number of threads and
-// from run to run, bands, sign rules, the reusable solver, cancellation, and clear errors; and of the CPU, agreement of
-// all instruction sets.
+// Proves the promises of distance_field() other than exactness on every back end. Bytes are the same for any number of
+// threads and in every run. Bands, sign rules, solvers, cancellation and errors work as documented. On the CPU, all
+// instruction sets agree.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ TriangleMesh inverted(TriangleMesh mesh) {
   return mesh;
 }
 
-/// A sphere without its top.
+/// Returns a sphere without its top.
 TriangleMesh open_bowl() {
   TriangleMesh mesh = make_sphere({});
   std::erase_if(mesh.triangles, [&](const Triangle& t) { return mesh.vertices[t[0]].z > 0.2; });
@@ -103,7 +103,7 @@ TEST_P(DistanceField, BandsEqualTheFullFieldWithinAndAreClampedBeyond) {
   }
 }
 
-/// Shells of which one faces outwards and the other inwards: `normals` go by pseudonormals.
+/// Returns two shells, one facing outwards and one inwards. For these, `normals` uses pseudonormals.
 TriangleMesh two_minds() {
   TriangleMesh mesh = make_box({});
   append(mesh, inverted(make_sphere({.frequency = 4})), {3, 0.3, 0.2});
@@ -124,7 +124,7 @@ TEST_P(DistanceField, WithoutSitesDistancesAreTheSameBytes) {
     SignMode sign;
     int nodes;
   };
-  // The first grid is large enough to be written past the caches.
+  // The first grid is so large that its values are written past the caches.
   for (const Case& c : {Case{make_sphere({}), SignMode::automatic, usually(136, 40)},
                         {make_gear({}), SignMode::none, 30},
                         {make_gear({}), SignMode::winding, 30},
@@ -169,7 +169,7 @@ TEST_P(DistanceField, AutomaticSignSaysWhichRuleAndWhy) {
 }
 
 TEST_P(DistanceField, AMeshThatCrossesItselfFallsBackToWinding) {
-  // Two overlapping boxes, each fine by itself: the pseudonormals inside the overlap point both ways.
+  // Two boxes overlap, each valid by itself. In the overlap, their pseudonormals contradict each other.
   TriangleMesh mesh = make_box({});
   const TriangleMesh other = make_box({});
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -188,7 +188,7 @@ TEST_P(DistanceField, OpenMeshesAreSignedNodeByNode) {
   expect_promise(test::compare_with_brute_force(field, mesh, test::all_nodes(grid)));
 }
 
-TEST_P(DistanceField, InvertedMeshesHaveNoInsideByWindingAndTheirOutsideByNormals) {
+TEST_P(DistanceField, InvertedMeshesHaveNoInsideByWindingAndSwapSidesByNormals) {
   const TriangleMesh mesh = inverted(make_sphere({}));
   const GridSpec grid = grid_for(mesh, 24);
   const Field winding = compute(mesh, grid, {.sign = SignMode::winding});
@@ -252,7 +252,7 @@ TEST(DistanceFieldOnTheCpu, StopsSoonAfterItIsAsked) {
                Cancelled);
   canceller.join();
   const std::chrono::duration<double> delay = std::chrono::steady_clock::now() - asked;
-  EXPECT_LT(delay.count(), 5.0);  // 0.2 s is promised; a busy machine and sanitizers get more, a hang gets none
+  EXPECT_LT(delay.count(), 5.0);  // 0.2 s is promised; a busy machine and sanitizers need more, and a hang fails
 }
 
 TEST_P(DistanceField, ReportsProgress) {
@@ -266,7 +266,7 @@ TEST_P(DistanceField, ReportsProgress) {
   EXPECT_EQ(last, 1.0);
 }
 
-TEST_P(DistanceField, RefusesWhatItCannotDo) {
+TEST_P(DistanceField, RejectsInvalidInput) {
   const TriangleMesh box = make_box({});
   const GridSpec grid = grid_for(box, 16);
   EXPECT_THROW((void)compute(TriangleMesh{}, grid), InvalidMesh);

@@ -1,6 +1,6 @@
-// Proves on every back end that the distance transform of images equals brute force (distance, closest voxel, ties,
-// sign, band) on random and degenerate images of every value type, for exact and inexact spacings, and gives the same
-// bytes on any threads; and that the CPU's is the same with every instruction set.
+// Proves on every back end that the distance transform of images equals brute force in distance, closest voxel, ties,
+// sign and band. Images are random or degenerate, of every value type, with exact and inexact spacings. The bytes are
+// the same for any number of threads, and on the CPU for every instruction set.
 #include "blum/field/distance_transform.hpp"
 
 #include <gtest/gtest.h>
@@ -50,8 +50,8 @@ std::vector<std::uint8_t> inverted(std::vector<std::uint8_t> mask) {
   return mask;
 }
 
-/// Compares every voxel (or every `step`-th) with brute force. `exact`: spacings for which squared distances are exact,
-/// so that distances must be correctly rounded and ties must go to the smallest index.
+/// Compares every voxel (or every `step`-th) with brute force. `exact` means that the spacings make squared distances
+/// exact. Then distances must be correctly rounded, and ties must select the smallest index.
 void expect_brute_force(const VoxelImage& image, const std::vector<std::uint8_t>& mask, const Field& field, bool exact,
                         std::size_t step = 1) {
   const bool is_signed = field.sign_rule == SignRule::label;
@@ -98,7 +98,7 @@ class DistanceTransform : public test::BackEndTest {
     return field;
   }
 
-  /// An image of another value type must give the field of its mask.
+  /// Expects that an image of another value type gives the field of its mask.
   template <class T>
   void expect_selects(const std::vector<T>& values, const LabelSelection& selection,
                       const std::vector<bool>& selected) const {
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(On, DistanceTransform, test::every_back_end(), test::ba
 
 TEST_P(DistanceTransform, EqualsBruteForceWhereSquaresAreExact) {
   unsigned seed = 0;
-  int compared = 0;  // of 420; the rest are of one kind only
+  int compared = 0;  // of 420; the others contain only one kind of voxel
   for (const Vec3d spacing : {Vec3d{1, 1, 1}, {1, 1, 3}, {3, 3, 3}, {0.5, 0.75, 1}, {5, 2, 1}}) {
     for (const Size& size : sizes) {
       for (const double density : {0.001, 0.03, 0.3, 0.5, 0.9, 0.999}) {
@@ -173,8 +173,8 @@ TEST_P(DistanceTransform, EqualsBruteForceWithinRoundingForAnySpacing) {
   }
 }
 
-/// A set whose closest voxels change much between neighbouring columns: solid ball (signed: its centre), a thin sphere,
-/// alternating far stripes.
+/// Returns a shape whose closest voxels differ much between neighbouring columns: a solid ball (signed: its centre), a
+/// thin sphere, or alternating distant stripes.
 VoxelImage shape_image(std::int64_t n, const Vec3d& spacing, int shape) {
   VoxelImage image = random_image({n, n, n}, spacing, 0, 0);
   auto& values = std::get<std::vector<std::uint8_t>>(image.values);
@@ -237,7 +237,7 @@ TEST_P(DistanceTransform, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(DistanceTransformOnTheCpu, EveryInstructionSetGivesTheSameField) {
   for (const Vec3d spacing : {Vec3d{1, 1, 1}, {1, 1, 3}, {0.5, 0.7, 1.1}}) {
     const VoxelImage random = random_image({45, 31, 38}, spacing, 0.01, 11);
-    const VoxelImage striped = shape_image(40, spacing, 3);  // neighbouring columns disagree: solved one by one
+    const VoxelImage striped = shape_image(40, spacing, 3);  // neighbouring columns disagree, so each is solved alone
     const std::array<Field, 2> best = {distance_transform(random), distance_transform(striped)};
     for (const std::string& target : cpu::simd_targets()) {
       SCOPED_TRACE(target);
@@ -250,8 +250,8 @@ TEST(DistanceTransformOnTheCpu, EveryInstructionSetGivesTheSameField) {
   }
 }
 
-/// Rows so far apart along x that columns are on their own, and sites at alternating ends: the closest rows of
-/// neighbouring columns are 599 apart everywhere, which makes the passes solve columns one by one.
+/// Rows are far apart along x, so columns are independent, and the sites alternate between the ends. The closest rows
+/// of neighbouring columns are 599 apart, so the passes solve each column alone.
 TEST_P(DistanceTransform, ColumnsThatDisagreeEqualBruteForce) {
   for (const double spacing : {1000.0, 1000.3}) {
     for (const Size size : {Size{32, 600, 2}, Size{32, 2, 600}}) {

@@ -1,6 +1,6 @@
-// Proves of the CUDA back end what other tests do not ask of every back end: signs of closed meshes are those of the
-// CPU, those of open ones those of the full sum; neither slabs nor lists that are too short for a tile change a field;
-// a field stops after the slab in which it is asked to; connectivity is SiteTable's.
+// Proves properties that only the CUDA back end has. Signs of closed meshes equal those of the CPU; signs of open
+// meshes equal those of the full sum. Slabs, and lists too short for a tile, do not change a field. A cancelled field
+// stops after the current slab. The connectivity equals SiteTable's.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -40,7 +40,7 @@ class FieldKernels : public test::BackEndTest {
 INSTANTIATE_TEST_SUITE_P(On, FieldKernels, test::cuda_back_ends(), test::back_end_name);
 
 TEST_P(FieldKernels, SidesByPseudonormalsAreThoseOfTheCpu) {
-  // Shells that face different ways leave signs to the pseudonormals alone.
+  // Shells that face different ways leave all signs to the pseudonormals.
   TriangleMesh shells = make_box({.size = {2, 2, 2}});
   append(shells, make_box({.size = {1, 1, 1}}));
   const GridSpec grid = grid_for(shells, 20);
@@ -77,7 +77,7 @@ TEST_P(FieldKernels, CountedCrossingsGiveTheSignsOfTheCpu) {
         EXPECT_EQ(cpu.sign_reason, device.sign_reason);
         const double diagonal = test::common_diagonal(mesh, grid);
         for (std::size_t k = 0; k < cpu.distance.size(); ++k) {
-          if (std::abs(cpu.distance[k]) <= 1e-6 * diagonal) continue;  // on the surface, where nothing is promised
+          if (std::abs(cpu.distance[k]) <= 1e-6 * diagonal) continue;  // on the surface, where no sign is promised
           ASSERT_EQ(std::signbit(cpu.distance[k]), std::signbit(device.distance[k])) << k << " " << cpu.distance[k];
         }
       }
@@ -85,7 +85,7 @@ TEST_P(FieldKernels, CountedCrossingsGiveTheSignsOfTheCpu) {
   }
 }
 
-/// Fails where a sign is not that of the full sum over all triangles.
+/// Fails if a sign differs from that of the full sum over all triangles.
 void expect_winding_signs(const Field& field, const MeshView& mesh) {
   const double diagonal = test::common_diagonal(mesh, field.grid);
   std::size_t wrong = 0;
@@ -98,7 +98,7 @@ void expect_winding_signs(const Field& field, const MeshView& mesh) {
   EXPECT_EQ(wrong, 0U);
 }
 
-/// A sphere without what lies above a height.
+/// Returns a sphere without the part above a height.
 TriangleMesh bowl(double height) {
   TriangleMesh mesh = make_sphere({.frequency = 8});
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
@@ -120,7 +120,7 @@ TEST_P(FieldKernels, SignsOfOpenMeshesAreThoseOfTheFullSum) {
 }
 
 TEST_P(FieldKernels, SignsOfOpenMeshesWhoseEdgesLieOnTheGrid) {
-  // Rows pass through edges and corners of the opening, and run along them.
+  // Rows pass through edges and corners of the opening, and along its edges.
   for (std::size_t missing = 0; missing < 12; ++missing) {
     SCOPED_TRACE(missing);
     TriangleMesh mesh = make_box({.size = {2, 2, 2}});
@@ -145,17 +145,17 @@ TEST_P(FieldKernels, SignsOfSoupsAreThoseOfTheFullSum) {
     if (mesh.triangles.empty()) continue;
     expect_winding_signs(compute(mesh, grid_for(mesh, 20), {.sign = SignMode::winding}), mesh);
   }
-  // Edges run along the same way by two triangles, and by four, count as often.
+  // Two or four triangles run along an edge in the same direction; the edge counts as often.
   TriangleMesh fan = make_box({});
   fan.triangles.insert(fan.triangles.end(), fan.triangles.begin(), fan.triangles.begin() + 5);
   expect_winding_signs(compute(fan, grid_for(fan, 20), {.sign = SignMode::winding}), fan);
-  // Triangles that are turned leave surpluses of two.
+  // Each reversed triangle leaves a surplus of two.
   TriangleMesh mixed = make_sphere({.frequency = 3});
   for (std::size_t t = 0; t < mixed.triangles.size(); t += 7) std::swap(mixed.triangles[t][0], mixed.triangles[t][1]);
   expect_winding_signs(compute(mixed, grid_for(mixed, 20), {.sign = SignMode::winding}), mixed);
 }
 
-/// Triangles between corners that lie on rows and columns of unit nodes, or an ulp beside.
+/// Returns triangles whose corners lie on rows and columns of unit nodes, or one ulp beside them.
 TriangleMesh beside_rows(std::uint64_t seed) {
   Random random(seed);
   const auto coordinate = [&] {
@@ -197,10 +197,10 @@ TEST_P(FieldKernels, TrianglesThatShareNoVerticesHaveTheSignsOfThoseThatDo) {
   }
 }
 
-TEST(Boundary, IsWhatCoincidentEdgesLeave) {
+TEST(Boundary, MergesCoincidentEdges) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, -0.0, 0}};
-  mesh.triangles = {{0, 1, 2}, {4, 3, 5}, {6, 3, 4}};  // the first and the last lie upon each other
+  mesh.triangles = {{0, 1, 2}, {4, 3, 5}, {6, 3, 4}};  // the first and the last coincide
   kernels::EmulatedDevice device;
   kernels::Connectivity<kernels::EmulatedDevice> connectivity;
   kernels::build_connectivity(device,
@@ -218,7 +218,7 @@ TEST(Boundary, IsWhatCoincidentEdgesLeave) {
     ASSERT_TRUE(count == 1 || count == 2);
     counts[static_cast<int>(count) - 1] += 1;
   }
-  EXPECT_EQ(counts[0], 3);  // two of the second triangle, and the diagonal, which all three run along
+  EXPECT_EQ(counts[0], 3);  // two of the second triangle, and the diagonal, which all three triangles share
   EXPECT_EQ(counts[1], 2);
 }
 
@@ -235,7 +235,7 @@ TEST_P(FieldKernels, SlabsDoNotChangeABit) {
 }
 
 TEST_P(FieldKernels, MoreSitesThanAListHolds) {
-  // All of 18,000 triangles matter to the tile in the middle of a sphere, and a list holds 512.
+  // All 18,000 triangles matter to the tile in the middle of a sphere, but a list holds only 512.
   const TriangleMesh mesh = make_sphere({.frequency = 30});
   const GridSpec grid = grid_in({{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}}, 12);
   expect_promise(test::compare_with_bvh(compute(mesh, grid), mesh, test::all_nodes(grid)));
@@ -244,7 +244,7 @@ TEST_P(FieldKernels, MoreSitesThanAListHolds) {
 TEST_P(FieldKernels, StopAfterTheSlabInWhichTheyAreAsked) {
   const TriangleMesh mesh = make_box({});
   GridSpec grid = grid_for(mesh, 8);
-  // Three slabs, of 32 slices on the host and of 2^23 nodes on a device.
+  // The grid has three slabs, of 32 slices on the host and of 2^23 nodes on a device.
   grid.size = usually<std::array<std::int64_t, 3>>({512, 512, 96}, {8, 8, 96});
   std::optional<test::EmulatedCuda> short_slabs;
   if (GetParam() == test::BackEnd::host) short_slabs.emplace(1);
@@ -258,7 +258,7 @@ TEST_P(FieldKernels, StopAfterTheSlabInWhichTheyAreAsked) {
   EXPECT_EQ(reports, std::vector<double>{1.0 / 3});
 }
 
-TEST(Connectivity, IsThatOfSiteTable) {
+TEST(Connectivity, EqualsThatOfSiteTable) {
   for (const TriangleMesh& mesh : {make_gear({}), test::nasty_soup(3, 60), make_segments()}) {
     kernels::EmulatedDevice device;
     kernels::Connectivity<kernels::EmulatedDevice> found;

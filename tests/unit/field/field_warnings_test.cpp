@@ -1,5 +1,5 @@
-// Proves that fields warn of meshes that face the wrong way and of grids without an inside, by the smallest case of
-// each, and of nothing else.
+// Proves that fields warn of meshes that face the wrong way and of grids without a node inside. Each warning is tested
+// with its smallest case. Valid input causes no warning.
 #include "blum/field/field_warnings.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ std::vector<Warning> warnings_of(const MeshView& mesh, const FieldOptions& optio
   return field_warnings(distance_field(mesh, grid(), options), mesh);
 }
 
-/// Of the only warning that there is.
+/// Returns the text of the only warning.
 std::string text_of(const MeshView& mesh, WarningCode code, const FieldOptions& options = {}) {
   const std::vector<Warning> found = warnings_of(mesh, options);
   EXPECT_EQ(found.size(), 1U);
@@ -48,8 +48,8 @@ std::string text_of(const MeshView& mesh, WarningCode code, const FieldOptions& 
   return found[0].text;
 }
 
-/// Half of the triangles are enough for nodes inside, and signs are wrong near the others.
-TEST(FieldWarnings, TellOfTrianglesThatFaceDifferentWaysAlsoWhereNodesAreInside) {
+/// The remaining triangles still put nodes inside, but signs near the reversed triangle are wrong.
+TEST(FieldWarnings, ReportTrianglesThatFaceDifferentWaysEvenIfNodesAreInside) {
   TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
   std::swap(box.triangles[0][0], box.triangles[0][1]);
   const Field field = distance_field(box, grid(), {.sign = SignMode::winding});
@@ -67,7 +67,7 @@ TEST(SignWarnings, NeedNoGrid) {
   EXPECT_EQ(found, warnings_of(reversed(box)));
 }
 
-TEST(FieldWarnings, OfABoxThereAreNone) {
+TEST(FieldWarnings, AreEmptyForABox) {
   const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
   for (const SignMode sign : {SignMode::automatic, SignMode::normals, SignMode::winding, SignMode::none}) {
     EXPECT_TRUE(warnings_of(box, {.sign = sign}).empty());
@@ -104,7 +104,7 @@ TEST(FieldWarnings, OfGridsWithoutANodeInside) {
             "cancel; orient the mesh first");
 }
 
-TEST(FieldWarnings, AreTheSameWithFactsAtHand) {
+TEST(FieldWarnings, AreTheSameWithAGivenOrientation) {
   for (const TriangleMesh& mesh :
        {box_between({0, 0, 0}, {2, 2, 2}), reversed(box_between({0, 0, 0}, {2, 2, 2})), test::flat_sheet(2)}) {
     const Field field = distance_field(mesh, grid());

@@ -1,5 +1,5 @@
-// Proves that the kernels of image transforms give, byte for byte in whole numbers, the CPU's transform: for any shape,
-// spacing, density, band and selection, and, run by the emulated device, however columns are cut.
+// Proves that the kernels of image transforms give the bytes of the CPU's transform in whole numbers. The tests vary
+// shape, spacing, density, band and selection. On the emulated device, the cuts of columns do not matter either.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ Mask random_mask(const Size& size, double density, unsigned seed) {
   return mask;
 }
 
-/// A few balls, so that runs are long and bands cut them.
+/// Returns a few balls, so that runs are long and bands cut them.
 Mask ball_mask(const Size& size, unsigned seed) {
   Mask mask(static_cast<std::size_t>(size[0] * size[1] * size[2]));
   std::mt19937 random(seed);
@@ -129,7 +129,7 @@ constexpr std::array<kernels::BandTuning, 4> tunings = {whole_columns, many_band
 
 class ImageKernels : public test::BackEndTest {
  protected:
-  /// Cuts columns in every way where that can be chosen: on the host.
+  /// On the host, where cuts can be chosen, tries all of them.
   void expect_cpu_bytes(const VoxelImage& image, const DistanceTransformOptions& options) const {
     const Field field = distance_transform(image, options);
     ASSERT_TRUE(test::same_bytes(distance_transform(image, options, context()), field));
@@ -151,7 +151,7 @@ TEST_P(ImageKernels, EqualTheCpuByteForByteInWholeNumbers) {
     for (const Size& size : sizes) {
       for (const double density : {0.0, 0.001, 0.03, 0.3, 0.7, 0.97, 0.999}) {
         ++seed;
-        // Density 0 stands for balls.
+        // Density 0 selects balls.
         const VoxelImage image =
             image_of(size, spacing, density > 0 ? random_mask(size, density, seed) : ball_mask(size, seed));
         if (!has_both_kinds(mask_of(image))) continue;
@@ -192,8 +192,8 @@ TEST_P(ImageKernels, EqualTheCpuByteForByteForAnySpacing) {
   }
 }
 
-/// Brute force in double with the passes' arithmetic: the nearest voxel of each row, then row of each plane, then
-/// plane.
+/// Repeats the passes' arithmetic in double by brute force: the nearest voxel of each row, the nearest row of each
+/// plane, then the nearest plane.
 std::uint32_t lowest_as_computed(const detail::ImageRequest& plan, const Mask& targets, std::size_t voxel) {
   const std::size_t at[3] = {voxel % plan.size[0], voxel / plan.size[0] % plan.size[1],
                              voxel / plan.size[0] / plan.size[1]};
@@ -338,7 +338,7 @@ TEST(ImageKernelsAlone, DivideExactly) {
   }
 }
 
-TEST(ImageKernelsAlone, SayHowMuchMemoryTheyNeed) {
+TEST(ImageKernelsAlone, ReportTheirScratchMemory) {
   GridSpec grid;
   grid.size = {512, 512, 512};
   using Transform = kernels::ImageTransform<kernels::EmulatedDevice>;

@@ -1,5 +1,5 @@
-// Proves that distances between nodes are trilinear: exact for a function that is, at nodes, on borders and on grids
-// turned in space; not a number outside; and that wrong input is refused.
+// Proves that interpolated distances are trilinear. They are exact for trilinear functions at nodes, on borders and on
+// rotated grids. Outside the grid they are NaN. Wrong input is rejected.
 #include "blum/field/interpolate.hpp"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST(Interpolate, IsExactForATrilinearFunctionOnATurnedGrid) {
   for (std::size_t n = 0; n < values.size(); ++n) EXPECT_NEAR(values[n], expected[n], 1e-12);
 }
 
-/// Central differences, exact for what is linear along each axis but for rounding.
+/// Computes central differences. They are exact, up to rounding, for functions that are linear along each axis.
 Vec3d slopes(double i, double j, double k) {
   const double h = 0.5;
   return {trilinear(i + h, j, k) - trilinear(i - h, j, k), trilinear(i, j + h, k) - trilinear(i, j - h, k),
@@ -78,7 +78,7 @@ TEST(Interpolate, HasTheGradientOfATrilinearFunctionOnATurnedGrid) {
   std::vector<Vec3d> points;
   std::vector<Vec3d> expected;
   for (int n = 0; n < 1000; ++n) {
-    // Also in layers and on borders, where all cells agree.
+    // A third of the points lie in layers or on borders of cells, where all cells agree.
     const auto place = [&](double last) {
       return n % 3 == 0 ? std::floor(random.uniform() * (last + 1)) : random.uniform() * last;
     };

@@ -1,6 +1,6 @@
-// Proves that the primitives within a distance, and the closest few, of many points are those of each point alone and
-// of a search of all; that gradients are unit vectors along which the distance grows, and weights give the closest
-// point.
+// Proves that searches for primitives within a distance, or for the closest few, equal a search of all primitives. Many
+// points together get the answers of each point alone. Gradients are unit vectors along which the distance grows.
+// Barycentric weights reproduce the closest point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace blum {
 namespace {
 
-/// Every primitive alone in a hierarchy: how far each is from a query.
+/// Puts each primitive into a hierarchy of its own to compute its distance from a query.
 class OneByOne {
  public:
   explicit OneByOne(const TriangleMesh& mesh) : mesh_(mesh) {}
@@ -111,7 +111,7 @@ TEST(ClosestPoints, HaveGradientsAlongWhichTheDistanceGrows) {
   EXPECT_EQ(gradient({0, 0, 9}, ClosestPointQuery(mesh, {.max_distance = 0.1}).nearest({0, 0, 9})), std::nullopt);
 }
 
-TEST(ClosestPoints, AreMeansOfCorners) {
+TEST(ClosestPoints, AreWeightedMeansOfCorners) {
   for (const double scale : {1.0, 1e-100, 1e100}) {
     const TriangleMesh mesh = test::moved(test::awkward_soup(150, 9), scale);
     const double extent = bounds(mesh).diagonal();

@@ -1,6 +1,6 @@
-// Proves the promises of fields of order 2 against brute force over all sites: on soups, meshes that share vertices,
-// degenerate, doubled and touching shapes, strips, fans, several objects, bands and layers; that the first order keeps
-// its bytes, and that threads and instruction sets change no promise.
+// Proves the promises of fields of order 2 against brute force over all sites. The tests cover soups, shared vertices,
+// degenerate, doubled and touching shapes, strips, fans, several objects, bands and layers. The first order keeps its
+// bytes. The promises hold for any number of threads and any instruction set.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ std::vector<std::size_t> some_nodes(const GridSpec& grid, std::size_t sites) {
   return count < grid.node_count() ? test::random_nodes(grid, count) : all_nodes(grid);
 }
 
-/// Both rules on a grid around a mesh.
+/// Checks both rules on a grid around a mesh.
 void expect_exact(const MeshView& mesh, int nodes = 24, double padding = 0.3) {
   const GridSpec grid = grid_around(bounds(mesh), nodes, padding);
   const std::vector<std::size_t> looked_at = some_nodes(grid, SiteTable(mesh).size());
@@ -65,7 +65,8 @@ TriangleMesh soup(std::size_t triangles, std::uint64_t seed = 1) {
   return make_soup(options);
 }
 
-/// Triangles, segments and points between few vertices: edges of many triangles, vertices of many of all kinds.
+/// Returns triangles, segments and points between few vertices. Many triangles share an edge, and many primitives of
+/// all kinds share a vertex.
 TriangleMesh tangle(std::uint64_t seed, std::uint32_t vertices, std::size_t triangles, std::size_t segments) {
   Random random(seed);
   TriangleMesh mesh;
@@ -79,8 +80,8 @@ TriangleMesh tangle(std::uint64_t seed, std::uint32_t vertices, std::size_t tria
   return mesh;
 }
 
-/// A strip of triangles over a row of points, bent to a hill or a valley: the edge that two triangles share is the
-/// second site of nodes whose closest site is beyond the one or the other.
+/// Returns a strip of triangles over a row of points, bent to a hill or a valley. The edge that two triangles share is
+/// the second site of nodes whose closest site lies beyond one of them.
 TriangleMesh strip(double bend) {
   TriangleMesh mesh;
   for (std::uint32_t k = 0; k < 12; ++k) {
@@ -131,7 +132,7 @@ TEST(SecondOrder, IsExactWhereVerticesAreShared) {
   }
 }
 
-TEST(SecondOrder, OfAStripNeedsEdgesThatItsOtherTriangleHidesFromTheFirst) {
+TEST(SecondOrder, FindsSharedEdgesOfAStripAsSecondSites) {
   for (const double bend : {-2.0, -0.3, 0.0, 0.3, 2.0}) expect_exact(strip(bend), 40);
 }
 
@@ -155,9 +156,9 @@ TEST(SecondOrder, OfDegenerateAndDoubledShapes) {
   mesh.points = {2, 6};
   expect_exact(mesh);
   const TriangleMesh one = soup(30);
-  expect_exact(joined(one, one, {}));                          // the same once more
-  expect_exact(joined(make_box(), make_box(), {2, 0, 0}));     // faces that coincide
-  expect_exact(joined(make_box(), make_box(), {1e-7, 0, 0}));  // nearly
+  expect_exact(joined(one, one, {}));                          // the same soup twice
+  expect_exact(joined(make_box(), make_box(), {2, 0, 0}));     // coincident faces
+  expect_exact(joined(make_box(), make_box(), {1e-7, 0, 0}));  // nearly coincident faces
   TriangleMesh flat = soup(60);
   for (Vec3d& v : flat.vertices) v.z = 0.25;
   expect_exact(flat);
@@ -181,8 +182,8 @@ TEST(SecondOrder, OfSeveralObjects) {
   const TriangleMesh two = joined(sphere(), sphere(4), {2.5, 0.3, 0});
   expect_exact(two, 40);
   expect_exact(joined(two, make_box(), {1, 2, 1}), 32);
-  expect_exact(joined(sphere(), make_noisy(sphere(4), 0.02), {0.1, 0, 0}), 32);  // that cross
-  // Where there is one object only, nothing is second.
+  expect_exact(joined(sphere(), make_noisy(sphere(4), 0.02), {0.1, 0, 0}), 32);  // they cross
+  // A single object has no second site.
   const GridSpec grid = grid_around(bounds(sphere()), 16, 0.2);
   const Field alone = second_field(sphere(), grid, by_object);
   for (std::size_t node = 0; node < grid.node_count(); ++node) {
@@ -252,7 +253,7 @@ TEST(SecondOrder, KeepsItsPromiseWithEveryInstructionSet) {
   cpu::use_simd_target("");
 }
 
-TEST(SecondOrder, GoesWithSignsTrianglesAndFieldsWithoutSites) {
+TEST(SecondOrder, WorksWithSignsTriangleIdsAndFieldsWithoutSites) {
   const TriangleMesh mesh = sphere(8);
   const GridSpec grid = grid_around(bounds(mesh), 24, 0.2);
   const Field field = distance_field(mesh, grid, {.order = 2});
@@ -269,7 +270,7 @@ TEST(SecondOrder, GoesWithSignsTrianglesAndFieldsWithoutSites) {
   }
 }
 
-TEST(SecondOrder, OfASolverFollowsItsFrames) {
+TEST(SecondOrder, FollowsTheFramesOfASolver) {
   TriangleMesh mesh = sphere(5);
   const GridSpec grid = grid_around(bounds(mesh), 20, 0.4);
   FieldSolver solver(grid, {.order = 2, .second = by_object});
@@ -284,7 +285,7 @@ TEST(SecondOrder, OfASolverFollowsItsFrames) {
   EXPECT_EQ(solver.compute(mesh).distance2[0], HUGE_VALF);
 }
 
-TEST(SecondOrder, RefusesWhatItCannotDo) {
+TEST(SecondOrder, RejectsInvalidOptions) {
   const TriangleMesh mesh = sphere(3);
   const GridSpec grid = grid_around(bounds(mesh), 8, 0.2);
   EXPECT_THROW((void)distance_field(mesh, grid, {.order = 3}), InvalidOption);

@@ -1,5 +1,5 @@
-// Proves that points that share answers get the sides that their own winding numbers decide: near rims of holes, next
-// to the surface and on it, between sheets that cross, in soups, at any scale.
+// Proves that points that share answers get the sides that their own winding numbers decide. The tests cover points
+// near rims of holes, near and on the surface, between crossing sheets, in soups, and at any scale.
 #include "field/sign/shared_sides.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 namespace blum {
 namespace {
 
-/// A mesh with every triangle left out whose number is divided by a few.
+/// Removes every `every`-th triangle from a mesh.
 TriangleMesh with_holes(TriangleMesh mesh, std::size_t every) {
   std::vector<Triangle> kept;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -29,7 +29,7 @@ TriangleMesh with_holes(TriangleMesh mesh, std::size_t every) {
   return mesh;
 }
 
-/// Clouds of points about places on the surface, small and large: what one group of queries is.
+/// Returns small and large clouds of points around places on the surface. Each cloud is one group of queries.
 std::vector<std::vector<sign::SidedPoint>> clouds(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed) {
   const SiteTable sites(mesh);
   const Bvh bvh(mesh, sites);
@@ -46,7 +46,7 @@ std::vector<std::vector<sign::SidedPoint>> clouds(const TriangleMesh& mesh, std:
     std::vector<sign::SidedPoint>& cloud = out.emplace_back();
     const std::size_t size = 1 + random.below(sign::most_shared);
     for (std::size_t k = 0; k < size; ++k) {
-      // A third close to the surface for their cloud, some next to rounding.
+      // A third of the points is close to the surface relative to its cloud, some within rounding.
       Vec3d at = middle + random.in_ball() * radius;
       if (k % 3 == 0) {
         const auto near = bvh.nearest(at);
@@ -85,7 +85,7 @@ TEST(SharedSides, AreThoseOfEachPoint) {
   expect_sides_of_each(test::unwelded(with_holes(make_sphere({.frequency = 8}), 30)), 5);
 }
 
-/// Where there is no triangle, but the winding number crosses 1/2.
+/// In openings there is no triangle, but the winding number crosses 1/2.
 TEST(SharedSides, AreThoseOfEachPointInOpenings) {
   TriangleMesh bowl = make_sphere({.frequency = 16});
   std::erase_if(bowl.triangles, [&](const Triangle& t) { return bowl.vertices[t[0]].z > 0; });
@@ -93,7 +93,8 @@ TEST(SharedSides, AreThoseOfEachPointInOpenings) {
   const Bvh bvh(bowl, sites);
   const WindingNumber winding(bowl);
   Random random(11);
-  // In balls; and in rows across the opening, where each could take its answer from the one before.
+  // Positive radii give balls. Negative radii give rows across the opening, where each point could copy the answer of
+  // the one before.
   for (const double radius : {0.1, 0.2, 0.4, -0.1, -0.2, -0.4}) {
     std::vector<sign::SidedPoint> points;
     std::size_t inside = 0;

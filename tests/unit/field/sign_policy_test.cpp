@@ -1,5 +1,5 @@
-// Proves that the sign rule is a function of mesh and mode, on every grid and for queries alike, and names crossings;
-// and that the sides of queries are right beside parts that cross, asking for winding numbers only there.
+// Proves that the sign rule depends only on mesh and mode, for all grids and for queries, and names crossings. The
+// sides of queries are right beside parts that cross. Winding numbers are computed only there.
 #include "field/sign/policy.hpp"
 
 #include <gtest/gtest.h>
@@ -31,8 +31,8 @@ TriangleMesh moved_by(TriangleMesh mesh, const Vec3d& offset) {
   return mesh;
 }
 
-/// One shell that faces outwards, a dent of which comes out on the other side by a little: a few triangles cross, and
-/// only a node in the tip would show it.
+/// Returns one shell that faces outwards. A dent protrudes slightly through its opposite side, so a few triangles
+/// cross. Only a node in the tip would reveal the crossing.
 TriangleMesh barely_crossing() {
   TriangleMesh mesh = make_box({.segments = {8, 8, 8}});
   const double half = bounds(mesh).upper.z;
@@ -60,10 +60,10 @@ TEST(SignPolicy, TheReportedRuleDependsOnNoGrid) {
   EXPECT_EQ(query.sign_reason(), plan.reason);
 }
 
-TEST(SignPolicy, OfAFrameIsThatOfItsMeshAlone) {
+TEST(SignPolicy, OfAFrameDependsOnItsMeshAlone) {
   const TriangleMesh simple = make_sphere({});
   TriangleMesh folded = simple;
-  folded.vertices.front() = folded.vertices.front() * -1.5;  // through the other side
+  folded.vertices.front() = folded.vertices.front() * -1.5;  // through the opposite side
   const GridSpec grid = grid_around(bounds(simple), 12);
   FieldSolver solver(grid);
   for (const TriangleMesh* mesh : std::array<const TriangleMesh*, 5>{&simple, &folded, &simple, &simple, &folded}) {
@@ -75,7 +75,7 @@ TEST(SignPolicy, OfAFrameIsThatOfItsMeshAlone) {
   }
 }
 
-TEST(SignPolicy, SaysWhatIsInTheWay) {
+TEST(SignPolicy, GivesAReasonForEachRule) {
   const auto expect = [](const TriangleMesh& mesh, SignRule rule, Method method, const std::string& reason) {
     const Plan plan = plan_of(mesh);
     EXPECT_EQ(plan.rule, rule) << plan.reason;
@@ -95,7 +95,7 @@ TEST(SignPolicy, SaysWhatIsInTheWay) {
   TriangleMesh beside = test::box_between({0, 0, 0}, {1, 1, 1});
   append(beside, test::box_between({1, 0, 0}, {2, 1, 1}));
   expect(beside, SignRule::winding, Method::crossings, "touches itself");
-  // Shells that cross have no depth; which one the search for it happens to find must not be what is told.
+  // Shells that cross have no depth. The reason must not depend on which shell the search for the depth finds.
   for (const Vec3d& by : {Vec3d{0.3, 0.2, 0.1}, Vec3d{0.9, 0.8, 0.7}}) {
     TriangleMesh across = test::box_between({0, 0, 0}, {1, 1, 1});
     append(across, test::box_between(by, by + Vec3d{1, 1, 1}));
@@ -106,7 +106,7 @@ TEST(SignPolicy, SaysWhatIsInTheWay) {
   expect(within, SignRule::winding, Method::crossings, "do not all face away");
 }
 
-TEST(SignPolicy, OfMeshesThatNobodyLooksAt) {
+TEST(SignPolicy, OfUnexaminedMeshes) {
   EXPECT_EQ(sign::plan_unseen_signs(SignMode::automatic, 1).rule, SignRule::winding);
   EXPECT_EQ(sign::plan_unseen_signs(SignMode::automatic, 0).rule, SignRule::none);
   EXPECT_EQ(sign::plan_unseen_signs(SignMode::none, 1).rule, SignRule::none);
@@ -114,7 +114,7 @@ TEST(SignPolicy, OfMeshesThatNobodyLooksAt) {
   EXPECT_THROW((void)sign::plan_unseen_signs(SignMode::normals, 1), InvalidOption);
 }
 
-/// Compares the sides of places with the full sum; returns how many sites have to ask.
+/// Compares the sides of places with the full sum; returns the number of sites that need winding numbers.
 std::size_t expect_true_sides(const TriangleMesh& mesh, SignMode mode, std::uint64_t seed) {
   const SiteTable sites(mesh);
   const Bvh bvh(mesh, sites);
@@ -138,11 +138,11 @@ TEST(SignSides, AreThoseOfTheFullSumOnMeshesThatCrossTouchAndFold) {
   TriangleMesh crossing = sphere;
   append(crossing, sphere, {0.7, 0.2, 0.1});
   append(crossing, sphere, {0.2, 0.8, 0.1});
-  TriangleMesh nested = sphere;  // a shell within another one that faces the same way: winding number 2
+  TriangleMesh nested = sphere;  // a shell within another one that faces the same way, so the winding number is 2
   append(nested, moved_by(make_box({.size = {0.3, 0.3, 0.3}}), {0.1, 0, 0}));
   TriangleMesh coincident = make_box({});
   append(coincident, make_box({}));
-  // A box in the corner of three others, which it touches in edges and a corner alone.
+  // A box touches three others, but only in edges and a corner.
   TriangleMesh corner = test::box_between({0, 0, 0}, {1, 1, 1});
   append(corner, test::box_between({1, 1, 0}, {2, 2, 1}));
   append(corner, test::box_between({1, 0, 1}, {2, 1, 2}));
@@ -165,7 +165,7 @@ TEST(SignSides, AskForWindingNumbersOnlyBesideCrossings) {
   EXPECT_EQ(expect_true_sides(make_sphere({.frequency = 8}), SignMode::winding, 2), 0U);
   TriangleMesh open = make_sphere({.frequency = 8});
   open.triangles.pop_back();
-  EXPECT_EQ(expect_true_sides(open, SignMode::winding, 3), 0U);  // sums: no sites at all
+  EXPECT_EQ(expect_true_sides(open, SignMode::winding, 3), 0U);  // the method is sums, which needs no sites
 }
 
 }  // namespace

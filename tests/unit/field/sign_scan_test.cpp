@@ -1,5 +1,5 @@
-// Proves that winding numbers counted along the rows of a grid are those of the full sum, node by node, on any balanced
-// mesh: crossing, folded, flat, aligned with the nodes; and that nothing else is taken for balanced.
+// Proves that winding numbers counted along the rows of a grid equal the full sum at every node. The tests cover
+// balanced meshes that cross, fold, are flat or are aligned with the nodes. Unbalanced meshes are recognised.
 #include "field/sign/scan.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ sign::Method method_of(const MeshView& mesh) {
   return sign::Planner().plan(SignMode::winding, mesh, SiteTable(mesh), {}).method;
 }
 
-/// Compares all nodes; those within 1e-12 of the diagonal from the surface may differ.
+/// Compares all nodes. Signs may differ within 1e-12 of the diagonal from the surface.
 void expect_true_signs(const MeshView& mesh, const GridSpec& grid) {
   ASSERT_EQ(method_of(mesh), sign::Method::crossings);
   const reference::BruteForce exact(mesh);
@@ -49,7 +49,7 @@ void expect_true_signs(const MeshView& mesh, const GridSpec& grid) {
   EXPECT_GT(checked, grid.node_count() / 8);
 }
 
-/// Tetrahedra, some inside out, some flat, with corners anywhere or on a lattice.
+/// Returns tetrahedra, some inside out, some flat, with corners anywhere or on a lattice.
 TriangleMesh tetrahedra(std::size_t count, bool on_lattice, std::uint64_t seed) {
   Random random(seed);
   TriangleMesh mesh;
@@ -119,7 +119,7 @@ TEST(SignScan, LeavesZerosAlone) {
   field.grid = grid_around(bounds(mesh), 9);
   field.distance = Buffer<float>(field.grid.node_count(), 0.0F);
   SignScan::make(mesh, field.grid, {})->apply(field, 0, {});
-  for (const float d : field.distance.span()) EXPECT_FALSE(std::signbit(d));  // zeros have no side
+  for (const float d : field.distance.span()) EXPECT_FALSE(std::signbit(d));  // a zero has no side
 }
 
 TEST(SignScan, GivesUpOnHeapsOfOverlappingShapes) {
@@ -129,17 +129,17 @@ TEST(SignScan, GivesUpOnHeapsOfOverlappingShapes) {
   EXPECT_FALSE(SignScan::make(heap, grid, {}).has_value());
 }
 
-TEST(SignScan, BalanceIsOfEveryEdge) {
+TEST(SignScan, BalanceIsCheckedAtEveryEdge) {
   TriangleMesh mesh = make_sphere({.frequency = 3});
   EXPECT_EQ(method_of(mesh), sign::Method::crossings);
-  mesh.triangles.push_back({2, 2, 5});  // no edge of positive length, or the same one there and back
+  mesh.triangles.push_back({2, 2, 5});  // its edges have no length, or run back on themselves
   EXPECT_EQ(method_of(mesh), sign::Method::crossings);
   mesh.triangles.pop_back();
   std::swap(mesh.triangles[4][0], mesh.triangles[4][1]);
   EXPECT_EQ(method_of(mesh), sign::Method::sums);
   mesh.triangles.erase(mesh.triangles.begin() + 4);
   EXPECT_EQ(method_of(mesh), sign::Method::sums);
-  // Four triangles at an edge, two each way.
+  // Four triangles meet at an edge, two in each direction.
   TriangleMesh touching = make_box({});
   append(touching, make_box({}));
   for (Triangle& t : touching.triangles) {

@@ -1,4 +1,5 @@
-// Proves that signs by winding numbers are, node by node, those of the full sum over all triangles, and cheap.
+// Proves that signs by winding numbers equal those of the full sum over all triangles at every node, and need few
+// queries.
 #include "field/sign/winding.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ WindingSignCounts apply(Field& field, const MeshView& mesh, int threads = 0) {
   return apply_winding_sign(field, mesh, SiteTable(mesh), {.threads = threads});
 }
 
-/// Compares all nodes that are further than the promise from the surface.
+/// Compares all nodes that are further from the surface than the promised precision.
 void expect_true_signs(const MeshView& mesh, const GridSpec& grid, std::optional<double> band = {}) {
   Field field = unsigned_field(mesh, grid, band);
   const Buffer<float> before = field.distance.clone();
@@ -77,7 +78,7 @@ TEST(WindingSign, DoesNotFloodThroughHoles) {
     const TriangleMesh mesh = bowl(height);
     expect_true_signs(mesh, grid_around(bounds(mesh), 30, 0.3));
   }
-  // Holes much smaller, and much larger, than the grid's spacing.
+  // The holes are much smaller, and much larger, than the grid's spacing.
   TriangleMesh pierced = make_sphere({.frequency = 12});
   pierced.triangles.erase(pierced.triangles.begin() + 100);
   pierced.triangles.erase(pierced.triangles.begin() + 500);
@@ -146,8 +147,8 @@ TEST(WindingSign, WorksFarFromTheOriginAndAtAnyScale) {
   expect_true_signs(far, grid_around(bounds(far), 20));
 }
 
-/// What makes it fast: nodes share answers.
-TEST(WindingSign, AsksFewQuestions) {
+/// The search is fast because nodes share answers.
+TEST(WindingSign, MakesFewQueries) {
   const TriangleMesh sphere = make_sphere({.frequency = 20});
   Field closed = unsigned_field(sphere, grid_around(bounds(sphere), 64));
   const WindingSignCounts counts = apply(closed, sphere);
@@ -158,8 +159,8 @@ TEST(WindingSign, AsksFewQuestions) {
   EXPECT_LT(apply(holed, open).queries, holed.distance.size() / 6);
 }
 
-/// Blocks of nodes that edges of the boundary run through are cut into smaller boxes, not into nodes.
-TEST(WindingSign, AsksFewQuestionsAboutSoups) {
+/// Blocks of nodes that contain boundary edges are cut into smaller boxes, not into nodes.
+TEST(WindingSign, MakesFewQueriesOnSoups) {
   const TriangleMesh soup = make_soup({.triangles = 30});
   Field field = unsigned_field(soup, grid_around(bounds(soup), 64));
   EXPECT_LT(apply(field, soup).queries, field.distance.size() * 2 / 5);

@@ -1,6 +1,7 @@
-// Proves that smooth_surface gives closed, oriented manifolds that do not cross themselves and have the topology of the
-// union of the voxels, with each voxel's centre on its side: for every set of 2x2x2 voxels, noise, plates and contacts;
-// how far they are from the balls, tubes and tori that voxels sample; and the same bytes on any number of threads.
+// Proves that smooth_surface() gives closed, oriented manifolds without self-intersections. They have the topology of
+// the union of the voxels, and each voxel's centre lies on its side. The tests cover every set of 2x2x2 voxels, noise,
+// plates and contacts. They bound the error against the balls, tubes and tori that voxels sample. The bytes are the
+// same for any number of threads.
 #include "blum/field/smooth_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +58,7 @@ void expect_parts_centres(const TriangleMesh& mesh, const VoxelImage& image, con
   }
 }
 
-/// All that smooth_surface promises, but for how smooth it is.
+/// Checks all promises of smooth_surface() except smoothness.
 void expect_surface(const VoxelImage& image, int iterations = SmoothSurfaceOptions{}.iterations) {
   const SmoothSurface surface = smooth_surface(image, {}, {.iterations = iterations});
   const TriangleMesh& mesh = surface.mesh;
@@ -118,11 +119,11 @@ TEST(SmoothSurface, PlatesRodsAndVoxelsAtTheBorder) {
     SCOPED_TRACE(std::to_string(size[0]) + " " + std::to_string(size[1]) + " " + std::to_string(size[2]));
     expect_surface(image_of(size, always));
   }
-  // Plates one voxel apart, and a slanted one of one voxel.
+  // Plates one voxel apart, and a slanted plate one voxel thick.
   expect_surface(image_of({12, 12, 9}, [](auto, auto, std::int64_t k) { return k % 2 == 0; }));
   expect_surface(image_of({14, 14, 14},
                           [](std::int64_t i, std::int64_t j, std::int64_t k) { return (i + 2 * j + 3 * k) / 4 == 9; }));
-  // A board of voxels that touch in edges, and one of those that touch in corners.
+  // A board of voxels that touch in edges, and one of voxels that touch in corners.
   expect_surface(image_of({8, 8, 1}, [](std::int64_t i, std::int64_t j, auto) { return (i + j) % 2 == 0; }));
   expect_surface(image_of(
       {8, 8, 8}, [](std::int64_t i, std::int64_t j, std::int64_t k) { return i % 2 == j % 2 && j % 2 == k % 2; }));
@@ -142,7 +143,7 @@ TEST(SmoothSurface, GridsOfAnyKind) {
     image.grid.direction.columns[2] = {0, 0, is_mirrored ? -1.0 : 1.0};
     expect_surface(image);
     const TriangleMesh mesh = smooth_surface(image).mesh;
-    // Smoothing is in voxels: the same surface, stretched.
+    // Smoothing works in voxel units, so the result is the same surface, stretched.
     VoxelImage plain = image;
     plain.grid = {};
     plain.grid.size = image.grid.size;
@@ -159,11 +160,11 @@ TEST(SmoothSurface, GridsOfAnyKind) {
 using Distance = std::function<double(const Vec3d&)>;
 
 struct Errors {
-  double mean = 0;    ///< of the signed distance, by area
+  double mean = 0;    ///< of the signed distance, weighted by area
   double normal = 0;  ///< mean angle, degrees
 };
 
-/// Of the surface of sampled voxels against the shape, away from the border of the image.
+/// Returns the errors of the surface of sampled voxels against the shape, away from the border of the image.
 Errors errors_of(const Distance& shape, int size) {
   const VoxelImage image = image_of({size, size, size}, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
     return shape({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}) < 0;
@@ -229,7 +230,7 @@ TEST(SmoothSurface, BallsAndToriKeepTheirRadius) {
 }
 
 TEST(SmoothSurface, PlanesAreFlat) {
-  // A thick slanted slab: the boxes' normals are off by up to 55 degrees.
+  // On this thick slanted slab, the normals of voxel faces are off by up to 55 degrees.
   const Vec3d up = 1 / std::sqrt(0.78) * Vec3d{0.3, 0.2, 0.8};
   const Errors errors = errors_of([&](const Vec3d& p) { return std::abs(dot(p - Vec3d{20, 20, 20}, up)) - 7.3; }, 40);
   EXPECT_LT(std::abs(errors.mean), 0.1);
@@ -257,7 +258,7 @@ TEST(SmoothSurface, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(SmoothSurface, Refuses) {
+TEST(SmoothSurface, RejectsInvalidInputAndCanBeCancelled) {
   const VoxelImage empty = image_of({4, 4, 4}, [](auto, auto, auto) { return false; });
   EXPECT_THROW((void)smooth_surface(empty), InvalidImage);
   const VoxelImage image = noise({8, 8, 8}, 0.5, 1);

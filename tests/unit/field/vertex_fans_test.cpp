@@ -1,4 +1,5 @@
-// The sixteen-at-a-time cones of vertices agree with the one-at-a-time ones, on random and on degenerate fans.
+// Proves that the vertex cones computed sixteen at a time agree with those computed one at a time, on random and
+// degenerate fans.
 #include "field/cpu/vertex_fans.hpp"
 
 #include <gtest/gtest.h>
@@ -16,8 +17,8 @@
 namespace blum::cpu {
 namespace {
 
-/// Directions of a fan: anywhere, in a half-space (a convex corner), nearly in a plane, or on a coarse lattice, where
-/// parallel and repeated ones are common.
+/// Returns directions of a fan: anywhere, in a half-space (a convex corner), nearly in a plane, or on a coarse lattice.
+/// On the lattice, parallel and repeated directions are common.
 std::vector<Vec3d> random_fan(Random& random, std::size_t count, int family) {
   std::vector<Vec3d> fan;
   while (fan.size() < count) {
@@ -38,7 +39,7 @@ void put(const std::vector<Vec3d>& fan, std::size_t lane, VertexFans& fans) {
   }
 }
 
-/// Whether every ray of `some` is among `all`.
+/// True if every ray of `some` is among `all`.
 bool are_among(std::span<const Vec3f> some, std::span<const Vec3f> all) {
   return std::all_of(some.begin(), some.end(), [&](const Vec3f& ray) {
     return std::any_of(all.begin(), all.end(), [&](const Vec3f& other) { return length(ray - other) < 1e-3F; });
@@ -75,7 +76,7 @@ TEST(VertexFans, AgreeWithSingleConesOnEveryTarget) {
         ++bounded;
         const std::span<const Vec3f> rays(cones.rays[lane].data(), std::min<std::size_t>(cones.ray_count[lane], 8));
         EXPECT_TRUE(are_among(cone.rays(), rays) && are_among(rays, cone.rays()));
-        // Each plane that the single cone keeps bounds the cone of the fan too.
+        // Each plane that the single cone keeps also bounds the cone of the fan.
         for (std::size_t k = 0; k < cone.planes().count; ++k) {
           EXPECT_TRUE((cones.facets[lane] >> cone.planes().index[k]) & 1U) << target << " round " << round;
         }

@@ -1,5 +1,5 @@
-// Proves that the winding numbers of many points are those of the sum over all triangles: whole numbers, exactly, of
-// closed meshes, within the bound of others, for many points and few, whatever the number of threads.
+// Proves that the winding numbers of many points equal the sum over all triangles. They are exact whole numbers for
+// closed meshes and within the bound for others. The tests use many and few points, and any number of threads.
 #include "blum/field/winding_numbers.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 namespace blum {
 namespace {
 
-/// Points so near to each other that they share answers, and few others.
+/// Returns clusters of points so close that they share answers, and a few scattered points.
 std::vector<Vec3d> many_places(const MeshView& mesh, std::size_t count, std::uint64_t seed) {
   const std::vector<Vec3d> some = test::places_around(mesh, count / 64 + 1, seed);
   Random random(seed);
@@ -62,7 +62,7 @@ TEST(WindingNumbers, OfOpenMeshesAndSoups) {
   expect_like_full_sum(without_some(make_sphere({.frequency = 12}), 100), 1e-6, 1);
   expect_like_full_sum(without_some(make_sphere({.frequency = 12}), 100), 1e-9, 2);
   expect_like_full_sum(without_some(make_sphere({.frequency = 12}), 100), 1e-11, 3);
-  expect_like_full_sum(without_some(make_sphere({.frequency = 20}), 3), 1e-4, 4);  // too long a boundary to close
+  expect_like_full_sum(without_some(make_sphere({.frequency = 20}), 3), 1e-4, 4);  // boundary too long to close
   expect_like_full_sum(without_some(make_box({}), 3), 1e-6, 5);
   expect_like_full_sum(test::nasty_soup(1, 300), 1e-6, 6);
   expect_like_full_sum(test::moved(without_some(make_sphere({.frequency = 8}), 30), 1e30), 1e-6, 7);
@@ -91,7 +91,8 @@ TEST(WindingNumbers, OfClosedMeshesAreWhole) {
 }
 
 TEST(WindingNumbers, OfPointsOnTheConeOfTheBoundary) {
-  // The opening of a box, whose cone is not aligned with it; and all lines between its corners.
+  // The lattice has points on the cone over the box's opening, which is not aligned with the box, and on lines between
+  // its corners.
   const TriangleMesh box = without_some(make_box({}), 6);
   std::vector<Vec3d> points;
   for (int x = -4; x <= 4; ++x) {
@@ -105,7 +106,7 @@ TEST(WindingNumbers, OfPointsOnTheConeOfTheBoundary) {
   }
 }
 
-TEST(WindingNumbers, NameWhatIsWrong) {
+TEST(WindingNumbers, RejectInvalidInput) {
   const TriangleMesh box = make_box({});
   EXPECT_EQ(winding_numbers(box, {}), std::vector<double>{});
   EXPECT_THROW((void)winding_numbers(box, std::vector<Vec3d>{{0, 0, 0}}, 0), InvalidOption);

@@ -1,6 +1,6 @@
-// Proves that zero_surface gives closed, oriented manifolds that face outwards, with the topology of the shape, on
-// smooth, random and degenerate fields, on grids of any direction; that its vertices lie where they should; and the
-// same bytes on any number of threads.
+// Proves that zero_surface() gives closed, oriented manifolds that face outwards and have the topology of the shape.
+// The tests cover smooth, random and degenerate fields and grids of any direction. They bound the positions of
+// vertices. The bytes are the same for any number of threads.
 #include "blum/field/zero_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ Field field_of(const GridSpec& grid, const std::function<double(const Vec3d&)>& 
   return field;
 }
 
-/// A grid around the origin.
+/// Returns a grid around the origin.
 GridSpec centred_grid(const Size& size, const Vec3d& spacing, const Mat3& direction = {}) {
   GridSpec grid;
   grid.size = size;
@@ -64,7 +64,7 @@ double torus(const Vec3d& p) {
   return std::hypot(std::hypot(p.x, p.y) - 0.9, p.z) - 0.3;
 }
 
-/// A turn about a skew axis; mirrored where asked.
+/// Returns a rotation about a skew axis, mirrored on request.
 Mat3 skew_direction(bool is_mirrored) {
   const Vec3d a = Vec3d{1, 2, -0.5} / length(Vec3d{1, 2, -0.5});
   const Vec3d other = cross(a, {0.3, -0.2, 1});
@@ -73,7 +73,7 @@ Mat3 skew_direction(bool is_mirrored) {
   return {{a, b, is_mirrored ? -c : c}};
 }
 
-/// Distances at random, outside on the border unless that is left open.
+/// Returns random distances. Border nodes are outside unless `is_open`.
 Field random_field(const Size& size, std::uint64_t seed, bool is_open, const std::function<double(Random&)>& draw) {
   Random random(seed);
   Field field;
@@ -95,7 +95,7 @@ double uniform_value(Random& random) {
   return random.uniform(-1, 1);
 }
 
-/// -1, 0 or 1: most crossed edges have an end of exactly the level.
+/// Returns -1, 0 or 1, so most crossed edges have an end of exactly the level.
 double whole_value(Random& random) {
   return static_cast<double>(random.below(3)) - 1;
 }
@@ -147,7 +147,7 @@ TEST(ZeroSurface, FieldsOfMeshesKeepTheirTopology) {
   }
 }
 
-/// The largest distance of a vertex from the unit sphere.
+/// Returns the largest distance of a vertex from the sphere of the given radius.
 double largest_error(const TriangleMesh& mesh, double radius = 1) {
   double worst = 0;
   for (const Vec3d& v : mesh.vertices) worst = std::max(worst, std::abs(length(v) - radius));
@@ -158,7 +158,7 @@ TEST(ZeroSurface, VerticesConvergeToASphere) {
   for (const std::int64_t nodes : {16, 31, 61, 121}) {
     const GridSpec grid = cube_grid(nodes);
     const double diagonal = std::sqrt(3.0) * grid.spacing.x;
-    // Along an edge of length L the distance differs from a linear one by at most L^2 / (8 R).
+    // On an edge of length L the distance differs from a linear function by at most L^2 / (8 R).
     const double bound = diagonal * diagonal / (8 * (1 - diagonal)) + 1e-3 * diagonal;
     EXPECT_LE(largest_error(zero_surface(field_of(grid, sphere))), bound) << nodes;
   }
@@ -221,17 +221,17 @@ TEST(ZeroSurface, EveryCubeIsAManifold) {
 }
 
 TEST(ZeroSurface, NodesOfExactlyTheLevelAreOutside) {
-  // A cube whose faces run through nodes: the value is exactly the level on all of them.
+  // The faces of this cube run through nodes, so the value is exactly the level on all of them.
   const auto largest = [](const Vec3d& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 4; };
   const TriangleMesh mesh = zero_surface(field_of(cube_grid(13, 12), largest));
   expect_solid(mesh, {1, 0, 0});
   std::set<std::array<double, 3>> places;
   for (const Vec3d& v : mesh.vertices) {
     places.insert({v.x, v.y, v.z});
-    EXPECT_NEAR(largest(v), -1e-3, 1e-12);  // the part of an edge that is kept from its end
+    EXPECT_NEAR(largest(v), -1e-3, 1e-12);  // each vertex keeps this part of its edge away from the end
   }
   EXPECT_EQ(places.size(), mesh.vertices.size());
-  // With the level everywhere there is nothing inside.
+  // If all nodes have the level, nothing is inside.
   EXPECT_TRUE(zero_surface(field_of(cube_grid(5), [](const Vec3d&) { return 0; })).triangles.empty());
 }
 
@@ -262,7 +262,7 @@ TEST(ZeroSurface, SameBytesOnAnyNumberOfThreads) {
   }
 }
 
-TEST(ZeroSurface, RefusesWhatHasNoSurface) {
+TEST(ZeroSurface, RejectsInvalidFieldsAndLevels) {
   Field field = field_of(cube_grid(4), sphere);
   EXPECT_THROW((void)zero_surface(field, std::numeric_limits<double>::quiet_NaN()), InvalidOption);
   EXPECT_THROW((void)zero_surface(field, std::numeric_limits<double>::infinity()), InvalidOption);

@@ -1,5 +1,5 @@
-// Proves that every query of a hierarchy of boxes finds what a look at every box finds, before and after a refit, on
-// any number of threads, with empty boxes and boxes of no extent among them.
+// Proves that every query of a hierarchy of boxes agrees with a search over all boxes, before and after a refit. Any
+// number of threads gives the same. Boxes may be empty or have no extent.
 #include "blum/geometry/box_bvh.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-/// Boxes of many sizes in the unit cube; some are points, some empty, some copies of another.
+/// Boxes of many sizes in the unit cube. Some are points, some are empty, some are copies of others.
 std::vector<Box3> random_boxes(std::size_t count, std::uint64_t seed) {
   Random random(seed);
   std::vector<Box3> boxes;
@@ -88,14 +88,14 @@ void expect_answers(const BoxBvh& bvh, const std::vector<Box3>& boxes, const std
   }
 }
 
-TEST(BoxBvh, FindsWhatALookAtEveryBoxFinds) {
+TEST(BoxBvh, AgreesWithASearchOverAllBoxes) {
   for (const std::size_t count : {0UL, 1UL, 7UL, 8UL, 9UL, 64UL, 65UL, 700UL}) {
     const std::vector<Box3> boxes = random_boxes(count, count + 1);
     expect_answers(BoxBvh(boxes), boxes, random_boxes(60, 99));
   }
 }
 
-TEST(BoxBvh, AnswersAfterARefitAreThoseOfANewOne) {
+TEST(BoxBvh, AnswersLikeANewTreeAfterARefit) {
   const std::vector<Box3> before = random_boxes(300, 5);
   const std::vector<Box3> after = random_boxes(300, 6);
   BoxBvh bvh(before);
@@ -108,7 +108,7 @@ TEST(BoxBvh, AnswersAfterARefitAreThoseOfANewOne) {
   EXPECT_EQ(bvh.bounds().upper, BoxBvh(after).bounds().upper);
 }
 
-TEST(BoxBvh, PairsAreThoseOfEveryBoxWithEveryOther) {
+TEST(BoxBvh, PairsAgreeWithAllPairsOfBoxes) {
   const std::vector<Box3> a = random_boxes(150, 11);
   const std::vector<Box3> b = random_boxes(90, 12);
   const BoxBvh here(a);
@@ -152,7 +152,7 @@ TEST(BoxBvh, RaysMissNoBox) {
   const BoxBvh bvh(boxes);
   Random random(22);
   for (int trial = 0; trial < 400; ++trial) {
-    // Towards a corner, an edge or the inside of a box, so that rays graze; with zeros and tiny numbers among them.
+    // Rays aim at a corner, an edge or the inside of a box, so that they graze boxes. Some components are zero or tiny.
     const Box3& target = boxes[random.below(boxes.size())];
     if (target.is_empty()) continue;
     const Vec3d aim{trial % 2 == 0 ? target.lower.x : target.upper.x, trial % 3 == 0 ? target.lower.y : target.upper.y,
@@ -168,7 +168,7 @@ TEST(BoxBvh, RaysMissNoBox) {
     });
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
       if (boxes[i].is_empty()) continue;
-      // Sampled closely around where the ray could meet the box, shrunk or grown by more than rounding.
+      // The ray meets the box from `enter` to `leave`. A difference below rounding permits both answers.
       double enter = 0;
       double leave = HUGE_VAL;
       const Vec3d d = aim - origin;

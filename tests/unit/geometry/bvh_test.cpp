@@ -1,6 +1,6 @@
-// Proves that every query of the bounding-volume hierarchy finds what a look at every site or primitive finds: the
-// closest site, the k closest primitives, those within a distance, crossings of rays; and the same after a refit as
-// when built anew.
+// Proves that every query of the bounding-volume hierarchy agrees with a search over all sites or primitives. Queries
+// are the closest site, the k closest primitives, primitives within a distance and crossings of rays. A refitted tree
+// answers like a new one.
 #include "blum/geometry/bvh.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace blum {
 namespace {
 
-/// Compares distance, site and point with brute force; the extent that rounding refers to reaches to the query.
+/// Compares distance, site and point with brute force. The tolerance refers to the extent of mesh and query.
 void expect_same_as_brute_force(const MeshView& mesh, const std::vector<Vec3d>& places) {
   const reference::BruteForce expected(mesh);
   const Bvh bvh(mesh, expected.sites());
@@ -56,7 +56,7 @@ TEST(Bvh, AgreesAtEveryScaleAndOffset) {
 }
 
 TEST(Bvh, FindsTheSmallestSiteOfExactTies) {
-  // The middle of a cube is as far from all six sides; a corner's neighbourhood belongs to the vertex.
+  // The middle of a cube is as far from all six sides. Points beyond a corner are closest to its vertex.
   const TriangleMesh cube = make_box({});
   const reference::BruteForce expected(cube);
   const Bvh bvh(cube, expected.sites());
@@ -68,7 +68,7 @@ TEST(Bvh, FindsTheSmallestSiteOfExactTies) {
   }
 }
 
-/// A hundred thousand sizes from the origin closest points are rounded by more than distances are close.
+/// The mesh lies 10^5 of its sizes from the origin. Closest points round by more than the differences of distances.
 TEST(Bvh, FindsTheSmallestSiteOfTiesFarAway) {
   TriangleMesh mesh;
   mesh.vertices = {{0x1.14db1b80d91fcp+16, 0x1.caa6598981641p+15, 0x1.851c8bea48491p+16},
@@ -107,7 +107,7 @@ TEST(Bvh, SeesNothingBeyondTheLargestDistance) {
   EXPECT_FALSE(bvh.nearest({HUGE_VAL, 2, 3}));
 }
 
-TEST(Bvh, TellsEmptyBoxes) {
+TEST(Bvh, RecognizesBoxesWithoutSurface) {
   const TriangleMesh sphere = make_sphere({.frequency = 8});
   const Bvh bvh(sphere, SiteTable(sphere));
   EXPECT_FALSE(bvh.may_touch({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}));
@@ -127,7 +127,7 @@ TEST(Bvh, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-/// The closest point of each primitive, each found by a hierarchy that holds nothing else.
+/// The closest point of each primitive, each from a tree of this primitive alone.
 std::vector<NearestPrimitive> each_alone(const MeshView& mesh, const Vec3d& q) {
   std::vector<NearestPrimitive> out;
   const SiteTable sites(mesh);
@@ -184,12 +184,12 @@ TEST(Bvh, FindsTheKClosestPrimitivesAndThoseWithinADistance) {
   EXPECT_EQ(calls, 5);
 }
 
-/// A triangle from a place towards the next two, as long as a part of the ways there.
+/// A triangle with a corner at one place and two corners at a part of the way to the next two places.
 std::array<Vec3d, 3> triangle_at(const std::vector<Vec3d>& places, std::size_t i, double part) {
   return {places[i], places[i] + (places[i + 1] - places[i]) * part, places[i] + (places[i + 2] - places[i]) * part};
 }
 
-/// What is visited, rising. @param go  calls its argument for triangles.
+/// The visited triangles in ascending order. @param go  calls its argument for triangles.
 template <class Go>
 std::vector<std::uint32_t> visited(const Go& go) {
   std::vector<std::uint32_t> found;
@@ -201,7 +201,7 @@ std::vector<std::uint32_t> visited(const Go& go) {
   return found;
 }
 
-TEST(Bvh, TrianglesNearAnotherAreAllThatItMeetsAndFewMore) {
+TEST(Bvh, TrianglesNearAnotherIncludeAllContactsAndFewMore) {
   for (const double scale : {1.0, 1e-40, 1e40}) {
     const TriangleMesh mesh = test::moved(test::awkward_soup(300, 33), scale);
     const Bvh bvh(mesh, SiteTable(mesh));
@@ -230,7 +230,7 @@ TEST(Bvh, TrianglesNearAnotherAreAllThatItMeetsAndFewMore) {
   }
 }
 
-TEST(Bvh, RaysCrossWhatEveryTriangleAloneSays) {
+TEST(Bvh, RayCrossingsAgreeWithEachTriangleAlone) {
   for (const double scale : {1.0, 1e-40, 1e40}) {
     const TriangleMesh mesh = test::moved(test::awkward_soup(200, 31), scale);
     const Bvh bvh(mesh, SiteTable(mesh));
@@ -277,7 +277,7 @@ TEST(Bvh, RaysCrossWhatEveryTriangleAloneSays) {
   EXPECT_TRUE(bvh.crossings({{0, 0, NAN}, {0, 0, 1}}).empty());
 }
 
-TEST(Bvh, APartAnswersInItsBoxAsTheWhole) {
+TEST(Bvh, PartsAnswerLikeTheWholeTreeInTheirBox) {
   for (const double scale : {1.0, 1e-40, 1e40}) {
     const TriangleMesh mesh = test::moved(test::awkward_soup(300, 51), scale);
     const Bvh bvh(mesh, SiteTable(mesh));
@@ -313,7 +313,7 @@ TEST(Bvh, APartAnswersInItsBoxAsTheWhole) {
   }
 }
 
-TEST(Bvh, TellsAnOrderOfAllPrimitives) {
+TEST(Bvh, OrdersAllPrimitives) {
   const TriangleMesh mesh = test::awkward_soup(90, 4);
   const Bvh bvh(mesh, SiteTable(mesh));
   std::vector<std::uint32_t> order(bvh.order().begin(), bvh.order().end());
@@ -322,7 +322,7 @@ TEST(Bvh, TellsAnOrderOfAllPrimitives) {
   for (std::size_t k = 0; k < order.size(); ++k) EXPECT_EQ(order[k], k);
 }
 
-TEST(Bvh, AnswersAfterARefitAreThoseOfANewOne) {
+TEST(Bvh, AnswersLikeANewTreeAfterARefit) {
   const TriangleMesh before = test::awkward_soup(150, 41);
   TriangleMesh after = before;
   Random random(42);

@@ -1,6 +1,6 @@
-// Proves that the predicates of grids are exact and answer as if every plane were moved down by a little: against
-// wide integers with planes that are moved by small fractions, and against each other where doubles are nearly
-// degenerate.
+// Proves that the predicates of grids are exact and answer as if every plane were moved down slightly. The tests
+// compare them with wide integers, whose planes are moved by small fractions. Nearly degenerate doubles are compared
+// with other predicates.
 #include "blum/geometry/grid_predicates.hpp"
 
 #include <gtest/gtest.h>
@@ -30,9 +30,9 @@ int sign(const T& value) {
   return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
 }
 
-/// Coordinates are whole, planes are multiples of 1 / unit. Moves of 1/2^18, 1/2^36, 1/2^54 along x, y, z are as good
-/// as infinitely small ones: for coordinates of magnitude up to 4 every predicate is the sign of an integer plus
-/// multiples, smaller than 2^16, of the moves.
+/// Coordinates are whole numbers, planes are multiples of 1 / unit. Planes move by 1/2^18, 1/2^36, 1/2^54 along x, y,
+/// z. These moves act like infinitely small ones for coordinates of magnitude up to 4. There, every predicate is the
+/// sign of an integer plus multiples, smaller than 2^16, of the moves.
 constexpr Wide unit = Wide{1} << 54U;
 constexpr std::array<Wide, 3> moves{Wide{1} << 36U, Wide{1} << 18U, 1};
 
@@ -41,7 +41,7 @@ Wide moved(double plane, std::size_t axis) {
   return static_cast<Wide>(plane) * unit - moves[axis];
 }
 
-/// A number as a fraction of whole numbers.
+/// A fraction of whole numbers.
 struct Fraction {
   Wide over = 0;
   Wide under = 1;  ///< not 0
@@ -51,7 +51,7 @@ struct Fraction {
   }
 };
 
-/// A line along an axis, moved: its coordinates, times unit.
+/// A moved line along an axis. Its coordinates are multiplied by unit.
 struct MovedLine {
   std::size_t axis = 0;
   Wide u = 0;
@@ -61,7 +61,7 @@ struct MovedLine {
       : axis(axis_), u(moved(u_, next(axis_))), v(moved(v_, next(next(axis_)))) {}
 };
 
-/// Twice the area of a line and two points, seen against the line, times unit.
+/// Twice the area of a triangle between a line and two points, seen against the line, times unit.
 Wide area(const Vec3d& a, const Vec3d& b, const MovedLine& line) {
   const std::size_t u = next(line.axis);
   const std::size_t v = next(u);
@@ -70,8 +70,8 @@ Wide area(const Vec3d& a, const Vec3d& b, const MovedLine& line) {
          (along(b, v) - along(a, v)) * (line.u - along(a, u) * unit);
 }
 
-/// Where a line crosses the plane of a triangle, times unit: the mean of its corners by the areas opposite of them.
-/// Nothing where they are parallel.
+/// The height at which a line crosses the plane of a triangle, times unit. It is the mean of the corners, weighted by
+/// the areas opposite of them. Empty if line and plane are parallel.
 std::optional<Fraction> height(const TriangleCorners& t, const MovedLine& line) {
   Fraction sum{0, 0};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -84,7 +84,7 @@ std::optional<Fraction> height(const TriangleCorners& t, const MovedLine& line) 
   return sum;
 }
 
-/// The line goes up through the inside of a triangle (1), down (-1), or past it (0).
+/// 1 if the line goes up through the inside of a triangle, -1 if down, 0 if past the triangle.
 int passage(const TriangleCorners& t, const MovedLine& line) {
   const int first = sign(area(t[0], t[1], line));
   return first == sign(area(t[1], t[2], line)) && first == sign(area(t[2], t[0], line)) ? first : 0;
@@ -98,7 +98,7 @@ int expected_side_of_node(const TriangleCorners& t, const Vec3d& node) {
   return 0;
 }
 
-/// Where an edge passes a plane, along another axis, times unit.
+/// The place, along another axis, at which an edge passes a plane, times unit.
 Fraction passing(const EdgeEnds& edge, std::size_t across, double plane, std::size_t along) {
   const auto& [a, b] = edge;
   const auto rise = static_cast<Wide>(b[across] - a[across]);
@@ -139,7 +139,7 @@ TEST(GridPredicates, HaveTheirConventions) {
   EXPECT_TRUE(passes_before({Vec3d{0, 0, 0}, Vec3d{0, 0, 1}}, {Vec3d{1, 0, 1}, Vec3d{1, 0, 0}}, 2, 0.5, 0));
 }
 
-TEST(GridPredicates, SideOfLineIsThatOfAMovedLine) {
+TEST(GridPredicates, SideOfLineAgreesWithAMovedLine) {
   Random random(1);
   int degenerate = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -157,7 +157,7 @@ TEST(GridPredicates, SideOfLineIsThatOfAMovedLine) {
   EXPECT_GT(degenerate, 5000);
 }
 
-TEST(GridPredicates, SideOfNodeIsThatOfAMovedNode) {
+TEST(GridPredicates, SideOfNodeAgreesWithAMovedNode) {
   Random random(2);
   std::array<int, 3> found{};
   for (int k = 0; k < 30000; ++k) {
@@ -175,7 +175,7 @@ TEST(GridPredicates, SideOfNodeIsThatOfAMovedNode) {
   EXPECT_GT(found[2], 200);  // parallel to x: y or z decide
 }
 
-TEST(GridPredicates, CrossingsComeInTheOrderOnAMovedLine) {
+TEST(GridPredicates, CrossingsAreOrderedAsOnAMovedLine) {
   Random random(3);
   int compared = 0;
   int at_one_height = 0;
@@ -205,7 +205,7 @@ TEST(GridPredicates, CrossingsComeInTheOrderOnAMovedLine) {
   EXPECT_GT(in_one_plane, 10);
 }
 
-TEST(GridPredicates, EdgesPassInTheOrderInAMovedPlane) {
+TEST(GridPredicates, EdgesAreOrderedAsInAMovedPlane) {
   Random random(4);
   int compared = 0;
   int at_one_point = 0;
@@ -233,7 +233,7 @@ TEST(GridPredicates, EdgesPassInTheOrderInAMovedPlane) {
   EXPECT_GT(at_one_point, 500);
 }
 
-/// Two triangles at an edge lie above each other as the corner of one lies to the other, on that side of the edge.
+/// The order of two triangles at an edge follows from a corner of one: its side of the other and of the edge.
 TEST(GridPredicates, OrderOfTrianglesAtAnEdgeFollowsFromSides) {
   Random random(5);
   int compared = 0;
@@ -241,8 +241,8 @@ TEST(GridPredicates, OrderOfTrianglesAtAnEdgeFollowsFromSides) {
     const std::size_t axis = static_cast<std::size_t>(k) % 3;
     const Vec3d a = random.in_cube();
     const Vec3d b = random.in_cube();
-    // A line next to a point of the edge, as well as doubles can, or further off; triangles nearly in one plane, or
-    // not.
+    // The line is as close to a point of the edge as doubles permit, or further off. The triangles lie nearly in one
+    // plane or not.
     const double off = k % 3 == 0 ? 0 : std::ldexp(random.uniform(-1, 1), -static_cast<int>(random.below(60)));
     const Vec3d on = a + (b - a) * random.uniform();
     const Vec3d c = random.in_cube();
@@ -266,7 +266,7 @@ TEST(GridPredicates, OrderOfTrianglesAtAnEdgeFollowsFromSides) {
   EXPECT_GT(compared, 15000);
 }
 
-/// The height of whole numbers at a line that is not moved, times the area.
+/// The height of a triangle of whole numbers at an unmoved line, times twice its area.
 Wide six_volumes(const TriangleCorners& t, std::size_t axis, double u, double v, Wide& twice_area) {
   const std::size_t x = next(axis);
   const std::size_t y = next(x);
@@ -294,7 +294,7 @@ TEST(GridPredicates, LargeTrianglesNearlyInOnePlane) {
     TriangleCorners y = x;
     for (Vec3d& p : y) p = x[0] + small(random, 2) * (x[1] - x[0]) + small(random, 2) * (x[2] - x[0]);
     if (k % 3 != 0) y[random.below(3)][axis] += small(random, 1);
-    // Where both cross: near a corner.
+    // Both triangles cross the line near a corner.
     const Vec3d& near = y[random.below(3)];
     const double u = near[next(axis)] + small(random, 1);
     const double v = near[next(next(axis))] + small(random, 1);
@@ -304,7 +304,7 @@ TEST(GridPredicates, LargeTrianglesNearlyInOnePlane) {
     const Wide volume_y = six_volumes(y, axis, u, v, area_y);
     if (area_x == 0 || area_y == 0) continue;
     const int order = sign(volume_x * area_y - volume_y * area_x) * sign(area_x) * sign(area_y);
-    if (order == 0) {  // the move decides, unless they lie in one plane
+    if (order == 0) {  // the move decides, unless both lie in one plane
       EXPECT_FALSE(is_crossed_before(x, y, axis, u, v) && is_crossed_before(y, x, axis, u, v));
       ++together;
       continue;
@@ -317,7 +317,7 @@ TEST(GridPredicates, LargeTrianglesNearlyInOnePlane) {
   EXPECT_GT(together, 3000);
 }
 
-/// Many triangles through nearly one point: each comes before those that come after a later one.
+/// Many triangles pass nearly through one point. Each comes before all later ones.
 TEST(GridPredicates, OrderOfCrossingsIsTransitive) {
   Random random(7);
   for (int k = 0; k < 60; ++k) {

@@ -1,5 +1,5 @@
-// Which moving boxes may touch: by the hierarchy, which may say too many but never too few, and by looking at all
-// pairs.
+// Proves that the hierarchy of moving boxes reports each touching pair once, by comparison with all pairs. It reports
+// no pair that is apart by more than rounding.
 #include "blum/geometry/moving_box_bvh.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ std::vector<MovingBox> random_boxes(Random& random, std::size_t count, double si
   return boxes;
 }
 
-/// That each pair that touches is seen once, and none that is apart by more than rounding.
+/// Checks that each touching pair is reported once, and no pair that is apart by more than rounding.
 void expect_pairs(const std::vector<MovingBox>& here, const std::vector<MovingBox>& there, const Pairs& seen,
                   bool is_self, double rounding) {
   for (std::uint32_t i = 0; i < here.size(); ++i) {
@@ -73,7 +73,7 @@ Pairs self_pairs_of(const MovingBoxBvh& boxes) {
   return out;
 }
 
-TEST(MovingBoxBvh, FindsWhatLookingAtAllPairsFinds) {
+TEST(MovingBoxBvh, AgreesWithASearchOverAllPairs) {
   Random random(1);
   for (const std::size_t count : {1U, 2U, 7U, 8U, 9U, 64U, 65U, 300U}) {
     for (const double speed : {0.0, 0.1, 2.0}) {
@@ -101,7 +101,7 @@ TEST(MovingBoxBvh, FindsAllPairsAtAnyScaleAndPlace) {
   expect_pairs(far, far, self_pairs_of(MovingBoxBvh(far)), true, 1e-5);
 }
 
-/// What is far beyond single precision must not be where the lanes are that hold no box: these once were read.
+/// Boxes far beyond single precision must not match lanes without a box.
 TEST(MovingBoxBvh, FindsNothingBesideItsBoxes) {
   const std::vector<MovingBox> small{{{{0, 0, 0}, {1e-3, 1e-3, 1e-3}}, {{0, 0, 0}, {1e-3, 1e-3, 1e-3}}}};
   const MovingBoxBvh few(small);
@@ -120,7 +120,7 @@ TEST(MovingBoxBvh, FindsNothingBesideItsBoxes) {
   }
 }
 
-/// Boxes that are points, flat, all the same, or touch exactly.
+/// The boxes are points, flat or equal, or touch exactly.
 TEST(MovingBoxBvh, FindsAllPairsOfDegenerateBoxes) {
   Random random(3);
   std::vector<MovingBox> boxes(200);
@@ -138,7 +138,7 @@ TEST(MovingBoxBvh, FindsAllPairsOfDegenerateBoxes) {
   EXPECT_EQ(self_pairs_of(MovingBoxBvh(same)).size(), 50U * 49 / 2);
 }
 
-TEST(MovingBoxBvh, OfNothingHasNoPairs) {
+TEST(MovingBoxBvh, EmptyTreesHaveNoPairs) {
   const MovingBoxBvh none(std::vector<MovingBox>{});
   EXPECT_EQ(none.size(), 0U);
   EXPECT_EQ(none.block_count(), 0U);
@@ -147,8 +147,8 @@ TEST(MovingBoxBvh, OfNothingHasNoPairs) {
   EXPECT_TRUE(self_pairs_of(one).empty());
 }
 
-/// Two sheets that fly through one place one after the other: boxes around their motions meet, they do not.
-TEST(MovingBoxBvh, TellsApartWhatPassesOneAfterTheOther) {
+/// Two boxes fly through one place, one after the other. The bounds of their motions meet, but the boxes do not.
+TEST(MovingBoxBvh, SeparatesBoxesThatPassOneAfterTheOther) {
   const MovingBox first{{{0, 0, 0}, {1, 1, 0.1}}, {{0, 0, 5}, {1, 1, 5.1}}};
   const MovingBox second{{{0, 0, 1}, {1, 1, 1.1}}, {{0, 0, 6}, {1, 1, 6.1}}};
   EXPECT_TRUE(self_pairs_of(MovingBoxBvh(std::vector{first, second})).empty());

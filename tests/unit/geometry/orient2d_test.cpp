@@ -1,5 +1,5 @@
-// Proves that orient2d has the sign of the exact determinant, against integers of 128 bits: on small grids, where most
-// answers are 0 and differences vanish, and on lines that miss a point by one unit in the last place.
+// Proves that orient2d has the sign of the exact determinant, by comparison with integers of 128 bits. Points lie on
+// small grids, where most determinants are 0, and on lines that miss a point by one unit in the last place.
 #include "blum/geometry/orient2d.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ int exact_sign(const Whole& a, const Whole& b, const Whole& c) {
   return (determinant > 0 ? 1 : 0) - (determinant < 0 ? 1 : 0);
 }
 
-/// The sign for the points as doubles times a power of two, in every order of the points.
+/// Checks the sign for the points as doubles times a power of two, in four orders of the points.
 void expect_exact(const Whole& a, const Whole& b, const Whole& c, double scale) {
   const auto point = [&](const Whole& p) {
     return std::array<double, 2>{static_cast<double>(p[0]) * scale, static_cast<double>(p[1]) * scale};

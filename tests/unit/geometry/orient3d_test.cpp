@@ -1,5 +1,5 @@
-// Proves that orient3d has the sign of the exact determinant, against signs that rational arithmetic gave and against
-// integers of 128 bits.
+// Proves that orient3d has the sign of the exact determinant, by comparison with rational arithmetic and integers of
+// 128 bits.
 #include "blum/geometry/orient3d.hpp"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ struct Case {
   int sign;
 };
 
-/// Nearly in one plane; of magnitudes far apart; in the plane x = y but for a speck; in a plane of far grid points.
-/// The signs are those of Python's fractions.Fraction.
+/// Points nearly in one plane, of magnitudes far apart, in the plane x = y except for an offset, or in a plane of far
+/// grid points. Python's fractions.Fraction computed the signs.
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = {
       {{0x1.f767c482c9b00p-3, 0x1.2e4738d8608fep-1, 0x1.5c8437bb9985ep-1},
@@ -181,7 +181,7 @@ TEST(Orient3d, AgreesWithRationalArithmetic) {
   }
 }
 
-TEST(Orient3d, SwappingTwoPointsTurnsTheSign) {
+TEST(Orient3d, SwappingTwoPointsReversesTheSign) {
   for (std::size_t i = 0; i < cases().size(); ++i) {
     const Case& k = cases()[i];
     const std::array<Vec3d, 4> points{k.a, k.b, k.c, k.d};
@@ -201,7 +201,7 @@ TEST(Orient3d, AgreesWithWideIntegers) {
   Random random(7);
   std::array<int, 3> seen{};
   for (int run = 0; run < 20000; ++run) {
-    // Points of a plane through the first, or a step beside it: coordinates of up to 2^35, products of up to 2^112.
+    // Points lie in a plane through the first, or a step beside it. Coordinates reach 2^35, products 2^112.
     const auto whole = [&](double size) { return std::floor(random.uniform(-size, size)); };
     const Vec3d a{whole(0x1p34), whole(0x1p34), whole(0x1p34)};
     const Vec3d u{whole(0x1p16), whole(0x1p16), whole(0x1p16)};

@@ -1,5 +1,5 @@
-// Which primitives may be close: by a hierarchy of oriented boxes, which may say too many but never too few, and which
-// is told by exact distances of all pairs.
+// Proves that the hierarchy of oriented boxes reports every pair of primitives within a limit. The tests compare it
+// with exact distances of all pairs. The hierarchy may report further pairs.
 #include "blum/geometry/oriented_bvh.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TriangleMesh soup(std::uint64_t seed, std::size_t count) {
   return mesh;
 }
 
-/// Each pair that is that close is seen, and no pair twice; what is said of the distance is no more than that.
+/// Checks that each pair within the limit was reported, and that no lower bound exceeds the distance.
 void expect_seen(const std::map<Pair, double>& seen, const std::vector<Corners>& here,
                  const std::vector<Corners>& there, double limit, bool is_self) {
   for (std::uint32_t i = 0; i < here.size(); ++i) {
@@ -61,7 +61,7 @@ void expect_seen(const std::map<Pair, double>& seen, const std::vector<Corners>&
   }
 }
 
-TEST(OrientedBvh, SeesAllThatIsClose) {
+TEST(OrientedBvh, ReportsAllClosePairs) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Random random(seed);
     const TriangleMesh a = soup(seed, 20 * seed);
@@ -88,7 +88,7 @@ TEST(OrientedBvh, SeesAllThatIsClose) {
   }
 }
 
-TEST(OrientedBvh, SeesEachPairOfItsOwnOnce) {
+TEST(OrientedBvh, ReportsEachSelfPairOnce) {
   for (const std::size_t count : {1U, 7U, 8U, 9U, 64U, 65U, 150U}) {
     const TriangleMesh mesh = soup(count, count);
     const OrientedBvh bvh(mesh);
@@ -116,8 +116,8 @@ TEST(OrientedBvh, StopsWhenTheLimitIsLowered) {
   EXPECT_EQ(seen, 1U);
 }
 
-/// Boxes lie along a flat surface that is turned: few pairs of two plates that face each other are looked at.
-TEST(OrientedBvh, TellsSurfacesThatFaceEachOtherApart) {
+/// Boxes lie along a rotated flat surface. No pair of two plates that face each other is reported.
+TEST(OrientedBvh, SeparatesSurfacesThatFaceEachOther) {
   TriangleMesh plate = make_plate({});
   Random random(3);
   const RigidTransform turn = test::random_transform(random, 0);
@@ -135,7 +135,7 @@ TEST(OrientedBvh, TellsSurfacesThatFaceEachOtherApart) {
   EXPECT_EQ(seen, 0U);
 }
 
-TEST(OrientedBvh, RefittedSeesWhatOneMadeAnewDoes) {
+TEST(OrientedBvh, ReportsAllClosePairsAfterARefit) {
   TriangleMesh mesh = soup(9, 120);
   OrientedBvh bvh(mesh);
   Random random(10);

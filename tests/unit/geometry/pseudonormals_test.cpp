@@ -1,4 +1,4 @@
-// Proves that angle-weighted pseudonormals are what their definition says, and give the sign of closed meshes.
+// Proves that angle-weighted pseudonormals follow their definition and give the sign of closed meshes.
 #include "blum/geometry/pseudonormals.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace blum {
 namespace {
 
-/// A cube's corner at the origin whose three sides are cut differently: angles, not counts, make normals symmetric.
+/// The diagonals of a cube's sides differ from corner to corner. Only weights by angle make the normals symmetric.
 TEST(Pseudonormals, WeighFacesByTheirAngles) {
   const TriangleMesh cube = make_box({});
   const SiteTable sites(cube);

@@ -1,5 +1,5 @@
-// Proves that rays cross triangles where exact arithmetic says: parity of closed surfaces however rays graze edges and
-// corners, sides, borders and parameters, and that nothing is found in a triangle's own plane.
+// Proves that rays cross triangles according to exact arithmetic: sides, borders and parameters. Closed surfaces have
+// no holes for rays that graze edges and corners. A ray in a triangle's own plane does not cross it.
 #include "blum/geometry/ray.hpp"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ namespace {
 using detail::crossing;
 using detail::ray_side;
 
-TEST(Ray, SideIsThatOfWholeNumbers) {
-  // Determinants of small whole numbers are exact in int64; the same numbers far from the origin in double are not.
+TEST(Ray, SideAgreesWithWholeNumbers) {
+  // Determinants of small whole numbers are exact in int64, but not in double far from the origin.
   Random random(1);
   int zeros = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -31,16 +31,16 @@ TEST(Ray, SideIsThatOfWholeNumbers) {
     };
     const int expected = det > 0 ? 1 : det < 0 ? -1 : 0;
     zeros += expected == 0 ? 1 : 0;
-    const double unit = std::ldexp(1.0, -40);  // differences of coordinates about 1 that are exact
+    const double unit = std::ldexp(1.0, -40);  // exact differences of coordinates near 1
     const Vec3d origin{0.75, -1.25, 1.5};
     EXPECT_EQ(ray_side({origin, vec(d)}, origin + vec(u) * unit, origin + vec(v) * unit), expected);
   }
   EXPECT_GT(zeros, 500);
 }
 
-TEST(Ray, SideIsExactWhereRoundingIsNot) {
-  // Nearly coplanar with coordinates whose differences round: compared with orient3d, where the direction is a
-  // difference that is exact.
+TEST(Ray, SideIsExactDespiteRounding) {
+  // The differences of nearly coplanar points round. orient3d is a reference, because the direction is an exact
+  // difference.
   Random random(2);
   for (int trial = 0; trial < 5000; ++trial) {
     const Vec3d origin{random.uniform(), random.uniform(), random.uniform()};
@@ -53,7 +53,7 @@ TEST(Ray, SideIsExactWhereRoundingIsNot) {
   }
 }
 
-TEST(Ray, TellsSideBorderAndParameter) {
+TEST(Ray, ReportsSideBorderAndParameter) {
   const std::array<Vec3d, 3> t{Vec3d{0, 0, 1}, Vec3d{4, 0, 1}, Vec3d{0, 4, 1}};
   const auto up = crossing({{1, 1, -1}, {0, 0, 0.5}}, t);
   ASSERT_TRUE(up);
@@ -72,8 +72,8 @@ TEST(Ray, TellsSideBorderAndParameter) {
 }
 
 TEST(Ray, ClosedSurfacesHaveNoHoles) {
-  // Rays through the corners and the edges' points of an octahedron, from inside: with exact signs at least one
-  // triangle is met whatever rounding does to the aim.
+  // Rays from inside aim at the corners and at points of the edges of an octahedron. With exact signs, each ray meets
+  // at least one triangle, however its aim rounds.
   const std::array<Vec3d, 6> p{Vec3d{1.1, 0, 0}, Vec3d{-0.9, 0, 0}, Vec3d{0, 1.3, 0},
                                Vec3d{0, -1, 0},  Vec3d{0, 0, 0.7},  Vec3d{0, 0, -1}};
   Random random(3);

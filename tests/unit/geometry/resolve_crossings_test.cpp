@@ -1,6 +1,6 @@
-// Proves that whole numbers of any size are exact and round as doubles do, that points are told apart and turned
-// exactly, that triangulations hold all points and segments, and that resolved meshes are closed manifolds without
-// crossings that wind once where their input winds once or more, or say why they are not.
+// Proves exact whole numbers of any size with the rounding of doubles, exact comparison and orientation of points, and
+// triangulations of all points and segments. Resolved meshes are closed manifolds without crossings. They wind once
+// where their input winds once or more. Unresolved meshes report the reason.
 #include "blum/geometry/resolve_crossings.hpp"
 
 #include <gtest/gtest.h>
@@ -90,8 +90,8 @@ TEST(ExactInteger, QuotientsRoundAsDivisionDoes) {
   }
 }
 
-/// Where planes of small whole numbers meet, against fractions.
-TEST(ExactSpace, PointsThatAreEqualAreOne) {
+/// Compares intersections of planes of small whole numbers with fractions.
+TEST(ExactSpace, EqualPointsAreOne) {
   const std::vector<Vec3d> vertices{{0, 0, 0}, {1, 0, 0},        {0, 1, 0},       {0, 0, 1},
                                     {1, 1, 1}, {0.25, 0.25, -1}, {0.25, 0.25, 1}, {0.5, 0, 0}};
   const std::vector<detail::PointId> all{0, 1, 2, 3, 4, 5, 6, 7};
@@ -102,7 +102,7 @@ TEST(ExactSpace, PointsThatAreEqualAreOne) {
   EXPECT_EQ(space.meet(6, 5, floor), p);
   EXPECT_EQ(space.side(floor, p), 0);
   EXPECT_EQ(space.side(floor, 3), 1);
-  // On the diagonal, by the planes x = y and x + y = 1/2.
+  // The point lies on the diagonal, in the planes x = y and x + y = 1/2.
   const detail::Cut diagonal{{0, 4, 3}, -1};
   const detail::Cut across{{5, 6, 7}, -1};
   EXPECT_EQ(space.meet(floor, diagonal, across), p);
@@ -112,7 +112,7 @@ TEST(ExactSpace, PointsThatAreEqualAreOne) {
   EXPECT_EQ(space.meet(1, 4, detail::Cut{{0, 1, 2}, -1}), 1U) << "a vertex that lies in the plane is met in itself";
 }
 
-/// Thirds are no doubles: only the exact part tells that the point lies on the plane.
+/// Thirds are not doubles. Only exact arithmetic shows that the point lies on the plane.
 TEST(ExactSpace, PredicatesOfRoundedPointsAreExact) {
   Random random(5);
   int zeros = 0;
@@ -159,7 +159,7 @@ TEST(PlanarMesh, HoldsItsPointsAndSegments) {
     ExactSpace space(vertices, all);
     detail::PlanarMesh mesh(space, 2, space.corners_around(2));
     for (const detail::PointId p : all) ASSERT_TRUE(mesh.insert(p));
-    // Segments between points one after the other cross none of each other and hold no point.
+    // Segments between consecutive points do not cross each other and contain no other point.
     std::set<std::array<detail::PointId, 2>> segments;
     for (std::size_t k = 0; k + 1 < all.size(); ++k) {
       ASSERT_TRUE(mesh.insert_segment(all[k], all[k + 1])) << trial << ": " << k;
@@ -174,13 +174,13 @@ TEST(PlanarMesh, HoldsItsPointsAndSegments) {
         segments.erase({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
       }
     }
-    // Those at the border of the points have outer points on one side.
+    // Segments at the border of the points have outer points on one side.
     ASSERT_LE(segments.size(), all.size() / 2);
     ASSERT_GT(seen.size(), all.size() / 2);
   }
 }
 
-/// What the header promises of a resolved mesh.
+/// Checks the promises of the header for a resolved mesh.
 void expect_sound(const MeshView& input, const ResolvedMesh& resolved) {
   ASSERT_TRUE(resolved.is_resolved()) << resolved.obstacle;
   const Topology facts = topology(resolved.mesh);
@@ -199,7 +199,7 @@ void expect_sound(const MeshView& input, const ResolvedMesh& resolved) {
   }
 }
 
-/// Octahedra with corners at small whole numbers: much lies in one plane or on one line, and folds over.
+/// Octahedra with corners at small whole numbers: many parts lie in one plane or on one line, or fold over.
 TEST(ResolveCrossings, DegenerateOctahedra) {
   Random random(7);
   const std::array<Triangle, 8> faces{
@@ -231,8 +231,8 @@ TEST(ResolveCrossings, NoisyMeshes) {
   }
 }
 
-/// Three boxes along a line, each in the next one by a part: what lies in two of them, and in all three.
-TEST(ResolveCrossings, WindingsOfTwoAndMoreAreWhatIsCommon) {
+/// Three boxes along a line, each partly in the next one. Tests the parts in two boxes, and in all three.
+TEST(ResolveCrossings, LeastWindingsOfTwoAndMoreGiveCommonParts) {
   TriangleMesh mesh;
   const auto add = [&](const TriangleMesh& box) {
     const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -264,7 +264,7 @@ TEST(ResolveCrossings, WindingsOfTwoAndMoreAreWhatIsCommon) {
   EXPECT_FALSE(none.is_resolved());
 }
 
-/// Sides 1e-16 from each other, which cross: no ray tells which of them comes first, but exact sides of planes do.
+/// Sides 1e-16 from each other cross. Rays cannot order these sides, but exact sides of planes can.
 TEST(ResolveCrossings, SidesThatLieNextToEachOther) {
   const TriangleMesh cylinder = make_cylinder();
   const double volume = topology(cylinder).signed_volume;
@@ -283,7 +283,7 @@ TEST(ResolveCrossings, SidesThatLieNextToEachOther) {
   }
 }
 
-TEST(ResolveCrossings, AllThatIsTooMuchIsRefused) {
+TEST(ResolveCrossings, RejectsExcessiveAndInvalidInput) {
   TriangleMesh mesh = make_sphere({.frequency = 6});
   append(mesh, make_sphere({.frequency = 6}), {0.5, 0.1, 0.05});
   EXPECT_EQ(resolve_crossings(mesh, {.most_pairs = 5}).obstacle, "more than 5 pairs of triangles cross or touch");

@@ -1,4 +1,4 @@
-// The closest rotation of matrices that are one but for rounding.
+// Proves that closest_rotation() gives the closest rotation of a matrix close to one, and rejects other matrices.
 #include "blum/geometry/rigid_transform.hpp"
 
 #include <gtest/gtest.h>
@@ -39,8 +39,8 @@ TEST(ClosestRotation, OfSinglePrecisionIsRigid) {
   }
 }
 
-/// A rotation times a symmetric matrix: that rotation is the closest one.
-TEST(ClosestRotation, IsThatOfThePolarDecomposition) {
+/// A rotation times a symmetric matrix has this rotation as the closest one.
+TEST(ClosestRotation, AgreesWithThePolarDecomposition) {
   Random random(2);
   for (int round = 0; round < 200; ++round) {
     const Mat3 turn = random_rotation(random);
@@ -55,7 +55,7 @@ TEST(ClosestRotation, IsThatOfThePolarDecomposition) {
   }
 }
 
-TEST(ClosestRotation, OfNoRotationIsRefused) {
+TEST(ClosestRotation, RejectsMatricesThatAreNotRotations) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Mat3& wrong : {Mat3{{{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}}, Mat3{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}},
                             Mat3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 0}}}, Mat3{{{nan, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}) {

@@ -1,5 +1,5 @@
-// Proves that crossing and touching triangles are told apart as an independent reference does, that the search finds
-// the pairs that a look at every pair finds, and that meshes known to be free of crossings have none.
+// Proves that crossing and touching triangles agree with an independent reference, and that the search agrees with a
+// test of all pairs. Meshes known to be free of crossings have none.
 #include "blum/geometry/self_intersections.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ using detail::Contact;
 using detail::ContactTriangle;
 using Corners = std::array<Vec3d, 3>;
 
-// ---- A reference in double, certain for corners of small whole numbers: what is not equal differs by far more ----
+// ---- A reference in double, certain for corners of small whole numbers: unequal values differ by far more ----
 
 constexpr double slack = 1e-9;
 
@@ -39,7 +39,7 @@ Vec3d normal(const Corners& t) {
   return cross(t[1] - t[0], t[2] - t[0]);
 }
 
-/// The part of a triangle beyond no plane through `at` with this normal.
+/// The part of a polygon that is not beyond the plane through `at` with this normal.
 std::vector<Vec3d> cut(const std::vector<Vec3d>& polygon, const Vec3d& at, const Vec3d& outward) {
   std::vector<Vec3d> out;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -53,7 +53,7 @@ std::vector<Vec3d> cut(const std::vector<Vec3d>& polygon, const Vec3d& at, const
   return out;
 }
 
-/// The corners of what two triangles have in common.
+/// The corners of the common part of two triangles.
 std::vector<Vec3d> common_part(const Corners& a, const Corners& b) {
   std::vector<Vec3d> part(a.begin(), a.end());
   const Vec3d n = normal(b);
@@ -77,7 +77,7 @@ Contact reference(const Corners& a, const Corners& b) {
   for (const Vec3d& p : a) {
     if (std::find(b.begin(), b.end(), p) != b.end()) shared.push_back(p);
   }
-  // The corners of the common part lie on the shared corner or edge where there is nothing else.
+  // If the triangles share nothing else, the corners of the common part lie on the shared corner or edge.
   const auto is_shared = [&](const Vec3d& p) {
     if (shared.size() == 3 || shared.empty()) return false;
     const Vec3d along = shared.back() - shared.front();
@@ -105,7 +105,8 @@ std::array<ContactTriangle, 2> contact_triangles(const Corners& a, const Corners
 }
 
 TEST(TriangleContact, AgreesWithTheReferenceOnSmallGrids) {
-  // Corners on a grid of 3 or 4 points a side: every degenerate position comes up, shared corners and edges included.
+  // Corners lie on a grid of 2 to 4 points a side. Every degenerate position occurs, including shared corners and
+  // edges.
   std::array<std::array<int, 3>, 4> seen{};  // by number of shared corners
   for (const std::uint64_t side_points : {2U, 3U, 4U}) {
     Random random(side_points);
@@ -166,7 +167,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> every_pair(const TriangleMe
   return out;
 }
 
-TEST(SelfIntersections, AreThoseOfEveryPair) {
+TEST(SelfIntersections, AgreeWithAllPairs) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const TriangleMesh mesh = test::awkward_soup(seed * 60, seed);
     const SelfIntersections found = find_self_intersections(mesh);
@@ -179,8 +180,8 @@ TEST(SelfIntersections, AreThoseOfEveryPair) {
   }
 }
 
-/// Triangles whose corners lie on a grid of a few points, or in a few planes of it when z is seldom drawn: most of them
-/// have corners, edges or planes in common with others.
+/// Triangles whose corners lie on a grid of a few points, or in a few of its planes if `heights` is small. Most of them
+/// share corners, edges or planes with others.
 TriangleMesh grid_soup(std::uint64_t side, std::uint64_t heights, std::uint64_t seed) {
   Random random(seed);
   TriangleMesh mesh;
@@ -198,10 +199,10 @@ TriangleMesh grid_soup(std::uint64_t side, std::uint64_t heights, std::uint64_t 
   return mesh;
 }
 
-TEST(SelfIntersections, OfTrianglesThatShareCornersAndPlanesAreThoseOfEveryPair) {
+TEST(SelfIntersections, AgreeWithAllPairsOfTrianglesThatShareCornersAndPlanes) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     TriangleMesh mesh = grid_soup(3 + seed % 12, 1 + seed % 4, seed);
-    // Rotated by rounded factors: what lay in one plane nearly does.
+    // The rotation has rounded factors: triangles in one plane remain only nearly in one plane.
     if (seed % 2 == 0) {
       for (Vec3d& v : mesh.vertices) v = {0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y, v.z + 0.1 * v.x};
     }
@@ -214,7 +215,7 @@ TEST(SelfIntersections, OfTrianglesThatShareCornersAndPlanesAreThoseOfEveryPair)
   }
 }
 
-TEST(SelfIntersections, OfTiledPlanesAreNone) {
+TEST(SelfIntersections, TiledPlanesHaveNone) {
   for (const double skew : {0.0, 1.0, 0.25}) {
     TriangleMesh mesh;
     const std::uint32_t n = 13;
@@ -237,7 +238,7 @@ TEST(SelfIntersections, OfTiledPlanesAreNone) {
   }
 }
 
-TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
+TEST(SelfIntersections, FrameAfterFrameAgreeWithEachFrameAlone) {
   const TriangleMesh torus =
       make_torus({.ring_radius = 1, .tube_radius = 0.4, .ring_segments = 24, .tube_segments = 12});
   const TriangleMesh box = make_box({});
@@ -246,7 +247,7 @@ TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
   SelfIntersectionSearch with_order(bvh.order());
   int crossing = 0;
   for (int frame = 0; frame < 60; ++frame) {
-    // The tube gets thicker until it crosses itself in the middle, and thin again, while all of it moves far away.
+    // The tube thickens until it crosses itself in the middle, and thins again. Meanwhile the mesh moves far away.
     const double swell = 1.5 + 1.4 * std::sin(0.2 * frame);
     TriangleMesh mesh = frame % 20 == 19 ? box : torus;
     for (Vec3d& v : mesh.vertices) {
@@ -265,14 +266,14 @@ TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
   EXPECT_LT(crossing, 55);
 }
 
-TEST(SelfIntersections, OfShapesAreNone) {
+TEST(SelfIntersections, ShapesHaveNone) {
   for (const char* name : {"sphere", "torus", "torus_knot", "gear", "box"}) {
     const SelfIntersections found = find_self_intersections(make_shape(name));
     EXPECT_TRUE(found.pairs.empty()) << name << ": " << found.crossing << " + " << found.touching;
   }
 }
 
-/// Appends a copy, moved; its vertices are its own.
+/// Appends a moved copy with its own vertices.
 void append_moved(TriangleMesh& mesh, const TriangleMesh& other, const Vec3d& by) {
   const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Vec3d& v : other.vertices) mesh.vertices.push_back(v + by);
@@ -288,11 +289,11 @@ TEST(SelfIntersections, OfTwoBoxes) {
     return find_self_intersections(mesh);
   };
   EXPECT_GT(with_copy({size.x * 0.3, size.y * 0.4, size.z * 0.2}).crossing, 0U);
-  // Side by side with equal faces, joined by position: the two faces between them lie on each other.
+  // The boxes lie side by side with equal faces, joined by position. The two faces between them coincide.
   const SelfIntersections beside = with_copy({size.x, 0, 0});
   EXPECT_EQ(beside.crossing, 0U);
   EXPECT_GT(beside.touching, 0U);
-  // Moved along one axis, they overlap, and no triangle passes through another: they touch, which is said.
+  // The boxes overlap along one axis, but no triangle passes through another: they are reported as touching.
   const SelfIntersections along = with_copy({size.x * 0.5, 0, 0});
   EXPECT_GT(along.touching, 0U);
   EXPECT_TRUE(with_copy({size.x * 1.001, 0, 0}).pairs.empty());
@@ -316,8 +317,8 @@ TEST(SelfIntersections, DoNotDependOnScaleAndPlaceOfTheMeshOrOnThreads) {
   }
 }
 
-/// An order in space and the places of vertices may be given, and change nothing: enough triangles for several batches.
-TEST(SelfIntersections, AreTheSameWithWhatIsKnown) {
+/// A given order in space and given places of vertices change nothing. The triangles fill several batches.
+TEST(SelfIntersections, AreTheSameWithGivenOrderAndPlaces) {
   const TriangleMesh mesh = make_soup({.triangles = 60000, .triangle_size = 0.01});
   const SelfIntersections expected = find_self_intersections(mesh);
   ASSERT_GT(expected.pairs.size(), 100U);

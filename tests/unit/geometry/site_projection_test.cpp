@@ -1,5 +1,5 @@
-// Closest points of single sites: those of the hierarchy, bit for bit, where a query is well within a site's domain;
-// none where it is not.
+// Proves that closest points of single sites equal those of the hierarchy, bit for bit, if a query is well within a
+// site's domain. Other queries give none.
 #include "blum/geometry/site_projection.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(SiteProjection, IsTheClosestPointOfTheHierarchy) {
       ASSERT_EQ(found.point, expected.point);
       ASSERT_EQ(found.distance, expected.distance);
     }
-    EXPECT_GT(counts[0] + counts[1] + counts[2], 19900U);  // hardly any is next to a border
+    EXPECT_GT(counts[0] + counts[1] + counts[2], 19900U);  // hardly any query is next to a border
     for (const std::size_t count : counts) EXPECT_GT(count, 500U);
   }
 }
@@ -64,8 +64,8 @@ TEST(SiteProjection, IsNoneOutsideOfTheDomainAndNextToItsBorder) {
   EXPECT_FALSE(projection.project(face, {2, 0.1, 0.6}, margin, found));
 }
 
-/// Of an edge with three triangles one is not looked at, and triangles without a plane have no domain.
-TEST(SiteProjection, IsNoneWhereDomainsAreNotKnown) {
+/// Edges with three triangles and triangles without a plane have no known domain.
+TEST(SiteProjection, IsNoneIfTheDomainIsUnknown) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, -1, 0}, {0.5, 0, -1}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {5, 6, 7}};

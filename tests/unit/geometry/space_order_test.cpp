@@ -1,5 +1,5 @@
-// Orders that keep neighbours together: each cut has what a full sort puts on its sides, on points at random, equal,
-// sorted, in lattices and on lines, for any number of threads.
+// Proves that each cut of space_order() has the points of a full sort on its sides, for any number of threads. Points
+// are random, equal, sorted, in lattices or on lines.
 #include "blum/geometry/space_order.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Vec3f to_float(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// Cuts as space_order() does, but sorts all points of a range to do so.
+/// Cuts like space_order(), but sorts all points of a range for each cut.
 class SlowOrder {
  public:
   explicit SlowOrder(const std::vector<Vec3d>& points) : order(points.size()) {
@@ -73,7 +73,7 @@ void expect_as_slow(const std::vector<Vec3d>& points) {
   }
 }
 
-TEST(SpaceOrder, IsThatOfFullSorts) {
+TEST(SpaceOrder, AgreesWithFullSorts) {
   for (const std::size_t count : {0U, 1U, 2U, 8U, 9U, 17U, 49U, 50U, 100U, 129U, 1000U, 5000U, 20000U}) {
     SCOPED_TRACE(count);
     Random random(count);
@@ -86,7 +86,7 @@ TEST(SpaceOrder, IsThatOfFullSorts) {
     std::reverse(sorted.begin(), sorted.end());
     expect_as_slow(sorted);
     expect_as_slow(std::vector<Vec3d>(count, Vec3d{1, -2, 3}));
-    // Few different coordinates: many ties, in runs that a sample of every so many entries does not see.
+    // Few different coordinates give many ties, in runs that regular samples of the entries miss.
     std::vector<Vec3d> lattice(count);
     for (std::size_t k = 0; k < count; ++k) {
       lattice[k] = {static_cast<double>(k % 5), static_cast<double>(k / 5 % 7), static_cast<double>(k % 3 == 0)};
@@ -104,7 +104,7 @@ TEST(SpaceOrder, IsThatOfFullSorts) {
   }
 }
 
-/// -0.0 is no other coordinate than 0.0, also where both are the lowest.
+/// -0.0 is the same coordinate as 0.0, also if both are the lowest.
 TEST(SpaceOrder, OfNegativeZeros) {
   std::vector<Vec3d> points(32);
   for (std::size_t k = 0; k < points.size(); ++k) points[k] = {k % 2 == 0 ? 0.0 : -0.0, 0, 0};

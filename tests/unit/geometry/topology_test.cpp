@@ -1,5 +1,5 @@
-// Proves that topology() tells what a surface is: tiny meshes whose facts can be counted by hand, nested shells against
-// brute-force winding numbers, and speed that does not depend on the number of shells.
+// Proves that topology() describes surfaces correctly: tiny meshes with facts counted by hand, and nested shells
+// compared with brute-force winding numbers. The time does not depend on the number of shells.
 #include "blum/geometry/topology.hpp"
 
 #include <gtest/gtest.h>
@@ -108,7 +108,7 @@ TEST(Topology, OpenSquare) {
 }
 
 TEST(Topology, MoebiusStripAndKleinBottle) {
-  // Quads around a ring; the last is glued on with a twist.
+  // Quads form a ring. The last quad is attached with a twist.
   TriangleMesh strip;
   for (std::uint32_t k = 0; k < 6; ++k) {
     const double angle = 2 * 3.14159265358979 * k / 6;
@@ -131,7 +131,7 @@ TEST(Topology, MoebiusStripAndKleinBottle) {
   EXPECT_EQ(t.euler_characteristic, 0);
   EXPECT_TRUE(t.manifold);
   EXPECT_EQ(t.inconsistent_edges, 1U);
-  // A lattice with one pair of sides glued straight, the other one with a flip: closed, but has no outside.
+  // A lattice with one pair of sides glued straight and the other with a flip is closed, but has no outside.
   TriangleMesh bottle;
   const std::uint32_t n = 5;
   for (std::uint32_t v = 0; v < n * n; ++v) bottle.vertices.push_back({v % n * 1.0, v / n * 1.0, v * v % 7 * 1.0});
@@ -193,7 +193,8 @@ TEST(Topology, WrongOrientationOfNestedShellsIsSeen) {
 }
 
 TEST(Topology, BoxesThatOverlapWithoutNesting) {
-  // A small cube in the hole of a torus: in its box, not in it. And beside a sphere, in its box' corner.
+  // A small cube in the hole of a torus lies in its bounds, but not in it. Another one lies in a corner of a sphere's
+  // bounds.
   TriangleMesh mesh = make_torus({});
   append(mesh, cube(0.5));
   append(mesh, make_sphere({}), {10, 0, 0});
@@ -218,7 +219,7 @@ TEST(Topology, DuplicateAndDegenerateTriangles) {
   const Topology d = topology(degenerate);
   EXPECT_EQ(d.degenerate_triangles, 2U);
   EXPECT_EQ(d.duplicate_triangles, 0U);
-  EXPECT_TRUE(d.closed && d.manifold);  // they bound nothing
+  EXPECT_TRUE(d.closed && d.manifold);  // these triangles bound nothing
   EXPECT_EQ(d.betti, (Betti{1, 0, 0}));
 }
 
@@ -251,7 +252,7 @@ TEST(Topology, ThinShellsKeepTheirSide) {
     EXPECT_FALSE(topology(reversed).faces_outwards) << height;
     EXPECT_LT(topology(reversed).signed_volume, 0) << height;
   }
-  // What encloses nothing has no side.
+  // Shells that enclose nothing have no side.
   for (const Vec3d& to : {Vec3d{1, 1, 0}, Vec3d{0.1, 0.7, 0.3}}) {
     TriangleMesh collapsed = make_box({.segments = {3, 3, 3}});
     for (Vec3d& v : collapsed.vertices) v = v.x > 0 ? to : v.y > 0 ? to * 0.25 : -to;
@@ -291,7 +292,7 @@ TEST(Topology, AnySizeAndPlace) {
 }
 
 TEST(Topology, FlatShellFacesNowhere) {
-  TriangleMesh mesh;  // a sheet with two sides
+  TriangleMesh mesh;  // a triangle with two sides
   mesh.vertices = {{0, 0, 0.3}, {1, 0, 0.7}, {0, 1, 0.1}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
   const Topology t = topology(mesh);
@@ -300,7 +301,7 @@ TEST(Topology, FlatShellFacesNowhere) {
   EXPECT_EQ(t.duplicate_triangles, 1U);
 }
 
-/// Walls that two shells share must not count as outside, whichever vertices are looked at first.
+/// Walls that two shells share must not count as outside, whichever vertices are tested first.
 TEST(Topology, VoidsThatTouchTheWallFromWithinAreVoids) {
   const Vec3d lower{0, 0, 0};
   const Vec3d upper{4, 4, 4};
@@ -320,7 +321,7 @@ TEST(Topology, VoidsThatTouchTheWallFromWithinAreVoids) {
           EXPECT_EQ(t.shells[0].depth, 1U) << "axis " << axis << ", first triangle " << first;
           EXPECT_EQ(t.shells[1].depth, 0U);
           EXPECT_TRUE(t.faces_outwards);
-          // Beside each other from without, they are two parts.
+          // Shells that touch from outside are two bodies.
           Vec3d shift;
           shift[axis] = is_at_upper ? 2 : -2;
           TriangleMesh parts = test::box_between(from + shift, to + shift, false, first);
@@ -336,7 +337,7 @@ TEST(Topology, VoidsThatTouchTheWallFromWithinAreVoids) {
   EXPECT_EQ(tried, 144);
 }
 
-/// Depth of each shell by winding numbers of all others around one of its vertices.
+/// The depth of each shell, from the winding numbers of all others around one of its vertices.
 std::vector<std::uint32_t> brute_force_depths(const std::vector<TriangleMesh>& shells) {
   std::vector<std::uint32_t> depths;
   for (std::size_t i = 0; i < shells.size(); ++i) {
@@ -351,7 +352,7 @@ std::vector<std::uint32_t> brute_force_depths(const std::vector<TriangleMesh>& s
 }
 
 TEST(Topology, NestingAgreesWithWindingNumbers) {
-  // Shapes on a lattice, scaled and nested at random, on coordinates that make rays hit edges and vertices.
+  // Shapes on a lattice, scaled and nested at random. Their coordinates make rays hit edges and vertices.
   Random random(11);
   std::uint32_t deepest = 0;
   for (int run = 0; run < 30; ++run) {
@@ -389,7 +390,7 @@ TEST(Topology, NestingAgreesWithWindingNumbers) {
 }
 
 TEST(Topology, ManyShellsInOne) {
-  // 3,000 bodies in the void of one large fine box: near-linear, or this would take minutes.
+  // 3,000 bodies in the void of one large fine box would take minutes if the time were not near-linear.
   TriangleMesh mesh = make_box({{30, 30, 30}, {40, 40, 40}});
   TriangleMesh hollow = make_box({{29, 29, 29}, {40, 40, 40}});
   reverse_triangles(hollow);
@@ -410,7 +411,7 @@ struct NestedShells {
   }
 };
 
-/// Boxes that share the planes of two sides. @param growth  of the third side, from box to box.
+/// Boxes that share their planes along y and z. @param growth  of the third side, from box to box.
 struct NestedBoxes : NestedShells {
   NestedBoxes(int boxes, double growth) : NestedShells(mesh_of(boxes, growth)) {}
 
@@ -426,10 +427,10 @@ struct NestedBoxes : NestedShells {
   }
 };
 
-TEST(Topology, ShellsThatLieUponEachOtherTakeBoundedWork) {
-  EXPECT_LT(NestedBoxes(1200, 0).meetings, 12 * NestedBoxes(100, 0).meetings + 1000);  // equal points are asked once
+TEST(Topology, CoincidentShellsTakeBoundedWork) {
+  EXPECT_LT(NestedBoxes(1200, 0).meetings, 12 * NestedBoxes(100, 0).meetings + 1000);  // equal points are tested once
   EXPECT_GT(NestedBoxes(100, 1e-3).meetings, 100U * 100U * 12U);                       // from many points of each
-  EXPECT_LT(NestedBoxes(1200, 1e-3).meetings, 24'000'000U);  // and 1,200^2 times 110 without an end
+  EXPECT_LT(NestedBoxes(1200, 1e-3).meetings, 24'000'000U);  // 1,200^2 times 110 without a limit
 }
 
 TEST(Topology, EqualShellsLieInAllOthers) {
@@ -440,7 +441,7 @@ TEST(Topology, EqualShellsLieInAllOthers) {
   }
 }
 
-/// The middles of triangles, rounded, may lie beside the walls that they are on: only free points decide.
+/// The rounded middles of triangles may lie beside the walls that hold them. Only free points decide.
 TEST(Topology, AVoidOnFiveOfItsWallsIsAVoid) {
   TriangleMesh mesh;
   mesh.vertices = {{8, 8, 8}, {10, 10, 6}, {6, 8, 6}, {8, 10, 4}, {10, 6, 10}, {12, 8, 8}, {8, 6, 8}, {10, 8, 6},
@@ -472,7 +473,7 @@ TEST(Topology, APinFlushInAHoleLiesBesideThePlate) {
   }
 }
 
-/// A box, its sides cut along random diagonals.
+/// A box whose sides are cut along random diagonals.
 TriangleMesh box_of(const Vec3d& lower, const Vec3d& upper, bool is_reversed, Random& random) {
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k) {
@@ -490,7 +491,7 @@ TriangleMesh box_of(const Vec3d& lower, const Vec3d& upper, bool is_reversed, Ra
   return mesh;
 }
 
-/// Cubes all of whose points lie on others, and cubes of voids that fill what they lie in.
+/// Cubes of a block: most of their points lie on other cubes.
 TEST(Topology, BlocksThatTouchOnAllSidesAreBesideEachOther) {
   Random random(5);
   for (int run = 0; run < 10; ++run) {
@@ -503,7 +504,7 @@ TEST(Topology, BlocksThatTouchOnAllSidesAreBesideEachOther) {
   }
 }
 
-TEST(Topology, AVoidThatIsFilledByItsInsertsIsAroundThem) {
+TEST(Topology, AVoidFilledByItsInsertsContainsThem) {
   Random random(6);
   for (int run = 0; run < 20; ++run) {
     TriangleMesh mesh = box_of({0, 0, 0}, {4, 4, 4}, false, random);
@@ -540,7 +541,7 @@ TEST(Topology, RefusesInvalidMeshesAndCanBeCancelled) {
   EXPECT_THROW(static_cast<void>(topology(tetrahedron(), Context{.cancel = source.get_token()})), Cancelled);
 }
 
-TEST(Orientation, CountsWhatIsWrong) {
+TEST(Orientation, CountsWrongEdges) {
   TriangleMesh mesh = cube(1);
   mesh.triangles.pop_back();
   const Orientation open = orientation(mesh, SiteTable(mesh));

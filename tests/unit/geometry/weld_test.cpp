@@ -1,5 +1,5 @@
-// Proves that weld() finds the clusters that comparing all pairs finds, renumbers in the promised order, keeps the
-// shape where triangles collapse, and takes no more than a moment for crowded or far-off vertices.
+// Proves that weld() finds the clusters of a comparison of all pairs, renumbers in the promised order, and keeps the
+// shape if triangles collapse. Crowded or far-off vertices take only a moment.
 #include "blum/geometry/weld.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace blum {
 namespace {
 
-/// All pairs: the smallest vertex that a chain of steps no longer than tolerance reaches.
+/// Compares all pairs. Returns the smallest vertex that a chain of steps no longer than the tolerance reaches.
 std::vector<std::uint32_t> slow_clusters(const std::vector<Vec3d>& vertices, double tolerance) {
   std::vector<std::uint32_t> cluster(vertices.size());
   for (std::uint32_t i = 0; i < cluster.size(); ++i) cluster[i] = i;
@@ -57,10 +57,10 @@ TEST(Weld, NeighbouringDoublesAreNotEqual) {
             (std::vector<std::uint32_t>{0, 1, 2, 3}));
 }
 
-TEST(Weld, ClustersAreThoseOfComparingAllPairs) {
+TEST(Weld, ClustersAgreeWithAllPairs) {
   std::mt19937_64 random(7);
   for (int round = 0; round < 300; ++round) {
-    // Random, on a grid (many exact ties with the tolerance), on a line, far from the origin, at all scales at once.
+    // Random, on a grid (many exact ties with the tolerance), on a line, far from the origin, or at all scales at once.
     std::uniform_real_distribution<double> unit(-1, 1);
     std::uniform_int_distribution<int> whole(0, 4);
     std::vector<Vec3d> vertices(1 + random() % 150);
@@ -88,8 +88,8 @@ TEST(Weld, ClustersAreThoseOfComparingAllPairs) {
   }
 }
 
-TEST(Weld, CrowdsNearTheToleranceAreThoseOfComparingAllPairs) {
-  // Two crowds in different cells, a little closer or a little farther than the tolerance: the search by halving.
+TEST(Weld, CrowdsNearTheToleranceAgreeWithAllPairs) {
+  // Two crowds in different cells, slightly closer or farther than the tolerance, need the search by halving.
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int round = 0; round < 200; ++round) {
@@ -113,7 +113,7 @@ TEST(Weld, ChainsBecomeOneVertexAtTheirSmallestIndex) {
   EXPECT_EQ(weld(mesh, 0.89).vertices.size(), 1000U);
 }
 
-TEST(Weld, CollapsedTrianglesLeaveTheEdgesThatNothingElseHas) {
+TEST(Weld, CollapsedTrianglesLeaveTheirUnsharedEdges) {
   const TriangleMesh mesh = {.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {9, 9, 9}, {8, 8, 8}},
                              .triangles = {{0, 1, 2}, {0, 0, 1}, {3, 1, 3}, {1, 3, 3}, {4, 4, 4}, {0, 0, 0}},
                              .segments = {{2, 3}, {5, 5}, {3, 2}},
@@ -121,9 +121,9 @@ TEST(Weld, CollapsedTrianglesLeaveTheEdgesThatNothingElseHas) {
   const TriangleMesh welded = weld(mesh);
   EXPECT_EQ(welded.vertices, mesh.vertices);
   EXPECT_EQ(welded.triangles, (std::vector<Triangle>{{0, 1, 2}}));
-  // 0-1 is an edge of the triangle; 1-3 was lost, twice.
+  // 0-1 is an edge of the triangle. Two collapsed triangles lost 1-3.
   EXPECT_EQ(welded.segments, (std::vector<Segment>{{2, 3}, {3, 2}, {1, 3}}));
-  // 4 and 5 were lost; 0 is a corner of a triangle; 2 was asked for.
+  // 4 and 5 lost their triangle and segment. 0 is a corner of a triangle. The input lists point 2.
   EXPECT_EQ(welded.points, (std::vector<std::uint32_t>{2, 4, 5}));
 }
 
@@ -158,7 +158,7 @@ TEST(Weld, CoordinatesOfAnyMagnitude) {
 }
 
 TEST(WeldSlow, CrowdsTakeNoMoreThanAMoment) {
-  // Each of these needs minutes where pairs of vertices are compared.
+  // Each of these needs minutes if pairs of vertices are compared.
   constexpr std::uint32_t count = 200000;
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> unit(0, 1);

@@ -25,7 +25,7 @@ TriangleMesh bowl(double height) {
 void expect_like_brute_force(const TriangleMesh& mesh, std::uint64_t seed, std::size_t count = 300) {
   const WindingNumber winding(mesh);
   for (const Vec3d& q : test::places_around(mesh, count, seed)) {
-    // At vertices the sum jumps: any value is as good as another.
+    // The sum jumps at vertices: any value is as good as another.
     if (std::find(mesh.vertices.begin(), mesh.vertices.end(), q) != mesh.vertices.end()) continue;
     const double truth = reference::winding_number(mesh, q);
     EXPECT_NEAR(winding(q), truth, 1e-11);
@@ -86,13 +86,13 @@ TEST(WindingNumber, DecidesWithAMargin) {
     const WindingNumber::Decision found = winding.decide(query, HUGE_VAL);
     const double w = reference::winding_number(mesh, query);
     EXPECT_EQ(found.is_inside, winding.is_inside(query));
-    if (std::abs(winding(query) - w) > 1e-9) continue;  // on the surface it jumps
+    if (std::abs(winding(query) - w) > 1e-9) continue;  // w jumps on the surface
     EXPECT_GE(found.margin, 0);
     EXPECT_LE(found.margin, std::abs(w - 0.5) + 1e-9);
   }
 }
 
-/// Next to a flat sheet w is 1/2 less what the border of the sheet takes, about as much as rounding makes of it.
+/// Next to a flat sheet, w is 1/2 minus the share of the sheet's border, which is about as large as rounding.
 TEST(WindingNumber, HasNoMarginWhereRoundingDecides) {
   const WindingNumber sheet(test::flat_sheet(18));
   for (int k = 1; k < 400; ++k) {
@@ -125,7 +125,7 @@ TEST(WindingNumber, KnowsWhichSurfacesHaveNoBoundary) {
   EXPECT_FALSE(WindingNumber(turned).is_piecewise_constant());
 }
 
-/// The bound holds for differences of w between points of boxes that are free of triangles.
+/// The bound holds for differences of w between points of boxes without triangles.
 TEST(WindingNumber, BoundsItsGradient) {
   for (const TriangleMesh& mesh : {bowl(0.2), make_soup({.triangles = 20, .seed = 4}), test::unwelded(bowl(0.6))}) {
     const WindingNumber winding(mesh);
@@ -155,7 +155,7 @@ TEST(WindingNumber, BoundsItsGradient) {
   EXPECT_EQ(WindingNumber(make_sphere({.frequency = 4})).gradient_bound({{-1, -1, -1}, {1, 1, 1}}), 0);
 }
 
-TEST(WindingNumber, GivesTheSideOfBoxesOnlyWhereItIsTheSame) {
+TEST(WindingNumber, GivesTheSideOfBoxesOnlyIfItIsUniform) {
   for (const TriangleMesh& mesh :
        {bowl(0.0), bowl(0.8), make_soup({.triangles = 60, .triangle_size = 0.8, .seed = 2})}) {
     const WindingNumber winding(mesh);
@@ -175,12 +175,12 @@ TEST(WindingNumber, GivesTheSideOfBoxesOnlyWhereItIsTheSame) {
     }
     EXPECT_GT(decided, 10U);
   }
-  // Across the mouth of half a sphere w passes 1/2: no box there has a side.
+  // w passes 1/2 across the mouth of half a sphere: a box there has no side.
   EXPECT_FALSE(WindingNumber(bowl(0.0)).uniform_side({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.6}}));
 }
 
-/// A unit box, one edge of whose lid is closed by a triangle without area: its middle vertex lies on the edge of the
-/// wall.
+/// A unit box with a triangle without area at one edge of its lid. The middle vertex of this triangle lies on the edge
+/// of the wall.
 TriangleMesh box_with_filler(bool is_open) {
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k) {
@@ -193,9 +193,9 @@ TriangleMesh box_with_filler(bool is_open) {
   return mesh;
 }
 
-/// Seen from next to a triangle without area, or of as little as rounding leaves it, its solid angle is a quotient of
-/// nothing but rounding, unless it is computed with more digits. It was told as a whole turn.
-TEST(WindingNumber, OfTrianglesWithoutAreaIsNothing) {
+/// Near a triangle with no area, or as little as rounding leaves, the solid angle is a quotient of rounding errors.
+/// Without more digits, the error can be a whole turn.
+TEST(WindingNumber, OfTrianglesWithoutAreaIsZero) {
   for (const bool is_turned : {false, true}) {
     TriangleMesh closed = box_with_filler(false);
     TriangleMesh open = box_with_filler(true);
@@ -214,12 +214,12 @@ TEST(WindingNumber, OfTrianglesWithoutAreaIsNothing) {
         const double along = 0.1 + 0.8 * random.uniform();
         const double angle = 2 * std::numbers::pi * random.uniform();
         const Vec3d offset{0, off * std::cos(angle), off * std::sin(angle)};
-        // Nearer to a plane than this rounding of the turned box decides.
+        // Rounding of the turned box decides for places nearer to a plane.
         if (std::min(std::abs(offset.y), std::abs(offset.z)) < 4e-16) continue;
         const Vec3d place = Vec3d{along, 0, 1} + offset;
         const Vec3d query = is_turned ? test::turned(place) : place;
         const bool is_inside = offset.y > 0 && offset.z < 0;
-        const double sliver = is_turned ? 1e-16 / off : 0;  // what the turned one may truly take of the view
+        const double sliver = is_turned ? 1e-16 / off : 0;  // the share of the view that the turned triangle may take
         EXPECT_EQ(of_closed.value(query, 1e-6).value, is_inside ? 1 : 0) << off;
         const double expected = of_bare(query);
         EXPECT_NEAR(of_open(query), expected, sliver + 1e-11) << off;
@@ -230,14 +230,14 @@ TEST(WindingNumber, OfTrianglesWithoutAreaIsNothing) {
   }
 }
 
-/// Next to a corner that a triangle names twice, and to the short side of a needle, all terms are small but the error
-/// of the sine was not.
-TEST(WindingNumber, NextToShortSidesIsThatOfTheRest) {
+/// Near a corner that a triangle names twice, and near the short side of a needle, all terms are small. The error of
+/// the sine must be small as well.
+TEST(WindingNumber, NeedlesCancelNextToTheirShortSides) {
   for (const double side : {0.0, 1e-13, 1e-10, 1e-8, 1e-6}) {
     TriangleMesh plain = box_with_filler(true);
     plain.triangles.erase(plain.triangles.begin() + 3);
     TriangleMesh mesh = plain;
-    // Needles in the plane of the lid and of a wall, of which the one goes there and the other back.
+    // Two needles in the plane of the lid have the same corners in opposite order.
     mesh.vertices.push_back({1, side, 1});
     const auto tip = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
     mesh.triangles.push_back({4, 5, side > 0 ? tip : 5});

@@ -1,4 +1,4 @@
-// Proves that the cells of a lattice, their faces and their cofaces are those of direct enumeration.
+// Proves that the cells of a lattice, their faces and their cofaces agree with direct enumeration.
 #include "blum/grid/cell_lattice.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace blum {
 namespace {
 
-/// A cell by its middle, in half steps: odd along the axes that it spans.
+/// A cell by its middle, in half steps: coordinates are odd along the axes that the cell spans.
 using Middle = std::array<std::int64_t, 3>;
 
 Middle middle_of(const CellLattice& lattice, Cell cell) {
@@ -21,7 +21,7 @@ Middle middle_of(const CellLattice& lattice, Cell cell) {
   return middle;
 }
 
-/// The middles a half step away along an axis whose coordinate is odd (faces) or even (cofaces).
+/// The middles that lie half a step away along an axis whose coordinate is odd (faces) or even (cofaces).
 std::set<Middle> middles_around(const Middle& middle, std::int64_t parity) {
   std::set<Middle> around;
   for (std::size_t a = 0; a < 3; ++a) {

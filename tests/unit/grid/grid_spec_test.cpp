@@ -1,4 +1,4 @@
-// Proves the grid convention: how many nodes, where they lie, and which grids are refused.
+// Proves the grid convention: the number of nodes, their positions, and which grids are refused.
 #include "blum/grid/grid_spec.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(GridSpec, OtherAxesAreCoveredAndCentred) {
   EXPECT_EQ(grid.origin.z, 0);
 }
 
-TEST(GridSpec, RefusesWhatHasNoSize) {
+TEST(GridSpec, RefusesEmptyBoxesAndInvalidOptions) {
   EXPECT_THROW((void)grid_around(Box3{}, 64), InvalidGrid);
   EXPECT_THROW((void)grid_around({{1, 1, 1}, {1, 1, 1}}, 64), InvalidGrid);
   EXPECT_THROW((void)grid_around({{0, 0, 0}, {1, 1, 1}}, 1), InvalidOption);

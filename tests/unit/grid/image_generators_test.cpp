@@ -1,5 +1,5 @@
-// Proves that generated images have the Betti numbers that their catalog states: by Euler characteristic and counted
-// components, on every parameter set.
+// Proves that generated images have the Betti numbers of their catalog, for every parameter set. The tests use the
+// Euler characteristic and counted components.
 #include "blum/grid/image_generators.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace blum {
 namespace {
 
-/// The voxels of an image with a margin of 0.
+/// The voxels of an image with a margin of zeros.
 struct Mask {
   std::array<std::int64_t, 3> size{};
   std::vector<std::uint8_t> set;
@@ -75,7 +75,7 @@ std::int64_t count_components(const Mask& mask, std::uint8_t value, int axes) {
   return count;
 }
 
-/// V - E + F - C of the union of closed voxels: an element is there when a voxel around it is.
+/// V - E + F - C of the union of closed voxels. An element exists if a voxel around it is set.
 std::int64_t euler_characteristic(const Mask& mask) {
   std::int64_t sum = 0;
   for (std::int64_t k = 1; k < mask.size[2]; ++k) {
@@ -135,7 +135,7 @@ TEST(ImageGenerators, HaveTheTopologyOfTheirCatalogEntry) {
   }
 }
 
-TEST(ImageGenerators, LabelsAreAllThere) {
+TEST(ImageGenerators, AllLabelsOccur) {
   const VoxelImage balls = make_balls_image({.count = 30, .pitch = 7, .radius = 2});
   const auto& values = std::get<std::vector<std::uint16_t>>(balls.values);
   EXPECT_EQ(std::set<std::uint16_t>(values.begin(), values.end()).size(), 31U);
@@ -158,7 +158,7 @@ TEST(ImageGenerators, NoiseHasItsDensity) {
   EXPECT_NEAR(sum / (64 * 64 * 64), 0.25, 0.005);
 }
 
-TEST(ImageGenerators, RefuseWhatMakesNoSense) {
+TEST(ImageGenerators, RefuseInvalidParameters) {
   const std::vector<Case> bad = {
       {"ball", {}},
       {"ball_image", {{"size", 4}}},

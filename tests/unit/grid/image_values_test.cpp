@@ -1,5 +1,5 @@
-// Proves what is told of an image's values: range, labels with voxels, volumes and topology, and what there is where
-// nothing is selected.
+// Proves the facts about an image's values: range, and labels with voxels, volumes and topology. If a selection is
+// empty, the message names the existing values.
 #include "blum/grid/image_values.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(ImageValues, OnlyTheMostFrequentLabelsAreShown) {
   EXPECT_EQ(found.labels.back().label, 47);
 }
 
-TEST(ImageValues, FractionsAreNoLabels) {
+TEST(ImageValues, FractionsAreNotLabels) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const ImageValues found = image_values(row_of<double>({0.5, nan, 2, 2}));
   EXPECT_FALSE(found.distinct);
@@ -53,7 +53,7 @@ TEST(ImageValues, FractionsAreNoLabels) {
   EXPECT_FALSE(image_values(row_of<double>({nan, nan})).range);
 }
 
-TEST(ImageValues, MissingLabelsAreToldWithThoseThatAreThere) {
+TEST(ImageValues, MessagesAboutMissingLabelsListExistingOnes) {
   const auto told = [](const VoxelImage& image, const LabelSelection& selection) {
     return nothing_selected_text(image, selection);
   };

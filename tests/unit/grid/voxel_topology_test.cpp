@@ -1,5 +1,5 @@
-// Proves that Betti numbers of voxel sets, counted on whole words of bits, are those of flood fills and of cells listed
-// one by one; that simple voxels are those whose removal changes no Betti number around them.
+// Proves that Betti numbers of voxel sets, counted on whole words of bits, agree with flood fills and cells listed one
+// by one. The removal of a simple voxel changes no Betti number around it.
 #include "blum/grid/voxel_topology.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Index = std::array<std::int64_t, 3>;
 
-/// Components of the voxels of a box that are in a set, or are not, by flood fill. `steps`: 1 for faces, 3 for corners.
+/// Components of the voxels of a box inside or outside a set, by flood fill. `steps`: 1 for faces, 3 for corners.
 std::int64_t flooded_components(const VoxelSet& voxels, const Index& first, const Index& end, bool inside, int steps) {
   std::set<Index> rest;
   for (std::int64_t k = first[2]; k < end[2]; ++k) {
@@ -50,7 +50,7 @@ std::int64_t flooded_components(const VoxelSet& voxels, const Index& first, cons
   return count;
 }
 
-/// Cells of all closed voxels in doubled coordinates (odd along the axes that a cell spans), each once.
+/// Counts the cells of all closed voxels once each. Their doubled coordinates are odd along the axes that a cell spans.
 std::int64_t listed_euler_characteristic(const VoxelSet& voxels) {
   std::set<Index> cells;
   const Index& size = voxels.size();
@@ -128,14 +128,15 @@ TEST(VoxelTopology, OneTwoAndSevenThreadsAgree) {
   for (const int threads : {2, 7}) EXPECT_EQ(betti_numbers(voxels, {.threads = threads}), expected);
 }
 
-TEST(VoxelTopology, CancelStopsIt) {
+TEST(VoxelTopology, CanBeCancelled) {
   std::stop_source source;
   source.request_stop();
   EXPECT_THROW((void)betti_numbers(VoxelSet({8, 8, 8}), {.cancel = source.get_token()}), Cancelled);
 }
 
-/// A voxel with its neighbours retracts to itself, so it is simple where its neighbours alone are like a point.
-TEST(VoxelTopology, AVoxelIsSimpleWhereItsNeighboursAreLikeAPoint) {
+/// A voxel with its neighbours retracts to itself. Thus it is simple if its neighbours alone have the topology of a
+/// point.
+TEST(VoxelTopology, AVoxelIsSimpleIfItsNeighboursAreLikeAPoint) {
   std::mt19937 random(3);
   int simple = 0;
   for (int trial = 0; trial < 4000; ++trial) {

@@ -1,5 +1,5 @@
-// Proves that AtomicFile shows its target complete or not at all, whatever goes wrong, and what kinds of target it
-// takes.
+// Proves that AtomicFile shows its target complete or not at all after any failure, and which kinds of target it
+// accepts.
 #include "blum/io/atomic_file.hpp"
 
 #include <fcntl.h>
@@ -30,7 +30,7 @@ void write_file(const fs::path& path, std::string_view content) {
   file.commit();
 }
 
-/// The message of the FileError that the call throws; empty when it throws none.
+/// The message of the FileError that the call throws; empty if the call throws none.
 template <class Call>
 std::string error_of(Call call) {
   try {
@@ -52,7 +52,7 @@ TEST(AtomicFile, AppearsOnlyOnCommit) {
   EXPECT_EQ(folder.entries(), 1);
 }
 
-TEST(AtomicFile, WithoutCommitTheOldFileStaysAndNothingElse) {
+TEST(AtomicFile, WithoutCommitOnlyTheOldFileStays) {
   const TemporaryFolder folder;
   put_file(folder / "a", "old");
   {
@@ -184,7 +184,7 @@ TEST(AtomicFile, OpenDescriptorsByName) {
 }
 
 TEST(AtomicFile, FullDiskKeepsTheOldFile) {
-  // A limit on the size of files stands for the full disk: writes fail half-way in the same manner.
+  // A limit on the size of files imitates the full disk: writes fail half-way in the same manner.
   const TemporaryFolder folder;
   put_file(folder / "a", "old");
   rlimit limit{};
@@ -203,7 +203,7 @@ TEST(AtomicFile, FullDiskKeepsTheOldFile) {
   EXPECT_EQ(folder.entries(), 1);
 }
 
-TEST(AtomicFile, TargetThatBecameAFolderKeepsNothingBehind) {
+TEST(AtomicFile, LeavesNothingIfTheTargetBecameAFolder) {
   const TemporaryFolder folder;
   AtomicFile file(folder / "a");
   file.write("x");

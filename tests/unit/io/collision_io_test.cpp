@@ -1,5 +1,5 @@
-// Proves that files of what of the objects of a scene collides name these objects, in all formats, and that collisions
-// which are not of the meshes given are refused.
+// Proves that files of collisions in a scene name the colliding objects in all formats. Collisions that do not belong
+// to the given meshes are refused.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ namespace {
 const TriangleMesh first{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {3, 2, 1}}, {}, {}};
 const TriangleMesh second{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{2, 0, 1}}, {}, {}};
 
-/// Where the second one goes: down by one, through the first.
+/// The second mesh at the end of its motion: one unit lower, through the first mesh.
 const std::vector<Vec3d> lowered{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
 class CollisionFiles : public testing::Test {
@@ -86,11 +86,11 @@ TEST_F(CollisionFiles, FeaturesAreDrawnWhereTheyMeet) {
   ASSERT_EQ(all.positions.size(), 16U);
   ASSERT_EQ(all.triangles.size(), 3U);
   ASSERT_EQ(all.edges.size(), 2U);
-  // Of the second pair, at time .25, the face has come down by as much; its vertex rests.
+  // The face of the second pair has come down by 0.25 at time 0.25; the vertex rests.
   EXPECT_EQ(all.positions[4], (Vec3d{1, 1, 0}));
   EXPECT_EQ(all.triangles[1], (std::array<std::uint32_t, 3>{5, 6, 7}));
   EXPECT_EQ(all.positions[5], (Vec3d{0, 1, 0.75}));
-  // Of the last one, an edge of each.
+  // The last pair has an edge of each object.
   EXPECT_EQ(all.edges[0], (std::array<std::uint32_t, 2>{12, 13}));
   EXPECT_EQ(all.positions[13], (Vec3d{1, 0, 0}));
   EXPECT_EQ(all.positions[14], (Vec3d{1, 0, 0.875}));
@@ -106,7 +106,7 @@ TEST_F(CollisionFiles, FeaturesAreDrawnWhereTheyMeet) {
   EXPECT_EQ(file.metadata, (FileMetadata{{"source", "test"}}));
 }
 
-TEST_F(CollisionFiles, OfOneMeshNameNoObject) {
+TEST_F(CollisionFiles, SingleMeshFilesNameNoObject) {
   ContinuousCollisions alone;
   alone.vertex_face = found_.objects[0].vertex_face;
   alone.edge_edge.push_back({{0, 1}, {2, 3}, 1});
@@ -123,7 +123,7 @@ TEST_F(CollisionFiles, OfOneMeshNameNoObject) {
   EXPECT_EQ(all.positions[7], (Vec3d{1, 1, 0}));
 }
 
-TEST_F(CollisionFiles, TheEarliestTimeIsThatOfAllKinds) {
+TEST_F(CollisionFiles, EarliestTimeCoversAllKinds) {
   EXPECT_EQ(found_.objects[0].earliest(), 0.5);
   EXPECT_EQ(found_.objects[1].earliest(), 0.125);
   EXPECT_EQ(found_.earliest(), 0.125);
@@ -132,7 +132,7 @@ TEST_F(CollisionFiles, TheEarliestTimeIsThatOfAllKinds) {
   EXPECT_EQ(ObjectCollisions().earliest(), std::nullopt);
 }
 
-TEST_F(CollisionFiles, WhatIsNotOfTheMeshesIsRefused) {
+TEST_F(CollisionFiles, ForeignCollisionsAreRefused) {
   const auto refused = [&](const char* name, std::span<const MeshMotion> meshes, const std::string& reason) {
     try {
       write_collisions(folder_ / name, found_, meshes);

@@ -1,6 +1,6 @@
-// Proves that .vtp, .ply and .npz files give back any complex with any columns exactly, names, types and order
-// included; that .obj files refuse what they would lose; that files of other programs are read with wider types; and
-// that files cannot ask for much more memory than they are long.
+// Proves that .vtp, .ply and .npz files give back any complex and its columns exactly, with names, types and order. The
+// .obj format refuses content that it would lose. Files of other programs are read with wider types. Files cannot
+// request much more memory than their length.
 #include "blum/io/complex_io.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Complex two_triangles() {
   return complex;
 }
 
-/// A column of numbers that differ and are long in decimal and binary, with infinities and NaN where there are any.
+/// A column of different numbers, long in decimal and binary. Floating-point columns include infinity and NaN.
 template <ColumnNumber T>
 void add(Columns& columns, const std::string& name, std::size_t components = 1) {
   const std::span<T> values = columns.add<T>(name, components);
@@ -50,7 +50,7 @@ void add(Columns& columns, const std::string& name, std::size_t components = 1) 
   }
 }
 
-/// Every type and count of components, and names that formats use for something else.
+/// Columns of every type and of several component counts, with names that formats use for other purposes.
 Complex with_columns() {
   Complex complex = two_triangles();
   for (Columns* columns : {&complex.vertex_columns, &complex.edge_columns, &complex.triangle_columns}) {
@@ -61,7 +61,7 @@ Complex with_columns() {
     add<double>(*columns, "p_x");  // three columns, not one
     add<double>(*columns, "p_y");
     add<double>(*columns, "p_z");
-    add<std::int32_t>(*columns, "v_x");  // as the first of v's
+    add<std::int32_t>(*columns, "v_x");  // the name of the first component of v
     add<std::int64_t>(*columns, "n", 2);
     add<float>(*columns, "n_0");
     add<float>(*columns, "many", 11);
@@ -79,7 +79,7 @@ Complex with_columns() {
     add<std::int32_t>(*columns, "Points");
     add<std::int32_t>(*columns, "-.9");
   }
-  // The same name with other types.
+  // The same name has different types.
   add<float>(complex.edge_columns, "both");
   add<double>(complex.triangle_columns, "both");
   add<float>(complex.triangle_columns, "triangle_both");
@@ -94,7 +94,7 @@ bool is_same(const Column& a, const Column& b) {
       [&]<class T>(const std::vector<T>& values) {
         const auto& others = std::get<std::vector<T>>(b.values);
         if (values.size() != others.size()) return false;
-        // Where there are no values, data() may be null, which memcmp refuses.
+        // data() of an empty vector may be null, which memcmp refuses.
         return values.empty() || std::memcmp(values.data(), others.data(), sizeof(T) * values.size()) == 0;
       },
       a.values);
@@ -119,7 +119,7 @@ void expect_same(const Complex& a, const Complex& b) {
   expect_same(a.triangle_columns, b.triangle_columns, "triangles");
 }
 
-/// As sizes tell: columns of no rows, too.
+/// The first vertices of a complex without its edges and triangles. All columns remain, also those without rows.
 Complex first_vertices(Complex complex, std::size_t vertices) {
   complex.positions.resize(vertices);
   complex.edges.clear();
@@ -164,7 +164,7 @@ TEST_P(ComplexFiles, KeepAQualityBesideAnEqualRadius) {
   expect_same(read_complex(path).complex, complex);
 }
 
-TEST_P(ComplexFiles, RefuseWhatNoFileHolds) {
+TEST_P(ComplexFiles, RefuseUnwritableContent) {
   const auto refuses = [&](const Complex& complex, const FileMetadata& metadata = {}) {
     EXPECT_THROW(write_complex(path, complex, metadata), InvalidOption);
   };
@@ -187,7 +187,7 @@ TEST_P(ComplexFiles, RefuseWhatNoFileHolds) {
   EXPECT_EQ(folder.entries(), 0);
 }
 
-TEST_P(ComplexFiles, AsManyColumnsAndComponentsAsThereMayBe) {
+TEST_P(ComplexFiles, HoldTheMaximumOfColumnsAndComponents) {
   Complex complex = two_triangles();
   add<float>(complex.vertex_columns, "wide", max_file_columns);
   for (std::size_t i = 0; i < max_file_columns; ++i) complex.edge_columns.add<float>("c" + std::to_string(i));
@@ -195,9 +195,9 @@ TEST_P(ComplexFiles, AsManyColumnsAndComponentsAsThereMayBe) {
   expect_same(read_complex(path).complex, complex);
 }
 
-TEST_P(ComplexFiles, AsManyColumnsOfEverythingAsThereMayBe) {
+TEST_P(ComplexFiles, HoldTheMaximumOfColumnsOfEachKind) {
   Complex complex = two_triangles();
-  add<double>(complex.vertex_columns, "radius");  // which .ply files have twice where there is room
+  add<double>(complex.vertex_columns, "radius");  // which .ply files hold twice if there is room
   const std::string longest(max_file_name - 4, 'n');
   for (std::size_t i = 1; i < max_file_columns; ++i) {
     complex.vertex_columns.add<float>("v" + std::to_string(i));
@@ -219,7 +219,7 @@ TEST(ComplexPly, RefusesRowsThatAreTooLong) {
   EXPECT_EQ(folder.entries(), 0);
 }
 
-/// Names that files cannot hold are no obstacle where columns are lost anyway.
+/// Names that files cannot hold are accepted if the columns are lost anyway.
 TEST(ComplexObj, LosesColumnsOfAnyName) {
   const TemporaryFolder folder;
   Complex complex = two_triangles();
@@ -230,8 +230,8 @@ TEST(ComplexObj, LosesColumnsOfAnyName) {
   for (const char* name : {"a.obj", "a.ma"}) EXPECT_NO_THROW(write_complex(folder / name, complex, {}, options));
 }
 
-/// The directory is long, and has names that end as those of fields do.
-TEST(ComplexNpz, TellsWhatItHoldsByTheNamesOfItsArrays) {
+/// The directory is long, and some names end like those of fields.
+TEST(ComplexNpz, ContentIsKnownByTheNamesOfArrays) {
   const TemporaryFolder folder;
   const auto path = folder / "out.npz";
   for (const char* name : {"distance", "mydistance", "heat"}) {
@@ -309,7 +309,7 @@ std::vector<T> array_of(const std::string& bytes, const std::string& section, co
 
 TEST(ComplexVtp, FillsCellsWithoutTheColumn) {
   const TemporaryFolder folder;
-  Complex complex = two_triangles();  // vertex 5 is alone
+  Complex complex = two_triangles();  // vertex 5 belongs to no cell
   complex.vertex_columns.add<std::int32_t>("role", 1, 7);
   complex.edge_columns.add<std::int32_t>("role", 1, 8);
   complex.triangle_columns.add<std::int32_t>("sheet", 1, 9);
@@ -322,7 +322,7 @@ TEST(ComplexVtp, FillsCellsWithoutTheColumn) {
   ASSERT_EQ(angle.size(), 6U);
   EXPECT_TRUE(std::isnan(angle[0]) && std::isnan(angle[3]) && angle[4] == 1.5F);
   expect_same(read_complex(folder / "a.vtp").complex, complex);
-  // Without the strings that say what is whose, all arrays are columns of both.
+  // Without the strings that assign columns to cells, all arrays are columns of edges and of triangles.
   std::string foreign = bytes;
   for (const char* name : {"\"edge_columns\"", "\"triangle_columns\""}) foreign = replaced(foreign, name, "\"what\"");
   const Complex read = read_complex(std::as_bytes(std::span(foreign)), ComplexFormat("VTP")).complex;
@@ -354,10 +354,10 @@ TEST(ComplexOthers, PlyOfOtherPrograms) {
   EXPECT_EQ(complex.vertex_columns.get<std::int64_t>("id")[0], 4294967295);
   EXPECT_EQ(complex.vertex_columns.get<float>("n", 3)[2], 3.0F);
   EXPECT_TRUE(std::isnan(complex.vertex_columns.get<float>("n", 3)[3]));
-  EXPECT_EQ(complex.vertex_columns.size(), 3U);  // without the list
+  EXPECT_EQ(complex.vertex_columns.size(), 3U);  // the list is skipped
   const auto part = complex.triangle_columns.get<std::int32_t>("part");
   EXPECT_EQ(std::vector(part.begin(), part.end()), (std::vector<std::int32_t>{-7, -7, 8}));
-  // A comment that fits nothing is passed over.
+  // Comments that match no property are ignored.
   for (const char* comment :
        {"vertex red 2 pair", "vertex red 0 none", "vertex nothing 1 a", "vertex red x a", "face"}) {
     const std::string told = replaced(text, "1.0\n", "1.0\ncomment blum_column " + std::string(comment) + "\n");
@@ -384,7 +384,7 @@ TEST(ComplexHostile, PolygonsOfManyAttributes) {
             std::string::npos);
 }
 
-TEST(ComplexHostile, VtpArraysUponEachOther) {
+TEST(ComplexHostile, OverlappingVtpArrays) {
   const TemporaryFolder folder;
   Complex complex = two_triangles();
   add<double>(complex.vertex_columns, "a", 100);
@@ -402,7 +402,7 @@ TEST(ComplexHostile, VtpArraysUponEachOther) {
             std::string::npos);
   EXPECT_NE(refusal(replaced(good, "=\"100\"", "=\"0\""), ComplexFormat("VTP")).find("0 components"),
             std::string::npos);
-  // "b": "b" as the bytes of VTK's strings; the second column becomes the first once more.
+  // VTK's strings are lists of bytes. The second column becomes array "b", then "a"; the first one is "b".
   EXPECT_NE(
       refusal(replaced(good, "99 34 125", "98 34 125"), ComplexFormat("VTP")).find("two columns are the array 'b'"),
       std::string::npos);

@@ -1,4 +1,4 @@
-// Proves that what debug_dump() writes of meshes, points and complexes reads back as the same, and that it takes broken
+// Proves that meshes, points and complexes from debug_dump() read back unchanged, and that debug_dump() accepts broken
 // shapes.
 #include "blum/core/debug_dump.hpp"
 
@@ -59,7 +59,7 @@ TEST(DebugDump, OfAComplexReadsBack) {
   EXPECT_EQ(read.triangles, complex.triangles);
 }
 
-TEST(DebugDump, OfBrokenShapesLeavesOutWhatCannotBeDrawn) {
+TEST(DebugDump, OmitsInvalidPartsOfBrokenShapes) {
   const test::TemporaryFolder folder;
   TriangleMesh mesh{.vertices = places, .triangles = {{0, 1, 2}, {0, 1, 7}, {1, 2, 3}}, .segments = {{0, 4}, {0, 1}}};
   mesh.vertices[3].y = std::nan("");
@@ -70,7 +70,7 @@ TEST(DebugDump, OfBrokenShapesLeavesOutWhatCannotBeDrawn) {
   EXPECT_EQ(read.edges, (std::vector<Segment>{{0, 1}}));
 }
 
-TEST(DebugDump, SaysWhereItCannotWrite) {
+TEST(DebugDump, ThrowsIfItCannotWrite) {
   EXPECT_THROW(debug_dump("/nowhere/x.vtp", places), FileError);
 }
 

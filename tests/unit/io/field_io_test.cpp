@@ -1,5 +1,5 @@
-// Proves that fields read back bit for bit from every format that they are written to, that the files hold what they
-// promise, that a failed or cancelled write leaves nothing behind, and that damaged files are refused with a reason.
+// Proves that fields read back bit for bit from every format, and that the files hold the promised content. Failed and
+// cancelled writes leave nothing behind. Damaged files are refused with a reason.
 #include "blum/io/field_io.hpp"
 #include "blum/io/file_content.hpp"
 
@@ -56,7 +56,7 @@ void expect_same(const Field& a, const Field& b) {
   EXPECT_EQ(a.grid.size, b.grid.size);
   EXPECT_EQ(a.grid.origin, b.grid.origin);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // NRRD keeps the product of spacing and direction, which comes apart again up to rounding.
+    // NRRD keeps the product of spacing and direction. The reader separates the two up to rounding.
     EXPECT_NEAR(a.grid.spacing[axis], b.grid.spacing[axis], 4e-16 * b.grid.spacing[axis]);
     for (std::size_t row = 0; row < 3; ++row) {
       EXPECT_NEAR(a.grid.direction.columns[axis][row], b.grid.direction.columns[axis][row], 4e-16);
@@ -101,7 +101,7 @@ TEST_P(FieldFiles, ReadBackAsWritten) {
     field.site_ids = ids;
     const std::size_t count = ids == SiteIds::features ? sites.size() : mesh.triangles.size();
     for (SiteId& site : field.site) {
-      // Of this mesh, as files tell the vertices of each; voxels are of none.
+      // The sites belong to this mesh, because files list the vertices of each site. Voxels belong to no mesh.
       if (ids != SiteIds::voxels && site.has_value()) site = SiteId(static_cast<std::uint32_t>(site.value % count));
     }
     write_field(path, field, {&view, &sites, "models/\xC3\xA9t\xC3\xA9.obj", "1.2.3"});
@@ -109,7 +109,7 @@ TEST_P(FieldFiles, ReadBackAsWritten) {
   }
 }
 
-TEST_P(FieldFiles, OfAnotherMeshAreRefusedWhereFilesHoldIt) {
+TEST_P(FieldFiles, WithForeignSitesAreRefusedIfFilesHoldTheMesh) {
   const TriangleMesh mesh = sample_mesh();
   const MeshView view = mesh;
   Field field = sample_field();
@@ -139,7 +139,7 @@ TEST_P(FieldFiles, OneLayerOneNodeAndNoBand) {
 
 TEST_P(FieldFiles, WithoutSites) {
   Field field = sample_field();
-  write_field(path, field);  // leaves a file of sites for .nrrd, which the next field must not be given
+  write_field(path, field);  // for .nrrd, leaves a file of sites that the next field must not take
   field.site = {};
   const TriangleMesh mesh = sample_mesh();
   const MeshView view = mesh;
@@ -205,7 +205,7 @@ TEST_P(FieldFiles, CutAnywhereGiveAnError) {
   const FieldFormat format = extension == ".nrrd"  ? FieldFormat("NRRD")
                              : extension == ".npz" ? FieldFormat("NPZ")
                                                    : FieldFormat("VTI");
-  // The closing tags of a .vti file hold nothing that is needed.
+  // The closing tags of a .vti file hold no needed data.
   const std::size_t needed = format == FieldFormat("VTI") ? bytes.rfind("\n  </AppendedData>") : bytes.size();
   EXPECT_NO_THROW((void)read_field(std::as_bytes(std::span(bytes)), format));
   for (std::size_t length = 0; length < needed; ++length) {
@@ -272,7 +272,7 @@ TEST(NrrdFields, FilesOfTheSecondOrderAreNotTakenForDistances) {
   EXPECT_THROW((void)read_field(folder / "a.distance2.nrrd"), FormatError);
   EXPECT_EQ(second_of_replaced_field(folder / "a.nrrd"),
             (std::vector<std::filesystem::path>{folder / "a.distance2.nrrd"}));
-  // Another grid's second distances beside the distances are an error.
+  // Second distances of another grid beside the distances are an error.
   Field other = sample_field({3, 4, 2});
   other.distance2 = Buffer<float>(other.grid.node_count(), 1.0F);
   write_field(folder / "c.nrrd", other);
@@ -291,7 +291,7 @@ TEST(NrrdFields, SitesLieBesideTheDistances) {
                            "distance:=negative inside, units of the mesh\n", "site_ids:=features\n"}) {
     EXPECT_PRED2(contains, head, line);
   }
-  // Another grid's sites beside the distances are an error; none are no sites.
+  // Sites of another grid beside the distances are an error. If the file of sites is missing, the field has no sites.
   write_field(folder / "c.nrrd", sample_field({3, 4, 2}));
   std::filesystem::copy_file(folder / "c.site.nrrd", folder / "a.b.site.nrrd",
                              std::filesystem::copy_options::overwrite_existing);
@@ -311,7 +311,7 @@ TEST(NrrdFields, TheFileOfSitesIsNotTakenForDistances) {
   }
 }
 
-TEST(NrrdFields, WithoutSitesReplaceThoseOfTheFieldThatWasThereAndNoOthers) {
+TEST(NrrdFields, WithoutSitesReplaceOnlySitesOfTheOldField) {
   const TemporaryFolder folder;
   Field bare = sample_field();
   bare.site = {};
@@ -321,7 +321,7 @@ TEST(NrrdFields, WithoutSitesReplaceThoseOfTheFieldThatWasThereAndNoOthers) {
   EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"a.nrrd"}));
   EXPECT_FALSE(sites_of_replaced_field(folder / "a.nrrd"));
   write_field(folder / "b.nrrd", sample_field());
-  std::filesystem::rename(folder / "b.site.nrrd", folder / "a.site.nrrd");  // it says that it belongs to b.nrrd
+  std::filesystem::rename(folder / "b.site.nrrd", folder / "a.site.nrrd");  // it names b.nrrd as its field
   put_in(folder, "b.site.nrrd", "none of Blum's");
   for (const char* name : {"a.nrrd", "b.nrrd", "c.nrrd"}) write_field(folder / name, bare);
   EXPECT_TRUE(std::filesystem::exists(folder / "a.site.nrrd"));

@@ -1,5 +1,5 @@
-// Proves that the table of formats agrees with what readers and writers take, that every written file is known again by
-// its name and by its first bytes, and that drafts replace files or go.
+// Proves that the table of formats agrees with readers and writers, and that written files are recognized by name and
+// first bytes. Drafts replace files or are removed.
 #include "blum/io/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(Formats, MeshesAreKnownByNameAndContent) {
   for (const std::string& end : file_extensions(FileContent::mesh, FileAccess::write)) {
     const auto path = folder / ("m" + end);
     write_mesh(path, triangle);
-    if (end == ".glb") {  // not read, and nothing takes it for something else
+    if (end == ".glb") {  // written only; no reader accepts it
       EXPECT_FALSE(MeshFormat::by_name(path).has_value());
       EXPECT_THROW((void)content_of(path), FileError);
       EXPECT_THROW((void)read_mesh(path), FileError);
@@ -41,7 +41,7 @@ TEST(Formats, MeshesAreKnownByNameAndContent) {
     const auto by_name = MeshFormat::by_name(path);
     ASSERT_TRUE(by_name.has_value());
     EXPECT_EQ(by_name, MeshFormat::by_name("M" + end));
-    if (end == ".stl") continue;  // binary: nothing tells
+    if (end == ".stl") continue;  // binary files have no signature
     const auto nameless = folder / ("m" + end.substr(1));
     std::filesystem::copy_file(path, nameless);
     EXPECT_EQ(content_of(nameless), FileContent::mesh) << end;
@@ -51,7 +51,7 @@ TEST(Formats, MeshesAreKnownByNameAndContent) {
   EXPECT_FALSE(MeshFormat::by_name("a.nrrd").has_value());
 }
 
-TEST(Formats, ImagesAndFieldsAreToldApart) {
+TEST(Formats, ImagesAndFieldsAreDistinguished) {
   const TemporaryFolder folder;
   VoxelImage image;
   image.grid.size = {2, 2, 2};
@@ -89,7 +89,7 @@ TEST(Formats, ComplexesAreWrittenAndKnown) {
   complex.edge_columns = Columns(0);
   complex.triangle_columns = Columns(1);
   for (const std::string& end : file_extensions(FileContent::complex, FileAccess::write)) {
-    if (end == ".ma") {  // of complexes whose vertices have a radius
+    if (end == ".ma") {  // for complexes whose vertices have a radius
       EXPECT_THROW(write_complex(folder / "c.ma", complex), InvalidOption);
       Complex balls = complex;
       balls.vertex_columns.add({"radius", 1, std::vector<double>{1, 2, 3}});
@@ -128,7 +128,7 @@ TEST(Formats, HaveOneNameAndExtensionEach) {
         }
       }
     }
-    if (format.extensions.empty()) continue;  // not read
+    if (format.extensions.empty()) continue;  // written only
     for (const std::string& end : format.written) EXPECT_EQ(std::ranges::count(format.extensions, end), 1) << end;
   }
   EXPECT_EQ(ImageFormat("nifti"), ImageFormat::of("a.hdr.gz"));
@@ -141,7 +141,7 @@ TEST(Formats, HaveOneNameAndExtensionEach) {
   EXPECT_EQ(file_extensions(FileContent::image, FileAccess::both), (std::vector<std::string>{".nrrd", ".npy"}));
 }
 
-TEST(Formats, OfRowsGraphsAndMapsAreWrittenByName) {
+TEST(Formats, RowsGraphsAndMapsAreWrittenByName) {
   const auto written = [](FileContent content) { return extension_list(content, FileAccess::write); };
   EXPECT_EQ(written(FileContent::points), ".npz .ply .vtp .csv");
   EXPECT_EQ(written(FileContent::pairs), ".npz .csv .json .vtp");
@@ -181,7 +181,7 @@ TEST(Formats, NamesOfSeveralExtensions) {
   EXPECT_THROW((void)content_of(folder.path()), FileError);
 }
 
-TEST(Drafts, TakeThePlaceOfAFileOrGo) {
+TEST(Drafts, ReplaceTheFileOrAreRemoved) {
   const TemporaryFolder folder;
   const auto path = folder / "out.txt";
   std::ofstream(path) << "old";
@@ -201,7 +201,7 @@ TEST(Drafts, TakeThePlaceOfAFileOrGo) {
   EXPECT_THROW(Draft(folder / "absent" / "a"), FileError);
 }
 
-TEST(Drafts, HaveTheExtensionOfTheLinkNotOfWhatItLeadsTo) {
+TEST(Drafts, HaveTheExtensionOfTheLinkNotOfItsTarget) {
   const TemporaryFolder folder;
   std::ofstream(folder / "run.dat") << "old";
   std::filesystem::create_symlink("run.dat", folder / "latest.txt");

@@ -13,7 +13,7 @@
 
 namespace blum::test {
 
-/// The parts of a .glb file, as the specification of glTF 2.0 has them (section 4.4).
+/// The parts of a .glb file according to section 4.4 of the specification of glTF 2.0.
 class ReadGlb {
  public:
   explicit ReadGlb(std::string bytes) : bytes_(std::move(bytes)) {

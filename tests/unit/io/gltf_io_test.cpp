@@ -1,5 +1,5 @@
-// Proves that binary glTF files hold what was given, in the layout of the specification, that precision survives large
-// offsets, and that what such files cannot hold is refused.
+// Proves that binary glTF files hold the given content in the layout of the specification, and that precision survives
+// large offsets. Content that such files cannot hold is refused.
 #include "blum/io/gltf_io.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ struct Sample {
   }
 };
 
-/// The faces side by side: the vertices 0 and 2 have two places each, or, with a common edge, one.
+/// Texture coordinates of faces side by side: vertices 0 and 2 have two places each or, with a common edge, one.
 std::vector<std::array<std::array<float, 2>, 3>> places(bool common_edge) {
   const float other = common_edge ? 0.0F : 0.5F;
   return {{{{0, 0}, {0.25F, 0}, {0, 1}}}, {{{other, 0}, {other, 1}, {1, 0.5F}}}};
@@ -60,7 +60,7 @@ TEST(GltfIo, HoldsPositionsTrianglesAndTheirBox) {
 
 TEST(GltfIo, PrecisionSurvivesLargeOffsets) {
   Sample sample;
-  const Vec3d offset{4.5e6, -1.2e6, 250};  // as geographic coordinates have it: a float's step is 0.5 there
+  const Vec3d offset{4.5e6, -1.2e6, 250};  // like geographic coordinates: floats are 0.5 apart there
   for (Vec3d& vertex : sample.vertices) vertex = vertex * 0.1 + offset;
   const ReadGlb glb = encoded(sample.mesh());
   const std::vector<float> positions = glb.attribute("POSITION");
@@ -99,7 +99,7 @@ TEST(GltfIo, VerticesAreSplitWhereTheirPlacesDiffer) {
   }
 }
 
-TEST(GltfIo, TexturesAreDrawnAsTheyAre) {
+TEST(GltfIo, TexturesAreEmbeddedUnchanged) {
   const Sample sample;
   GltfMesh mesh = sample.mesh();
   const auto coordinates = places(false);
@@ -126,7 +126,7 @@ TEST(GltfIo, TexturesAreDrawnAsTheyAre) {
             "faces");
 }
 
-TEST(GltfIo, NumbersThatAreNotFiniteAreTheLargest) {
+TEST(GltfIo, NonFiniteNumbersBecomeTheLargest) {
   const Sample sample;
   GltfMesh mesh = sample.mesh();
   const std::vector<float> numbers{1.5F, HUGE_VALF, -HUGE_VALF, std::nanf("")};
@@ -151,7 +151,7 @@ TEST(GltfIo, LinesAndPointsAreParts) {
   EXPECT_EQ(glb.indices(1), (std::vector<std::uint32_t>{0, 1, 1, 3}));
   EXPECT_EQ(glb.part(2)["mode"], 0);
   EXPECT_EQ(glb.indices(2), points);
-  // Nothing at all is a scene without a mesh.
+  // An empty mesh gives a scene without a mesh.
   const ReadGlb empty = encoded({});
   EXPECT_FALSE(empty.json.contains("meshes") || empty.json.contains("buffers"));
   EXPECT_TRUE(empty.json["nodes"][0].is_object());
@@ -171,7 +171,7 @@ TEST(GltfIo, FilesAreTheBytesOfMemory) {
   write_mesh(folder / "b.glb", sphere);
   EXPECT_EQ(test::file_content(folder / "a.glb"), test::file_content(folder / "b.glb"));
   EXPECT_THROW(write_gltf(folder / "absent" / "a.glb", mesh), FileError);
-  EXPECT_THROW(write_gltf("/dev/full", mesh), FileError);  // what the writing throws comes through tinygltf
+  EXPECT_THROW(write_gltf("/dev/full", mesh), FileError);  // exceptions of the writer pass through tinygltf
   std::stop_source stop;
   stop.request_stop();
   Context stopped;
@@ -180,7 +180,7 @@ TEST(GltfIo, FilesAreTheBytesOfMemory) {
   EXPECT_EQ(folder.entries(), 2);
 }
 
-TEST(GltfIo, RefusesWhatFilesCannotHold) {
+TEST(GltfIo, RefusesUnwritableContent) {
   const Sample sample;
   const std::vector<float> four{1, 2, 3, 4};
   const auto refuses = [&]<class Error>(auto change, Error) {
@@ -228,7 +228,7 @@ TEST(GltfIo, RefusesFilesBeyondFourGigabytes) {
   GltfMesh mesh = sample.mesh();
   const auto coordinates = places(false);
   mesh.texture_coordinates = coordinates;
-  // Memory that is there as soon as it is looked at, which it is not.
+  // The system provides this memory only when somebody reads it. encode_gltf() must not read it.
   constexpr std::size_t size = std::size_t{1} << 32;
   void* const memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);
@@ -255,13 +255,13 @@ TEST(GltfIo, ColumnsOfComplexesAreAttributes) {
   write_complex(folder / "c.glb", with_columns(), {{"source", "here"}});
   const ReadGlb glb(test::file_content(folder / "c.glb"));
   EXPECT_EQ(glb.attribute("_RADIUS"), (std::vector<float>{0.1F, 0.2F, 0.3F, std::numeric_limits<float>::max()}));
-  EXPECT_EQ(glb.attribute("_id"), (std::vector<float>{1, 2, 16777216, -1}));  // two names that are one in upper case
+  EXPECT_EQ(glb.attribute("_id"), (std::vector<float>{1, 2, 16777216, -1}));  // two names that agree in upper case
   EXPECT_EQ(glb.attribute("_ID"), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
   EXPECT_EQ(glb.json["meshes"][0]["extras"]["source"], "here");
-  EXPECT_EQ(glb.indices(1), (std::vector<std::uint32_t>{3}));  // the vertex of no triangle
+  EXPECT_EQ(glb.indices(1), (std::vector<std::uint32_t>{3}));  // the vertex without a triangle
 }
 
-TEST(GltfIo, ColumnsThatComplexesWouldLoseAreRefused) {
+TEST(GltfIo, ColumnsThatFilesWouldLoseAreRefused) {
   const TemporaryFolder folder;
   const auto refused = [&](auto add) {
     Complex complex = with_columns();

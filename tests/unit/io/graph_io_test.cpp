@@ -1,4 +1,5 @@
-// Proves that files of graphs hold the graph, as JSON and as GraphML whose ends are nodes, whatever a name holds.
+// Proves that JSON files hold the whole graph, and GraphML files edges between declared nodes, with any characters in
+// names.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -73,7 +74,7 @@ MedialMetadata metadata() {
   return m;
 }
 
-TEST_F(GraphFiles, JsonHoldsAllOfIt) {
+TEST_F(GraphFiles, JsonHoldsTheWholeGraph) {
   const json graph = json::parse(written("g.json", example(), metadata()));
   EXPECT_EQ(graph["content"], "graph of a medial axis");
   EXPECT_EQ(graph["blum_version"], "1.2.3");
@@ -89,14 +90,14 @@ TEST_F(GraphFiles, JsonHoldsAllOfIt) {
   EXPECT_EQ(graph["junctions"][1]["position"], json({1.0, 2.0, 3.0}));
 }
 
-TEST_F(GraphFiles, JsonOfNothingHasEmptyLists) {
+TEST_F(GraphFiles, JsonOfAnEmptyGraphHasEmptyLists) {
   const json graph = json::parse(written("g.JSON", {}));
   for (const char* const list : {"sheets", "seams", "curves", "junctions", "patches"}) {
     EXPECT_EQ(graph[list], json::array());
   }
 }
 
-TEST_F(GraphFiles, GraphmlDeclaresWhatItUses) {
+TEST_F(GraphFiles, GraphmlDeclaresAllKeysAndNodes) {
   const std::string text = written("g.graphml", example(), metadata());
   EXPECT_NE(text.find(">a&lt;b&gt;&amp;&quot;c'\xEF\xBF\xBD\xEF\xBF\xBD.stl<"), std::string::npos);
   const std::string name = "g.graphml";
@@ -131,7 +132,7 @@ TEST_F(GraphFiles, GraphmlDeclaresWhatItUses) {
   EXPECT_EQ(of_curve["edge_closed"], "false");
 }
 
-TEST_F(GraphFiles, OfVoronoiDiagramsNameTheirSites) {
+TEST_F(GraphFiles, VoronoiGraphsNameTheirSites) {
   const VoronoiComplex box = voronoi_complex(make_box());
   VoronoiGraph graph = voronoi_graph(box.complex);
   const std::vector<VoronoiSite> sites = voronoi_sites(make_box());

@@ -1,5 +1,4 @@
-// Proves that damaged and hostile image files are refused with the reason, and before memory is taken for what they
-// claim.
+// Proves that damaged and hostile image files are refused with the reason, before memory is taken for the claimed size.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -152,7 +151,7 @@ TEST(HostileImages, AreRefusedWithAReason) {
   }
 }
 
-TEST(HostileImages, CutAnywhereGiveAnErrorOrAnImage) {
+TEST(HostileImages, CutAnywhereGiveAnError) {
   const std::array<std::pair<ImageFormat, std::string>, 4> files{
       std::pair{ImageFormat("NRRD"),
                 "NRRD0005\ntype: uchar\nencoding: gzip\ndimension: 3\nsizes: 4 3 2\n\n" + gzipped(data24)},

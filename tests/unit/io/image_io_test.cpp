@@ -1,5 +1,5 @@
-// Proves that image files of every format, type and byte order give the values and the geometry that they state, and
-// that what Blum writes reads back exactly.
+// Proves that image files of every format, type and byte order give their stated values and geometry. Images that Blum
+// writes read back exactly.
 #include "blum/io/image_io.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace {
 
 using namespace test;
 
-/// 24 values of a 4 x 3 x 2 image that tell its voxels apart and use the type's range.
+/// 24 different values of a 4 x 3 x 2 image, which include the limits of the type.
 template <class T>
 std::vector<T> sample_values() {
   std::vector<T> out;
@@ -134,7 +134,7 @@ TYPED_TEST(ImageOfType, ReadsNiftiOfEitherOrder) {
   }
 }
 
-TYPED_TEST(ImageOfType, WritesWhatItReads) {
+TYPED_TEST(ImageOfType, WrittenImagesReadBack) {
   const TemporaryFolder folder;
   VoxelImage image;
   image.grid.size = {4, 3, 2};
@@ -216,12 +216,12 @@ TEST(NrrdGeometry, ImagesOfOtherDimensions) {
   EXPECT_EQ(grid.spacing, (Vec3d{2, 3, 1}));
   EXPECT_EQ(grid.origin, (Vec3d{5, 6, 0}));
   EXPECT_EQ(grid.direction.columns[2], (Vec3d{0, 0, 1}));
-  // A slice in space that stands upright: the third direction is perpendicular to it.
+  // An upright slice in space: the third direction is perpendicular to the slice.
   grid = nrrd_grid("dimension: 2\nsizes: 4 3\nspace dimension: 3\nspace directions: (0,0,2) (0,3,0)");
   EXPECT_EQ(std::abs(grid.direction.columns[2].x), 1.0);
   grid = nrrd_grid("dimension: 1\nsizes: 7\nspacings: 0.5");
   EXPECT_EQ(grid.size, (std::array<std::int64_t, 3>{7, 1, 1}));
-  // A list axis of one entry, and one of no kind beyond three.
+  // A list axis of one entry, and a fourth axis of one entry without a kind.
   grid = nrrd_grid(
       "dimension: 4\nsizes: 1 4 3 2\nspace dimension: 3\n"
       "space directions: none (1,0,0) (0,1,0) (0,0,2)\nkinds: list domain domain domain");
@@ -236,7 +236,7 @@ TEST(NrrdFiles, ReadsDetachedData) {
   const auto values = sample_values<std::int16_t>();
   put_in(folder, "data.bin", "skip\n" + bytes_of(values, std::endian::big));
   const std::string fields = nrrd_start + "type: short\nendian: big\nencoding: raw\nline skip: 1\n";
-  // Without an empty line at the end, which a detached header does not need.
+  // A detached header needs no empty line at the end.
   expect_values(read_image(put_in(folder, "a.nhdr", fields + "data file: data.bin\n")), values);
   expect_values(read_image(put_in(folder, "b.nhdr", fields + "datafile: data.bin\n\n")), values);
   EXPECT_THROW((void)read_image(put_in(folder, "c.nhdr", fields + "data file: absent.bin\n")), FileError);
@@ -254,7 +254,7 @@ TEST(NiftiGeometry, SformGivesTheFrame) {
   EXPECT_EQ(grid.direction.columns[2], (Vec3d{0, 0, 1}));
 }
 
-/// A quarter turn about z, with the z axis turned over by qfac.
+/// A quarter turn about z. qfac reverses the z axis.
 Nifti with_qform() {
   Nifti nifti(2);
   nifti.set<std::int16_t>(252, 1).set<float>(76, -1.0F).set<float>(80, 0.5F).set<float>(84, 2.0F).set<float>(88, 4.0F);
@@ -271,11 +271,11 @@ void expect_qform(const GridSpec& grid) {
   expect_near(grid.direction.columns[2], {0, 0, -1}, 1e-7);
 }
 
-TEST(NiftiGeometry, QformGivesTheFrameWhereThereIsNoSform) {
+TEST(NiftiGeometry, QformGivesTheFrameWithoutAnSform) {
   expect_qform(read_text(with_qform().bytes + data24, ImageFormat("NIfTI")).grid);
 }
 
-TEST(NiftiGeometry, AShearedSformGivesWayToTheQform) {
+TEST(NiftiGeometry, QformReplacesAShearedSform) {
   Nifti nifti = with_qform();
   nifti.sform({1, 0.2F, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
   expect_qform(read_text(nifti.bytes + data24, ImageFormat("NIfTI")).grid);
@@ -283,7 +283,7 @@ TEST(NiftiGeometry, AShearedSformGivesWayToTheQform) {
   EXPECT_PRED2(contains, error_of(nifti.bytes + data24, ImageFormat("NIfTI")), "not perpendicular");
 }
 
-TEST(NiftiGeometry, SpacingsAloneWhereNoFormIsSet) {
+TEST(NiftiGeometry, SpacingsAloneIfNoFormIsSet) {
   Nifti nifti(2);
   nifti.set<float>(80, 0.5F).set<float>(84, -2.0F);
   const GridSpec grid = read_text(nifti.bytes + data24, ImageFormat("NIfTI")).grid;

@@ -1,5 +1,5 @@
-// Proves that metadata come back from JSON as they were, that what is no flat object of strings is refused, and that
-// neither nesting nor length of hostile text costs more than reading it.
+// Proves that metadata read back from JSON unchanged, and that all other text than flat objects of strings is refused.
+// Nesting and length of hostile text cost no more than reading the text.
 #include "io/text/json.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 using volume_io::from_json;
 using volume_io::to_json;
 
-TEST(Json, ReadsBackWhatItWrote) {
+TEST(Json, ReadsBackUnchanged) {
   const FileMetadata pairs{{"b", "1"},
                            {"a", "caf\xC3\xA9 \xF0\x9F\x98\x80 \"quoted\" \\ / \x01\x1F\x7F\b\f\n\r\t"},
                            {"", ""},
@@ -25,7 +25,7 @@ TEST(Json, ReadsBackWhatItWrote) {
   EXPECT_EQ(from_json(" {\n} ", "test"), FileMetadata{});
 }
 
-TEST(Json, ReplacesWhatIsNotUtf8) {
+TEST(Json, ReplacesInvalidUtf8) {
   EXPECT_EQ(from_json(to_json({{"k",
                                 "a\xFF"
                                 "b"}}),
@@ -35,7 +35,7 @@ TEST(Json, ReplacesWhatIsNotUtf8) {
                            "b"}}));
 }
 
-TEST(Json, RefusesAllElse) {
+TEST(Json, RefusesAllOtherText) {
   const std::string deep(1'000'000, '[');
   std::string objects;
   for (int i = 0; i < 100'000; ++i) objects += R"({"k":)";

@@ -1,5 +1,5 @@
-// Proves that files which are no medial axes are refused for the right reason, at the right place, and that what a
-// header promises is held against the file before memory is taken for it.
+// Proves that files without a valid medial axis are refused for the right reason, at the right place. Readers compare
+// the promises of a header with the file before they take memory.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -150,7 +150,7 @@ std::string tag(const char* type, const char* name, int components = 1) {
          std::to_string(components) + "\" format=\"appended\"";
 }
 
-/// The sample with the last of the values of an array set to another one.
+/// The sample with another last value in an array.
 template <class T>
 std::string with_last(std::string bytes, const std::string& section, const std::string& name, T value) {
   const std::size_t tag = bytes.find("Name=\"" + name + "\"", bytes.find("<" + section));
@@ -218,7 +218,7 @@ TEST(MedialHostile, Vtp) {
       vtp);
 }
 
-/// The arrays of a small axis; `changes` replaces, adds or (empty) removes some.
+/// The arrays of a small axis. `changes` replaces, adds or, if empty, removes arrays.
 std::string npz_with(const std::vector<std::pair<std::string, std::string>>& changes) {
   const auto order = std::endian::little;
   std::vector<std::pair<std::string, std::string>> arrays{

@@ -1,5 +1,5 @@
-// Proves that medial axes read back from every format as exactly as it can hold them, that files have the cells and
-// lines that they promise, that axes of other programs are read, and that a failed write leaves nothing behind.
+// Proves that medial axes read back from every format as exactly as the format allows, and that files have the promised
+// cells and lines. Axes of other programs are read. A failed write leaves nothing behind.
 #include "blum/io/medial_io.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ void expect_same(const MedialMetadata& a, const MedialMetadata& b) {
   EXPECT_EQ(a.smooth, b.smooth);
 }
 
-/// What an .obj file keeps: places, triangles, curves. A .ma file keeps the radii as well.
+/// The part that an .obj file keeps: positions, triangles and curves. A .ma file also keeps radii.
 AxisRows without_attributes(const AxisRows& complex, bool radii) {
   AxisRows out;
   for (const VertexRow& v : complex.vertices) {
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, MedialFiles,
 
 TEST_P(MedialFiles, ReadBackAsWritten) {
   AxisRows complex = sample_complex();
-  if (extension == ".ma") std::swap(complex.edges[7].vertices[0], complex.edges[7].vertices[1]);  // e is rising
+  if (extension == ".ma") std::swap(complex.edges[7].vertices[0], complex.edges[7].vertices[1]);  // rising in .ma
   write_medial(path, complex, sample_metadata());
   const MedialFile file = read_medial(path);
   expect_same(file.complex, kept(complex));
@@ -97,7 +97,7 @@ TEST_P(MedialFiles, ReadBackAsWritten) {
   EXPECT_EQ(file.has_labels, keeps_all());
 }
 
-TEST_P(MedialFiles, KeepToWhatAnAxisHas) {
+TEST_P(MedialFiles, WriteTheSameColumnsAgain) {
   write_medial(path, sample_complex(), sample_metadata());
   const MedialFile file = read_medial(path);
   write_medial(folder / "again.vtp", file.complex, sample_metadata());
@@ -116,8 +116,8 @@ TEST_P(MedialFiles, KeepToWhatAnAxisHas) {
   }
 }
 
-/// What axes of all angles have is any column of an axis of one.
-TEST_P(MedialFiles, MayHaveColumnsThatAreCalledAsLevels) {
+/// The columns of levels in axes of all angles are ordinary columns in an axis of one angle.
+TEST_P(MedialFiles, MayHaveColumnsNamedLikeLevels) {
   if (!keeps_all()) return;
   Complex axis = sample_complex();
   axis.vertex_columns.add<std::int32_t>("until", 1, 7);
@@ -271,8 +271,8 @@ TEST_P(MedialFiles, CutAnywhereAreRefused) {
   write_medial(path, sample_complex(), sample_metadata());
   const std::string bytes = file_content(path);
   EXPECT_EQ(medial_refusal(bytes, format), "read");
-  // The closing tags of a .vtp file hold nothing that is needed, an .obj file does not tell how long it should be, and
-  // the last number of a .ma file may look whole when it is cut.
+  // The closing tags of a .vtp file hold no needed data. An .obj file does not state its length. The last number of a
+  // .ma file may look whole after a cut.
   const std::size_t needed = extension == ".vtp"   ? bytes.rfind("\n  </AppendedData>")
                              : extension == ".ma"  ? bytes.rfind(' ') + 1
                              : extension == ".obj" ? 0
@@ -333,7 +333,7 @@ TEST(MedialOthers, ObjWithPolygonsAndLines) {
   const MedialFile file =
       parse_medial("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nl 1 5 2 1\n", ComplexFormat("OBJ"));
   EXPECT_EQ(AxisRows(file.complex).triangles.size(), 2U);
-  EXPECT_EQ(AxisRows(file.complex).edges.size(), 2U);  // the third step of the line is a side
+  EXPECT_EQ(AxisRows(file.complex).edges.size(), 2U);  // the third step of the line is a side of the polygon
   EXPECT_FALSE(file.has_radii);
 }
 
@@ -352,7 +352,7 @@ TEST(MedialOthers, PlainPlyAsText) {
   EXPECT_FALSE(file.has_radii || file.has_footprints || file.has_angles || file.has_labels);
 }
 
-/// As Blum wrote them at first: with the attributes of edges beside their corners.
+/// Attributes of edges lie beside the corners, as Blum wrote them first, or in an element of their own.
 TEST(MedialOthers, PlyWithAttributesInTheEdges) {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
@@ -375,7 +375,7 @@ TEST(MedialOthers, PlyWithAttributesInTheEdges) {
   }
 }
 
-TEST(MedialOthers, PlyThatIsBigEndian) {
+TEST(MedialOthers, BigEndianPly) {
   std::string data;
   for (const double value : {0.0, 0.0, 1.5, 2.0, 0.0, 0.0, -1.0, 0.25}) {
     const char* const raw = reinterpret_cast<const char*>(&value);

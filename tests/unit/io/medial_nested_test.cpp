@@ -1,5 +1,5 @@
-// Proves that axes of all angles read back from .npz files as they were, that no other format takes them, and that
-// broken ones are refused.
+// Proves that axes of all angles read back from .npz files unchanged. Other formats refuse these axes, and broken ones
+// are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,14 +48,14 @@ TEST(MedialNested, ReadsBackAsWritten) {
   EXPECT_FALSE(read_medial(path).nested.has_value());
 }
 
-TEST(MedialNested, OtherFormatsTakeNone) {
+TEST(MedialNested, OtherFormatsRefuseThem) {
   const TemporaryFolder folder;
   for (const char* name : {"axis.vtp", "axis.ply", "axis.obj", "axis.ma"}) {
     EXPECT_THROW(write_medial(folder / name, sample_complex(), sample_nested(), least_theta), InvalidOption) << name;
   }
 }
 
-TEST(MedialNested, BrokenOnesAreRefused) {
+TEST(MedialNested, BrokenAxesAreRefused) {
   const TemporaryFolder folder;
   const auto path = folder / "axis.npz";
   const auto refuses = [&](const char* what, const std::function<void(AxisRows&)>& spoil) {

@@ -14,7 +14,7 @@ inline MedialFile parse_medial(const std::string& content, ComplexFormat format)
   return read_medial(std::as_bytes(std::span(content)), format, "test.axis");
 }
 
-/// The message with which the content is refused; "read" when it is read.
+/// The message with which the content is refused; "read" if it is accepted.
 inline std::string medial_refusal(const std::string& content, ComplexFormat format) {
   try {
     (void)parse_medial(content, format);
@@ -24,7 +24,7 @@ inline std::string medial_refusal(const std::string& content, ComplexFormat form
   return "read";
 }
 
-/// A text with the first `from` replaced; the test fails where there is none.
+/// A text with the first `from` replaced. Throws if the text does not contain `from`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::invalid_argument("there is no '" + from + "' to replace");

@@ -1,4 +1,4 @@
-// Proves that real files of every format are read with the counts that are known of them after exact welding.
+// Proves that real files of every format have their known counts of vertices and triangles after exact welding.
 #include <gtest/gtest.h>
 
 #include <algorithm>

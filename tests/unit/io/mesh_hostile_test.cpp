@@ -1,5 +1,5 @@
-// Proves that broken and hostile mesh files are refused with an error that says what is wrong and where, before memory
-// is taken for what they only promise.
+// Proves that broken and hostile mesh files are refused with an error that names the reason and the place. Readers take
+// no memory for sizes that a file only promises.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ struct Hostile {
   const char* name;
   MeshFormat format;
   std::string content;
-  const char* error;  ///< part of the message; "read" where the file must be read
+  const char* error;  ///< part of the message; "read" if the file is valid
   const char* place;  ///< "line N:" or "byte N:"
 };
 
@@ -203,7 +203,7 @@ TEST(MeshHostile, EveryCutAndEveryChangedByteOfAGoodFileIsReadOrRefused) {
     EXPECT_NE(refusal(binary_stl(2, 2).substr(0, i), stl), "read");
 }
 
-TEST(MeshHostile, PathsThatAreNoFiles) {
+TEST(MeshHostile, UnreadablePathsAreRefused) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directory(folder / "folder.obj");
   const auto error = [&](std::string_view name) -> std::string {
@@ -226,7 +226,7 @@ TEST(MeshHostile, LongLinesAndManyErrorsCostNoMoreThanTheirLength) {
   const auto start = std::chrono::steady_clock::now();
   std::string text = triangle + "f";
   for (int i = 0; i < 1000000; ++i) text += " 1";
-  EXPECT_EQ(refusal(text, obj), "read");  // a polygon of one place, cut as a fan
+  EXPECT_EQ(refusal(text, obj), "read");  // a polygon whose corners coincide, cut as a fan
   std::string blanks = triangle;
   for (int i = 0; i < 1000000; ++i) blanks += "\\\n ";
   EXPECT_EQ(refusal(blanks, obj), "read");

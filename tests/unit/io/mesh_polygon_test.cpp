@@ -1,6 +1,6 @@
-// Proves that polygons are cut into triangles that cover exactly their inside, also where they are not convex, have
-// holes joined by bridges, lie in any plane or have a million corners; and that hopeless ones still give a fan in a
-// moment.
+// Proves that polygons are cut into triangles that cover exactly the inside of the polygon. Polygons may be non-convex,
+// have holes joined by bridges, lie in any plane or have a million corners. Polygons without a proper cut quickly give
+// a fan.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ double area_xy(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-/// Whether a point is inside a polygon of the xy plane, by crossings.
+/// True if a point is inside a polygon of the xy plane, by crossings.
 bool is_inside(const std::vector<Vec3d>& polygon, double x, double y) {
   bool inside = false;
   for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
@@ -48,8 +48,8 @@ bool is_inside(const std::vector<Vec3d>& polygon, double x, double y) {
   return inside;
 }
 
-/// Checks a cut of a counter-clockwise polygon of the xy plane: no triangle is turned over, and random points are in
-/// exactly one triangle when inside the polygon, in none outside.
+/// Checks a cut of a counter-clockwise polygon of the xy plane. No triangle is reversed. A random point inside the
+/// polygon is in exactly one triangle, a point outside in none.
 void expect_covers(const std::vector<Vec3d>& polygon, const Cut& result, const char* name) {
   EXPECT_TRUE(result.proper) << name;
   Box3 box;
@@ -79,7 +79,7 @@ std::vector<Vec3d> star(std::size_t count, double inner) {
   return polygon;
 }
 
-/// Star-shaped around the origin with random radii: simple, with long spikes.
+/// A simple polygon, star-shaped around the origin, with random radii and long spikes.
 std::vector<Vec3d> spikes(std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> radius(0.02, 1);
@@ -151,7 +151,7 @@ double signed_area(const std::vector<Vec3d>& polygon) {
   return area;
 }
 
-/// Checks a polygon that touches itself: areas are those of whole numbers, and add up exactly.
+/// Checks a polygon that touches itself. Areas of whole numbers add up exactly.
 void expect_exact_area(const std::vector<Vec3d>& polygon, const char* name) {
   const Cut result = cut(polygon);
   EXPECT_TRUE(result.proper) << name;
@@ -171,7 +171,7 @@ TEST(MeshPolygon, PartsThatMeetInACornerOrByABridge) {
   const std::vector<Vec3d> left = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
   const std::vector<Vec3d> right = {{5, 3, 0}, {7, 3, 0}, {7, 5, 0}, {5, 5, 0}};
   for (std::size_t start = 0; start < 4; ++start) {
-    std::vector<Vec3d> dumbbell(left);  // around the right square from its corner that is nearest, and back
+    std::vector<Vec3d> dumbbell(left);  // around the right square from its nearest corner, and back
     dumbbell.insert(dumbbell.begin() + 3, {right[0], right[1], right[2], right[3], right[0], left[2]});
     std::rotate(dumbbell.begin(), dumbbell.begin() + static_cast<std::ptrdiff_t>(start), dumbbell.end());
     expect_exact_area(dumbbell, "squares joined by a bridge");
@@ -182,7 +182,7 @@ TEST(MeshPolygon, CornersOnEdgesInAnyPlane) {
   const Vec3d u = {1, 7, 3};
   const Vec3d w = {-9, 2, 4};
   const auto at = [&](int x, int y) { return Vec3d{1, 2, 3} + u * x + w * y; };
-  for (int tip = 1; tip < 9; ++tip) {  // of a notch, on the edge below
+  for (int tip = 1; tip < 9; ++tip) {  // the tip of a notch, on the edge below
     std::vector<Vec3d> polygon = {at(0, 0), at(9, 0), at(9, 3), at(tip, 0), at(0, 3)};
     for (std::size_t start = 0; start < polygon.size(); ++start) {
       EXPECT_TRUE(cut(polygon).proper) << tip << ", from corner " << start;
@@ -191,7 +191,7 @@ TEST(MeshPolygon, CornersOnEdgesInAnyPlane) {
   }
 }
 
-TEST(MeshPolygon, CollinearCornersGiveNoEmptyTriangleWhereItCanBeHelped) {
+TEST(MeshPolygon, CollinearCornersGiveNoAvoidableEmptyTriangle) {
   const std::vector<Vec3d> square = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0},
                                      {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
   const Cut result = cut(square);
@@ -227,7 +227,7 @@ TEST(MeshPolygon, AnyPlaneAnyDirectionAnyScale) {
   }
 }
 
-TEST(MeshPolygon, HopelessOnesAreFans) {
+TEST(MeshPolygon, PolygonsWithoutAProperCutAreFans) {
   const std::vector<Vec3d> line = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
   const std::vector<Vec3d> point(5, Vec3d{1, 1, 1});
   const std::vector<Vec3d> bow_tie = {{0, 0, 0}, {3, 2, 0}, {3, 0, 0}, {0, 1, 0}};
@@ -250,7 +250,7 @@ TEST(MeshPolygonSlow, AMillionCornersTakeNoMoreThanSeconds) {
   };
   EXPECT_LT(seconds(star(count, 0.99), true), 20.0);
   EXPECT_LT(seconds(comb(count / 4), true), 20.0);
-  std::vector<Vec3d> noise;  // crosses itself everywhere: given up after the allowed work
+  std::vector<Vec3d> noise;  // crosses itself everywhere: the cut stops after the allowed work
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (std::size_t i = 0; i < count / 10; ++i) noise.push_back({unit(random), unit(random), 0});

@@ -1,5 +1,5 @@
-// Proves that the mesh readers understand what their formats allow: variants of headers, numbers, indices, line ends,
-// byte orders and types; and that nothing of the shape is lost or made up.
+// Proves that the mesh readers accept every variant of headers, numbers, indices, line ends, byte orders and types that
+// their formats allow. The shape is neither reduced nor extended.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,7 +73,7 @@ TEST(MeshNumbers, KeepDoublePrecisionAndEveryNotation) {
   EXPECT_EQ(obj("v " + std::string(300, '0') + "1 1 1").vertices[0].x, 1.0);
 }
 
-TEST(MeshPointCloud, AFileWithNothingElseHasEveryVertexAsAPoint) {
+TEST(MeshPointCloud, FilesOfVerticesOnlyHaveEveryVertexAsAPoint) {
   const std::vector<std::uint32_t> all = {0, 1, 2};
   EXPECT_EQ(obj("v 0 0 0\nv 1 0 0\nv 0 1 0\n").points, all);
   EXPECT_EQ(off("OFF 3 0 0\n0 0 0\n1 0 0\n0 1 0\n").points, all);
@@ -116,7 +116,7 @@ TEST(MeshStl, TextIsReadWithDoublesAndWelded) {
   EXPECT_EQ(file.info.merged_vertices, 2U);
 }
 
-TEST(MeshStl, BinaryIsKnownWhateverItsHeaderSays) {
+TEST(MeshStl, BinaryIsRecognizedWithAnyHeader) {
   for (const char* header :
        {"binary", "solid", "solid facet normal 0 0 0\nouter loop\nvertex 0 0 0\n", "", "  solid x"}) {
     for (const std::uint32_t count : {1U, 7U, 300U}) {
@@ -152,7 +152,7 @@ TEST(MeshPly, TextWithOtherElementsAndProperties) {
   EXPECT_EQ(mesh.segments, (std::vector<Segment>{{1, 3}}));
 }
 
-/// Adds a whole number as one of the eight whole-number types of PLY.
+/// Adds a whole number as one of ten number types of PLY.
 void add_as(Bytes& bytes, std::string_view type, std::int64_t value) {
   if (type == "char") bytes.add(static_cast<std::int8_t>(value));
   if (type == "uint8") bytes.add(static_cast<std::uint8_t>(value));
@@ -203,7 +203,7 @@ TEST(MeshPly, BinaryOfEveryTypeAndByteOrder) {
 }
 
 TEST(MeshPly, HeaderLineEndsDecideWhereBinaryDataBegins) {
-  // The first byte of the data is a line feed: lines that end in CR must not swallow it.
+  // The first byte of the data is a line feed. It is not a part of header lines that end in CR.
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     Bytes bytes;
     for (const char* line : {"ply", "format binary_little_endian 1.0", "element vertex 1", "property uchar x",

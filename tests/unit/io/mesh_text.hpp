@@ -16,7 +16,7 @@ inline MeshFile parse_mesh(std::string_view content, MeshFormat format, const Me
   return read_mesh_file(std::as_bytes(std::span(content.data(), content.size())), format, options, "test.mesh");
 }
 
-/// The message with which the content is refused; "read" when it is read.
+/// The message with which the content is refused; "read" if it is accepted.
 inline std::string refusal(std::string_view content, MeshFormat format) {
   try {
     (void)parse_mesh(content, format);
@@ -26,7 +26,7 @@ inline std::string refusal(std::string_view content, MeshFormat format) {
   return "read";
 }
 
-/// Binary content, value by value.
+/// Builds binary content value by value.
 class Bytes {
  public:
   explicit Bytes(bool big_endian = false) : big_endian_(big_endian) {}

@@ -1,5 +1,5 @@
-// Proves that what write_mesh writes reads back the same, bit for bit where the format has the precision, and that what
-// a format cannot hold is refused with nothing written.
+// Proves that written meshes read back the same, bit for bit if the format has the precision. Content that a format
+// cannot hold is refused, and nothing is written.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using test::file_content;
 using test::TemporaryFolder;
 
-/// Random triangles over vertices at all scales, extremes included.
+/// Random triangles over vertices at all scales, including extremes.
 TriangleMesh random_mesh(std::uint64_t seed, bool single_precision) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -32,7 +32,7 @@ TriangleMesh random_mesh(std::uint64_t seed, bool single_precision) {
   mesh.vertices[7] = {0.1, -0.0, single_precision ? 1e38 : std::numeric_limits<double>::denorm_min()};
   if (single_precision) mesh.vertices[7] = {0.5, 0.0, 2.0};
   for (int i = 0; i < 300; ++i) {
-    const auto corner = [&] { return static_cast<std::uint32_t>(random() % 199); };  // 199 is named by nothing
+    const auto corner = [&] { return static_cast<std::uint32_t>(random() % 199); };  // no triangle names 199
     mesh.triangles.push_back({corner(), corner(), corner()});
   }
   return mesh;
@@ -70,7 +70,7 @@ TEST(MeshWrite, StlKeepsTrianglesInSinglePrecision) {
   const TriangleMesh read = read_mesh(folder / "a.stl");
   std::vector<Vec3d> expected;
   for (const Triangle& t : mesh.triangles) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;  // welding takes these out
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;  // welding removes these
     for (const std::uint32_t index : t) expected.push_back(mesh.vertices[index]);
   }
   std::vector<Vec3d> found;
@@ -110,7 +110,7 @@ TEST(MeshWrite, SegmentsAndPoints) {
   }
 }
 
-TEST(MeshWrite, WhatAFormatCannotHoldIsRefusedAndTheOldFileStays) {
+TEST(MeshWrite, UnwritableContentIsRefusedAndTheOldFileStays) {
   const TemporaryFolder folder;
   const std::vector<Vec3d> vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<Triangle> triangles = {{0, 1, 2}};

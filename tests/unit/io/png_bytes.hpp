@@ -12,7 +12,7 @@
 
 namespace blum::test {
 
-/// What a PNG file holds, four bytes a pixel.
+/// The content of a PNG file, four bytes per pixel.
 struct ReadPng {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

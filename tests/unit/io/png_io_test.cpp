@@ -1,4 +1,4 @@
-// Proves that PNG files hold the pixels that were given, in memory and on disk, and that what is no picture is refused.
+// Proves that PNG files hold the given pixels, in memory and on disk, and that invalid pictures are refused.
 #include "blum/io/png_io.hpp"
 
 #include <gtest/gtest.h>
@@ -49,13 +49,13 @@ TEST(PngIo, FilesAreTheBytesOfMemory) {
   EXPECT_EQ(test::file_content(folder / "a.png"),
             std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   const test::ReadPng png = read_png(bytes);
-  EXPECT_EQ(png.at(0, 0), (std::array{128, 255, 0, 255}));  // beyond 0 to 1 is cut off
+  EXPECT_EQ(png.at(0, 0), (std::array{128, 255, 0, 255}));  // values beyond 0 to 1 are clamped
   EXPECT_EQ(png.at(3, 1), (std::array{255, 0, 0, 255}));
   EXPECT_THROW(write_png(folder / "absent" / "a.png", picture), FileError);
   EXPECT_EQ(folder.entries(), 1);
 }
 
-TEST(PngIo, RefusesWhatIsNoPicture) {
+TEST(PngIo, RefusesInvalidPictures) {
   const std::vector<std::uint8_t> bytes = counted(12);
   EXPECT_NO_THROW((void)encode_png({bytes, 2, 2, PngChannels::rgb}));
   EXPECT_THROW((void)encode_png({bytes, 2, 2, PngChannels::rgba}), InvalidOption);
@@ -82,19 +82,19 @@ TEST(ColorScale, RunsFromLightToDark) {
   for (const double value : {HUGE_VAL, -HUGE_VAL, std::nan("")}) {
     EXPECT_EQ(byte_of(scale.color(value).r), byte_of(nothing_color.r));
   }
-  EXPECT_EQ(ColorScale::sequential(3, 3).place(3), 0);  // of one value
+  EXPECT_EQ(ColorScale::sequential(3, 3).place(3), 0);  // a range of one value
 }
 
-TEST(ColorScale, HasNoBordersWhereValuesHaveNone) {
+TEST(ColorScale, ChangesColoursContinuously) {
   constexpr int steps = 2000;
-  // The sides of the diverging scale begin with two light colours, lest zero is overlooked.
+  // The sides of the diverging scale begin with two light colours, so that zero stays visible.
   for (const double side : {1.0, -1.0}) {
     for (Color (*const color_of)(double) : {sequential_color, diverging_color}) {
       Color last = color_of(side / steps);
       for (int i = 2; i <= steps; ++i) {
         const Color next = color_of(side * i / steps);
         const float jump = std::max({std::abs(next.r - last.r), std::abs(next.g - last.g), std::abs(next.b - last.b)});
-        ASSERT_LT(jump, 0.02F) << i;  // five of 255
+        ASSERT_LT(jump, 0.02F) << i;  // five levels of 255
         last = next;
       }
     }
@@ -108,7 +108,7 @@ TEST(ColorScale, DivergesAtZero) {
   EXPECT_EQ(scale.place(-1), -1);
   EXPECT_GT(scale.color(2).b, scale.color(2).r);    // blue outside
   EXPECT_GT(scale.color(-1).r, scale.color(-1).b);  // orange inside
-  // A side is stretched by four at most.
+  // A side is stretched by a factor of at most four.
   EXPECT_EQ(ColorScale::diverging(-0.01, 2).place(-0.25), -0.5);
 }
 

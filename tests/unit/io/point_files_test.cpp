@@ -1,4 +1,5 @@
-// Files of points: what is written reads back; rows of text in every form; what is no file of points is refused.
+// Proves that written files of points read back, that rows of text may have every form, and that invalid files are
+// refused.
 #include "blum/io/point_io.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ std::vector<Vec3d> rows(std::string_view text) {
   return read_point_rows(std::as_bytes(std::span(text)));
 }
 
-/// What the reader says is wrong.
+/// The error message of the reader.
 std::string complaint(std::string_view text) {
   try {
     (void)rows(text);
@@ -42,7 +43,7 @@ TEST(PointRows, HaveAnyForm) {
   EXPECT_TRUE(rows("x y z\n").empty());
 }
 
-TEST(PointRows, SayWhereTheyAreWrong) {
+TEST(PointRows, ReportTheLineOfAnError) {
   EXPECT_EQ(complaint("1,2,3\n4,5"), "points, line 2: there is no z: a row has three numbers or more");
   EXPECT_EQ(complaint("1,2,3\nx,y,z\n"), "points, line 2: x is not a number: 'x'");
   EXPECT_EQ(complaint("1,inf,3"), "points, line 1: y is not finite: 'inf'");
@@ -50,7 +51,7 @@ TEST(PointRows, SayWhereTheyAreWrong) {
   EXPECT_EQ(complaint("1,2,3e999"), "points, line 1: z is not a number: '3e999'");
 }
 
-TEST(PointFiles, ReadBackWhatIsWritten) {
+TEST(PointFiles, ReadBackAsWritten) {
   const fs::path folder = fs::temp_directory_path() / "blum_point_files_test";
   fs::create_directories(folder);
   Complex points;

@@ -1,5 +1,5 @@
-// Proves that files of close pairs hold every pair with its vertices, in all formats, and that pairs which are not of
-// the meshes given are refused.
+// Proves that files of close pairs hold every pair with its vertices, in all formats. Pairs that do not belong to the
+// given meshes are refused.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -25,7 +25,7 @@
 namespace blum {
 namespace {
 
-/// A triangle, a segment and a point; and a triangle above.
+/// `low` has a triangle, a segment and a point; `high` has a triangle above them.
 const TriangleMesh low{
     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {3, 0, 0}, {4, 0, 0}, {9, 9, 9}}, {{2, 0, 1}}, {{{4, 3}}}, {5}};
 const TriangleMesh high{{{3.5, 0, 1}, {3.5, 5, 1}, {4.5, 5, 1}}, {{0, 1, 2}}, {}, {}};
@@ -132,7 +132,7 @@ TEST_F(ProximityFiles, FurtherColumnsAreInAllFormats) {
   EXPECT_EQ(lines.edge_columns.get<std::int32_t>("two", 2)[7], -8);
 }
 
-TEST_F(ProximityFiles, FurtherColumnsThatAreNotOfThePairsAreRefused) {
+TEST_F(ProximityFiles, InvalidFurtherColumnsAreRefused) {
   Columns three(3);
   three.add<double>("depth_bound");
   EXPECT_THROW(write_proximity_pairs(folder_ / "p.csv", pairs_, meshes_, {}, three), InvalidOption);
@@ -142,14 +142,14 @@ TEST_F(ProximityFiles, FurtherColumnsThatAreNotOfThePairsAreRefused) {
   EXPECT_EQ(folder_.entries(), 0);
 }
 
-TEST_F(ProximityFiles, NoPairsAreAFileToo) {
+TEST_F(ProximityFiles, EmptyListsOfPairsAreWritten) {
   pairs_.clear();
   for (const std::string& extension : file_extensions(FileContent::pairs, FileAccess::write)) {
     EXPECT_GT(std::filesystem::file_size(written(("p" + extension).c_str())), 10U) << extension;
   }
 }
 
-TEST_F(ProximityFiles, WhatIsNotOfTheMeshesIsRefused) {
+TEST_F(ProximityFiles, ForeignPairsAreRefused) {
   const auto refused = [&](const char* name, std::span<const MeshView> meshes, const std::string& reason) {
     try {
       write_proximity_pairs(folder_ / name, pairs_, meshes);

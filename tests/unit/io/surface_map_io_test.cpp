@@ -1,5 +1,5 @@
-// Proves that the files of surface maps hold what the map holds: colours at any point of the surface, numbers of
-// texels, vertices and triangles, what is known besides; and that what is no map of the mesh is refused.
+// Proves that surface map files hold colours at any point of the surface, values of texels, vertices and triangles, and
+// metadata. Maps that do not match the mesh are refused.
 #include "blum/io/surface_map_io.hpp"
 #include "blum/io/formats.hpp"
 
@@ -41,7 +41,7 @@ double difference(const A& a, const B& b) {
   return largest;
 }
 
-/// As glTF viewers read textures: bilinear between the middles of texels, clamped at the border.
+/// Reads a texture like glTF viewers: bilinear between the middles of texels, clamped at the border.
 std::array<double, 3> look_up(const ReadPng& png, double u, double v) {
   const double x = u * png.width - 0.5;
   const double y = v * png.height - 0.5;
@@ -58,8 +58,8 @@ std::array<double, 3> look_up(const ReadPng& png, double u, double v) {
   return out;
 }
 
-/// Whether a colour is one that reading between texels may give: bounded by those of all values that differ by a
-/// texel's step or less, as colours bend, and jump where a screen cannot show them.
+/// True if reading between texels may give a colour. The bounds are the colours of all values that differ by at most
+/// one texel's step. Colours are not linear in values, and jump at the limits of a screen.
 bool is_between(const std::array<double, 3>& color, const ColorScale& scale, double value) {
   constexpr double step = 0.25;  // along both axes of a chart
   std::array<int, 3> lowest{255, 255, 255};
@@ -122,7 +122,7 @@ TEST(SurfaceMapIo, TexturesGiveBackTheColourOfEveryPoint) {
   }
 }
 
-TEST(SurfaceMapIo, GlbHasDistancesAtVerticesAndSaysWhatItShows) {
+TEST(SurfaceMapIo, GlbHasDistancesAtVerticesAndDescribesThem) {
   const TemporaryFolder folder;
   const BoxMap box(3);
   write_surface_map(folder / "a.glb", box.mesh, box.map, {{"source", "here"}}, {.range = {{1, 5}}, .units = "mm"});
@@ -181,7 +181,7 @@ TEST(SurfaceMapIo, NothingGreyOrWhiteBleedsIntoCharts) {
     const std::uint8_t* const pixel = &texture.pixels[3 * (y * atlas.width + x)];
     return std::array<int, 3>{pixel[0], pixel[1], pixel[2]};
   };
-  // Left of the first chart: its texels begin a texel before it, and four more have their colour.
+  // Left of the first chart, its texels begin a texel before the chart. Four more texels have their colour.
   const std::size_t middle = BoxMap::gutter + BoxMap::side / 2;
   const std::array<int, 3> border = at(BoxMap::gutter - 1, middle);
   for (std::size_t away = 2; away <= 5; ++away) EXPECT_LE(difference(at(BoxMap::gutter - away, middle), border), 3);
@@ -222,7 +222,7 @@ TEST(SurfaceMapIo, NpzHoldsEverything) {
   const FileMetadata metadata = volume_io::from_json(npz.text("metadata"), "a.npz");
   EXPECT_EQ(find_value(metadata, "source"), "here");
   EXPECT_EQ(find_value(metadata, "content"), "surface map");
-  // It is neither a field nor a complex, though its arrays look like those.
+  // The file is neither a field nor a complex, although its arrays look similar.
   EXPECT_THROW((void)read_field(folder / "a.npz"), FormatError);
   EXPECT_THROW((void)read_complex(folder / "a.npz"), FormatError);
 }
@@ -247,7 +247,7 @@ TEST(SurfaceMapIo, PlyAndVtpHaveColumnsOfVerticesAndTriangles) {
     EXPECT_EQ(find_value(file.metadata, "quantity"), "mine");
     EXPECT_EQ(find_value(file.metadata, "sign_rule"), "winding");
   }
-  box.map.error.clear();  // of thickness
+  box.map.error.clear();  // maps of thickness have no error
   write_surface_map(folder / "a.ply", box.mesh, box.map);
   EXPECT_EQ(read_complex(folder / "a.ply").complex.triangle_columns.find("error"), nullptr);
 }
@@ -266,7 +266,7 @@ TEST(SurfaceMapIo, ColoursOfMapsWithoutDistances) {
   EXPECT_LT(color_scale_of(depths.map).lowest(), -7);
 }
 
-TEST(SurfaceMapIo, VerticesOfNoTriangleMayBeAnything) {
+TEST(SurfaceMapIo, UnreferencedVerticesMayBeAnything) {
   const TemporaryFolder folder;
   BoxMap box(3);
   box.mesh.vertices.push_back({std::nan(""), 0, 0});
@@ -294,7 +294,7 @@ TEST(SurfaceMapIo, TheSameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(SurfaceMapIo, RefusesWhatIsNoMapOfTheMesh) {
+TEST(SurfaceMapIo, RefusesInvalidMapsOfTheMesh) {
   const TemporaryFolder folder;
   for (const std::string& end : file_extensions(FileContent::surface_map, FileAccess::write)) {
     const auto path = folder / ("a" + end);

@@ -1,5 +1,5 @@
-// Proves that .npz files of surface maps read back as what was written, bit by bit, for all quantities; that whatever
-// is wrong in one is refused with a message that names it; and that no cut or changed byte does more than that.
+// Proves that .npz files of surface maps read back bit for bit, for all quantities. Any error in a file is refused with
+// a message that names it. Cut or changed bytes cause nothing else.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(SurfaceMapRead, GivesBackMapsOfAllQuantities) {
   }
 }
 
-TEST(SurfaceMapRead, GivesBackAtlasesInWhichTrianglesMeetAndVerticesOfNoTriangle) {
+TEST(SurfaceMapRead, GivesBackJoinedChartsAndUnreferencedVertices) {
   BoxMap box(3, 5);
   expect_round_trip(box.mesh, box.map);
   box.mesh.vertices.push_back({std::nan(""), 0, HUGE_VAL});
@@ -85,7 +85,7 @@ TEST(SurfaceMapRead, GivesBackAtlasesInWhichTrianglesMeetAndVerticesOfNoTriangle
   expect_round_trip(box.mesh, box.map);
 }
 
-/// The arrays of an .npz file, to be written again with changes.
+/// The arrays of an .npz file. Tests change and rewrite them.
 struct Arrays {
   struct Array {
     std::string name, dtype;
@@ -141,7 +141,7 @@ struct Arrays {
   }
 };
 
-/// A box map whose file was changed; and what its reader says.
+/// Changes the file of a box map and returns the message of its reader.
 class SurfaceMapDamage : public ::testing::Test {
  protected:
   static constexpr std::size_t first_texel = std::size_t{BoxMap::gutter} * 3 * BoxMap::cell + BoxMap::gutter;
@@ -167,7 +167,7 @@ class SurfaceMapDamage : public ::testing::Test {
   }
 };
 
-TEST_F(SurfaceMapDamage, NoneIsRead) {
+TEST_F(SurfaceMapDamage, NoneMeansThatTheFileIsRead) {
   EXPECT_EQ(message_after([](Arrays&) {}), "it was read");
 }
 
@@ -231,7 +231,7 @@ TEST_F(SurfaceMapDamage, OfMetadataIsNamed) {
   expect_refused("'sign_rule' is not known", [](Arrays& a) { a.say("sign_rule", "mine"); });
 }
 
-TEST_F(SurfaceMapDamage, InfiniteDistancesAndFilesWithoutErrorsAreNone) {
+TEST_F(SurfaceMapDamage, InfiniteDistancesAndMissingErrorsAreAccepted) {
   EXPECT_EQ(message_after([](Arrays& a) { a.put("distance", first_texel, -HUGE_VALF); }), "it was read");
   EXPECT_EQ(message_after([](Arrays& a) { a.erase("triangle_error"); }), "it was read");
   EXPECT_EQ(message_after([](Arrays& a) { a.say("separate_charts", ""); }), "it was read");
@@ -259,10 +259,10 @@ TEST(SurfaceMapRead, BytesThatAreCutOrChangedAreRefusedOrRead) {
     bytes[random() % bytes.size()] ^= static_cast<char>(1U << (random() % 8));
     if (!feed(bytes)) ++refused;
   }
-  EXPECT_GT(refused, 2000);  // checksums see what is changed in arrays
+  EXPECT_GT(refused, 2000);  // checksums detect changes in arrays
 }
 
-TEST(SurfaceMapRead, OtherFilesAreNone) {
+TEST(SurfaceMapRead, OtherFilesAreNotSurfaceMaps) {
   const TemporaryFolder folder;
   test::put_file(folder / "a.npz", "nonsense");
   const BoxMap box(3);
@@ -274,7 +274,7 @@ TEST(SurfaceMapRead, OtherFilesAreNone) {
   EXPECT_THROW((void)read_surface_map(folder / "absent.npz"), FileError);
 }
 
-TEST(SurfaceMapRead, MetadataThatGainsayTheMapAreNotWritten) {
+TEST(SurfaceMapRead, MetadataThatContradictTheMapAreRefused) {
   const TemporaryFolder folder;
   const BoxMap box(3);
   for (const char* key : {"quantity", "sign_rule", "separate_charts"}) {

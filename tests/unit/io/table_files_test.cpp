@@ -1,5 +1,4 @@
-// Proves that tables are the same rows in all formats, whether their values are there or made, and what their texts
-// look like.
+// Proves that tables have the same rows in all formats, with stored or computed values, and checks their texts.
 #include "io/table/table_files.hpp"
 
 #include <gtest/gtest.h>
@@ -91,7 +90,7 @@ TEST_F(TableFiles, AreLists) {
   EXPECT_EQ(test::file_content(folder_ / "t.json"), "{\"metadata\": {},\n\"index\": [7, 8, 9]}\n");
 }
 
-TEST_F(TableFiles, WithoutRowsAreFilesToo) {
+TEST_F(TableFiles, WithoutRowsAreWritten) {
   Table empty{0, {column_of("place", std::span<const Vec3d>()), column_of("k", {}, std::span<const double>())}};
   tables::write_csv(folder_ / "t.csv", empty, {});
   EXPECT_EQ(test::file_content(folder_ / "t.csv"), "place_0,place_1,place_2,k\n");
@@ -99,7 +98,7 @@ TEST_F(TableFiles, WithoutRowsAreFilesToo) {
   EXPECT_EQ(test::file_content(folder_ / "t.json"), "{\"metadata\": {},\n\"place\": [],\n\"k\": []}\n");
 }
 
-TEST_F(TableFiles, ThatAreCancelledLeaveTheOldOnes) {
+TEST_F(TableFiles, CancelledWritesLeaveTheOldFiles) {
   std::stop_source stop;
   stop.request_stop();
   Context context;
@@ -112,7 +111,7 @@ TEST_F(TableFiles, ThatAreCancelledLeaveTheOldOnes) {
   EXPECT_EQ(folder_.entries(), 1);
 }
 
-TEST(CentrelineFiles, SayWhatTheyAreTold) {
+TEST(CentrelineFiles, HoldTheGivenLinesAndInfo) {
   const test::TemporaryFolder folder;
   Centrelines lines;
   Centreline& line = lines.labels.emplace_back();

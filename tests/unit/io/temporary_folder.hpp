@@ -13,7 +13,7 @@
 
 namespace blum::test {
 
-/// A new empty folder that goes away with everything in it.
+/// A new empty folder, which the destructor removes with its content.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

@@ -1,4 +1,4 @@
-// Proves that the cells of voxels, their faces and their cofaces are those of direct enumeration.
+// Proves that the cells of voxels, their faces and their cofaces equal those of direct enumeration.
 #include "medial_axis/cells/cell_complex.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using detail::CellComplex;
 
-/// A cell by its middle, in half steps: odd along the axes that it spans.
+/// A cell as its middle, in half steps: odd along the axes that it spans.
 using Middle = std::array<std::int64_t, 3>;
 
 Middle middle_of(const CellLattice& lattice, Cell cell) {
@@ -87,11 +87,11 @@ TEST(CellComplex, ThreadsDoNotMatter) {
   }
 }
 
-TEST(CellComplex, TheOnlyCofaceIsThereWhereOneCellHasTheFace) {
+TEST(CellComplex, OnlyCofaceIsTheSingleCellWithTheFace) {
   Random random(4);
   CellComplex complex(test::random_voxels({8, 8, 8}, 0.5, random), {});
   const CellLattice& lattice = complex.lattice();
-  // Some cells go at random: what is left need not hold its faces.
+  // Random cells are erased, so remaining cells may lack faces.
   for (int n = 0; n < 400; ++n) complex.erase(static_cast<Cell>(random.below(8 * lattice.node_count())));
   int free_faces = 0;
   for (std::int64_t k = 1; k < 8; ++k) {

@@ -1,5 +1,5 @@
-// Proves that each step from voxels to curves keeps components and tunnels, on random voxels: thinning, the graph of
-// neighbours, pruning; and that nothing is left that could be thinned.
+// Proves that thinning, the graph of neighbours and pruning keep components and tunnels of random voxels. Thinned
+// voxels cannot be thinned further.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array<std::int64_t, 3> size{14, 13, 12};
 
-/// Random voxels, none at the border.
+/// Random voxels, none of them at the border.
 VoxelSet random_voxels(std::uint32_t seed, double density) {
   std::mt19937 random(seed);
   std::bernoulli_distribution is_in(density);
@@ -34,7 +34,7 @@ VoxelSet random_voxels(std::uint32_t seed, double density) {
   return voxels;
 }
 
-/// Random depths: thinning keeps the topology in whatever order.
+/// Random depths: thinning keeps the topology in any order.
 std::vector<float> random_depths(const VoxelSet& voxels, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> any(0.5F, 3);
@@ -54,7 +54,7 @@ void for_each_set(const Visit& visit) {
   }
 }
 
-TEST(CentrelineParts, FilledVoidsAreGoneAndNothingElse) {
+TEST(CentrelineParts, FillingRemovesAllVoidsAndNoVoxel) {
   for_each_set([](const VoxelSet& voxels, std::uint32_t /*seed*/) {
     VoxelSet filled = voxels;
     EXPECT_EQ(fill_voids(filled), betti_numbers(voxels)[2]);
@@ -84,7 +84,7 @@ TEST(CentrelineParts, ThinningKeepsTheTopologyAndLeavesNothingToThin) {
           if (!thin.contains(i, j, k)) continue;
           EXPECT_TRUE(voxels.contains(i, j, k));
           const Neighbourhood around = neighbourhood(thin, i, j, k);
-          EXPECT_TRUE(!is_simple(around) || std::popcount(around) == 2);  // with itself
+          EXPECT_TRUE(!is_simple(around) || std::popcount(around) == 2);  // including the voxel itself
         }
       }
     }
@@ -93,14 +93,14 @@ TEST(CentrelineParts, ThinningKeepsTheTopologyAndLeavesNothingToThin) {
 
 TEST(CentrelineParts, GraphsOfNeighboursHaveTheTopologyOfTheVoxels) {
   for_each_set([](const VoxelSet& voxels, std::uint32_t /*seed*/) {
-    const BettiNumbers wanted = betti_numbers(voxels);  // whole sets, far from thin
+    const BettiNumbers wanted = betti_numbers(voxels);  // of complete sets, which are not thin
     const BettiNumbers found = betti_numbers(curve_graph(voxels, {1, 0.7, 2}, {}));
     EXPECT_EQ(found[0], wanted[0]);
     EXPECT_EQ(found[1], wanted[1]);
   });
 }
 
-TEST(CentrelineParts, PruningKeepsTheTopologyAndNamesWhatIsThere) {
+TEST(CentrelineParts, PruningKeepsTheTopologyAndValidReferences) {
   for_each_set([](VoxelSet voxels, std::uint32_t seed) {
     fill_voids(voxels);
     const std::vector<float> depth = random_depths(voxels, seed);

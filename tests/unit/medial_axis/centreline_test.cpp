@@ -1,5 +1,5 @@
-// Proves that centrelines have the branches, lengths and radii of the tubes that an image was made of, and the topology
-// of its labels, for any number of threads.
+// Proves that centrelines have the branches, lengths and radii of the tubes in an image. They keep the topology of its
+// labels, for any number of threads.
 #include "blum/medial_axis/centreline.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ double distance_to(const Tube& tube, const Vec3d& point) {
   return length(point - tube.from - share * along);
 }
 
-/// Voxels whose centres are in a solid get a label.
+/// An image with a label for each voxel whose centre lies in a solid.
 VoxelImage image_of(const std::array<std::int64_t, 3>& size, const std::function<int(const Vec3d&)>& label_at,
                     const Vec3d& spacing = {1, 1, 1}) {
   VoxelImage image;
@@ -74,7 +74,7 @@ std::size_t count(const Centreline& line, CentrelineNodeKind kind) {
       std::count_if(line.nodes.begin(), line.nodes.end(), [&](const CentrelineNode& n) { return n.kind == kind; }));
 }
 
-/// The branch whose middle is closest to that of a tube.
+/// The branch whose middle is closest to the middle of a tube.
 const CentrelineBranch& branch_near(const Centreline& line, const Tube& tube) {
   const Vec3d middle = 0.5 * (tube.from + tube.to);
   const auto off = [&](const CentrelineBranch& branch) {
@@ -86,7 +86,7 @@ const CentrelineBranch& branch_near(const Centreline& line, const Tube& tube) {
                            [&](const auto& a, const auto& b) { return off(a) < off(b); });
 }
 
-/// The tree of five tubes of the issue that asked for centrelines: radii 4, 3, 2.5, 1.5, 1.5 voxels.
+/// The tree of five tubes from the issue that requested centrelines. Their radii are 4, 3, 2.5, 1.5 and 1.5 voxels.
 const std::vector<Tube>& tree() {
   static const std::vector<Tube> tubes{{{30, 30, 6}, {30, 30, 30}, 4},
                                        {{30, 30, 30}, {18, 26, 50}, 3},
@@ -96,7 +96,7 @@ const std::vector<Tube>& tree() {
   return tubes;
 }
 
-TEST(Centreline, OfATreeOfFiveTubesHasFiveBranchesWithTheirRadii) {
+TEST(Centreline, ATreeOfFiveTubesHasFiveBranchesWithTheirRadii) {
   const Centreline line = only_of(image_of({60, 60, 76}, tree()));
   EXPECT_EQ(line.branches.size(), 5U);
   EXPECT_EQ(count(line, CentrelineNodeKind::end), 4U);
@@ -136,7 +136,7 @@ TEST(Centreline, RadiiOfStraightTubesAreWithinATenthOfAVoxelInAllDirections) {
   }
 }
 
-TEST(Centreline, OfARingIsAClosedCurve) {
+TEST(Centreline, ARingBecomesAClosedCurve) {
   const Centreline line = only_of(image_of({41, 41, 15}, [](const Vec3d& p) {
     const double off = std::hypot(p.x - 20.3, p.y - 20.1) - 14;
     return std::hypot(off, p.z - 7.2) <= 3 ? 1 : 0;
@@ -151,7 +151,7 @@ TEST(Centreline, OfARingIsAClosedCurve) {
   EXPECT_TRUE(line.homotopy_kept);
 }
 
-TEST(Centreline, OfABallAndOfAVoxelIsAPoint) {
+TEST(Centreline, ABallAndAVoxelBecomeAPoint) {
   const auto ball = [](double radius) {
     return image_of({21, 21, 21}, [=](const Vec3d& p) { return length(p - Vec3d{10, 10, 10}) <= radius ? 1 : 0; });
   };
@@ -165,7 +165,7 @@ TEST(Centreline, OfABallAndOfAVoxelIsAPoint) {
   }
 }
 
-TEST(Centreline, OfTubesThatCrossHasOneJunction) {
+TEST(Centreline, CrossingTubesHaveOneJunction) {
   const Vec3d centre{25.3, 24.8, 25.1};
   const auto cross_of = [&](const std::vector<Vec3d>& directions, double radius) {
     std::vector<Tube> tubes;
@@ -181,14 +181,14 @@ TEST(Centreline, OfTubesThatCrossHasOneJunction) {
     EXPECT_EQ(count(line, CentrelineNodeKind::end), branches);
     for (const CentrelineNode& node : line.nodes) {
       if (node.kind == CentrelineNodeKind::junction) {
-        EXPECT_LT(length(node.position - centre), 0.9);  // along the grid, sections tell no more
+        EXPECT_LT(length(node.position - centre), 0.9);  // sections along the grid locate no better
       }
     }
     for (const CentrelineBranch& branch : line.branches) EXPECT_NEAR(branch.length, 18, 1.2);
   }
 }
 
-TEST(Centreline, OfThinBarsIsOneBranchAlongThem) {
+TEST(Centreline, AThinBarHasOneBranchAlongIt) {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 2), std::pair(3, 2), std::pair(5, 5)}) {
     const Centreline line = only_of(image_of({20, 20, 60}, [&](const Vec3d& p) {
       return p.x >= 6 && p.x < 6 + width && p.y >= 6 && p.y < 6 + height && p.z >= 5 && p.z < 54 ? 1 : 0;
@@ -203,8 +203,8 @@ TEST(Centreline, OfThinBarsIsOneBranchAlongThem) {
   EXPECT_NEAR(diagonal.branches[0].length, 29 * std::sqrt(3.0), 2);
 }
 
-TEST(Centreline, OfNoisySurfacesHasNoSpurs) {
-  // Voxels of the outermost layer are taken away, and of the next one added, one in twenty.
+TEST(Centreline, NoisySurfacesCauseNoSpurs) {
+  // One in twenty voxels of the outermost layer is removed, and one in twenty of the next layer is added.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(0, 1);
   for (int trial = 0; trial < 5; ++trial) {
@@ -214,7 +214,7 @@ TEST(Centreline, OfNoisySurfacesHasNoSpurs) {
       const bool is_flipped = any(random) < 0.05 && std::abs(off) < 0.5;
       return (off <= 0) != is_flipped ? 1 : 0;
     }));
-    // What noise does to the topology stays: a loop is a branch more, or two.
+    // Topology caused by noise stays. Each loop adds up to three branches.
     EXPECT_EQ(line.label_betti[1], line.graph_betti[1]);
     EXPECT_EQ(line.label_betti[0], line.graph_betti[0]);
     std::size_t ends = 0;
@@ -224,7 +224,7 @@ TEST(Centreline, OfNoisySurfacesHasNoSpurs) {
   }
 }
 
-TEST(Centreline, OfLabelsThatTouchIsEachItsOwn) {
+TEST(Centreline, TouchingLabelsHaveSeparateCentrelines) {
   const VoxelImage image = image_of({41, 41, 60}, [](const Vec3d& p) {
     if (p.z < 6 || p.z > 53) return 0;
     if (std::hypot(p.x - 16, p.y - 20) <= 4) return 1;
@@ -239,7 +239,7 @@ TEST(Centreline, OfLabelsThatTouchIsEachItsOwn) {
   }
 }
 
-TEST(Centreline, SaysThatVoidsAreFilled) {
+TEST(Centreline, ReportsFilledVoids) {
   const Centreline line = only_of(image_of({25, 25, 25}, [](const Vec3d& p) {
     const double off = length(p - Vec3d{12, 12, 12});
     return off <= 9 && off > 4 ? 1 : 0;
@@ -251,7 +251,7 @@ TEST(Centreline, SaysThatVoidsAreFilled) {
   EXPECT_EQ(line.nodes.size(), 1U);
 }
 
-TEST(Centreline, OfATreeTurnedByARightAngleIsNearlyTheSame) {
+TEST(Centreline, RotationByARightAngleHardlyChangesTheTree) {
   const Centreline line = only_of(image_of({60, 60, 76}, tree()));
   const Centreline turned = only_of(image_of({76, 60, 60}, [](const Vec3d& p) {
     const Vec3d back{p.y, p.z, p.x};
@@ -267,7 +267,7 @@ TEST(Centreline, OfATreeTurnedByARightAngleIsNearlyTheSame) {
   }
 }
 
-TEST(Centreline, OfVoxelsThatAreNoCubesHasTheSameRadii) {
+TEST(Centreline, NonCubicVoxelsGiveTheSameRadii) {
   const Tube tube{{8, 8, 8}, {20, 22, 20}, 3};
   const Centreline line = only_of(image_of({60, 60, 30}, std::vector<Tube>{tube}, {0.5, 0.5, 1}));
   ASSERT_EQ(line.branches.size(), 1U);
@@ -276,7 +276,7 @@ TEST(Centreline, OfVoxelsThatAreNoCubesHasTheSameRadii) {
   for (const Vec3d& point : line.branches[0].points) EXPECT_LT(distance_to(tube, point), 0.5);
 }
 
-TEST(Centreline, AsAComplexHasTheGraphsTopology) {
+TEST(Centreline, TheComplexHasTheTopologyOfTheGraph) {
   const Centrelines lines = centreline(image_of({60, 60, 76}, tree()));
   const Complex complex = complex_of(lines);
   EXPECT_EQ(problem_of(complex), "");
@@ -284,7 +284,7 @@ TEST(Centreline, AsAComplexHasTheGraphsTopology) {
   for (const double radius : complex.vertex_columns.get<double>("radius")) EXPECT_GT(radius, 1);
 }
 
-TEST(Centreline, OfAnImageWithoutVoxelsIsEmpty) {
+TEST(Centreline, AnImageWithoutVoxelsHasAnEmptyCentreline) {
   const VoxelImage image = image_of({5, 4, 3}, [](const Vec3d&) { return 0; });
   EXPECT_TRUE(centreline(image).labels.empty());
   const std::array<std::int64_t, 2> labels{3, 7};
@@ -319,7 +319,7 @@ TEST(Centreline, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(Centreline, WarnsOfWhatIsNotThere) {
+TEST(Centreline, WarnsOfEmptySelectionsAndSingleLayers) {
   const VoxelImage image = image_of({4, 4, 4}, [](const Vec3d&) { return 1; });
   EXPECT_TRUE(centreline(image).warnings.empty());
   const std::vector<std::int64_t> labels{1, 5};
@@ -334,7 +334,7 @@ TEST(Centreline, WarnsOfWhatIsNotThere) {
   EXPECT_EQ(flat[0].code, WarningCode::single_layer);
 }
 
-TEST(Centreline, WarnsOfFiveLabelsAndCountsTheOthers) {
+TEST(Centreline, WarnsOfFiveLabelsAndCountsTheRest) {
   Centrelines lines;
   for (int label = 1; label <= 7; ++label) {
     lines.labels.push_back({.label = label, .voxels = 9, .homotopy_kept = label == 1, .homotopy = "not kept"});
@@ -346,7 +346,7 @@ TEST(Centreline, WarnsOfFiveLabelsAndCountsTheOthers) {
   EXPECT_TRUE(found[5].text.starts_with("1 more label has no voxels, or another topology")) << found[5].text;
 }
 
-TEST(Centreline, RefusesWhatMakesNoSense) {
+TEST(Centreline, RejectsInvalidOptionsImagesAndCancelledCalls) {
   VoxelImage image = image_of({4, 4, 4}, [](const Vec3d&) { return 1; });
   CentrelineOptions options;
   options.spur = -1;

@@ -1,4 +1,4 @@
-// Proves where edges of a mesh and a box meet, and which way leads into the solid from there without leaving the box.
+// Proves where edges of a mesh and of a box meet, and which directions lead from there into the solid within the box.
 #include "medial_axis/surface/mesh_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using detail::SurfacePoint;
 const Box3 unit_box{{0, 0, 0}, {1, 1, 1}};
 
 TEST(ClipPoints, AnEdgeThroughABoxHasAMiddleAndTwoEnds) {
-  // A roof: the ridge runs along x at z = 0.5, its sides face up and to both sides.
+  // A roof: the ridge runs along x at z = 0.5, and its sides face up and outwards.
   const double s = std::sqrt(0.5);
   std::vector<SurfacePoint> points;
   add_clip_points({{{{-1, 0.5, 0.5}, {3, 0.5, 0.5}}}, {{{0, s, s}, {0, -s, s}}}}, unit_box, points);
@@ -28,7 +28,7 @@ TEST(ClipPoints, AnEdgeThroughABoxHasAMiddleAndTwoEnds) {
   }
 }
 
-TEST(ClipPoints, WhereAnEdgeGoesThroughASideTheWayInStaysInThisSide) {
+TEST(ClipPoints, AtASideOfTheBoxTheInwardDirectionStaysInThatSide) {
   const double s = std::sqrt(0.5);
   std::vector<SurfacePoint> points;
   add_clip_points({{{{-1, 0, 0.5}, {0.5, 0.75, 0.5}}}, {{{0, 0, 1}, {-s, 0, s}}}}, unit_box, points);
@@ -38,14 +38,14 @@ TEST(ClipPoints, WhereAnEdgeGoesThroughASideTheWayInStaysInThisSide) {
   EXPECT_LT(points[1].inwards.z, 0);
 }
 
-TEST(ClipPoints, AnEdgeBesideABoxHasNone) {
+TEST(ClipPoints, AnEdgeBesideABoxHasNoPoints) {
   std::vector<SurfacePoint> points;
   add_clip_points({{{{-1, 2, 0.5}, {3, 2, 0.5}}}, {{{0, 0, 1}, {0, 1, 0}}}}, unit_box, points);
   EXPECT_TRUE(points.empty());
 }
 
 TEST(ClipPoints, ATriangleCutsEdgesOfABox) {
-  // The plane z = 0.25, facing up: the four upright edges go through it, and the solid is below.
+  // The plane z = 0.25 faces up. The four upright edges pass through it, and the solid lies below.
   std::vector<SurfacePoint> points;
   add_clip_points({{{-5, -5, 0.25}, {10, -5, 0.25}, {-5, 10, 0.25}}}, {0, 0, 1}, unit_box, points);
   ASSERT_EQ(points.size(), 4U);

@@ -1,5 +1,5 @@
-// Proves that every step of a collapse is elementary, in the order of importance, and keeps the topology: each recorded
-// removal is made again and looked at.
+// Proves that every collapse is elementary, follows the order of importance and keeps the topology. The tests replay
+// and check each recorded removal.
 #include "medial_axis/cells/collapse.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ std::vector<Cell> cells_of(const CellComplex& complex) {
   return cells;
 }
 
-/// Betti numbers of squares, edges and vertices, by the verifier.
+/// Betti numbers of squares, edges and vertices, computed by the verifier.
 BettiNumbers betti_of(const CellComplex& complex) {
   const CellLattice& lattice = complex.lattice();
   std::vector<std::uint32_t> number(lattice.node_count(), 0);
@@ -62,7 +62,7 @@ BettiNumbers betti_of(const CellComplex& complex) {
   return homology(view);
 }
 
-/// A set of voxels with something to collapse by.
+/// A set of voxels with the depths and importance that order a collapse.
 struct Sample {
   VoxelSet voxels;
   CellComplex complex;
@@ -102,7 +102,7 @@ std::vector<Sample> random_samples() {
   return samples;
 }
 
-TEST(Collapse, TheBaseHoldsNoCubeAndHasTheTopologyOfTheVoxels) {
+TEST(Collapse, TheBaseHasNoCubesAndKeepsTheTopology) {
   for (const Sample& s : random_samples()) {
     const CellComplex base = collapse_of(s).base;
     for (const Cell cell : cells_of(base)) {
@@ -146,8 +146,8 @@ TEST(Collapse, LevelsAreTheLargestImportanceSoFar) {
   }
 }
 
-/// What is asked for up to a level is what all removals begin with.
-TEST(Collapse, UpToALevelTheOrderIsTheSame) {
+/// The removals up to a level are the first removals of the complete order.
+TEST(Collapse, ALevelLimitTruncatesTheOrder) {
   std::size_t fewer = 0;
   for (const Sample& s : random_samples()) {
     const CollapseOrder all = collapse_of(s);
@@ -165,8 +165,9 @@ TEST(Collapse, UpToALevelTheOrderIsTheSame) {
   EXPECT_GT(fewer, 10U);
 }
 
-/// Cubes go first, each with a square, important or not where nothing else frees it; what goes then has no importance.
-TEST(Collapse, NothingOfImportanceGoesBeforeItsLevel) {
+/// Each removed cube takes one square with it, which may be important if no other square is free. All other cells
+/// removed with the cubes have no importance.
+TEST(Collapse, ImportantCellsStayUntilTheirLevel) {
   for (const Sample& s : random_samples()) {
     const CellComplex base = collapse_of(s).base;
     std::size_t squares = 0;
@@ -182,7 +183,7 @@ TEST(Collapse, NothingOfImportanceGoesBeforeItsLevel) {
   }
 }
 
-TEST(Collapse, ASlabWithImportantMiddleBecomesIt) {
+TEST(Collapse, ASlabCollapsesToItsImportantMiddle) {
   Sample s;
   s.voxels = VoxelSet({14, 12, 6});
   test::for_each_voxel(s.voxels.size(), 1, [&](auto i, auto j, auto k) { s.voxels.insert(i, j, k); });
@@ -200,7 +201,7 @@ TEST(Collapse, ASlabWithImportantMiddleBecomesIt) {
   EXPECT_EQ(2 * order.removals.size(), base.size() - 1) << "a disc goes down to a vertex";
 }
 
-TEST(Collapse, WithoutImportanceABlockBecomesAVertex) {
+TEST(Collapse, ABlockWithoutImportanceBecomesAVertex) {
   Random random(2);
   Sample s = random_sample(random, 1, 0);
   const CollapseOrder order = collapse_of(s);

@@ -1,5 +1,5 @@
-// Proves that contracting edges without length keeps topology and places, leaves the curve of a ribbon, and contracts
-// all that may be contracted.
+// Proves that contraction of edges without length keeps topology and places, and leaves the curve of a ribbon. Every
+// edge that may be contracted is contracted.
 #include "medial_axis/fit/contract_points.hpp"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST(ContractPoints, ARibbonBecomesItsCurve) {
   }
 }
 
-TEST(ContractPoints, ACircleStaysOne) {
+TEST(ContractPoints, ACircleStaysACircle) {
   AxisRows complex = complex_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}, {}, {{0, 1}, {1, 2}, {2, 0}});
   contract_points(complex);
   EXPECT_EQ(complex.edges.size(), 3U) << "two edges between the same vertices would be left";
@@ -86,21 +86,21 @@ TEST(ContractPoints, ACircleStaysOne) {
   EXPECT_EQ(betti_of(complex), (BettiNumbers{1, 1, 0}));
 }
 
-TEST(ContractPoints, ASphereStaysOne) {
+TEST(ContractPoints, ASphereStaysASphere) {
   const std::vector<Face> faces{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
   AxisRows complex = complex_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces);
   contract_points(complex);
   EXPECT_EQ(complex.triangles.size(), 4U) << "two triangles with the same corners would be left";
 }
 
-TEST(ContractPoints, AllAtOnePlaceBecomeOneVertex) {
+TEST(ContractPoints, VerticesAtOnePlaceBecomeOneVertex) {
   AxisRows complex = complex_of(std::vector<Vec3d>(5), {{0, 1, 2}, {2, 1, 3}}, {{3, 4}});
   contract_points(complex);
   EXPECT_EQ(complex.vertices.size(), 1U);
   EXPECT_TRUE(complex.triangles.empty() && complex.edges.empty());
 }
 
-/// Triangles and edges between random vertices; the edges are sides of no triangle.
+/// Triangles and edges between random vertices. The edges are not sides of triangles.
 AxisRows random_complex(Random& random) {
   const auto count = static_cast<std::uint32_t>(4 + random.below(9));
   std::vector<Vec3d> places;

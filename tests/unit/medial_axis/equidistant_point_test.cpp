@@ -1,5 +1,5 @@
-// Proves that points as far from some points as from others are found exactly where these tell one, and that
-// directions in which they say little are left alone.
+// Proves that equidistant points are computed exactly if the given points determine one. Poorly determined directions
+// stay unchanged.
 #include "medial_axis/surface/equidistant_point.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Vec3d direction(Random& random) {
   return v / length(v);
 }
 
-TEST(EquidistantPoints, PointsOnASphereTellItsCentre) {
+TEST(EquidistantPoints, PointsOnASphereDetermineItsCentre) {
   Random random(1);
   int found = 0;
   for (int n = 0; n < 300; ++n) {
@@ -35,7 +35,7 @@ TEST(EquidistantPoints, PointsOnASphereTellItsCentre) {
   EXPECT_GT(found, 200);
 }
 
-TEST(EquidistantPoints, PointsOnACircleTellItsAxisAndNoMore) {
+TEST(EquidistantPoints, PointsOnACircleDetermineOnlyItsAxis) {
   Random random(2);
   for (int n = 0; n < 100; ++n) {
     const Vec3d centre = random.in_cube() * 10.0;
@@ -57,7 +57,7 @@ TEST(EquidistantPoints, PointsOnACircleTellItsAxisAndNoMore) {
   }
 }
 
-TEST(EquidistantPoints, TwoPointsTellTheirBisectorAndNoMore) {
+TEST(EquidistantPoints, TwoPointsDetermineOnlyTheirBisector) {
   Random random(3);
   for (int n = 0; n < 100; ++n) {
     const Vec3d p = random.in_cube();
@@ -73,12 +73,12 @@ TEST(EquidistantPoints, TwoPointsTellTheirBisectorAndNoMore) {
   }
 }
 
-TEST(EquidistantPoints, OnePointTellsNothing) {
+TEST(EquidistantPoints, OnePointDeterminesNothing) {
   const EquidistantPoints equidistant(std::vector<Vec3d>(8, Vec3d{0.3, 0.1, 0.7}), {1, 2, 3});
   for (const int rank : {1, 2, 3}) EXPECT_FALSE(equidistant.of_rank(rank));
 }
 
-TEST(EquidistantPoints, DirectionsWeakerThanATenthAreRefused) {
+TEST(EquidistantPoints, DirectionsWeakerThanATenthAreRejected) {
   const auto box_of = [](double width, double height) {
     std::vector<Vec3d> points;
     for (int corner = 0; corner < 8; ++corner) {
@@ -95,7 +95,7 @@ TEST(EquidistantPoints, DirectionsWeakerThanATenthAreRefused) {
   EXPECT_LT(length(*x - Vec3d{0, 0.02, 0.01}), 1e-13) << "moved along the strong direction only";
 }
 
-/// Where no point is equally far from all, squared distances differ least.
+/// If no point is equidistant to all points, the result minimizes the variance of the squared distances.
 TEST(EquidistantPoints, ManyPointsAreBalanced) {
   Random random(4);
   for (int n = 0; n < 50; ++n) {

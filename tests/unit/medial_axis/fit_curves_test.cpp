@@ -1,6 +1,6 @@
-// Proves of the steps of fitting that are for curves: the middle of what is round is found, and none where nothing is;
-// curves beside each other become one and keep their homotopy type; curves that bend get vertices; what lies on other
-// cells goes and nothing else; vertices do not move through walls.
+// Proves the fitting steps for curves. The centre of a round wall is found, and flat walls have none. Curves beside
+// each other merge and keep their homotopy type. Bent curves get vertices. Cells that lie on other cells are removed,
+// and only these. Vertices do not move through walls.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -75,7 +75,7 @@ std::vector<std::uint32_t> degrees(const AxisLists& lists) {
   return degree;
 }
 
-// ---- The middle of what is round ----
+// ---- Centres of round walls ----
 
 constexpr double voxel = 0.05;
 constexpr RoundLimits limits{voxel, 4 * voxel, 60};
@@ -102,14 +102,14 @@ TEST(RoundCentre, IsOnTheAxisOfAWideCone) {
   EXPECT_LE(std::hypot(on_axis->position.x, on_axis->position.y), 0.02 * voxel);
 }
 
-TEST(RoundCentre, IsNowhereBetweenWallsAndAtCorners) {
+TEST(RoundCentre, DoesNotExistBetweenFlatWallsAndAtCorners) {
   const Sample box(make_box({.size = {4, 2, 1}}));
   for (const Vec3d& at : {Vec3d{0, 0, 0}, Vec3d{0, 0, 0.1}, Vec3d{1.7, 0, 0}, Vec3d{1.8, 0.8, 0.3}, Vec3d{1, 0.6, 0}}) {
     EXPECT_FALSE(round_centre(box.surface, at, limits)) << at.x << ' ' << at.y << ' ' << at.z;
   }
 }
 
-TEST(RoundCentre, IsNoFurtherAwayThanIsAllowed) {
+TEST(RoundCentre, StaysWithinTheAllowedDistance) {
   const Sample tube(make_cylinder({.radius = 0.5, .height = 6, .sides = 400}));
   EXPECT_FALSE(round_centre(tube.surface, {0.12, 0, 0}, {voxel, 2 * voxel, 60}));
   EXPECT_TRUE(round_centre(tube.surface, {0.12, 0, 0}, limits));
@@ -139,7 +139,7 @@ TEST(MergeCurves, TreesOnARingBecomeARing) {
     places.push_back({std::cos(turn), std::sin(turn), 0});
   }
   AxisLists lists = torus.lists(places);
-  // Two steps ahead, but for where the ring closes, and spurs one step ahead.
+  // Each edge leads two steps ahead around the ring, and each spur leads one step ahead.
   for (std::uint32_t k = 0; k < count; k += 2) lists.add_edge({k, (k + 2) % count}, 90);
   for (std::uint32_t k = 0; k < count; k += 2) lists.add_edge({k, k + 1}, 90);
   merge_curves(lists, torus.surface, 0.01, {});
@@ -148,7 +148,7 @@ TEST(MergeCurves, TreesOnARingBecomeARing) {
   for (const std::uint32_t degree : degrees(lists)) EXPECT_EQ(degree, 2U);
 }
 
-TEST(MergeCurves, WhatGoesApartOrIsTooFarStays) {
+TEST(MergeCurves, DivergingAndDistantCurvesStay) {
   const Sample block(make_box({.size = {10, 4, 2}}));
   const std::vector<Vec3d> places{{-4, 0, 0}, {0, 0, 0}, {2, 0.2, 0}, {-3, 0.5, 0}};
   AxisLists lists = block.lists(places);
@@ -201,7 +201,7 @@ TEST(SplitCurves, ChordsOfARingFollowItAndSidesOfTrianglesStay) {
   }
 }
 
-// ---- What lies on other cells ----
+// ---- Cells that lie on other cells ----
 
 constexpr TrimLimits trim_limits{30, 0.01, 0.1, 0.5, 0.02};
 
@@ -252,8 +252,8 @@ TEST(Trim, TriangleThatIsHighStays) {
 
 TEST(Trim, WhiskersGoAndLongCurvesStay) {
   AxisLists lists = square_with({{1, 1, 0.01}, {0, -0.4, 0}, {3, 3, 0}});
-  lists.add_edge({0, 4}, 90);  // on the sheet
-  lists.add_edge({1, 5}, 90);  // moved below to stick out of the rim
+  lists.add_edge({0, 4}, 90);  // lies on the sheet
+  lists.add_edge({1, 5}, 90);  // sticks out of the rim once its vertex is moved below
   lists.vertices[5].position = {2, -0.4, 0};
   lists.add_edge({2, 6}, 90);  // a curve
   trim_all_seen(lists);
@@ -274,7 +274,7 @@ TEST(VertexMover, MovesThroughWallsAreTakenBack) {
   VertexMover mover(lists, incidence, fork.surface, context);
   const std::vector<Vec3d> places{{-1.6, 0.1, 0}, {1, 0.5, 0}, {1.5, -0.4, 0}};
   const auto where = [&](std::uint32_t v) -> std::optional<AxisVertex> { return fork.vertex(places[v]); };
-  // The edge between 1 and 2 would go through the gap; so both stay, and the edge from 0 follows.
+  // The edge between 1 and 2 would pass through the gap, so both stay. Vertex 0 moves with its edge.
   const double furthest = mover.make(mover.moves_to(where));
   EXPECT_EQ(lists.vertices[1].position, (Vec3d{1, -0.5, 0}));
   EXPECT_EQ(lists.vertices[2].position, (Vec3d{1.5, -0.5, 0}));

@@ -1,4 +1,5 @@
-// Proves that cells have the largest importance of what they are faces of, and others none, against a plain map.
+// Proves that each cell has the largest importance of the cells that contain it, and other cells have none. The
+// reference is a plain map.
 #include "medial_axis/cells/importance.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ void add_closure(const CellLattice& lattice, Cell cell, float degrees, std::map<
   lattice.for_each_face(cell, [&](Cell face) { add_closure(lattice, face, degrees, values); });
 }
 
-/// Squares, edges and vertices off the border, with whole degrees so that many are equal; 0 among them.
+/// Squares, edges and vertices off the border. The values are whole degrees including 0, so that many are equal.
 std::vector<Importance::Entry> random_entries(const CellLattice& lattice, std::size_t count, Random& random) {
   std::vector<Importance::Entry> entries;
   while (entries.size() < count) {
@@ -35,7 +36,7 @@ std::vector<Importance::Entry> random_entries(const CellLattice& lattice, std::s
   return entries;
 }
 
-TEST(Importance, CellsHaveTheLargestValueOfWhatTheyAreFacesOf) {
+TEST(Importance, CellsHaveTheLargestValueOfTheCellsAroundThem) {
   Random random(1);
   for (const std::size_t count : {0U, 1U, 5U, 100U, 1000U}) {
     const CellLattice lattice({9, 7, 6});
@@ -56,7 +57,7 @@ TEST(Importance, CellsHaveTheLargestValueOfWhatTheyAreFacesOf) {
   }
 }
 
-TEST(Importance, NoCellHasLessThanWhatItIsAFaceOf) {
+TEST(Importance, NoFaceHasLessThanItsCell) {
   Random random(2);
   const CellLattice lattice({12, 12, 12});
   const Importance importance(lattice, random_entries(lattice, 500, random));
@@ -69,7 +70,7 @@ TEST(Importance, NoCellHasLessThanWhatItIsAFaceOf) {
   }
 }
 
-TEST(Importance, OneThatWasNeverMadeIsZero) {
+TEST(Importance, DefaultImportanceIsZero) {
   EXPECT_EQ(Importance().of(12345), 0);
   EXPECT_EQ(Importance().count(), 0U);
 }

@@ -1,5 +1,5 @@
-// Proves that the axis of a solid is that of its mesh or image in one call, and that a mesh without interior is refused
-// with the reason.
+// Proves that one call computes the axis of a solid, a mesh or an image. A mesh without interior is rejected with the
+// reason.
 #include "blum/medial_axis/medial_axis.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ void expect_same(const MedialAxis& a, const MedialAxis& b) {
   EXPECT_EQ(first.edges.size(), second.edges.size());
 }
 
-TEST(MedialAxis, ASolidIsPassedOnInsteadOfItsMeshOrImage) {
+TEST(MedialAxis, ASolidGivesTheAxisOfItsMeshOrImage) {
   const TriangleMesh mesh = make_torus({.ring_segments = 24, .tube_segments = 12});
   TriangleMesh open = mesh;
   open.triangles.pop_back();
@@ -42,7 +42,7 @@ TEST(MedialAxis, ASolidIsPassedOnInsteadOfItsMeshOrImage) {
   expect_same(medial_axis(Solid::of(image, selection)), medial_axis(image, {.selection = selection}));
 }
 
-TEST(MedialAxis, WarnsOfWhatIsNotQuiteTheMesh) {
+TEST(MedialAxis, WarnsOfReversedShellsAndVoxels) {
   const TriangleMesh box = make_box({});
   const MedialAxisOptions options{.resolution = 12};
   EXPECT_TRUE(medial_axis(box, options).report().warnings.empty());
@@ -57,7 +57,7 @@ TEST(MedialAxis, WarnsOfWhatIsNotQuiteTheMesh) {
             (std::vector<Warning>{{WarningCode::solid_of_voxels, axis.report().reason + ", as voxels"}}));
 }
 
-/// What medial_axis() says of a mesh that has no interior.
+/// The message with which medial_axis() rejects a mesh without interior.
 std::string refusal_of(const TriangleMesh& mesh) {
   try {
     (void)medial_axis(mesh, {.resolution = 16, .max_resolution = 16});
@@ -67,7 +67,7 @@ std::string refusal_of(const TriangleMesh& mesh) {
   return {};
 }
 
-TEST(MedialAxis, MeshesThatFaceInwardsAreToldToBeFlipped) {
+TEST(MedialAxis, RecommendsFlippingMeshesThatFaceInwards) {
   TriangleMesh inwards = make_box({});
   inwards.triangles.pop_back();
   inwards.triangles = reversed_triangles(inwards.triangles);
@@ -79,7 +79,7 @@ TEST(MedialAxis, MeshesThatFaceInwardsAreToldToBeFlipped) {
   EXPECT_EQ(refusal_of(sheet).find("flip"), std::string::npos);
 }
 
-TEST(MedialAxis, CancelStopsWhatIsMadeOfIt) {
+TEST(MedialAxis, CancelStopsSimplifyAndNested) {
   const MedialAxis axis = medial_axis(make_box({}), {.resolution = 12});
   std::stop_source source;
   source.request_stop();

@@ -1,4 +1,4 @@
-// Proves that closest points of triangle meshes, and the sites that they lie on, are those of brute force.
+// Proves that closest points of triangle meshes, and their sites, equal those of brute force.
 #include "medial_axis/surface/mesh_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,6 @@ using detail::MeshSurface;
 using detail::NearestPoint;
 using detail::SurfacePoint;
 
-/// A mesh with its sites and its surface.
 struct Sample {
   explicit Sample(TriangleMesh its_mesh) : mesh(std::move(its_mesh)), brute(mesh), surface(mesh, sites, true, {}) {}
 
@@ -61,7 +60,7 @@ TEST(MeshSurface, NearestIsTheNearestOfAllTriangles) {
   }
 }
 
-TEST(MeshSurface, InsideIsWhatAClosedMeshBounds) {
+TEST(MeshSurface, InsideEqualsTheWindingNumberOfAClosedMesh) {
   for (const TriangleMesh& mesh : {make_torus({}), make_shape("gear", {{"teeth", 40}}), make_wedge({.angle = 2})}) {
     const Sample s(mesh);
     const MeshSurface open(s.mesh, s.sites, false, {});
@@ -124,7 +123,7 @@ TEST(MeshSurface, SitesAreTheVertexTheEdgeOrTheFaceBelow) {
   EXPECT_EQ(kinds[0] + kinds[1] + kinds[2], 12 * 7);
 }
 
-/// Where a convex body faces a point, there is no local minimum but the nearest point.
+/// If a convex body faces a point, its only local minimum of the distance is the nearest point.
 TEST(MeshSurface, FollowingAConvexSurfaceFindsTheNearestPoint) {
   for (const TriangleMesh& mesh : {make_sphere({.frequency = 6}), make_box({.segments = {4, 3, 5}}),
                                    make_ellipsoid({.radii = {1, 0.5, 0.2}, .frequency = 5})}) {
@@ -144,7 +143,7 @@ TEST(MeshSurface, FollowingAConvexSurfaceFindsTheNearestPoint) {
   }
 }
 
-TEST(MeshSurface, FollowingEndsWhereNoTriangleAroundIsCloser) {
+TEST(MeshSurface, FollowingEndsIfNoTriangleAroundIsCloser) {
   const Sample s(make_shape("gear", {{"teeth", 12}}));
   Random random(8);
   for (const Vec3d& query : test::places_around(s.mesh, 400, 9)) {
@@ -154,13 +153,13 @@ TEST(MeshSurface, FollowingEndsWhereNoTriangleAroundIsCloser) {
     const double distance = length(query - end.point);
     ASSERT_LE(distance, length(query - start.point));
     for (std::uint32_t t = 0; t < s.mesh.triangles.size(); ++t) {
-      if (s.distance_to(t, end.point) > 1e-12) continue;  // does not hold the point
+      if (s.distance_to(t, end.point) > 1e-12) continue;  // does not contain the point
       ASSERT_GE(s.distance_to(t, query), distance - 1e-9) << "triangle " << t;
     }
   }
 }
 
-TEST(MeshSurface, FollowingGoesNoFurtherThanItsReach) {
+TEST(MeshSurface, FollowingStaysWithinItsReach) {
   const Sample s(make_torus({.ring_segments = 40, .tube_segments = 16}));
   Random random(10);
   int stopped = 0;
@@ -176,13 +175,13 @@ TEST(MeshSurface, FollowingGoesNoFurtherThanItsReach) {
   EXPECT_GT(stopped, 50);
 }
 
-TEST(MeshSurface, TrianglesCrossTheSurfaceWhereOneOfItsTrianglesDoes) {
+TEST(MeshSurface, TrianglesCrossTheSurfaceIfTheyCrossOneOfItsTriangles) {
   const Sample s(make_torus({}));
   const std::vector<Vec3d> places = test::places_around(s.mesh, 300, 7);
   std::size_t crossing = 0;
   for (std::size_t k = 0; k + 2 < places.size(); ++k) {
     const Vec3d& a = places[k];
-    // Large ones and small ones.
+    // Triangles alternate between large and small.
     const double size = k % 2 == 0 ? 1 : 0.1;
     const Vec3d b = a + (places[k + 1] - a) * size;
     const Vec3d c = a + (places[k + 2] - a) * size;
@@ -200,7 +199,7 @@ TEST(MeshSurface, TrianglesCrossTheSurfaceWhereOneOfItsTrianglesDoes) {
   EXPECT_LT(crossing, 250U);
 }
 
-TEST(MeshSurface, WaysOverTheSurfaceLeadFromTriangleToTriangleInTheirBox) {
+TEST(MeshSurface, WaysLeadFromTriangleToTriangleWithinTheirBox) {
   const Sample s(make_sphere({.radius = 1}));
   const auto triangle_at = [&](const Vec3d& p) { return s.surface.nearest(p, {}).element; };
   const std::uint32_t from = triangle_at({2, 0.1, 0.2});

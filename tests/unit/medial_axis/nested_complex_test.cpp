@@ -1,5 +1,5 @@
-// Proves that the axes of all angles in one complex are those that simplify() gives, angle by angle: the same triangles
-// and lines at the same places, and the same components of them.
+// Proves that the complex of all angles contains the axis that simplify() returns at each angle. Triangles and lines
+// are at the same places and have the same components.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,11 +36,11 @@ Line line_between(const Place& a, const Place& b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// A complex as places: nothing without extent counts but for its sides and corners.
+/// A complex as a set of places. Degenerate cells count only through their sides and corners.
 struct Places {
-  std::set<std::array<Place, 3>> triangles;  ///< corners rising
-  std::set<Line> curves;                     ///< on no triangle
-  std::map<Line, int> sides;                 ///< with how many triangles they have
+  std::set<std::array<Place, 3>> triangles;  ///< corners in ascending order
+  std::set<Line> curves;                     ///< outside all triangles
+  std::map<Line, int> sides;                 ///< with the number of their triangles
   std::set<Place> vertices;
 
   void add_triangle(std::array<Place, 3> corners) {
@@ -113,7 +113,7 @@ void expect_same(const AxisRows& nested, const AxisRows& complex, double theta) 
   EXPECT_EQ(lines_at(nested, MedialRole::seam, theta), found.lines_with(3, 1000000));
 }
 
-/// Components of what is there at an angle.
+/// Components of the cells that exist at an angle.
 std::size_t components_at(const AxisRows& nested, double theta) {
   detail::UnionFind joined(nested.vertices.size());
   for (const EdgeRow& e : nested.edges) {
@@ -131,7 +131,7 @@ std::size_t components_at(const AxisRows& nested, double theta) {
   return count;
 }
 
-TEST(NestedComplex, IsWhatExtractGivesAtEveryAngle) {
+TEST(NestedComplex, EqualsSimplifyAtEveryAngle) {
   for (const std::string name : {"bracket", "plate", "box", "void_cube", "torus", "gear", "sphere", "torus_knot"}) {
     SCOPED_TRACE(name);
     for (const double least : {0.0, 40.0}) {
@@ -144,7 +144,7 @@ TEST(NestedComplex, IsWhatExtractGivesAtEveryAngle) {
       for (const double theta : {0.0, 9.5, 20.0, 40.0, 60.0, 119.0, 170.0, 180.0}) {
         if (theta >= least) expect_same(nested, axis.simplify(theta), theta);
       }
-      // An angle at which something goes counts as above it, in both.
+      // At the angle at which a cell vanishes, it is missing in both.
       for (std::size_t t = 0; t < nested.triangles.size(); t += 1 + nested.triangles.size() / 3) {
         const double until = nested.triangles[t].until;
         if (until <= 180) expect_same(nested, axis.simplify(until), until);
@@ -153,7 +153,7 @@ TEST(NestedComplex, IsWhatExtractGivesAtEveryAngle) {
   }
 }
 
-TEST(NestedComplex, OfPartsThatLieApartHasAsManyComponents) {
+TEST(NestedComplex, HasOneComponentPerSeparatePart) {
   const VoxelImage image = make_image("balls_image", {{"count", 3}});
   const MedialAxis axis = medial_axis(image);
   const AxisRows nested = axis.nested();
@@ -163,7 +163,7 @@ TEST(NestedComplex, OfPartsThatLieApartHasAsManyComponents) {
   }
 }
 
-TEST(NestedComplex, SheetsAreThoseOfTheLeastAngle) {
+TEST(NestedComplex, SheetsAreCountedAtTheLeastAngle) {
   MedialAxisOptions options;
   options.resolution = 48;
   const MedialAxis axis = medial_axis(make_shape("box"), options);

@@ -1,5 +1,5 @@
-// Proves that the vertices of an axis lie in the solid, as far from one wall as from another, with the exact distance
-// to the surface as their radius, near the corners that they stand for.
+// Proves that the vertices of an axis lie in the solid, are equidistant to two walls and stay near their corners. Their
+// radius is the exact distance to the surface.
 #include "medial_axis/shape/place_vertices.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,6 @@ SolidBody first_body(const TriangleMesh& mesh) {
   return solid.bodies().front();
 }
 
-/// A body, its voxels, and the vertices of its axis.
 struct Sample {
   Sample(const TriangleMesh& input, double spacing)
       : mesh(first_body(input)),
@@ -71,10 +70,10 @@ struct Sample {
   VoxelSolid solid;
   std::vector<PhaseTime> phases;
   AxisPiece piece;
-  std::vector<Cell> cells;  ///< its vertices
+  std::vector<Cell> cells;  ///< of its vertices
 };
 
-/// Distances to the walls of a box around the origin, rising; negative outside.
+/// Distances to the walls of a box around the origin, in ascending order. They are negative outside.
 std::array<double, 6> distances_to_walls(const Vec3d& half, const Vec3d& at) {
   std::array<double, 6> distance{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -85,7 +84,7 @@ std::array<double, 6> distances_to_walls(const Vec3d& half, const Vec3d& at) {
   return distance;
 }
 
-/// Corners beyond a wall have no point of the axis near enough: the centre of a voxel stands for them.
+/// No point of the axis is near enough to a corner beyond a wall. The centre of a voxel represents such a corner.
 TEST(PlaceVertices, VerticesOfABoxLieOnItsBisectors) {
   const Vec3d half{0.5, 0.35, 0.25};
   const double h = 0.043;
@@ -132,9 +131,9 @@ TEST(PlaceVertices, VerticesStayNearTheirCorners) {
   }
 }
 
-/// The voxels around a corner see eight of the many facets of a round body: the others turn up on the way. The axis of
-/// a torus is a circle, of which few vertices are far.
-TEST(PlaceVertices, VerticesOfARoundBodySeeTwoWalls) {
+/// The voxels around a corner have only eight of the many facets of a round body as sites. The search finds the others
+/// as it proceeds. The axis of a torus is a circle, and few vertices are far from it.
+TEST(PlaceVertices, VerticesOfARoundBodyHaveTwoWalls) {
   const double h = 0.04;
   const Sample s(make_torus({.ring_segments = 48, .tube_segments = 24}), h);
   AxisLists circle;
@@ -151,7 +150,7 @@ TEST(PlaceVertices, VerticesOfARoundBodySeeTwoWalls) {
   EXPECT_LT(off[off.size() / 2], 0.15 * h);
 }
 
-/// Against the closed voxels that are not selected, one by one.
+/// The reference is a search over all closed voxels that are not selected.
 TEST(PlaceVertices, RadiiOfImagesAreDistancesToVoxelFaces) {
   VoxelImage image = make_tube_image({.nodes = 2, .pitch = 10, .radius = 2.5, .spacing = {1, 1.25, 0.8}});
   image.grid.direction = test::turned_grid(image.grid.size).direction;

@@ -1,5 +1,5 @@
-// Proves that paths stay in the solid: lines past a corner are bent around it, lines across a gap are found out however
-// narrow it is, and ways over landmarks lead around it.
+// Proves that paths stay in the solid. Lines past a corner are bent around it. Lines across gaps of any width are
+// detected, and paths over landmarks lead around gaps.
 #include "medial_axis/surface/solid_paths.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using detail::Stop;
 /// A box from (-1, -1, -1) to (1, 1, 1) with a slit from above down to z = 0, across x = 0.
 TriangleMesh slit_block(double width) {
   const double w = 0.5 * width;
-  // The outline in x and z, counterclockwise seen from -y.
+  // The outline in x and z, counterclockwise as seen from -y.
   const std::vector<std::array<double, 2>> outline{{-1, -1}, {1, -1}, {1, 1},  {w, 1},
                                                    {w, 0},   {-w, 0}, {-w, 1}, {-1, 1}};
   TriangleMesh mesh;
@@ -65,7 +65,7 @@ TEST(SolidPaths, StopsLieInTheSolidAndNotOnItsSurface) {
   EXPECT_NEAR(s.at({0.1, 0.2, 0.3}).nearest.distance, 0.2, 1e-15);
 }
 
-TEST(SolidPaths, LinesAcrossAGapAreFoundOutHoweverNarrowItIs) {
+TEST(SolidPaths, LinesAcrossGapsOfAnyWidthAreDetected) {
   for (const double width : {0.1, 1e-3, 1e-6, 1e-9}) {
     SCOPED_TRACE(width);
     const Sample s(slit_block(width));
@@ -94,7 +94,7 @@ TEST(SolidPaths, LandmarksLeadAroundAGap) {
 
 TEST(SolidPaths, ALineThatCutsACornerIsBentAroundIt) {
   const Sample s(slit_block(0.5));
-  // Past the lower corner of the slit, at (-0.25, 0): 0.007 outside.
+  // The line passes the lower corner of the slit at (-0.25, 0), 0.007 outside the solid.
   const Stop above = s.at({-0.26, 0, 0.02});
   const Stop below = s.at({-0.22, 0, -0.01});
   EXPECT_FALSE(s.paths.is_straight(above, below));
@@ -114,7 +114,7 @@ TEST(SolidPaths, APointOutsideIsMovedInsideNextToIt) {
   EXPECT_EQ(s.paths.inside_near({0.1, 0.1, 0}, near).at, (Vec3d{0.1, 0.1, 0}));
 }
 
-/// A strip from y = -1 to 1 that goes up to z = 1 and down to 0 again `folds` times between x = 0 and 1.
+/// A strip from y = -1 to 1. Between x = 0 and 1 it rises to z = 1 and returns to 0 `folds` times.
 TriangleMesh folded_strip(std::uint32_t folds, double thickness) {
   TriangleMesh mesh;
   for (std::uint32_t k = 0; k <= folds; ++k) {
@@ -138,7 +138,7 @@ TriangleMesh folded_strip(std::uint32_t folds, double thickness) {
   return mesh;
 }
 
-TEST(SolidPaths, PointsStrewnAroundLeadThroughSeveralFolds) {
+TEST(SolidPaths, ScatteredPointsLeadThroughSeveralFolds) {
   for (const double thickness : {0.2, 0.05}) {
     SCOPED_TRACE(thickness);
     const Sample s(folded_strip(4, thickness));
@@ -154,7 +154,7 @@ TEST(SolidPaths, PointsStrewnAroundLeadThroughSeveralFolds) {
   }
 }
 
-/// A plate with one hole of radius 0.005 in the middle.
+/// A plate with one hole of radius 0.005 in its middle.
 TriangleMesh pierced_plate() {
   return make_plate({.holes_x = 1, .holes_y = 1, .hole_radius = 0.005});
 }
@@ -183,7 +183,7 @@ TEST(SolidPaths, SegmentsAreNotSweptOverAHole) {
   EXPECT_FALSE(s.paths.can_sweep(segment(-0.1), segment(0.1)));
 }
 
-TEST(SolidPaths, PathsInABoxStayThere) {
+TEST(SolidPaths, PathsInABoxStayInTheBox) {
   const Sample s(slit_block(1e-3));
   const Stop a = s.at({-0.3, 0, 0.2});
   const Stop b = s.at({0.3, 0, 0.2});
@@ -222,7 +222,7 @@ TEST(SolidPaths, ThinWallsThatTurnAreFollowedFromTriangleToTriangle) {
   EXPECT_TRUE(s.paths.is_straight(last, b));
 }
 
-TEST(SolidPaths, PointsWithinRoundingOfTheSurfaceAreNoStops) {
+TEST(SolidPaths, PointsWithinRoundingOfTheSurfaceAreNotStops) {
   const Sample s(make_box({}));
   EXPECT_FALSE(s.paths.stop_at({0.5 - 5e-17, 0, 0}, {}).has_value());
   EXPECT_FALSE(s.paths.stop_at({0.5 - 1e-14, 0, 0}, {}).has_value());
@@ -234,7 +234,7 @@ TEST(SolidPaths, APointThatSeesAllCornersIsFoundInAFold) {
     SCOPED_TRACE(thickness);
     const Sample s(folded_strip(4, thickness));
     const double mid = 0.5 * thickness;
-    // Two on the way up, two on the way down: those of different slopes do not see each other.
+    // Two corners lie on the way up and two on the way down. Corners of different slopes do not see each other.
     const std::vector<Stop> corners{s.at({0.22, -0.3, 0.88 + mid}), s.at({0.22, 0.3, 0.88 + mid}),
                                     s.at({0.28, 0.3, 0.88 + mid}), s.at({0.28, -0.3, 0.88 + mid})};
     EXPECT_FALSE(s.paths.is_straight(corners[0], corners[2]));
@@ -247,7 +247,7 @@ TEST(SolidPaths, APointThatSeesAllCornersIsFoundInAFold) {
   EXPECT_FALSE(s.paths.seeing_all(too_far, 0).has_value());
 }
 
-TEST(SolidPaths, TheBorderOfWhatABoxHoldsLeadsThroughThinFolds) {
+TEST(SolidPaths, TheBorderOfTheClippedSolidLeadsThroughThinFolds) {
   for (const double thickness : {1e-2, 1e-4}) {
     SCOPED_TRACE(thickness);
     const Sample s(folded_strip(6, thickness));

@@ -1,4 +1,5 @@
-// Proves that a set spreads to the voxels near its own, as plain counting finds them, for any number of threads.
+// Proves that spreading adds exactly the voxels near the set, for any number of threads. The reference is a search over
+// all voxels.
 #include "medial_axis/shape/separation_angles.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ bool has_near(const VoxelSet& voxels, const Place& at, int within) {
   return found;
 }
 
-TEST(SpreadVoxels, AreThoseWithOneOfTheSetNear) {
+TEST(SpreadVoxels, HaveAVoxelOfTheSetNearby) {
   for (const Place& size : {Place{7, 6, 5}, Place{64, 3, 3}, Place{63, 2, 4}, Place{65, 3, 2}, Place{130, 2, 2}}) {
     const VoxelSet voxels = sparse(size, static_cast<std::uint64_t>(size[0]));
     for (const int within : {0, 1, 2, 3}) {

@@ -1,5 +1,5 @@
-// Proves that small sheets that lie on others are taken away whole, with what only they have, and that nothing else is:
-// not sheets that stand out, not large ones, and none that closes a void.
+// Proves that small sheets on other sheets are removed as a whole, with the cells that only they have. Sheets that
+// stand out, large sheets and sheets that close a void stay.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -32,7 +32,7 @@ AxisVertex vertex(const Vec3d& position) {
   return vertex;
 }
 
-/// A square in the plane z = 0, of triangles with legs of 1.
+/// A square in the plane z = 0, made of triangles with legs of length 1.
 AxisLists square() {
   AxisLists lists;
   for (std::uint32_t j = 0; j <= side; ++j) {
@@ -52,7 +52,7 @@ std::uint32_t add_vertex(AxisLists& lists, const Vec3d& position) {
   return static_cast<std::uint32_t>(lists.vertices.size() - 1);
 }
 
-/// A triangle on the edge from (2, 2) to (3, 2), with a vertex of its own, which is returned.
+/// Adds a triangle on the edge from (2, 2) to (3, 2) and returns its third vertex.
 std::uint32_t add_flap(AxisLists& lists, const Vec3d& own, float angle = 180) {
   const std::uint32_t v = add_vertex(lists, own);
   lists.add_triangle({at(2, 2), at(3, 2), v}, angle);
@@ -80,19 +80,19 @@ void expect_square(const AxisLists& lists) {
 
 TEST(TakeCrumbs, TakesATriangleBetweenVerticesOfASheetThatItLiesOn) {
   AxisLists lists = square();
-  lists.add_triangle({at(2, 2), at(3, 2), at(4, 3)}, 180);  // free from (2, 2) to (4, 3)
+  lists.add_triangle({at(2, 2), at(3, 2), at(4, 3)}, 180);  // its side from (2, 2) to (4, 3) is free
   ASSERT_TRUE(take(lists));
   expect_square(lists);
 }
 
-TEST(TakeCrumbs, TakesOneWithAVertexOfItsOwn) {
+TEST(TakeCrumbs, TakesATriangleWithAVertexOfItsOwn) {
   AxisLists lists = square();
   add_flap(lists, {2.5, 2.6, 0.05});
   ASSERT_TRUE(take(lists));
   expect_square(lists);
 }
 
-TEST(TakeCrumbs, TakesAStripOfSeveral) {
+TEST(TakeCrumbs, TakesAStripOfSeveralTriangles) {
   AxisLists lists = square();
   std::array<std::uint32_t, 3> own{};
   for (std::uint32_t k = 0; k < 3; ++k) own[k] = add_vertex(lists, {2.0 + k, 2.5, 0.02});
@@ -104,7 +104,7 @@ TEST(TakeCrumbs, TakesAStripOfSeveral) {
   expect_square(lists);
 }
 
-TEST(TakeCrumbs, TakesThoseOnCrumbsToo) {
+TEST(TakeCrumbs, TakesCrumbsOnCrumbs) {
   AxisLists lists = square();
   add_flap(lists, {2.5, 2.6, 0.03});
   add_flap(lists, {2.5, 2.4, -0.03});
@@ -112,21 +112,21 @@ TEST(TakeCrumbs, TakesThoseOnCrumbsToo) {
   expect_square(lists);
 }
 
-TEST(TakeCrumbs, LeavesWhatStandsOut) {
+TEST(TakeCrumbs, LeavesSheetsThatStandOut) {
   AxisLists lists = square();
   add_flap(lists, {2.5, 2, 0.5}, 90);
   EXPECT_FALSE(take(lists));
   EXPECT_EQ(lists.triangles.size(), square().triangles.size() + 1);
 }
 
-TEST(TakeCrumbs, LeavesWhatIsLarge) {
+TEST(TakeCrumbs, LeavesLargeSheets) {
   AxisLists lists = square();
   add_flap(lists, {2.5, 2.6, 0.05});
   EXPECT_FALSE(take(lists, {0.2, 0.1}));
   EXPECT_TRUE(take(lists, {0.4, 0.1}));
 }
 
-TEST(TakeCrumbs, LeavesWhatClosesAVoid) {
+TEST(TakeCrumbs, LeavesSheetsThatCloseAVoid) {
   // A tent over two triangles: its sides lie on the square, but none of them is free.
   AxisLists lists = square();
   const std::uint32_t top = add_vertex(lists, {2.5, 2.5, 0.05});
@@ -138,8 +138,8 @@ TEST(TakeCrumbs, LeavesWhatClosesAVoid) {
   EXPECT_EQ(lists.triangles, before.triangles);
 }
 
-TEST(TakeCrumbs, LeavesWholeWhatWouldLeaveACurve) {
-  // A flap that reaches back to the sheet beyond a hole: without it there would be an edge over the hole.
+TEST(TakeCrumbs, LeavesSheetsWhoseRemovalWouldLeaveACurve) {
+  // A flap spans a hole of the sheet. Without it an edge over the hole would remain.
   AxisLists lists = square();
   lists.triangles.erase(lists.triangles.begin() + 2 * (3 * side + 3), lists.triangles.begin() + 2 * (3 * side + 3) + 2);
   lists.triangle_angles.resize(lists.triangles.size());

@@ -1,5 +1,5 @@
-// Proves that thinning keeps the topology and all that is important, and equals plain sequential thinning in the order
-// of depth, for any number of threads.
+// Proves that thinning keeps the topology and all important cells, for any number of threads. The result equals
+// sequential thinning in the order of depth.
 #include "medial_axis/cells/attached_voxels.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct Sample {
   Importance importance;
 };
 
-/// All cells of a voxel, itself left out.
+/// All cells of a voxel except the voxel itself.
 std::vector<Cell> border_of(const CellLattice& lattice, const Place& at) {
   std::vector<Cell> cells;
   for (std::int64_t n = 0; n < 27; ++n) {
@@ -46,7 +46,7 @@ std::vector<Cell> border_of(const CellLattice& lattice, const Place& at) {
   return cells;
 }
 
-/// Importance of some cells of the voxels of a set.
+/// Gives importance to some cells of the voxels of a set.
 void add_importance(Sample& s, double density, Random& random) {
   s.lattice = CellLattice(s.solid.voxels.size());
   std::vector<Importance::Entry> entries;
@@ -59,7 +59,7 @@ void add_importance(Sample& s, double density, Random& random) {
   s.importance = Importance(s.lattice, entries);
 }
 
-/// Random voxels with random depths, many of them equal; those outside of the solid may be deep.
+/// Random voxels with random depths, many of them equal. Voxels outside the solid may be deep.
 Sample random_sample(const Place& size, double density, double important, Random& random) {
   Sample s;
   s.solid.grid.size = size;
@@ -71,7 +71,7 @@ Sample random_sample(const Place& size, double density, double important, Random
   return s;
 }
 
-/// The voxels of an image, as deep as they are.
+/// The voxels of an image with their true depths.
 Sample sample_of(const VoxelImage& image, double important, Random& random) {
   Sample s;
   Field field = distance_transform(image);
@@ -103,7 +103,7 @@ VoxelSet thinned(const Sample& s, int threads = 0) {
   return thin_voxels(s.solid, {model, s.solid.voxels, s.importance}, s.lattice, s.importance, {.threads = threads});
 }
 
-/// Whether some important cell of a voxel is no other voxel's.
+/// True if an important cell of a voxel belongs to no other voxel.
 bool holds_alone(const Sample& s, const VoxelSet& voxels, const Place& at) {
   VoxelSet others = voxels;
   others.erase(at[0], at[1], at[2]);
@@ -121,7 +121,7 @@ bool holds_alone(const Sample& s, const VoxelSet& voxels, const Place& at) {
   return false;
 }
 
-/// One voxel after the other, the shallowest first.
+/// Removes one voxel at a time, the shallowest first.
 VoxelSet plainly_thinned(const Sample& s) {
   struct Turn {
     float depth;

@@ -1,4 +1,4 @@
-// Proves that a point is found deep in each void, and that what moves over such points is seen.
+// Proves that each void gets a point deep inside, and that motion over such points is detected.
 #include "medial_axis/surface/void_points.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using detail::holds_any;
 using detail::MeshSurface;
 using detail::moves_over_any;
 
-/// A mesh inside out, moved and scaled.
+/// Adds a moved and scaled mesh, turned inside out.
 void add_void(TriangleMesh& mesh, const TriangleMesh& solid, double scale, const Vec3d& at) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Vec3d& v : solid.vertices) mesh.vertices.push_back(v * scale + at);
@@ -32,7 +32,7 @@ std::vector<Vec3d> points_in(const TriangleMesh& mesh) {
   return {surface.voids().begin(), surface.voids().end()};
 }
 
-TEST(VoidPoints, OneIsInTheMiddleOfEachVoid) {
+TEST(VoidPoints, EachVoidHasOneInItsMiddle) {
   TriangleMesh mesh = make_box({.size = {8, 8, 8}});
   EXPECT_TRUE(points_in(mesh).empty());
   const TriangleMesh ball = make_sphere({});
@@ -46,7 +46,7 @@ TEST(VoidPoints, OneIsInTheMiddleOfEachVoid) {
   EXPECT_LT(length(points[2] - Vec3d{2, 1, 0}), 0.1);
 }
 
-TEST(VoidPoints, TetrahedraHoldWhatBarycentricCoordinatesSay) {
+TEST(VoidPoints, TetrahedraContainPointsAsBarycentricCoordinatesDo) {
   Random random(5);
   int held = 0;
   for (int n = 0; n < 2000; ++n) {
@@ -67,7 +67,7 @@ TEST(VoidPoints, TetrahedraHoldWhatBarycentricCoordinatesSay) {
   EXPECT_GT(held, 10);
 }
 
-TEST(VoidPoints, ATriangleMovesOverWhatIsBetweenItsPlaces) {
+TEST(VoidPoints, AMovingTriangleSweepsThePointsBetweenItsPlaces) {
   const std::array<Vec3d, 3> below{Vec3d{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::array<Vec3d, 3> above{Vec3d{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   const auto moves_over = [&](const Vec3d& p) { return moves_over_any(std::vector<Vec3d>{p}, below, above); };

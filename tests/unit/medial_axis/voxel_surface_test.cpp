@@ -1,4 +1,4 @@
-// Proves that the faces of voxels are found where they are, against all voxels one by one.
+// Proves that closest points on the faces of voxels equal those of a search over all voxels.
 #include "medial_axis/surface/voxel_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,6 @@ using detail::VoxelSurface;
 
 using Place = std::array<std::int64_t, 3>;
 
-/// A set, its grid and its surface.
 struct Sample {
   Sample(VoxelSet set, const GridSpec& its_grid) : voxels(std::move(set)), grid(its_grid), surface(voxels, grid) {}
 
@@ -39,7 +38,7 @@ struct Sample {
     }
     return !voxels.contains(at[0], at[1], at[2]);
   }
-  /// The point of a closed voxel that is closest to another one.
+  /// The point of a closed voxel that is closest to a query.
   [[nodiscard]] Vec3d closest_in(const Place& at, const Vec3d& query) const {
     Vec3d from_centre = grid.direction.transposed_times(query - grid.position(at[0], at[1], at[2]));
     for (std::size_t a = 0; a < 3; ++a) {
@@ -47,7 +46,7 @@ struct Sample {
     }
     return grid.position(at[0], at[1], at[2]) + grid.direction * from_centre;
   }
-  /// Distance to the closest voxel that is not in the set, of all in the box.
+  /// The distance to the closest voxel outside the set, among all in the box.
   [[nodiscard]] double distance(const Vec3d& query) const {
     double least = std::numeric_limits<double>::infinity();
     test::for_each_voxel(grid.size, 0, [&](auto i, auto j, auto k) {
@@ -62,7 +61,7 @@ struct Sample {
     }
     return grid.origin + grid.direction * index;
   }
-  /// A footprint on some voxel that is not in the set.
+  /// A footprint on a random voxel outside the set.
   [[nodiscard]] Footprint random_footprint(Random& random) const {
     while (true) {
       const auto voxel = static_cast<std::uint32_t>(random.below(grid.node_count()));
@@ -79,7 +78,7 @@ std::vector<std::unique_ptr<Sample>> samples() {
   Random random(1);
   std::vector<std::unique_ptr<Sample>> all;
   for (const Place& size : {Place{12, 9, 7}, Place{16, 16, 16}, Place{5, 23, 6}, Place{70, 5, 6}, Place{3, 3, 3}}) {
-    for (const double density : {0.5, 0.97, 1.0}) {  // at 1, the set fills the box up to its outermost layer
+    for (const double density : {0.5, 0.97, 1.0}) {  // at 1, the set fills all but the outermost layer
       const GridSpec plain{{0.5, 0, -1}, {1, 1, 1}, size, {}};
       all.push_back(std::make_unique<Sample>(test::random_voxels(size, density, random), plain));
       all.push_back(std::make_unique<Sample>(test::random_voxels(size, density, random), test::turned_grid(size)));
@@ -88,7 +87,7 @@ std::vector<std::unique_ptr<Sample>> samples() {
   return all;
 }
 
-TEST(VoxelSurface, NearestIsTheNearestOfAllVoxels) {
+TEST(VoxelSurface, NearestEqualsASearchOverAllVoxels) {
   Random random(2);
   for (const auto& s : samples()) {
     for (int n = 0; n < 60; ++n) {
@@ -103,7 +102,7 @@ TEST(VoxelSurface, NearestIsTheNearestOfAllVoxels) {
   }
 }
 
-TEST(VoxelSurface, NearestStaysWhereTheNearestIsKnown) {
+TEST(VoxelSurface, NearestStaysIfItStartsAtTheNearest) {
   Random random(3);
   for (const auto& s : samples()) {
     for (int n = 0; n < 20; ++n) {
@@ -115,7 +114,7 @@ TEST(VoxelSurface, NearestStaysWhereTheNearestIsKnown) {
   }
 }
 
-/// Whether no voxel that a footprint lies on is closer.
+/// True if no voxel that contains the footprint is closer.
 bool is_least_around(const Sample& s, const Footprint& foot, const Vec3d& query) {
   const Place at = s.place(foot.element);
   const double distance = length(query - foot.point);
@@ -127,8 +126,8 @@ bool is_least_around(const Sample& s, const Footprint& foot, const Vec3d& query)
   return true;
 }
 
-/// Unless that is more than 64 steps away.
-TEST(VoxelSurface, FollowingEndsWhereNoVoxelThatTouchesTheFootprintIsCloser) {
+/// Following stops after 64 steps, so larger grids are left out.
+TEST(VoxelSurface, FollowingEndsIfNoVoxelAtTheFootprintIsCloser) {
   Random random(4);
   for (const auto& s : samples()) {
     if (s->grid.size[0] > 64) continue;
@@ -144,7 +143,7 @@ TEST(VoxelSurface, FollowingEndsWhereNoVoxelThatTouchesTheFootprintIsCloser) {
   }
 }
 
-/// Away from the other walls there is nothing in the way.
+/// Nothing else is in the way if the other walls are far.
 TEST(VoxelSurface, FollowingAFlatWallFindsTheNearestPointOfIt) {
   Random random(5);
   const Place size{20, 20, 8};
@@ -167,7 +166,7 @@ TEST(VoxelSurface, FollowingAFlatWallFindsTheNearestPointOfIt) {
   }
 }
 
-TEST(VoxelSurface, FollowingGoesNoFurtherThanItsReach) {
+TEST(VoxelSurface, FollowingStaysWithinItsReach) {
   Random random(6);
   for (const auto& s : samples()) {
     for (int n = 0; n < 60; ++n) {
@@ -181,7 +180,7 @@ TEST(VoxelSurface, FollowingGoesNoFurtherThanItsReach) {
   }
 }
 
-/// What a field gives: the closest voxel of the other kind.
+/// The site in a field is the closest voxel of the other kind.
 TEST(VoxelSurface, FootprintsLieOnTheFacesBetweenAVoxelAndItsSite) {
   for (const Vec3d& spacing : {Vec3d{1, 1, 1}, Vec3d{1, 1.25, 1.5}}) {
     VoxelImage image = make_ball_image({.size = 32, .spacing = spacing, .inner_radius = 0.4});
@@ -196,7 +195,7 @@ TEST(VoxelSurface, FootprintsLieOnTheFacesBetweenAVoxelAndItsSite) {
       const Place site = s.place(field.site[voxel].value);
       ASSERT_TRUE(s.is_other(s.place(foot.element)));
       ASSERT_EQ(foot.element, is_inside ? field.site[voxel].value : voxel);
-      // The closest point of the site, or of the voxel beyond to the site's closest point.
+      // The closest point of the site to the centre, or the closest point of the voxel itself to that one.
       const Vec3d expected =
           is_inside ? s.closest_in(site, centre) : s.closest_in({i, j, k}, s.closest_in(site, centre));
       ASSERT_LT(length(foot.point - expected), 1e-12);
@@ -205,8 +204,8 @@ TEST(VoxelSurface, FootprintsLieOnTheFacesBetweenAVoxelAndItsSite) {
   }
 }
 
-/// Told along the grid's axes from the lower corner of the box, and so only up to a common turn.
-TEST(VoxelSurface, RoughFootprintsAreAsFarApartAsTheMiddlesOfTheVoxels) {
+/// Rough footprints use the axes of the grid and the lower corner of the box, so they are exact up to a rotation.
+TEST(VoxelSurface, RoughFootprintsAreAsFarApartAsTheirVoxelCentres) {
   const Place size{6, 5, 4};
   const Sample s(test::voxels_where(size, [](auto...) { return true; }), test::turned_grid(size));
   Random random(7);

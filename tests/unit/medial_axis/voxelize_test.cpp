@@ -1,5 +1,5 @@
-// Proves that bodies and images become the voxels whose centres are inside, on a grid with room around them, with the
-// depth and the closest site of each.
+// Proves that bodies and images become the voxels whose centres lie inside. The grid leaves room around them, and each
+// voxel has its depth and closest site.
 #include "medial_axis/cells/voxelize.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ void expect_free_layer(const VoxelSolid& solid) {
   });
 }
 
-/// Voxels, depths and sites against brute force, where rounding cannot tell inside from outside left out.
+/// Compares voxels, depths and sites with brute force, except for points that rounding makes ambiguous.
 void expect_inside(const VoxelSolid& solid, const TriangleMesh& mesh) {
   const reference::BruteForce brute(mesh);
   test::for_each_voxel(solid.grid.size, 1, [&](auto i, auto j, auto k) {
@@ -73,7 +73,7 @@ TEST(Voxelize, BodiesAreTheVoxelsWithTheirCentreInside) {
   }
 }
 
-/// A layer of nodes outside stays free, and cells of the model around it.
+/// A layer of nodes outside the body stays free, and so do the cells of the model around it.
 TEST(Voxelize, GridsReachBeyondTheBody) {
   const Voxelized out = voxelize_body(body_of(make_box({.size = {1, 0.613, 0.2}})), 0.05, {});
   const Box3 box = bounds(make_box({.size = {1, 0.613, 0.2}}));
@@ -137,7 +137,7 @@ TEST(Voxelize, ImagesAreTheSelectedVoxelsWhereTheyLie) {
   }
 }
 
-TEST(Voxelize, VoxelsOfImagesKnowTheClosestOfTheOtherKind) {
+TEST(Voxelize, VoxelsOfImagesHaveTheClosestVoxelOfTheOtherKind) {
   Random random(2);
   const VoxelImage image = labelled_image(test::turned_grid({8, 7, 6}), random);
   std::array<std::int64_t, 3> first{};
@@ -155,7 +155,7 @@ TEST(Voxelize, VoxelsOfImagesKnowTheClosestOfTheOtherKind) {
   }
 }
 
-TEST(Voxelize, SidesTooSmallToCountAreRefused) {
+TEST(Voxelize, TooSmallSpacingIsRejected) {
   EXPECT_THROW((void)voxelize_body(body_of(make_box({})), 1e-9, {}), InvalidOption);
   EXPECT_THROW((void)voxelize_by_winding(make_box({}), 1e-9, {}), InvalidOption);
 }

@@ -1,5 +1,5 @@
-// Random points of surfaces: on them, by area, the same for any threads; even where asked for; near them with
-// distances.
+// Proves that random points of surfaces lie on them, by area, and are the same for any threads. If requested, the
+// points are even. Points near surfaces have exact distances.
 #include "blum/points/sample_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ double area_of(const MeshView& mesh, std::uint32_t t) {
   return length(cross(b - a, c - a)) / 2;
 }
 
-/// Squared distance of each point to the closest other one, the slow way.
+/// The distance of each point to the closest other one, by comparison of all pairs.
 std::vector<double> nearest_others(const std::vector<Vec3d>& points) {
   std::vector<double> out;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -53,7 +53,7 @@ TEST(SampleSurface, LiesOnItsTriangles) {
   }
 }
 
-/// Counts per triangle of a mesh with areas that differ by a thousand: a chi-square test at some 6 sigma.
+/// Counts per triangle of a mesh whose areas differ by a thousand pass a chi-square test at about 6 sigma.
 TEST(SampleSurface, IsUniformByArea) {
   TriangleMesh mesh = make_sphere({.frequency = 4});
   for (Vec3d& v : mesh.vertices) v = {v.x * 10, v.y, v.z * (1.1 + v.x)};
@@ -70,7 +70,7 @@ TEST(SampleSurface, IsUniformByArea) {
   }
   const auto freedom = static_cast<double>(seen.size() - 1);
   EXPECT_LT(std::abs(chi - freedom), 6 * std::sqrt(2 * freedom));
-  // Within a triangle: the mean is the middle.
+  // The mean of the points within a triangle is its middle.
   const TriangleMesh one{{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}}, {{0, 1, 2}}};
   Vec3d mean;
   for (const Vec3d& p : sample_surface(one, 100000).points) mean += p / 100000.0;
@@ -86,13 +86,13 @@ TEST(SampleSurface, IsTheSameForAnyThreadsAndOtherForOtherSeeds) {
     EXPECT_EQ(one.triangles, seven.triangles);
     EXPECT_NE(one.points, sample_surface(mesh, 9000, {.seed = 4, .blue_noise = blue_noise}).points);
   }
-  // The first points do not depend on how many there are.
+  // The first points do not depend on the number of points.
   const auto few = sample_surface(mesh, 100).points;
   const auto many = sample_surface(mesh, 5000).points;
   EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
 }
 
-/// Both sides of a plate thinner than points are apart count as one: no two points come to lie on each other.
+/// If points are further apart than the plate is thick, its two sides count as one. No two points coincide.
 TEST(SampleSurface, OfBlueNoiseKeepsItsDistanceOnThinPlates) {
   for (const double thin : {0.1, 0.05, 0.03, 0.01}) {
     const TriangleMesh plate = make_box({.size = {4, 3, thin}});
@@ -103,7 +103,7 @@ TEST(SampleSurface, OfBlueNoiseKeepsItsDistanceOnThinPlates) {
   }
 }
 
-/// A lattice of triangles is the most even there is: its points lie sqrt(2 area / (sqrt(3) count)) apart.
+/// A lattice of triangles is the most even: its points lie sqrt(2 area / (sqrt(3) count)) apart.
 TEST(SampleSurface, OfBlueNoiseKeepsItsDistance) {
   const TriangleMesh mesh = make_sphere({.frequency = 10});
   double area = 0;
@@ -115,7 +115,7 @@ TEST(SampleSurface, OfBlueNoiseKeepsItsDistance) {
   EXPECT_GT(*std::min_element(even.begin(), even.end()), 0.6 * most);
   EXPECT_LT(*std::max_element(even.begin(), even.end()), 1.2 * most);
   EXPECT_LT(*std::min_element(random.begin(), random.end()), 0.2 * most);
-  // Of any size.
+  // The result does not depend on the scale.
   for (const double scale : {1e-150, 1e150}) {
     TriangleMesh scaled = mesh;
     for (Vec3d& v : scaled.vertices) v = v * scale;
@@ -124,7 +124,7 @@ TEST(SampleSurface, OfBlueNoiseKeepsItsDistance) {
   }
 }
 
-TEST(SampleSurface, LeavesOutWhatHasNoArea) {
+TEST(SampleSurface, LeavesOutPrimitivesWithoutArea) {
   TriangleMesh mesh = make_box({});
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), {{5, 5, 5}, {6, 6, 6}});
@@ -143,7 +143,7 @@ TEST(SampleSurface, LeavesOutWhatHasNoArea) {
   EXPECT_THROW((void)sample_surface(mesh, 10000, {}, {.cancel = stop.get_token()}), Cancelled);
 }
 
-TEST(SampleNear, TellsExactDistances) {
+TEST(SampleNear, ReportsExactDistances) {
   const TriangleMesh mesh = make_organic({.frequency = 10});
   const NearSamples found = sample_near(mesh, 20000, {.sigma = 0.02, .in_box = 0.25, .seed = 9});
   ASSERT_EQ(found.points.size(), 20000U);
@@ -156,7 +156,7 @@ TEST(SampleNear, TellsExactDistances) {
     EXPECT_EQ(found.closest[k].site, expected.site);
     if (k < 15000) squares += expected.distance * expected.distance;
   }
-  // Of an offset in space, the part across the surface counts; where that bends, a little less.
+  // Only the part of an offset across the surface counts. It is a little less where the surface bends.
   EXPECT_NEAR(std::sqrt(squares / 15000), 0.02, 0.001);
   const Box3 box = bounds(mesh);
   for (std::size_t k = 15000; k < 20000; ++k) {

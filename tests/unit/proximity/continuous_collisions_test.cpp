@@ -1,4 +1,4 @@
-// All colliding pairs of moving meshes: those of testing all pairs one by one, for any mesh and number of threads.
+// Collisions of moving meshes match a test of all pairs one by one, for any mesh and number of threads.
 #include "blum/proximity/continuous_collisions.hpp"
 
 #include <gtest/gtest.h>
@@ -37,9 +37,9 @@ Collisions as_rows(const ContinuousCollisions& found) {
   return out;
 }
 
-/// One pair after the other.
+/// Tests all pairs one by one.
 Collisions slow_collisions(const MeshView& mesh, std::span<const Vec3d> end, const ImpactOptions& options) {
-  // Vertices in one place at both ends are one.
+  // Vertices that coincide at the start and at the end count as one.
   std::map<std::array<double, 6>, std::uint32_t> first_at;
   std::vector<std::uint32_t> place;
   for (std::uint32_t v = 0; v < end.size(); ++v) {
@@ -87,7 +87,7 @@ Collisions slow_collisions(const MeshView& mesh, std::span<const Vec3d> end, con
   return out;
 }
 
-/// @return  how many collide.
+/// @return  the number of colliding pairs.
 std::size_t expect_right(const TriangleMesh& mesh, const std::vector<Vec3d>& end, const ImpactOptions& options = {}) {
   const Collisions right = slow_collisions(mesh, end, options);
   for (const int threads : {1, 2, 7}) {
@@ -117,7 +117,7 @@ std::vector<Vec3d> moved(const TriangleMesh& mesh, const std::function<Vec3d(con
   return out;
 }
 
-TEST(ContinuousCollisions, OfSoupsAreThoseOfAllPairs) {
+TEST(ContinuousCollisions, MatchAllPairsForSoups) {
   Random random(1);
   for (const double speed : {0.0, 0.02, 0.5}) {
     const TriangleMesh soup = random_soup(random, 60, 0.2);
@@ -127,8 +127,8 @@ TEST(ContinuousCollisions, OfSoupsAreThoseOfAllPairs) {
   }
 }
 
-/// A whole number of coordinates: contacts in corners and along edges, triangles that coincide or have no area.
-TEST(ContinuousCollisions, OfDegenerateSoupsAreThoseOfAllPairs) {
+/// Coordinates are whole numbers: features touch at corners and along edges, triangles coincide or have no area.
+TEST(ContinuousCollisions, MatchAllPairsForDegenerateSoups) {
   Random random(2);
   const auto corner = [&] {
     const double x = static_cast<double>(random.below(4));
@@ -142,7 +142,7 @@ TEST(ContinuousCollisions, OfDegenerateSoupsAreThoseOfAllPairs) {
   }
 }
 
-TEST(ContinuousCollisions, WithASeparationAreThoseOfAllPairs) {
+TEST(ContinuousCollisions, MatchAllPairsWithASeparation) {
   Random random(3);
   const TriangleMesh soup = random_soup(random, 40, 0.15);
   const std::vector<Vec3d> end = moved(soup, [&](const Vec3d& p) { return p + random.in_ball() * 0.1; });
@@ -155,13 +155,13 @@ TEST(ContinuousCollisions, WithASeparationAreThoseOfAllPairs) {
   EXPECT_GT(before, 200U);
 }
 
-TEST(ContinuousCollisions, OfConnectedMeshesAreThoseOfAllPairs) {
+TEST(ContinuousCollisions, MatchAllPairsForConnectedMeshes) {
   const TriangleMesh sphere = make_sphere({.frequency = 3});
-  // Turned inside out through its middle.
+  // The sphere turns inside out through its middle.
   EXPECT_GT(expect_right(sphere, moved(sphere, [](const Vec3d& p) { return Vec3d{p.x, p.y, -0.3 * p.z}; })), 100U);
-  // Blown up: nothing meets.
+  // The sphere grows: nothing meets.
   EXPECT_EQ(expect_right(sphere, moved(sphere, [](const Vec3d& p) { return p * 3.0; })), 0U);
-  // Rigid: nothing meets, though the boxes around motions do.
+  // The motion is rigid: only the boxes around motions meet.
   EXPECT_EQ(expect_right(sphere, moved(sphere, [](const Vec3d& p) { return p + Vec3d{5, 3, 1}; })), 0U);
 }
 
@@ -185,7 +185,7 @@ TEST(ContinuousCollisions, SegmentsAndPointsTakePart) {
   mesh.segments = {{4, 5}};
   mesh.points = {3};
   std::vector<Vec3d> end = mesh.vertices;
-  for (std::size_t v = 3; v < 7; ++v) end[v].z = -1;  // the last one is named by nothing
+  for (std::size_t v = 3; v < 7; ++v) end[v].z = -1;  // no primitive contains the last vertex
   EXPECT_EQ(expect_right(mesh, end), 3U);
   const ContinuousCollisions found = continuous_collisions(mesh, end);
   ASSERT_EQ(found.vertex_face.size(), 1U);
@@ -193,7 +193,7 @@ TEST(ContinuousCollisions, SegmentsAndPointsTakePart) {
   EXPECT_NEAR(*found.earliest(), 0.5, 1e-6);
 }
 
-/// Beyond the range of single precision.
+/// Coordinates exceed the range of single precision.
 TEST(ContinuousCollisions, PointsMayBeFarAway) {
   TriangleMesh mesh;
   mesh.triangles = {{0, 1, 2}};
@@ -209,7 +209,7 @@ TEST(ContinuousCollisions, PointsMayBeFarAway) {
   }
 }
 
-TEST(ContinuousCollisions, TellOnlyOfVerticesThatTheMeshNames) {
+TEST(ContinuousCollisions, ReportOnlyVerticesOfPrimitives) {
   TriangleMesh mesh;
   mesh.vertices = {{1, 1, 1}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1}, {1, 1, 1}};
   mesh.triangles = {{1, 2, 3}};
@@ -221,7 +221,7 @@ TEST(ContinuousCollisions, TellOnlyOfVerticesThatTheMeshNames) {
   EXPECT_EQ(found.vertex_face[0].vertex, 4U);
 }
 
-/// Each of many pairs collides: the work is long, and little of it is done between two looks.
+/// All of many pairs collide: the work is long, and little of it passes between two checks for cancellation.
 TEST(ContinuousCollisions, CanBeCancelledWhereAllCollides) {
   constexpr std::uint32_t count = 3000;
   TriangleMesh mesh;
@@ -245,7 +245,7 @@ TEST(ContinuousCollisions, CanBeCancelledWhereAllCollides) {
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5);
 }
 
-TEST(ContinuousCollisions, OfNothingIsNothing) {
+TEST(ContinuousCollisions, FindNothingForAMeshAtRest) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
@@ -254,7 +254,7 @@ TEST(ContinuousCollisions, OfNothingIsNothing) {
   EXPECT_FALSE(found.earliest());
 }
 
-TEST(ContinuousCollisions, RefusesWhatIsNoMotion) {
+TEST(ContinuousCollisions, RejectInvalidMotions) {
   const TriangleMesh box = make_box();
   std::vector<Vec3d> end = box.vertices;
   EXPECT_THROW(static_cast<void>(continuous_collisions(box, std::span(end).first(3))), InvalidMesh);

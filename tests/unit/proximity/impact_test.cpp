@@ -1,4 +1,4 @@
-// Whether and when moving features meet: by the library and by slow rational arithmetic, which must agree always.
+// Impacts of moving features: the library always agrees with slow rational arithmetic.
 #include "blum/proximity/impact.hpp"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ std::optional<double> exact_impact(const FourMovingPoints& points, FeatureKinds 
                       : detail::exact_edge_edge_impact(points, tolerance);
 }
 
-/// That the answers, those of doubles alone and those of integers alone are right. @return whether they meet.
+/// Checks the result, that of doubles alone and that of integers alone. @return true if the features meet.
 bool expect_right(const FourMovingPoints& points, const ImpactOptions& options = {}) {
   SCOPED_TRACE(text(points));
   bool any = false;
@@ -88,7 +88,7 @@ bool expect_right(const FourMovingPoints& points, const ImpactOptions& options =
   return any;
 }
 
-/// The same of the time at which they are as close as a distance.
+/// Checks the time at which the features come within a distance. @return true if they do.
 bool expect_right_approach(const FourMovingPoints& points, double distance) {
   return expect_right(points, {.min_separation = distance});
 }
@@ -101,7 +101,7 @@ FourMovingPoints random_points(const std::function<Vec3d()>& next) {
   return out;
 }
 
-/// Coordinates are integers from -most to most: nearly all contacts are degenerate.
+/// Coordinates are integers from -most to most. Nearly all contacts are degenerate.
 FourMovingPoints on_lattice(Random& random, std::uint64_t most) {
   const auto next = [&] { return static_cast<double>(random.below(2 * most + 1)) - static_cast<double>(most); };
   return random_points([&] {
@@ -111,7 +111,7 @@ FourMovingPoints on_lattice(Random& random, std::uint64_t most) {
   });
 }
 
-TEST(Impact, OfRandomPointsIsThatOfRationalNumbers) {
+TEST(Impact, MatchesRationalArithmeticForRandomPoints) {
   Random random(1);
   int meet = 0;
   for (int k = 0; k < 60; ++k) meet += expect_right(random_points([&] { return random.in_cube(); })) ? 1 : 0;
@@ -119,7 +119,7 @@ TEST(Impact, OfRandomPointsIsThatOfRationalNumbers) {
   EXPECT_LT(meet, 54);
 }
 
-TEST(Impact, OfSmallIntegersIsThatOfRationalNumbers) {
+TEST(Impact, MatchesRationalArithmeticForSmallIntegers) {
   Random random(2);
   for (const std::uint64_t most : {1U, 2U, 4U}) {
     int meet = 0;
@@ -129,8 +129,8 @@ TEST(Impact, OfSmallIntegersIsThatOfRationalNumbers) {
   }
 }
 
-/// All in a plane that keeps its direction and may travel along it.
-TEST(Impact, InAPlaneIsThatOfRationalNumbers) {
+/// All points lie in a plane that keeps its normal and may move along it.
+TEST(Impact, MatchesRationalArithmeticInAPlane) {
   Random random(3);
   int meet = 0;
   for (int k = 0; k < 200; ++k) {
@@ -140,7 +140,7 @@ TEST(Impact, InAPlaneIsThatOfRationalNumbers) {
       points.start[n].z = heights[0];
       points.end[n].z = heights[1];
     }
-    // Turned by an integer matrix of determinant 1, so that no axis is special.
+    // An integer matrix of determinant 1 transforms the points, so that no axis is special.
     meet += expect_right(with_each(points,
                                    [](const Vec3d& p) {
                                      return Vec3d{p.x + p.y + p.z, p.x + 2 * p.y + 2 * p.z, p.x + 2 * p.y + 3 * p.z};
@@ -152,8 +152,8 @@ TEST(Impact, InAPlaneIsThatOfRationalNumbers) {
   EXPECT_LT(meet, 420);
 }
 
-/// On one line, which may travel: triangles without area, edges along each other.
-TEST(Impact, OnALineIsThatOfRationalNumbers) {
+/// All points lie on a line that may move: triangles have no area, edges lie along each other.
+TEST(Impact, MatchesRationalArithmeticOnALine) {
   Random random(4);
   int meet = 0;
   for (int k = 0; k < 300; ++k) {
@@ -166,8 +166,8 @@ TEST(Impact, OnALineIsThatOfRationalNumbers) {
   EXPECT_GT(meet, 50);
 }
 
-/// Points that coincide, stay at their place, or are the same: segments and points in place of triangles and edges.
-TEST(Impact, OfPointsThatAreTheSameIsThatOfRationalNumbers) {
+/// Points coincide or rest: triangles become segments or points, edges become points.
+TEST(Impact, MatchesRationalArithmeticForCoincidentPoints) {
   Random random(5);
   int meet = 0;
   for (int k = 0; k < 500; ++k) {
@@ -183,9 +183,8 @@ TEST(Impact, OfPointsThatAreTheSameIsThatOfRationalNumbers) {
   EXPECT_GT(meet, 50);
 }
 
-/// Contact at the instant at which a motion turns back, and at the border of features: by construction, then spoilt by
-/// single roundings.
-TEST(Impact, GrazingIsThatOfRationalNumbers) {
+/// Features touch at their border at half time. Single roundings then disturb this contact.
+TEST(Impact, MatchesRationalArithmeticWhenGrazing) {
   Random random(6);
   const auto nudged = [&](const Vec3d& p) {
     Vec3d out = p;
@@ -199,7 +198,7 @@ TEST(Impact, GrazingIsThatOfRationalNumbers) {
   int meet = 0;
   for (int k = 0; k < 40; ++k) {
     FourMovingPoints points = random_points([&] { return random.in_cube(); });
-    // At half time the first point is on the border of the triangle, or the second edge.
+    // At half time the first point lies on the border of the triangle.
     const double s = random.uniform();
     const Vec3d a = (points.start[1] + points.end[1]) * 0.5;
     const Vec3d b = (points.start[2] + points.end[2]) * 0.5;
@@ -210,8 +209,8 @@ TEST(Impact, GrazingIsThatOfRationalNumbers) {
   EXPECT_LT(meet, 39);
 }
 
-/// Sliding along a face or an edge, a rounding above, in or below it.
-TEST(Impact, SlidingIsThatOfRationalNumbers) {
+/// Features slide along a face or an edge, in it or a few roundings above or below it.
+TEST(Impact, MatchesRationalArithmeticWhenSliding) {
   Random random(7);
   for (int k = 0; k < 60; ++k) {
     const double height = (static_cast<double>(random.below(5)) - 2) * 0x1p-53;
@@ -245,7 +244,7 @@ TEST(Impact, ToleranceBoundsHowEarlyTimesAre) {
   }
 }
 
-TEST(Impact, WithASeparationIsThatOfRationalNumbers) {
+TEST(Impact, MatchesRationalArithmeticWithASeparation) {
   Random random(12);
   int meet = 0;
   for (int k = 0; k < 8; ++k) {
@@ -265,7 +264,7 @@ TEST(Impact, WithASeparationIsThatOfRationalNumbers) {
   }
 }
 
-/// Features that slide at exactly the distance, and ones that keep it all the time.
+/// Features reach exactly the separation, or keep it all the time.
 TEST(Impact, AtExactlyTheSeparationIsAnImpact) {
   const std::array<Vec3d, 3> triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
   const auto moving = [&](const Vec3d& from, const Vec3d& to) {
@@ -301,7 +300,7 @@ TEST(Impact, AtTheStartIsTimeZero) {
   EXPECT_EQ(vertex_face_impact(points), 0.0);
 }
 
-TEST(Impact, OfAPointThatFallsOntoATriangle) {
+TEST(Impact, FindsWhenAPointFallsOntoATriangle) {
   const FourMovingPoints points{{{{0.25, 0.25, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
                                 {{{0.25, 0.25, -2}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}};
   const auto time = vertex_face_impact(points);
@@ -310,7 +309,7 @@ TEST(Impact, OfAPointThatFallsOntoATriangle) {
   EXPECT_NEAR(*time, 1.0 / 3, 1e-6);
 }
 
-/// A small answer of doubles would do where integers are not needed: most queries of a simulation.
+/// Doubles suffice for nearly all queries of a simulation; integers decide the rest.
 TEST(Impact, DoublesDecideNearlyAllRandomQueries) {
   Random random(10);
   int unknown = 0;
@@ -323,7 +322,7 @@ TEST(Impact, DoublesDecideNearlyAllRandomQueries) {
   EXPECT_LE(unknown, 4);
 }
 
-TEST(Impact, ManyAreThoseOfEach) {
+TEST(Impact, BatchesMatchSingleQueries) {
   Random random(11);
   std::vector<FourMovingPoints> points;
   for (int k = 0; k < 2000; ++k) points.push_back(on_lattice(random, 3));
@@ -337,7 +336,7 @@ TEST(Impact, ManyAreThoseOfEach) {
   }
 }
 
-TEST(Impact, RefusesWhatIsNoMotion) {
+TEST(Impact, RejectsInvalidMotions) {
   FourMovingPoints points{};
   EXPECT_THROW(static_cast<void>(vertex_face_impact(points, {.tolerance = 0})), InvalidOption);
   EXPECT_THROW(static_cast<void>(vertex_face_impact(points, {.tolerance = 2})), InvalidOption);

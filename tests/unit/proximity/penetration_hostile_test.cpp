@@ -1,5 +1,5 @@
-// Penetration of solids whose surfaces coincide, nearly coincide or lie in each other: against counts of voxels and
-// known volumes, at places whose coordinates are rounded.
+// Penetration is right if surfaces coincide, nearly coincide or lie inside each other, also with rounded coordinates.
+// Counts of voxels and known volumes are the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,14 +66,14 @@ Answer answer(const TriangleMesh& a, const TriangleMesh& b) {
   return out;
 }
 
-/// Cells of a grid of 3 x 3 x 3.
+/// Cells of a grid of 3 x 3 x 3 cells.
 using Cells = std::bitset<27>;
 bool holds(const Cells& cells, int x, int y, int z) {
   const int cell = x + 3 * y + 9 * z;
   return std::min({x, y, z}) >= 0 && std::max({x, y, z}) < 3 && cells[static_cast<std::size_t>(cell)];
 }
 
-/// The boundary of cells of a size, whose lattice begins at a place: coordinates are rounded, the same way for all.
+/// The boundary of cells of the given size, from the given corner of the grid. Equal corners round to equal values.
 TriangleMesh surface_of(const Cells& cells, double size, const Vec3d& from) {
   TriangleMesh mesh;
   std::map<std::array<int, 3>, std::uint32_t> known;
@@ -107,7 +107,7 @@ TriangleMesh surface_of(const Cells& cells, double size, const Vec3d& from) {
   return mesh;
 }
 
-TEST(HostilePenetration, OfVoxelsIsWhatTheyHaveInCommon) {
+TEST(HostilePenetration, MatchesTheCommonVoxels) {
   Random random(5);
   const auto cells = [&] {
     Cells out;
@@ -128,7 +128,7 @@ TEST(HostilePenetration, OfVoxelsIsWhatTheyHaveInCommon) {
   }
 }
 
-TEST(HostilePenetration, OfEqualSolidsIsNeverNothing) {
+TEST(HostilePenetration, FindsTheOverlapOfEqualSolids) {
   for (const Vec3d& at : {Vec3d{}, Vec3d{0.1, 0.2, 0.3}, Vec3d{-3.7, 1e3 / 7, 0.01}}) {
     const TriangleMesh box = cube(0.5, at);
     EXPECT_NEAR(answer(box, box).separation, -1, 1e-12);
@@ -143,15 +143,15 @@ TEST(HostilePenetration, OfEqualSolidsIsNeverNothing) {
     const TriangleMesh part = cube(half, at);
     TriangleMesh bar = part;
     for (Vec3d& p : bar.vertices) p.x += p.x > at.x ? 0.3 : 0;
-    // A thing that is flush with five faces of another one.
+    // The cube is flush with five faces of the bar.
     EXPECT_LT(answer(part, bar).separation, 0) << trial;
     EXPECT_LT(answer(bar, part).separation, 0) << trial;
     EXPECT_NEAR(answer(part, bar).volume, 8 * half * half * half, 1e-9);
   }
 }
 
-/// Shells in each other that all face outwards are one solid, whose inside holds the inner shells.
-TEST(HostilePenetration, OfNestedShellsIsThatOfTheOuterOne) {
+/// Nested shells that all face outwards form one solid. The inner shells lie in its interior.
+TEST(HostilePenetration, TreatsNestedShellsAsTheOuterOne) {
   const TriangleMesh nested = both(cube(2), cube(1));
   EXPECT_NEAR(answer(nested, cube(0.25)).volume, 0.125, 1e-12);
   EXPECT_NEAR(answer(nested, cube(0.25)).separation, -1.75, 1e-12);
@@ -159,7 +159,7 @@ TEST(HostilePenetration, OfNestedShellsIsThatOfTheOuterOne) {
   EXPECT_NEAR(answer(cube(0.25, {1, 0, 0}), nested).volume, 0.125, 1e-12);
   EXPECT_NEAR(answer(nested, cube(0.5, {2, 0, 0})).volume, 0.5, 1e-12);
   EXPECT_NEAR(answer(nested, cube(0.5, {3, 0, 0})).separation, 0.5, 1e-12);
-  // One that faces inwards is a hollow, in which things do not meet it.
+  // An inner shell that faces inwards bounds a void. Objects in the void do not overlap the solid.
   TriangleMesh hollow = cube(1);
   for (Triangle& t : hollow.triangles) std::swap(t[1], t[2]);
   hollow = both(cube(2), hollow);
@@ -167,7 +167,7 @@ TEST(HostilePenetration, OfNestedShellsIsThatOfTheOuterOne) {
   EXPECT_NEAR(answer(hollow, cube(0.25, {1, 0, 0})).volume, 0.0625, 1e-12);
 }
 
-TEST(HostilePenetration, OfEqualShellsOfOneObjectIsNotNothing) {
+TEST(HostilePenetration, FindsTheOverlapOfEqualShellsOfOneObject) {
   const TriangleMesh twice = both(cube(1, {0.1, 0.2, 0.3}), cube(1, {0.1, 0.2, 0.3}));
   ProximityScene scene;
   ObjectOptions options;
@@ -180,9 +180,9 @@ TEST(HostilePenetration, OfEqualShellsOfOneObjectIsNotNothing) {
   EXPECT_EQ(scene.signed_separation(object, object), -found.parts[0].depth);
 }
 
-/// What two solids have in common is the same where both are one object that is asked of itself, in any order: also
-/// where only parts of their faces coincide.
-TEST(HostilePenetration, OfOneObjectIsThatOfItsTwoSolids) {
+/// The overlap of two solids equals the overlap of one object of both with itself, in any order. This also holds if
+/// only parts of their faces coincide.
+TEST(HostilePenetration, OfOneObjectMatchesItsTwoSolids) {
   const std::vector<Point2> outline{{-1, -20}, {1, -20}, {1, 0}, {10, 0}, {10, 20}, {-1, 20}};
   const TriangleMesh bent = make_extrusion(outline, {}, {.thickness = 20});
   for (const TriangleMesh& other : {box_between({-1, -1, -1}, {1, 8, 1}), box_between({-1, -9, -1}, {1, 8, 1}),
@@ -203,8 +203,8 @@ TEST(HostilePenetration, OfOneObjectIsThatOfItsTwoSolids) {
   }
 }
 
-/// What is too far away or too small to be told apart is an error, never a wrong answer.
-TEST(HostilePenetration, OfWhatIsTooFarOrTooSmallIsAnError) {
+/// Solids too far away or too small to be distinguished cause an error, never a wrong result.
+TEST(HostilePenetration, IsRightOrAnErrorForFarOrSmallSolids) {
   for (const double far : {1e8, 1e10, 1e11, 1e13}) {
     const Vec3d at{far, 0, 0};
     const double half = 0.5;
@@ -223,9 +223,9 @@ TEST(HostilePenetration, OfWhatIsTooFarOrTooSmallIsAnError) {
   }
 }
 
-/// Turned by a multiple of the angle between its sides a cylinder is the same but for rounding: sides lie 1e-16 from
-/// each other, and cross.
-TEST(HostilePenetration, OfSolidsThatAreTheSameButForRounding) {
+/// A rotation by a multiple of the angle between its sides maps a cylinder to itself, except for rounding. Sides lie
+/// 1e-16 apart and cross.
+TEST(HostilePenetration, IsRightForSolidsEqualExceptForRounding) {
   const TriangleMesh cylinder = make_cylinder();
   const double volume = answer(cylinder, cylinder).volume;
   for (const double degrees : {1.0, 5.0, 7.5, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 120.0, 165.0, 180.0}) {
@@ -244,9 +244,8 @@ TEST(HostilePenetration, OfSolidsThatAreTheSameButForRounding) {
   }
 }
 
-/// A torus that crosses itself along a line has hundreds of sides there: looked at one by one, each beside all others,
-/// they took memory by their square.
-TEST(HostilePenetration, OfATorusThatCrossesItself) {
+/// A torus that crosses itself along a line has hundreds of sides there. Memory must not grow with their square.
+TEST(HostilePenetration, IsRightForASelfIntersectingTorus) {
   constexpr std::uint32_t around = 24;
   constexpr std::uint32_t tube = 16;
   TriangleMesh torus;

@@ -1,4 +1,4 @@
-// How deep solids lie in each other: against what is known of spheres, boxes, tori and plates, at any tessellation.
+// Penetration depths match the known depths of spheres, boxes, tori and plates, at any tessellation.
 #include "blum/proximity/penetration.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TriangleMesh both(TriangleMesh a, const TriangleMesh& b) {
   return a;
 }
 
-/// A box between two corners, its faces cut into parts x parts squares.
+/// A box between two corners; each face is divided into parts x parts rectangles.
 TriangleMesh box(const Vec3d& lower, const Vec3d& upper, int parts = 1) {
   TriangleMesh mesh = make_box({.size = upper - lower, .segments = {parts, parts, parts}});
   const Vec3d middle = bounds(mesh).center();
@@ -52,7 +52,7 @@ Answer answer(const TriangleMesh& a, const TriangleMesh& b, double tolerance = 0
   return {scene.penetration(first, second, options), scene.signed_separation(first, second, options)};
 }
 
-/// What must hold of any part.
+/// Checks the properties of every part.
 void expect_sound(const Penetration& part, const TriangleMesh& a, const TriangleMesh& b, double tolerance) {
   EXPECT_GT(part.depth, 0);
   EXPECT_GE(part.depth_bound, part.depth);
@@ -85,7 +85,7 @@ TEST(Penetration, OfSpheresConverges) {
       expect_sound(part, a, b, 1e-4);
       EXPECT_EQ(found.separation, -part.depth);
       ASSERT_EQ(part.curves.size(), 1U);
-      // From pole to pole; or, where they are nearly one sphere, from a pole to the curve in which they cross.
+      // The depth reaches from pole to pole or, if the spheres nearly coincide, from a pole to the curve of crossing.
       const double error = std::abs(part.depth - std::min(2 - apart, std::sqrt(2 - apart)));
       EXPECT_LT(error, 1.5 / (frequency * frequency) + 1e-3) << apart << " " << frequency;
       EXPECT_LT(error, last_error + 1e-3);
@@ -122,7 +122,7 @@ TEST(Penetration, OfBoxesIsExactAtAnyTessellation) {
   }
 }
 
-/// Tubes that lie in each other all along a ring.
+/// The tubes overlap all along a ring.
 TEST(Penetration, OfToriConverges) {
   double last_error = std::numeric_limits<double>::infinity();
   for (const int segments : {12, 30, 75}) {
@@ -139,7 +139,7 @@ TEST(Penetration, OfToriConverges) {
   }
 }
 
-/// A plate through a box: no vertex of it is inside, and all of its part inside has a border at depth zero.
+/// A plate passes through a box. None of its vertices is inside, and the border of its part inside has depth zero.
 TEST(Penetration, OfAPlateThroughABoxIsHalfTheWayThrough) {
   for (const double thickness : {0.1, 1e-3, 1e-6}) {
     for (const int parts : {1, 3}) {
@@ -148,7 +148,7 @@ TEST(Penetration, OfAPlateThroughABoxIsHalfTheWayThrough) {
       const Answer found = answer(a, b);
       ASSERT_EQ(found.found.parts.size(), 1U);
       expect_sound(found.found.parts[0], a, b, 0.01);
-      // Its middle line is half a side away from the border of the box.
+      // The centre of the plate is half a side away from the surface of the box.
       EXPECT_NEAR(found.found.parts[0].depth, 0.5, 0.01);
       EXPECT_TRUE(!found.found.parts[0].is_first_deep);
       EXPECT_NEAR(found.found.parts[0].volume, thickness, 1e-9 * thickness + 1e-15);
@@ -156,8 +156,8 @@ TEST(Penetration, OfAPlateThroughABoxIsHalfTheWayThrough) {
   }
 }
 
-/// Two combs, whose teeth touch those of the other one from a little to a lot.
-TEST(Penetration, OfInterlockedPartsIsToldForEachContact) {
+/// The teeth of two combs overlap by different amounts.
+TEST(Penetration, ReportsEachContactOfInterlockedParts) {
   for (const int parts : {1, 2, 5}) {
     TriangleMesh a = box({-1, 0, -1}, {9, 1, 0}, parts);
     TriangleMesh b = box({-1, 0, 3}, {9, 1, 4}, parts);
@@ -174,7 +174,7 @@ TEST(Penetration, OfInterlockedPartsIsToldForEachContact) {
       expect_sound(part, a, b, 1e-3);
       const double overlap = 0.05 * (4 - static_cast<double>(k));
       EXPECT_NEAR(part.volume, overlap * 0.5 * 1, 1e-9);
-      // Both faces between the teeth are at most as far from the other one's as the teeth overlap.
+      // Each side is at most as far from the other side as the teeth overlap.
       EXPECT_NEAR(part.depth, overlap, 1e-9);
       EXPECT_NEAR(std::abs(part.direction.x), 1, 1e-9);
     }
@@ -182,7 +182,7 @@ TEST(Penetration, OfInterlockedPartsIsToldForEachContact) {
   }
 }
 
-TEST(Penetration, OfWhatLiesInsideIsItsDistanceFromTheSurface) {
+TEST(Penetration, OfAnEnclosedSolidIsItsLargestDistance) {
   const TriangleMesh a = box({0, 0, 0}, {4, 4, 4});
   const TriangleMesh b = moved(make_sphere({.radius = 0.5, .frequency = 8}), {1, 2, 2});
   for (const bool is_turned : {false, true}) {
@@ -220,7 +220,7 @@ TEST(Penetration, SignFlipsExactlyAtContact) {
   EXPECT_EQ(inside.found.parts.size(), 1U);
 }
 
-TEST(Penetration, OfAnObjectWithItselfIsThatOfItsParts) {
+TEST(Penetration, OfAnObjectWithItselfMatchesItsParts) {
   const TriangleMesh a = make_sphere({.frequency = 10});
   const TriangleMesh b = moved(a, {1.5, 0.1, 0.2});
   const Answer expected = answer(a, b);
@@ -235,20 +235,20 @@ TEST(Penetration, OfAnObjectWithItselfIsThatOfItsParts) {
   EXPECT_TRUE(scene.penetration(other, other).parts.empty());
 }
 
-/// An object that crosses itself lies in another one as the solid that it is the surface of.
-TEST(Penetration, CountsWhatLiesTwiceInOneObjectOnce) {
+/// An object that crosses itself counts as the solid that its surface bounds.
+TEST(Penetration, CountsOverlapsWithinOneObjectOnce) {
   const TriangleMesh crossed = both(box({0, 0, 0}, {1, 1, 1}), box({0.5, 0.2, 0.3}, {1.5, 0.8, 0.7}));
   const TriangleMesh far = box({1.25, 0, 0}, {3, 1, 1});
   const Answer found = answer(crossed, far, 1e-3);
   ASSERT_EQ(found.found.parts.size(), 1U);
   EXPECT_NEAR(found.found.parts[0].volume, 0.25 * 0.6 * 0.4, 1e-12);
-  // One shell in another: what lies in both is no overlap with the other object.
+  // A shell inside another shell of the same object is not an overlap with another object.
   const TriangleMesh nested = both(box({0, 0, 0}, {1, 1, 1}), box({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}));
   EXPECT_TRUE(answer(nested, moved(far, {1, 0, 0})).found.parts.empty());
 }
 
-/// No point of either patch, of many tried, is deeper than the bound.
-TEST(Penetration, OfRandomSolidsIsThatOfSampling) {
+/// No tested point of either side is deeper than the bound.
+TEST(Penetration, BoundHoldsForSampledPoints) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Random random(seed);
     const TriangleMesh a = make_organic({.frequency = 7, .seed = seed});
@@ -273,7 +273,7 @@ TEST(Penetration, OfRandomSolidsIsThatOfSampling) {
   }
 }
 
-TEST(Penetration, RefusesWhatIsNoSolid) {
+TEST(Penetration, RejectsMeshesThatAreNotSolids) {
   TriangleMesh open = box({0, 0, 0}, {1, 1, 1});
   open.triangles.pop_back();
   const TriangleMesh solid = box({0.5, 0.5, 0.5}, {2, 2, 2});
@@ -290,8 +290,8 @@ TEST(Penetration, RefusesWhatIsNoSolid) {
   EXPECT_THROW(answer(solid, solid, std::numeric_limits<double>::quiet_NaN()), InvalidOption);
 }
 
-/// Parts that are looked at no further count: with a tolerance of 1, the depth found may be half of the true one.
-TEST(Penetration, BoundHoldsWhatWasNotLookedAt) {
+/// The bound covers parts that the search skips. With a tolerance of 1, the reported depth may be half the true one.
+TEST(Penetration, BoundCoversSkippedParts) {
   const TriangleMesh a{{{0, 3, 3}, {0, 1, 1}, {3, 1, 0}, {2, 3, 2}}, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
   const TriangleMesh b{{{1, 0, 3}, {0, 3, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   const double depth = answer(a, b, 1e-4).found.parts.at(0).depth;
@@ -303,8 +303,8 @@ TEST(Penetration, BoundHoldsWhatWasNotLookedAt) {
   }
 }
 
-/// A block that lies a little in a floor, and solids of many and long triangles that stand in each other's faces: wide
-/// for their depth. The tolerance is kept however shallow they are.
+/// A block lies slightly in a floor, and solids of many long triangles overlap slightly at their faces. These parts are
+/// wide compared with their depth. The tolerance holds at any depth.
 TEST(Penetration, OfShallowContactsKeepsTheTolerance) {
   const TriangleMesh floor = box({-5, -5, -1}, {5, 5, 0});
   for (const double deep : {1e-2, 1e-4, 1e-6, 1e-9}) {
@@ -321,7 +321,7 @@ TEST(Penetration, OfShallowContactsKeepsTheTolerance) {
   }
 }
 
-/// Faces with more sides than are looked at within a reasonable time: the bound is one.
+/// Faces have too many sides for a complete search. The bound must still hold.
 TEST(Penetration, OfManySidedFacesIsBounded) {
   const TriangleMesh solid = make_cylinder({.sides = 3000});
   const TriangleMesh above = moved(solid, {0.2, 0.1, bounds(solid).size().z - 1e-3});
@@ -330,8 +330,8 @@ TEST(Penetration, OfManySidedFacesIsBounded) {
   EXPECT_GE(part.depth_bound, part.depth);
 }
 
-/// The same solid twice: as deep as if one were moved by next to nothing.
-TEST(Penetration, OfEqualSolidsIsThatOfMovingOneALittle) {
+/// Equal solids have the depth of an infinitesimal displacement.
+TEST(Penetration, OfEqualSolidsMatchesASmallDisplacement) {
   for (const TriangleMesh& solid : {box({0, 0, 0}, {1, 1, 1}, 2), make_cylinder({.sides = 40}), make_gear({}),
                                     make_torus({}), make_sphere({.frequency = 6})}) {
     const Answer same = answer(solid, solid, 1e-3);
@@ -342,12 +342,12 @@ TEST(Penetration, OfEqualSolidsIsThatOfMovingOneALittle) {
     EXPECT_LT(same.separation, -0.1);
     EXPECT_NEAR(same.found.parts[0].area[0], beside.found.parts[0].area[0], 1e-5);
   }
-  // Solids that share some of their faces.
+  // Two solids share some of their faces.
   const Answer half = answer(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0.5}, {1, 1, 1.5}));
   EXPECT_NEAR(half.separation, -0.5, 1e-12);
 }
 
-/// Errors say which object is no solid, and what to do.
+/// Errors name the object that is not a solid, and a remedy.
 TEST(Penetration, SaysWhichObjectIsOpen) {
   const TriangleMesh solid = box({0, 0, 0}, {1, 1, 1});
   const auto message = [&](const TriangleMesh& other) -> std::string {

@@ -1,4 +1,4 @@
-// Scenes that an attack found wrong answers of, in their smallest cases.
+// Smallest cases of hostile scenes give right results.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -9,8 +9,8 @@
 namespace blum {
 namespace {
 
-/// Layers of triangles that drift a little to one side: the direction from one half of them to the other is that of
-/// their normal but for a millionth.
+/// Layers of triangles drift slightly to one side. The direction from one half to the other differs from the normal by
+/// a millionth.
 TEST(HostileScene, SeesContactsOfStacks) {
   Vec3d n{1, 1, 1};
   n = n / length(n);
@@ -36,9 +36,9 @@ TEST(HostileScene, SeesContactsOfStacks) {
   }
 }
 
-/// A heap of equal triangles, of which each two would be looked at: an error at once where these are too many, and the
-/// answer where they are not asked for.
-TEST(HostileScene, OfAMillionEqualTrianglesIsRefusedAtOnce) {
+/// A heap of equal triangles would require a test of every two of them. Queries fail at once if these are too many.
+/// Queries that do not compare them return a result.
+TEST(HostileScene, RejectsAMillionEqualTrianglesAtOnce) {
   TriangleMesh heap;
   for (std::uint32_t k = 0; k < 1000000; ++k) {
     heap.vertices.insert(heap.vertices.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
@@ -58,7 +58,7 @@ TEST(HostileScene, OfAMillionEqualTrianglesIsRefusedAtOnce) {
   }
 }
 
-/// The rotation of one object is off by what is allowed, and so the other one is seen to be further away.
+/// The rotation of one object is off by the allowed error. The other object therefore seems further away.
 TEST(HostileScene, AllowsForTransformsThatAreNotQuiteRigid) {
   ProximityScene scene;
   const ObjectId a = scene.add(TriangleMesh{{{0, 0, 0}, {-1, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}}});
@@ -70,7 +70,7 @@ TEST(HostileScene, AllowsForTransformsThatAreNotQuiteRigid) {
   EXPECT_EQ(scene.closer_than(1000).pairs.size(), 1U);
 }
 
-TEST(HostileScene, OfTinyTrianglesIsThatOfTheirDistance) {
+TEST(HostileScene, FindsDistancesOfTinyTriangles) {
   const TriangleMesh first{{{9.1004506896295872e-80, -8.1070665165859975e-80, -7.3285331680394144e-80},
                             {3.716264567174343e-80, -2.0780840308544357e-80, -7.8735754081426897e-80},
                             {-4.1002664756115471e-81, -5.3864596565443778e-80, -5.8439334345407713e-81}},

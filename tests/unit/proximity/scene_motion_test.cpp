@@ -1,4 +1,4 @@
-// What of the objects of a scene meets while they move: that of looking at all pairs of features.
+// Collisions between moving objects of a scene match a test of all pairs of features.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace blum {
 namespace {
 
-/// (kind, object and vertices of the first feature, of the second, time).
+/// Kind; object and vertices of the first feature, and of the second; time.
 using ImpactRow =
     std::tuple<int, std::uint32_t, std::vector<std::uint32_t>, std::uint32_t, std::vector<std::uint32_t>, double>;
 
@@ -35,7 +35,7 @@ std::vector<ImpactRow> impact_rows(const SceneCollisions& found) {
   return out;
 }
 
-/// The edges of a mesh, the smaller end first.
+/// The edges of a mesh, each with the smaller vertex first.
 std::set<Segment> edges_of(const TriangleMesh& mesh) {
   std::set<Segment> out;
   for (const Triangle& t : mesh.triangles) {
@@ -44,7 +44,7 @@ std::set<Segment> edges_of(const TriangleMesh& mesh) {
   return out;
 }
 
-/// A body at both ends of a motion.
+/// A body at the start and at the end of a motion.
 struct Frames {
   const TriangleMesh* mesh;
   std::vector<Vec3d> start, end;
@@ -79,8 +79,8 @@ std::vector<ImpactRow> slow_impacts(const std::vector<Frames>& bodies, const Imp
   return out;
 }
 
-/// Three bodies, one of which deforms, one turns, and one rests where it touches another one from the start.
-TEST(SceneInMotion, MeetsAsAllPairsOfFeaturesDo) {
+/// One body deforms, one rotates and one rests. The resting body touches another one from the start.
+TEST(SceneInMotion, MatchesAllPairsOfFeatures) {
   for (const double min_separation : {0.0, 0.05}) {
     const ImpactOptions options{.min_separation = min_separation};
     const TriangleMesh ball = make_sphere({.frequency = 2});
@@ -113,12 +113,12 @@ TEST(SceneInMotion, MeetsAsAllPairsOfFeaturesDo) {
     double earliest = 1;
     for (const ImpactRow& one : expected) earliest = std::min(earliest, std::get<5>(one));
     EXPECT_EQ(found.earliest(), earliest);
-    // Nothing was moved.
+    // The query moved no object.
     EXPECT_EQ(impact_rows(scene.continuous(motions, options)), expected);
   }
 }
 
-TEST(SceneInMotion, MeetsItselfAsAMeshAloneDoes) {
+TEST(SceneInMotion, MatchesASingleMeshForSelfCollisions) {
   const TriangleMesh mesh = make_organic({.frequency = 6});
   std::vector<Vec3d> end = mesh.vertices;
   for (Vec3d& p : end) p.z *= -0.5;

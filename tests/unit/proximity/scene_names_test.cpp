@@ -1,4 +1,4 @@
-// Messages of a scene call its objects by their names, or by their numbers.
+// Messages of a scene call each object by its name, or by its number if it has no name.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -25,7 +25,7 @@ std::string message_of(const Failing& failing) {
   return {};
 }
 
-TEST(SceneOfNames, CallsObjectsByThemInMessages) {
+TEST(SceneOfNames, UsesNamesOfObjectsInMessages) {
   const TriangleMesh box = make_box({});
   TriangleMesh open = box;
   open.triangles.pop_back();

@@ -1,4 +1,4 @@
-// All pairs of solids of a scene at once: the same bytes as pair by pair.
+// A query of all pairs of solids of a scene returns the same bytes as queries pair by pair.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ void expect_same(const PrimitivePair& one, const PrimitivePair& other) {
 
 using ObjectPairs = std::vector<std::pair<ObjectId, ObjectId>>;
 
-/// @param pairs  those that are compared, in order. @return how many of them have something in common.
+/// @param pairs  the compared pairs, in order. @return the number of pairs that overlap.
 std::size_t expect_pair_by_pair(const ProximityScene& scene, const ObjectPairs& pairs,
                                 const PenetrationOptions& options, const Context& context = {}) {
   std::vector<Penetration> parts;
@@ -83,7 +83,7 @@ std::vector<TriangleMesh> solids() {
           make_cylinder({.sides = 5})};
 }
 
-TEST(SceneOfSolids, AnswersForAllPairsAsPairByPair) {
+TEST(SceneOfSolids, AllPairsMatchSinglePairs) {
   Random random(11);
   const std::vector<TriangleMesh> meshes = solids();
   std::size_t overlapping = 0;
@@ -107,7 +107,7 @@ TEST(SceneOfSolids, AnswersForAllPairsAsPairByPair) {
   EXPECT_GT(apart, 12U);
 }
 
-TEST(SceneOfSolids, ComparesWhatIsAskedFor) {
+TEST(SceneOfSolids, ComparesOnlyRequestedPairs) {
   ProximityScene scene;
   EXPECT_EQ(expect_pair_by_pair(scene, {}, {}), 0U);
   const TriangleMesh box = make_box({});
@@ -117,7 +117,7 @@ TEST(SceneOfSolids, ComparesWhatIsAskedFor) {
     return added;
   };
   const ObjectId a = add(0, {.layers = 1, .meets = 2});
-  const ObjectId b = add(0.1, {.layers = 1, .meets = 2});  // meets a no more than a does it
+  const ObjectId b = add(0.1, {.layers = 1, .meets = 2});  // b does not meet a, nor a b
   const ObjectId c = add(0.2, {.layers = 2, .meets = 3});
   const ObjectId d = add(0.3, {.layers = 3, .meets = 3});
   EXPECT_EQ(expect_pair_by_pair(scene, {{a, c}, {a, d}, {b, c}, {b, d}, {c, d}}, {}), 5U);
@@ -126,7 +126,7 @@ TEST(SceneOfSolids, ComparesWhatIsAskedFor) {
   EXPECT_EQ(expect_pair_by_pair(scene, {{b, d}}, {}), 1U);
 }
 
-TEST(SceneOfSolids, TakesOpenMeshesAsPairsDo) {
+TEST(SceneOfSolids, TreatsOpenMeshesAsQueriesOfOnePairDo) {
   const TriangleMesh box = make_box({});
   TriangleMesh open = box;
   open.triangles.pop_back();

@@ -1,4 +1,4 @@
-// Proximity among objects: that of comparing all pairs of primitives, for any meshes, transforms, updates and threads.
+// Proximity of objects matches a test of all pairs of primitives, for any meshes, transforms, updates and threads.
 #include "blum/proximity/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 using Corners = std::array<Vec3d, 3>;
-/// Objects and primitives, and how far they are apart.
+/// First object and primitive, second object and primitive, distance.
 using Row = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, double>;
 
 Row row(const PrimitivePair& pair) {
@@ -41,7 +41,7 @@ std::vector<Row> rows(const std::vector<PrimitivePair>& pairs) {
   return out;
 }
 
-/// A scene as the tests see it: what it should answer, by looking at all pairs.
+/// A reference for scenes: it tests all pairs.
 struct SlowScene {
   struct Object {
     TriangleMesh mesh;
@@ -72,7 +72,7 @@ struct SlowScene {
     return (objects[a].options.layers & objects[b].options.meets) != 0 &&
            (objects[b].options.layers & objects[a].options.meets) != 0;
   }
-  /// All pairs that are compared, each once, but those of one object with a corner in one place.
+  /// All compared pairs, each once, without pairs of one object that share a corner.
   [[nodiscard]] std::vector<Row> all_pairs() const {
     std::vector<Row> out;
     for (std::uint32_t a = 0; a < objects.size(); ++a) {
@@ -111,7 +111,7 @@ bool is_closer(const Row& a, const Row& b) {
   return a < b;
 }
 
-/// For each primitive the closest one, by rising (object, primitive).
+/// The closest primitive of each primitive, in ascending order of (object, primitive).
 std::vector<Row> closest_of_each(const std::vector<Row>& all, double max_distance) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Row> best;
   const auto offer = [&](const Row& r) {
@@ -128,7 +128,7 @@ std::vector<Row> closest_of_each(const std::vector<Row>& all, double max_distanc
   return out;
 }
 
-/// For each pair of objects the closest pair.
+/// The closest pair of primitives of each pair of objects.
 std::vector<Row> closest_of_objects(const std::vector<Row>& all) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Row> best;
   for (const Row& r : all) {
@@ -147,7 +147,7 @@ std::vector<Row> no_further(const std::vector<Row>& all, double distance) {
   return out;
 }
 
-/// All answers of a scene are those of looking at all pairs.
+/// All results of a scene match a test of all pairs.
 void expect_scene_answers(const ProximityScene& scene, const SlowScene& slow, const Context& context) {
   const std::vector<Row> all = slow.all_pairs();
   ASSERT_EQ(rows(scene.separation(infinite, context).pairs), closest_of_objects(all));
@@ -169,7 +169,7 @@ void expect_scene_answers(const ProximityScene& scene, const SlowScene& slow, co
   }
 }
 
-/// And so are those of a scene that culls by Voronoi diagrams, on coarse and fine grids.
+/// Also checks scenes that cull by Voronoi diagrams, on coarse and fine grids.
 void expect_answers(const ProximityScene& scene, const SlowScene& slow, const Context& context = {}) {
   expect_scene_answers(scene, slow, context);
   for (const double cell_size : {0.2, 1.0, 2.0, 20.0}) {
@@ -189,7 +189,7 @@ TriangleMesh soup(std::uint64_t seed, std::size_t count) {
   return mesh;
 }
 
-TEST(ProximityScene, IsThatOfAllPairsForNastySoups) {
+TEST(ProximityScene, MatchesAllPairsForNastySoups) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Random random(seed);
     SlowScene slow;
@@ -203,8 +203,8 @@ TEST(ProximityScene, IsThatOfAllPairsForNastySoups) {
   }
 }
 
-/// Everything at distance zero from much else: order decides.
-TEST(ProximityScene, IsThatOfAllPairsForMeshesOnAGrid) {
+/// Every primitive is at distance zero from many others: their order decides.
+TEST(ProximityScene, MatchesAllPairsForMeshesOnAGrid) {
   Random random(7);
   SlowScene slow;
   for (int k = 0; k < 3; ++k) {
@@ -225,7 +225,7 @@ TEST(ProximityScene, IsThatOfAllPairsForMeshesOnAGrid) {
   expect_answers(scene, slow);
 }
 
-TEST(ProximityScene, IsThatOfAllPairsForEqualObjects) {
+TEST(ProximityScene, MatchesAllPairsForEqualObjects) {
   SlowScene slow;
   for (int k = 0; k < 3; ++k) slow.objects.push_back({make_sphere({.frequency = 3}), {.self = true}, {}});
   slow.objects[2].place.translation = {2, 0, 0};
@@ -234,7 +234,7 @@ TEST(ProximityScene, IsThatOfAllPairsForEqualObjects) {
   expect_answers(scene, slow);
 }
 
-TEST(ProximityScene, IsThatOfAllPairsFarFromTheOrigin) {
+TEST(ProximityScene, MatchesAllPairsFarFromTheOrigin) {
   for (const double far : {1e5, 1e12}) {
     Random random(8);
     SlowScene slow;
@@ -249,7 +249,7 @@ TEST(ProximityScene, IsThatOfAllPairsFarFromTheOrigin) {
   }
 }
 
-TEST(ProximityScene, IsThatOfAllPairsForAnySize) {
+TEST(ProximityScene, MatchesAllPairsForAnySize) {
   for (const double scale : {1e-100, 1e-30, 1e30, 1e69}) {
     SlowScene slow;
     for (std::uint64_t k = 0; k < 3; ++k) {
@@ -267,11 +267,11 @@ TEST(ProximityScene, IsThatOfAllPairsForAnySize) {
   }
 }
 
-TEST(ProximityScene, ComparesWhatIsAskedFor) {
+TEST(ProximityScene, ComparesOnlyRequestedPairs) {
   SlowScene slow;
   for (std::uint32_t k = 0; k < 5; ++k) slow.objects.push_back({soup(20 + k, 12), {.self = k == 3}, {}});
   slow.objects[0].options = {.layers = 2, .meets = 1};
-  slow.objects[1].options = {.layers = 1, .meets = 1};  // does not meet the first one, which would meet it
+  slow.objects[1].options = {.layers = 1, .meets = 1};  // does not meet the first object, which would meet it
   slow.objects[2].options = {.layers = 3, .meets = 3};
   slow.excluded = {{2, 3}, {3, 3}};
   ProximityScene scene;
@@ -307,7 +307,7 @@ TEST_P(ProximitySceneOfThreads, IsTheSameForAnyNumber) {
 INSTANTIATE_TEST_SUITE_P(Cullings, ProximitySceneOfThreads, testing::Values(Culling::bvh, Culling::voronoi),
                          [](const auto& info) { return std::string(to_string(info.param)); });
 
-/// A plate of n x n squares at a height: as far from another one everywhere.
+/// A plate of n x n squares at a height. Two plates have the same distance everywhere.
 TriangleMesh plate(std::uint32_t n, double height) {
   TriangleMesh mesh;
   for (std::uint32_t y = 0; y <= n; ++y) {
@@ -323,7 +323,7 @@ TriangleMesh plate(std::uint32_t n, double height) {
   return mesh;
 }
 
-/// The closest pair of two objects by looking at all.
+/// The closest pair of two objects, by a test of all pairs.
 Row closest_of_all(const SlowScene& slow) {
   const auto of_a = slow.primitives(0);
   const auto of_b = slow.primitives(1);
@@ -338,7 +338,7 @@ Row closest_of_all(const SlowScene& slow) {
   return best;
 }
 
-/// Of objects so large that several threads share the work; pairs may be equally close everywhere.
+/// The objects are so large that several threads share the work. Pairs may be equally close everywhere.
 TEST(ProximityScene, SharesTheWorkOfLargeObjects) {
   const TriangleMesh body = make_organic({.frequency = 12});
   const TriangleMesh flat = plate(34, 0);
@@ -366,8 +366,8 @@ TEST(ProximityScene, SharesTheWorkOfLargeObjects) {
   }
 }
 
-/// Voronoi culling of N-body distances leaves fewer pairs to the exact test than there are, and says what it did.
-TEST(ProximityScene, TellsHowItCulled) {
+/// Voronoi culling of N-body distances reduces the exact tests, and reports its counts.
+TEST(ProximityScene, ReportsItsCulling) {
   const TriangleMesh mesh = make_organic({.frequency = 10});
   ProximityScene scene({.culling = Culling::voronoi});
   scene.add(mesh, {.self = true});
@@ -388,9 +388,9 @@ TEST(ProximityScene, TellsHowItCulled) {
   EXPECT_THROW(ProximityScene({.cell_size = std::numeric_limits<double>::quiet_NaN()}), InvalidOption);
 }
 
-/// A plate of two triangles under a fine body, and a heap of triangles in one place: what does not fit the cells is
-/// left to the hierarchy, and answers are the same.
-TEST(ProximityScene, LeavesToTheHierarchyWhatDoesNotFitCells) {
+/// A coarse plate lies under a fine body, and a heap of triangles lies in one place. The hierarchy handles primitives
+/// that do not fit the cells. Results stay the same.
+TEST(ProximityScene, LeavesPrimitivesOffTheCellsToTheHierarchy) {
   SlowScene slow;
   slow.objects.push_back({make_box({.size = {100, 100, 0.1}}), {.self = true}, {}});
   slow.objects.push_back({make_sphere({.radius = 0.5, .frequency = 4}), {.self = true}, {}});
@@ -407,8 +407,8 @@ TEST(ProximityScene, LeavesToTheHierarchyWhatDoesNotFitCells) {
   EXPECT_GT(scene.closest_primitives().report.left_over, 300U);
 }
 
-/// A hundred frames of a body that deforms and one that moves: answers are those of a scene made anew in each.
-TEST(ProximityScene, OfADeformingBodyIsThatOfASceneMadeAnew) {
+/// One body deforms and one moves for a hundred frames. Results match a new scene in each frame.
+TEST(ProximityScene, OfADeformingBodyMatchesANewScene) {
   const TriangleMesh rest = make_organic({.frequency = 6});
   TriangleMesh moved = rest;
   const TriangleMesh body = make_torus({.ring_segments = 24, .tube_segments = 12});
@@ -448,7 +448,7 @@ TEST(ProximityScene, TakesAnotherMeshForAnObject) {
   expect_answers(scene, slow);
 }
 
-TEST(ProximityScene, LeavesOutWhatWasRemoved) {
+TEST(ProximityScene, LeavesOutRemovedObjects) {
   ProximityScene scene;
   const TriangleMesh ball = make_sphere({.frequency = 3});
   const ObjectId a = scene.add(ball);
@@ -464,8 +464,8 @@ TEST(ProximityScene, LeavesOutWhatWasRemoved) {
   EXPECT_THROW(scene.remove(b), InvalidOption);
 }
 
-/// What a mesh has in common with itself is what find_self_intersections() finds, besides primitives without area.
-TEST(ProximityScene, CollidesWithItselfAsSelfIntersectionsSay) {
+/// Collisions of a mesh with itself match find_self_intersections(), except for primitives without area.
+TEST(ProximityScene, SelfCollisionsMatchSelfIntersections) {
   std::vector<TriangleMesh> meshes{make_organic({.frequency = 8}), test::nasty_soup(50, 300)};
   for (Vec3d& p : meshes[0].vertices) p.z = std::abs(p.z - 0.2);  // folded, so that it passes through itself
   for (const TriangleMesh& mesh : meshes) {
@@ -523,7 +523,7 @@ TEST(ProximityScene, RefusesBadInput) {
   EXPECT_THROW(static_cast<void>(scene.continuous(std::vector<ObjectMotion>{{id, {}, {}}, {id, {}, {}}})),
                InvalidOption);
   EXPECT_THROW(static_cast<void>(scene.continuous(std::vector<ObjectMotion>{{ObjectId(7), {}, {}}})), InvalidOption);
-  // Nothing was changed by what was refused.
+  // Rejected calls changed nothing.
   EXPECT_EQ(scene.separation(id, scene.add(ball))->between.distance, 0);
 }
 

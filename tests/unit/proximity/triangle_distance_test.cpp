@@ -1,4 +1,4 @@
-// How far two triangles are apart, and whether they meet: against rational arithmetic over all pairs of their parts.
+// Distances and contacts of two triangles match rational arithmetic over all pairs of their parts.
 #include "blum/geometry/triangle_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ double largest_difference(const Points& a, const Points& b) {
   return largest;
 }
 
-/// How far a point is from a part of a triangle, by the rational judge.
+/// The distance from a point to a part of a triangle, by rational arithmetic.
 double distance_from(const Vec3d& p, const TriangleFeature& feature, const Points& t) {
   const Points point{p, p, p};
   const Vec3d& first = t[feature.index];
@@ -50,13 +50,13 @@ void expect_distance(const Points& a, const Points& b) {
   const double rounding = 4e-15 * size + 2e-300;
   ASSERT_NEAR(found.distance, exact_distance(a, b), rounding);
   ASSERT_NEAR(triangle_distance(b, a).distance, found.distance, rounding);
-  // The points are where they are said to be, and that far apart.
+  // The reported points lie on the reported parts, at the reported distance.
   const double far = 4e-15 * (size + std::max({length(a[0]), length(a[1]), length(b[0])})) + 2e-300;
   if (do_meet) {
     ASSERT_EQ(found.first_point, found.second_point);
   }
   const double near =
-      do_meet ? 1e-7 * size + far : far;  // where planes are nearly parallel, points in both are far off
+      do_meet ? 1e-7 * size + far : far;  // the common points of nearly parallel triangles are imprecise
   ASSERT_LE(distance_from(found.first_point, found.first_feature, a), near);
   ASSERT_LE(distance_from(found.second_point, found.second_feature, b), near);
   ASSERT_NEAR(length(found.first_point - found.second_point), found.distance, far);
@@ -84,7 +84,7 @@ TEST(TriangleDistance, OfNastyTrianglesIsExact) {
   }
 }
 
-/// Corners on a small grid: most pairs touch, overlap in a plane, share corners, or have lost their area.
+/// Corners lie on a small grid: most pairs touch, overlap in a plane, share corners, or have no area.
 TEST(TriangleDistance, OfTrianglesOnAGridIsExact) {
   for (const std::uint64_t sides : {2U, 3U, 5U}) {
     Random random(sides);
@@ -99,7 +99,7 @@ TEST(TriangleDistance, OfTrianglesOnAGridIsExact) {
       for (Vec3d& p : a) p = whole();
       for (Vec3d& p : b) p = whole();
       expect_distance(a, b);
-      // Coordinates that are no small integers, still of one plane.
+      // Coordinates become inexact numbers. Triangles in one grid plane stay coplanar.
       for (std::size_t i = 0; i < 3; ++i) {
         a[i] = a[i] * 0.1 + Vec3d{1e3, 0, 0};
         b[i] = b[i] * 0.1 + Vec3d{1e3, 0, 0};
@@ -109,8 +109,8 @@ TEST(TriangleDistance, OfTrianglesOnAGridIsExact) {
   }
 }
 
-/// A point of one triangle lies on the other, or next to it by one rounding.
-TEST(TriangleDistance, ThatIsARoundingIsTold) {
+/// A point of one triangle lies on the other one, or one rounding away from it.
+TEST(TriangleDistance, OfOneRoundingIsDetected) {
   Random random(3);
   for (int k = 0; k < 400; ++k) {
     Points a, b;
@@ -147,7 +147,7 @@ TEST(TriangleDistance, OfNearlyParallelEdgesIsExact) {
   }
 }
 
-TEST(TriangleDistance, OfManyIsThatOfEach) {
+TEST(TriangleDistance, OfABatchMatchesSingleQueries) {
   const TriangleMesh soup = test::nasty_soup(6, 2500);
   std::vector<Points> a, b;
   for (std::size_t k = 0; k < soup.triangles.size(); ++k) {

@@ -1,5 +1,5 @@
-// Proves that every generated shape has the topology that the catalog states, near its analytic volume, and that
-// parameters that make no sense are refused.
+// Proves that every generated shape has the topology that the catalog states and a volume near its analytic value.
+// Invalid parameters are rejected.
 #include "blum/shapes/generators.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A shape of the catalog with parameters to try beside the defaults.
+/// A shape of the catalog, with parameters to test besides the defaults.
 struct Case {
   std::string name;
   ShapeParameters parameters;
@@ -267,7 +267,7 @@ TEST(Generators, AreTheSameEveryTime) {
     EXPECT_EQ(a.vertices, b.vertices) << name;
     EXPECT_EQ(a.triangles, b.triangles) << name;
   }
-  // Fixed numbers: random shapes may not change between platforms or versions.
+  // Random shapes must not change between platforms or versions.
   const TriangleMesh soup = make_soup({});
   EXPECT_EQ(soup.vertices.size(), 300U);
   EXPECT_NE(make_soup({.seed = 2}).vertices, soup.vertices);
@@ -351,7 +351,7 @@ TEST(Generators, AMeshCanBeAppendedToItself) {
   EXPECT_EQ(twice.vertices.size(), 2 * box.vertices.size());
 }
 
-TEST(Generators, RefuseWhatMakesNoSense) {
+TEST(Generators, RejectInvalidParameters) {
   const std::vector<Case> bad = {
       {"no_such_shape", {}},
       {"sphere", {{"radius", -1}}},
@@ -426,7 +426,7 @@ TEST(ShapeCatalog, DefaultsAreThoseOfTheGenerators) {
   }
 }
 
-TEST(ShapeCatalog, SaysWhatItKnows) {
+TEST(ShapeCatalog, ListsShapesAndParametersInErrors) {
   try {
     static_cast<void>(make_shape("ball"));
     FAIL();

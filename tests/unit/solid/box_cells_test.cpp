@@ -1,4 +1,5 @@
-// Proves that the rectangles, segments and corners of boxes tile what boxes have in common, however these are cut.
+// Proves that the rectangles, segments and corners of boxes tile the common sides, edges and corners of the boxes for
+// any cuts.
 #include "solid/model/box_cells.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@
 namespace blum::detail {
 namespace {
 
-constexpr std::int32_t cubes_along = 5;  // the outermost are left whole
+constexpr std::int32_t cubes_along = 5;  // the outermost cubes stay whole
 
 /// Cubes of a lattice cut into boxes, and the whole cubes around them.
 struct Boxes {
@@ -31,7 +32,8 @@ BoxCell whole_cube(const Boxes& all, std::int32_t i, std::int32_t j, std::int32_
   return {all.planes.node({i, j, k}), all.planes.node({i + 1, j + 1, k + 1}), cell_at(all.lattice.node(i, j, k), 7)};
 }
 
-/// Cuts each inner cube up to so often, at multiples of 1 / parts: edges of neighbours meet, cross and miss each other.
+/// Cuts each inner cube up to the given number of times, at multiples of 1 / parts. Edges of neighbours meet, cross and
+/// miss each other.
 Boxes random_boxes(Random& random, std::uint64_t cuts, std::uint64_t parts) {
   Boxes out;
   for (std::int32_t k = 0; k < cubes_along; ++k) {
@@ -118,7 +120,7 @@ class BoxCellsCheck {
     }
   }
 
-  /// The two have more than an edge in common.
+  /// True if the boxes share more than an edge.
   static bool touch(const BoxCell& x, const BoxCell& y) {
     int touching = 0;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -230,7 +232,7 @@ class BoxCellsCheck {
     return true;
   }
 
-  /// The inner cubes are one ball.
+  /// The inner cubes form one ball.
   void check_euler() {
     const auto count = [](std::size_t size) { return static_cast<std::int64_t>(size); };
     EXPECT_EQ(count(cells_.corners().size()) - count(cells_.segments().size()) + count(cells_.rectangles().size()) -
@@ -245,7 +247,7 @@ class BoxCellsCheck {
   BoxCells cells_;
 };
 
-TEST(BoxCells, OfWholeCubesAreThoseOfTheGrid) {
+TEST(BoxCells, OfWholeCubesEqualThoseOfTheGrid) {
   Random random(1);
   const Boxes all = random_boxes(random, 0, 2);
   BoxCellsCheck check(all);
@@ -256,7 +258,7 @@ TEST(BoxCells, OfWholeCubesAreThoseOfTheGrid) {
   EXPECT_EQ(check.cells().rectangles().size(), 108U);
 }
 
-TEST(BoxCells, TileWhatRandomBoxesHaveInCommon) {
+TEST(BoxCells, TileTheCommonPartsOfRandomBoxes) {
   Random random(2);
   std::size_t in_parts = 0;
   for (std::size_t k = 0; k < 24; ++k) {
@@ -270,7 +272,7 @@ TEST(BoxCells, TileWhatRandomBoxesHaveInCommon) {
   EXPECT_GT(in_parts, 100U);
 }
 
-/// Two cubes that are halved across each other: their edges cross in the square between them.
+/// Two cubes are halved in different directions. Their edges cross in the square between them.
 TEST(BoxCells, EdgesThatCrossWithinASideMeetInACorner) {
   Random random(3);
   Boxes all = random_boxes(random, 0, 2);
@@ -280,7 +282,7 @@ TEST(BoxCells, EdgesThatCrossWithinASideMeetInACorner) {
     all.boxes.push_back(upper);
   };
   halve(0, 1);
-  halve(1, 2);  // beside it along x
+  halve(1, 2);  // its neighbour along x
   BoxCellsCheck check(all);
   ASSERT_NO_FATAL_FAILURE(check.run());
   const auto corners = check.cells().corners();

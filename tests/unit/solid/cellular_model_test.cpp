@@ -1,5 +1,5 @@
-// Proves that the cellular model of a solid has the solid's Betti numbers at every resolution, wherever its grid lies,
-// that thin walls and empty needles pass, that places that do not are named, and what is refused.
+// Proves that the cellular model of a solid has the solid's Betti numbers at every resolution and every place of its
+// grid. Thin walls and empty needles pass, failing places are named, and invalid options are rejected.
 #include "blum/solid/cellular_model.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ void expect_model_of(const Solid& solid, const CellularModelOptions& options, co
   EXPECT_EQ(model.betti(), *solid.betti()) << where;
 }
 
-/// A sphere of radius 1 and, turned inside out, the same a little smaller.
+/// A sphere of radius 1 and a slightly smaller sphere, turned inside out.
 TriangleMesh thin_shell(double thickness) {
   TriangleMesh mesh = make_sphere({.radius = 1, .frequency = 4});
   const std::size_t count = mesh.vertices.size();
@@ -49,11 +49,11 @@ TriangleMesh thin_shell(double thickness) {
   return mesh;
 }
 
-/// A unit cube with an empty cone in its top, whose apex is inside.
+/// A unit cube with an empty cone in its top. The apex of the cone lies inside.
 TriangleMesh block_with_needle(double degrees, std::uint32_t sides, const Vec3d& apex) {
   TriangleMesh mesh = make_box({.size = {1, 1, 1}});
   const double radius = std::tan(0.5 * degrees * std::numbers::pi / 180) * (0.5 - apex.z);
-  // The two triangles of the top give way to a fan around the opening.
+  // A fan around the opening replaces the two triangles of the top.
   std::vector<std::uint32_t> rim;
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     for (const std::uint32_t v : t) {
@@ -103,8 +103,8 @@ TEST(CellularModel, CatalogueShapesHaveTheirNumbersAtEveryResolution) {
   EXPECT_GT(shapes, 12);
 }
 
-TEST(CellularModel, BodiesThatTouchAreModelledApart) {
-  // Three boxes in a row, of which neighbours share a face, and one on top that touches two of them.
+TEST(CellularModel, TouchingBodiesAreModelledSeparately) {
+  // Three boxes form a row in which neighbours share a face. One box on top touches two of them.
   TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
   append(mesh, box_between({1, 0, 0}, {2, 1, 1}));
   append(mesh, box_between({2, 0, 0}, {3, 1, 1}));
@@ -115,8 +115,8 @@ TEST(CellularModel, BodiesThatTouchAreModelledApart) {
   for (const int resolution : {1, 3, 12}) expect_model_of(solid, {.resolution = resolution, .shift = 1}, "boxes");
 }
 
-TEST(CellularModel, BodiesInCubesOfTheirOwnAreComponents) {
-  // At one cube, all of them lie in it, some in the void of another.
+TEST(CellularModel, BodiesWithinACubeAreComponents) {
+  // At a resolution of one cube, all bodies lie in it, and some lie in the void of another.
   TriangleMesh mesh = make_bodies({.count = 64});
   const Vec3d far = bounds(mesh).upper;
   append(mesh, box_between(far + Vec3d{1, 1, 1}, far + Vec3d{9, 9, 9}));
@@ -128,8 +128,8 @@ TEST(CellularModel, BodiesInCubesOfTheirOwnAreComponents) {
   for (const int resolution : {1, 2, 3, 12}) expect_model_of(solid, {.resolution = resolution}, "bodies");
 }
 
-TEST(CellularModel, PlanesThroughVerticesAreLikeOthers) {
-  // All coordinates are multiples of 1/4, and so are those of the planes.
+TEST(CellularModel, PlanesThroughVerticesPass) {
+  // All coordinates and all planes are multiples of 1/4.
   const Solid solid = Solid::of(make_box({.size = {1, 2, 4}, .segments = {4, 4, 4}}));
   for (const double spacing : {0.25, 0.5, 1.0, 2.0}) {
     const CellularModel model = solid.model({.spacing = spacing, .shift = 1});
@@ -163,7 +163,7 @@ TEST(CellularModel, EmptyNeedlesAreSplitUntilTheyPass) {
   }
 }
 
-/// A unit cube with a square channel from the bottom to the top, which may slant.
+/// A unit cube with a square, possibly oblique channel from the bottom to the top.
 TriangleMesh block_with_channel(double width, const Vec3d& slant) {
   TriangleMesh mesh;
   for (const double z : {0.0, 1.0}) {
@@ -188,7 +188,7 @@ TriangleMesh block_with_channel(double width, const Vec3d& slant) {
   return mesh;
 }
 
-TEST(CellularModel, ANeedleThatRunsAlongAnAxisIsOpenedAndOneThatSlantsIsNamed) {
+TEST(CellularModel, OpensAxisAlignedNeedlesAndNamesObliqueOnes) {
   constexpr double width = 1e-9;
   const Solid upright = Solid::of(block_with_channel(width, {}));
   ASSERT_EQ(upright.rule(), SolidRule::polyhedron) << upright.reason();
@@ -199,7 +199,7 @@ TEST(CellularModel, ANeedleThatRunsAlongAnAxisIsOpenedAndOneThatSlantsIsNamed) {
   ASSERT_FALSE(report.failures.empty());
   for (const ModelFailure& failure : report.failures) {
     EXPECT_EQ(failure.obstacle, ModelObstacle::slanted_needle);
-    // It slants by 0.2 and 0.3 on a way of 1, and cubes are 1/7 large.
+    // The channel shifts by 0.2 and 0.3 over a height of 1. Cubes have side 1/7.
     EXPECT_GT(failure.cuts, 0.1 / 7 / width);
     EXPECT_LT(failure.cuts, 1.0 / 7 / width);
   }
@@ -241,7 +241,7 @@ TEST(CellularModel, CornersOfTheComplexLieInTheSolid) {
   EXPECT_GT(static_cast<double>(inside), 0.95 * static_cast<double>(complex.positions.size()));
 }
 
-TEST(CellularModel, WhatItCannotDoIsRefused) {
+TEST(CellularModel, RejectsInvalidOptionsAndMeshes) {
   const Solid solid = Solid::of(make_box({}));
   for (const CellularModelOptions& options : {CellularModelOptions{.resolution = 0},
                                               {.resolution = 801},

@@ -1,6 +1,6 @@
-// Proves that cleaned meshes are valid boundaries of solids with the topology that they had, made of vertices that they
-// had, without needles; that what is thin, close or small stays; that what may not be cleaned is refused with a reason.
-// How far they are from what they were is measured in tests/property/clean_mesh_test.cpp.
+// Proves that a cleaned mesh is a valid boundary of a solid. It keeps the topology and a part of the vertices, and does
+// not contain needles. Thin, close and small parts stay. Invalid meshes are rejected with a reason.
+// tests/property/clean_mesh_test.cpp measures the distance to the original mesh.
 #include "blum/solid/clean_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ BettiNumbers betti_of(const MeshView& mesh) {
   return topology(mesh, SiteTable(mesh)).betti.value_or(BettiNumbers{-1, -1, -1});
 }
 
-/// What holds for every cleaned mesh, but for distances.
+/// Checks the facts that hold for every cleaned mesh, except distances.
 void expect_sound(const MeshView& before, const CleanedMesh& after, double tolerance) {
   const CleanReport& report = after.report;
   EXPECT_EQ(betti_of(after.mesh), betti_of(before));
@@ -63,7 +63,7 @@ TriangleMesh tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 }
 
-/// A point on an edge's triangle pair, or next to it: the edge from a to b is cut in two there.
+/// Cuts the edge from a to b in two at a point on or beside its two triangles.
 void split_edge(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, const Vec3d& at) {
   const auto added = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.push_back(at);
@@ -77,7 +77,7 @@ void split_edge(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, const Vec3
   }
 }
 
-TEST(CleanMesh, LeavesWhatIsClean) {
+TEST(CleanMesh, LeavesCleanMeshes) {
   for (const double tolerance : {1e-9, 0.1, 1.0}) {
     const CleanedMesh out = cleaned(tetrahedron(), tolerance);
     EXPECT_EQ(out.mesh.triangles, tetrahedron().triangles);
@@ -87,7 +87,7 @@ TEST(CleanMesh, LeavesWhatIsClean) {
   EXPECT_EQ(cleaned(make_gear(), 1e-9).report.collapses, 0U);
 }
 
-TEST(CleanMesh, TakesNeedlessVerticesOut) {
+TEST(CleanMesh, RemovesNeedlessVertices) {
   const CleanedMesh box = cleaned(make_subdivided(make_box(), 4), 1e-6);
   EXPECT_EQ(box.mesh.triangles.size(), 12U);
   EXPECT_EQ(box.vertex_of, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7}));
@@ -98,7 +98,7 @@ TEST(CleanMesh, TakesNeedlessVerticesOut) {
   EXPECT_LE(bracket.mesh.vertices.size(), make_bracket().vertices.size());
 }
 
-TEST(CleanMesh, TakesNoiseBelowTheToleranceOut) {
+TEST(CleanMesh, RemovesNoiseBelowTheTolerance) {
   const TriangleMesh fine = make_subdivided(make_box(), 4);
   for (const double part : {1e-4, 1e-2, 0.1}) {
     const TriangleMesh noisy = make_noisy(fine, part * 1e-3);
@@ -108,7 +108,7 @@ TEST(CleanMesh, TakesNoiseBelowTheToleranceOut) {
             0.9 * static_cast<double>(fine.triangles.size()));
 }
 
-TEST(CleanMesh, TakesShortEdgesOut) {
+TEST(CleanMesh, RemovesShortEdges) {
   TriangleMesh mesh = make_box();
   const auto [a, b, c] = mesh.triangles[0];
   split_edge(mesh, a, b, mesh.vertices[a] + (mesh.vertices[b] - mesh.vertices[a]) * 1e-7);
@@ -119,17 +119,17 @@ TEST(CleanMesh, TakesShortEdgesOut) {
   EXPECT_GT(out.report.smallest_height, 0.1);
 }
 
-/// A wedge-like solid with a vertex that no one can do without, just above an edge that another triangle shares.
+/// A wedge-like solid with a necessary vertex just above an edge that another triangle shares.
 TriangleMesh with_cap(double height) {
-  // A box whose top is cut by a needle: the corner at (0.5, height) of a pyramid stands on it.
+  // Triangle 0-1-2 is a cap of the given height.
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, height, 0}, {0.5, 1, 0.8}, {0.5, 0.3, -1}, {0.5, -1, 0}};
-  //  0-1 is the edge, 2 the vertex next to it, 3 far above, 4 below, 5 on the other side.
+  // 0-1 is the edge, 2 the vertex beside it, 3 far above, 4 below, 5 on the other side.
   mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {3, 0, 2}, {1, 0, 5}, {1, 4, 3}, {3, 4, 0}, {0, 4, 5}, {5, 4, 1}};
   return mesh;
 }
 
-TEST(CleanMesh, TurnsTheLongSidesOfCaps) {
+TEST(CleanMesh, FlipsTheLongSidesOfCaps) {
   const TriangleMesh mesh = with_cap(1e-6);
   ASSERT_EQ(betti_of(mesh), (BettiNumbers{1, 0, 0}));
   const CleanedMesh out = cleaned(mesh, 1e-5);
@@ -139,7 +139,7 @@ TEST(CleanMesh, TurnsTheLongSidesOfCaps) {
   EXPECT_GT(out.report.deviation, 0);
 }
 
-TEST(CleanMesh, TurnsTrianglesWithoutArea) {
+TEST(CleanMesh, FlipsTrianglesWithoutArea) {
   const TriangleMesh mesh = with_cap(0);
   ASSERT_EQ(topology(mesh, SiteTable(mesh)).degenerate_triangles, 1U);
   const CleanedMesh out = clean_mesh(mesh, 1e-9);
@@ -160,7 +160,7 @@ TEST(CleanMesh, KeepsThinPlates) {
   }
 }
 
-TEST(CleanMesh, KeepsSlitsAndPartsThatNearlyTouch) {
+TEST(CleanMesh, KeepsSlitsAndNearlyTouchingParts) {
   for (const double part : {0.01, 0.3, 1.0, 3.0}) {
     constexpr double tolerance = 1e-3;
     const double gap = part * tolerance;
@@ -191,7 +191,7 @@ TriangleMesh dented_box(double depth) {
 }
 
 TEST(CleanMesh, SwallowsNoBodies) {
-  // In a dent of a face that is flat within the tolerance floats a body.
+  // A body floats in a dent of a face that is flat within the tolerance.
   constexpr double tolerance = 0.01;
   const TriangleMesh box = dented_box(0.5 * tolerance);
   EXPECT_EQ(cleaned(box, tolerance).mesh.vertices.size(), 8U);
@@ -205,7 +205,7 @@ TEST(CleanMesh, SwallowsNoBodies) {
   }
 }
 
-/// Two pyramids with one hexagon as base, the lower one inside the upper one, and the space between them.
+/// The space between two pyramids with a common hexagonal base. The lower one lies inside the upper one.
 TriangleMesh dented_pyramid() {
   TriangleMesh mesh;
   for (int k = 0; k < 6; ++k) mesh.vertices.push_back({std::cos(1.0471975512 * k), std::sin(1.0471975512 * k), 0});
@@ -242,7 +242,7 @@ TEST(CleanMesh, TurnsNothingInsideOut) {
   EXPECT_TRUE(check.passes(step)) << "the lower one moves away from the upper one";
 }
 
-TEST(CleanMesh, ShrinksLargeShapesToSmallOnesWithTheirTopology) {
+TEST(CleanMesh, ShrinksLargeShapesAndKeepsTheirTopology) {
   for (const double tolerance : {0.01, 0.1, 0.5}) {
     EXPECT_LT(cleaned(make_torus({.ring_segments = 64, .tube_segments = 32}), tolerance).mesh.triangles.size(), 2500U);
     static_cast<void>(cleaned(make_nested_shells({.shells = 4, .frequency = 6}), tolerance));
@@ -251,7 +251,7 @@ TEST(CleanMesh, ShrinksLargeShapesToSmallOnesWithTheirTopology) {
   }
 }
 
-TEST(CleanMesh, DoesNotDependOnWhereTheMeshIs) {
+TEST(CleanMesh, DoesNotDependOnScaleAndPlace) {
   const TriangleMesh mesh = make_subdivided(make_bracket(), 1);
   const CleanedMesh here = cleaned(mesh, 1e-5);
   for (const double scale : {0x1p-80, 0x1p-20, 0x1p140}) {
@@ -272,7 +272,7 @@ TEST(CleanMesh, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(CleanMesh, LeavesOutWhatNoTriangleNames) {
+TEST(CleanMesh, RemovesUnusedVerticesSegmentsAndPoints) {
   TriangleMesh mesh = make_box();
   mesh.vertices.insert(mesh.vertices.begin(), {50, 50, 50});
   for (Triangle& t : mesh.triangles) t = {t[0] + 1, t[1] + 1, t[2] + 1};
@@ -284,7 +284,7 @@ TEST(CleanMesh, LeavesOutWhatNoTriangleNames) {
   EXPECT_EQ(out.report.vertices_before, 8U);
 }
 
-TEST(CleanMesh, TellsHowFarItIsAndStops) {
+TEST(CleanMesh, ReportsProgressAndStops) {
   const TriangleMesh mesh = make_subdivided(make_box(), 5);
   double last = 0;
   std::size_t steps = 0;
@@ -317,8 +317,8 @@ std::string message_of(const MeshView& mesh, double tolerance) {
   return "";
 }
 
-// Reversed triangles are turned, and the mesh is cleaned as it would be without.
-TEST(CleanMesh, TurnsWhatFacesTheWrongWay) {
+// Reversed triangles are corrected, and the mesh is then cleaned in the same way.
+TEST(CleanMesh, CorrectsReversedTriangles) {
   const TriangleMesh box = make_subdivided(make_box(), 2);
   const CleanedMesh want = clean_mesh(box, 0.001);
   TriangleMesh inwards = box;
@@ -337,8 +337,8 @@ TEST(CleanMesh, TurnsWhatFacesTheWrongWay) {
   EXPECT_EQ(out.mesh.triangles.size(), want.mesh.triangles.size());
 }
 
-// Crossings are resolved first: what is cleaned is the surface of the solid.
-TEST(CleanMesh, OfAMeshThatCrossesItself) {
+// Crossings are resolved first. The surface of the solid is then cleaned.
+TEST(CleanMesh, ResolvesCrossings) {
   TriangleMesh crossing = make_subdivided(box_between({0, 0, 0}, {1, 1, 1}), 2);
   append(crossing, box_between({0.5, 0.5, 0.5}, {2, 2, 2}));
   const CleanedMesh out = clean_mesh(crossing, 1e-6);
@@ -353,7 +353,7 @@ TEST(CleanMesh, OfAMeshThatCrossesItself) {
   }
 }
 
-TEST(CleanMesh, RefusesWhatBoundsNoSolid) {
+TEST(CleanMesh, RejectsMeshesThatBoundNoSolid) {
   TriangleMesh open = make_box();
   open.triangles.pop_back();
   EXPECT_NE(message_of(open, 0.01).find("closed"), std::string::npos);
@@ -377,7 +377,7 @@ TEST(CleanMesh, RefusesWhatBoundsNoSolid) {
   EXPECT_NE(message_of({}, 0.01), "");
 }
 
-TEST(CleanMesh, RefusesAbsurdTolerances) {
+TEST(CleanMesh, RejectsInvalidTolerances) {
   for (const double tolerance :
        {0.0, -1.0, 1e-13, 3.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_NE(message_of(make_box(), tolerance).find("option: cleaning a mesh: the tolerance"), std::string::npos)

@@ -1,4 +1,4 @@
-// Proves how components of a solid in a square and in a cube are joined, numbered and judged.
+// Proves that components of a solid in a square and in a cube are joined, numbered and classified correctly.
 #include "solid/model/components.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using End = SquareComponents::End;
 
 constexpr auto no_hole = [](std::span<const std::uint32_t>) { return false; };
 
-TEST(SquareComponents, SidesThatMeetInCornersAreOne) {
+TEST(SquareComponents, SidesJoinedAtCornersAreOneComponent) {
   SquareComponents square;
   square.start(4);
   square.join(0, 2);
@@ -32,7 +32,7 @@ TEST(SquareComponents, SidesThatMeetInCornersAreOne) {
 TEST(SquareComponents, AreJoinedByArcsAndNumberedByIntervals) {
   SquareComponents square;
   square.start(5);
-  // 1 and 4 by an arc from border to border, 0 and 3 by two arcs that meet inside; 2 is alone.
+  // One arc from border to border joins 1 and 4. Two arcs that meet inside join 0 and 3. 2 is alone.
   square.add_arc({true, 4}, {true, 1});
   square.add_arc({true, 3}, {false, 70});
   square.add_arc({false, 70}, {true, 0});
@@ -46,7 +46,7 @@ TEST(SquareComponents, AreJoinedByArcsAndNumberedByIntervals) {
             (std::array{1U, 0U, 0U, 2U}));
 }
 
-TEST(SquareComponents, ClosedCurvesAreAskedAboutAndNumberedLast) {
+TEST(SquareComponents, ClosedCurvesAreQueriedAndNumberedLast) {
   SquareComponents square;
   const auto fill = [&] {
     square.start(1);
@@ -70,14 +70,14 @@ TEST(SquareComponents, ClosedCurvesAreAskedAboutAndNumberedLast) {
   EXPECT_EQ(square.of_arc(4), 2U);
   fill();
   EXPECT_FALSE(square.finish([](std::span<const std::uint32_t> loop) { return loop.front() == 1; }));
-  square.start(2);  // nothing is left of what was
+  square.start(2);  // the previous content is erased
   EXPECT_TRUE(square.finish(no_hole));
   EXPECT_EQ(square.count(), 2U);
 }
 
 constexpr auto flat = [](std::uint32_t) { return std::int64_t{0}; };
 
-/// The sides of a cube by number, and what its edges and corners join.
+/// Adds the sides of a cube by number, joined by its edges and corners.
 void add_whole_cube(CubeComponents& cube) {
   for (std::size_t one = 0; one < 6; ++one) {
     for (std::size_t other = one + 1; other < 6; ++other) {
@@ -95,9 +95,9 @@ TEST(CubeComponents, AWholeCubeIsABall) {
   EXPECT_EQ(cube.count(), 1U);
 }
 
-TEST(CubeComponents, ARodThroughOppositeSidesIsABallAndTwoHandlesAreNot) {
+TEST(CubeComponents, ARodThroughOppositeSidesIsABallAndAHandleIsNot) {
   CubeComponents cube;
-  // The wall of a rod is a tube, without its ends: Euler number 0.
+  // The wall of a rod is a tube without ends, with Euler number 0.
   cube.start(3);
   cube.add_arc(11, 0);
   cube.add_arc(4, 1);
@@ -106,7 +106,7 @@ TEST(CubeComponents, ARodThroughOppositeSidesIsABallAndTwoHandlesAreNot) {
   EXPECT_TRUE(cube.finish([](std::uint32_t piece) { return std::int64_t{piece == 4 ? 1 : 0}; }));
   EXPECT_EQ(cube.count(), 2U);
   EXPECT_EQ((std::array{cube.of_part(0), cube.of_part(1), cube.of_part(2)}), (std::array{0U, 1U, 0U}));
-  // With one side more, and a handle less, it is not.
+  // Two sides and a piece of Euler number -2 add up to 0, so the boundary has a handle.
   cube.start(2);
   cube.add_arc(0, 0);
   cube.add_arc(0, 1);
@@ -114,8 +114,8 @@ TEST(CubeComponents, ARodThroughOppositeSidesIsABallAndTwoHandlesAreNot) {
   EXPECT_EQ(cube.count(), 1U);
 }
 
-TEST(CubeComponents, EachBoundaryIsJudgedByItself) {
-  // One of Euler number 3 and one of 1 are together what two spheres have.
+TEST(CubeComponents, EachBoundaryIsClassifiedSeparately) {
+  // Euler numbers 3 and 1 have the sum of two spheres.
   CubeComponents cube;
   cube.start(2);
   cube.add_arc(7, 0);
@@ -124,11 +124,11 @@ TEST(CubeComponents, EachBoundaryIsJudgedByItself) {
   EXPECT_EQ(cube.count(), 2U);
 }
 
-TEST(CubeComponents, PiecesCountOnceHoweverManyArcsTheyHave) {
+TEST(CubeComponents, PiecesCountOnceForAnyNumberOfArcs) {
   CubeComponents cube;
   cube.start(6);
   add_whole_cube(cube);
-  // A dent in the middle of an edge: it takes half of it away, and has arcs in both sides.
+  // A dent in the middle of an edge removes half of the edge and has arcs in both sides.
   for (int k = 0; k < 5; ++k) cube.add_arc(3, static_cast<std::size_t>(k % 2) * 2);
   cube.join_at_interval(0, 2);
   EXPECT_TRUE(cube.finish([](std::uint32_t) { return std::int64_t{1}; }));

@@ -1,5 +1,5 @@
-// Proves that the components that tracing finds in a grid's cells are those that trying every triangle in every cell
-// finds, also where vertices, edges and faces lie in planes of the grid.
+// Proves that the components that tracing finds in the cells of a grid equal those of a test of every triangle in every
+// cell. Vertices, edges and faces may lie in planes of the grid.
 #include "solid/model/cut_grid.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct Found {
   std::size_t several = 0;  ///< cubes with several components
 };
 
-/// Compares a grid with one region of all its cubes but the outermost, none of which are split.
+/// Compares a grid with one region of all its cubes except the outermost. None of the cubes is split.
 class Comparison {
  public:
   Comparison(const SurfaceMesh& mesh, const GridPlanes& planes, std::string name, Found& found)
@@ -75,7 +75,7 @@ class Comparison {
     return cell_at(node_of(edge_of(r.sides[0].front())), 7U ^ (1U << r.axis));
   }
 
-  /// A node is inside where lines downwards cross the surface oddly often.
+  /// A node is inside if a line along an axis crosses the surface below it an odd number of times.
   void compare_nodes() {
     const GridPlanes& planes = grid_.planes();
     for (std::size_t node = 0; node < grid_.lattice().node_count(); ++node) {
@@ -126,7 +126,7 @@ class Comparison {
     }
   }
 
-  /// Of two cubes at a square with a hole the region names one, and knows the components of neither.
+  /// The region names one of the two cubes at a square with a hole. The components of both are unknown.
   void find_doubtful() {
     std::set<Cell> stuck;
     for (const StuckBox& box : region_.stuck()) {
@@ -190,7 +190,7 @@ void compare(const test::NamedMesh& named, const Vec3d& origin, double spacing, 
   }
 }
 
-TEST(CutGrid, FindsWhatTryingAllFindsInThinSolids) {
+TEST(CutGrid, EqualsBruteForceInThinSolids) {
   Found found;
   for (const test::NamedMesh& named : test::thin_solids()) {
     const Box3 box = bounds(named.mesh);
@@ -205,7 +205,7 @@ TEST(CutGrid, FindsWhatTryingAllFindsInThinSolids) {
   EXPECT_GT(found.crossings, 3000U);
 }
 
-TEST(CutGrid, FindsWhatTryingAllFindsWherePlanesPassThroughVertices) {
+TEST(CutGrid, EqualsBruteForceIfPlanesPassThroughVertices) {
   Found found;
   for (const test::NamedMesh& named : test::whole_solids()) {
     const Box3 box = bounds(named.mesh);
@@ -248,7 +248,7 @@ TEST(CutGrid, CellsOfAConvexSolidPassWithOneComponent) {
   }
 }
 
-/// A void that one plane cuts, and no other: the two cubes at the square with the hole fail.
+/// A single plane cuts the void. The two cubes at the square with the hole fail.
 TEST(CutGrid, CubesAtAHoleInASquareFail) {
   Random random(31);
   int holes = 0;
@@ -261,7 +261,7 @@ TEST(CutGrid, CubesAtAHoleInASquareFail) {
     if (above == 0 || above == 4) continue;
     mesh.triangles = reversed_triangles(mesh.triangles);
     append(mesh, make_box({.size = {12, 12, 12}}));
-    // Squares of side 6, whose planes lie around the void but for one through the middle.
+    // Squares have side 6. Their planes lie around the void, except for one through its middle.
     Vec3d origin{-2.5, -2.25, -2.125};
     origin[across] = 0;
     const SurfaceMesh surface(mesh, {});

@@ -1,5 +1,5 @@
-// Proves that the bound on how far a fan of triangles moves when its apex does is one: against distances of many points
-// of both fans from each other, which it is seldom much above where fans are flat.
+// Proves that the bound on the displacement of a fan of triangles whose apex moves is valid. It is compared with the
+// distances of many points of both fans, and is seldom much larger for flat fans.
 #include "solid/clean/mesh_cleaner.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::vector<Points> fan_of(const std::vector<Vec3d>& ring, const Vec3d& apex, bo
   return out;
 }
 
-/// The largest distance of many points of one fan from another one.
+/// The largest distance of many points of one fan from another fan.
 double sampled_distance(const std::vector<Points>& from, const std::vector<Points>& to) {
   constexpr int steps = 24;
   double most = 0;
@@ -51,7 +51,7 @@ struct Fan {
   bool closed = true;
 };
 
-/// A star-shaped polygon around a point, or on one side of it, with heights up to a limit; turned.
+/// A rotated star-shaped polygon around a point, or on one side of it, with heights up to a limit.
 Fan random_fan(Random& random, bool closed, double height) {
   Fan out;
   out.closed = closed;
@@ -98,19 +98,19 @@ TEST(FanGap, BoundsDistancesOfRandomFans) {
   }
 }
 
-TEST(FanGap, IsAsGoodAsNothingInAPlane) {
+TEST(FanGap, IsNearlyZeroInAPlane) {
   const std::vector<Vec3d> square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   EXPECT_LT(detail::fan_gap(square, {0.5, 0.4, 0}, true, 0), 1e-13);
   EXPECT_NEAR(detail::fan_gap(square, {0.5, 0.5, 0.25}, true, 0), 0.25, 1e-4);
 }
 
-TEST(FanGap, IsUnknownOfFansThatAreNoGraphs) {
+TEST(FanGap, IsInfiniteForFansThatAreNotGraphs) {
   const std::vector<Vec3d> dart{{0, 0, 0}, {2, 1, 0}, {0.5, 0.9, 0}, {0, 2, 0}};
   EXPECT_LT(detail::fan_gap(dart, {0.4, 0.6, 0}, true, 0), 1e-13);
-  // From the second corner the fan folds over at the dent.
+  // The fan folds over at the dent, as seen from the second corner.
   const std::vector<Vec3d> from_tip{dart[1], dart[2], dart[3], dart[0]};
   EXPECT_EQ(detail::fan_gap(from_tip, {0.4, 0.6, 0}, true, 0), std::numeric_limits<double>::infinity());
-  // A ring that runs around twice.
+  // A ring that winds around the apex twice.
   std::vector<Vec3d> twice;
   for (int k = 0; k < 10; ++k) twice.push_back({std::cos(1.2566370614 * k), std::sin(1.2566370614 * k), 0.01 * k});
   EXPECT_EQ(detail::fan_gap(twice, {}, true, 0), std::numeric_limits<double>::infinity());

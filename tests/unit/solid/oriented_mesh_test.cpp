@@ -1,5 +1,5 @@
-// Proves that triangles of closed meshes are turned away from the solid, whichever of them face the wrong way, and that
-// nothing else of the mesh changes; that what cannot be turned is refused.
+// Proves that the triangles of closed meshes are made to face outwards, for any set of reversed triangles, and that the
+// mesh stays otherwise unchanged. Meshes that cannot be oriented are rejected.
 #include "blum/solid/oriented_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -25,9 +25,8 @@ namespace {
 
 class OrientedShapes : public testing::TestWithParam<std::string> {};
 
-// Of shells of many triangles fewer than half are reversed, and then some shells as a whole: what comes back is the
-// mesh that there was.
-TEST_P(OrientedShapes, AreWhatTheyWere) {
+// A random share of the triangles is reversed. The topology, the vertices and the order of triangles stay.
+TEST_P(OrientedShapes, AreRestored) {
   const TriangleMesh mesh = make_shape(GetParam());
   const Topology facts = topology(mesh, SiteTable(mesh));
   if (!facts.betti) GTEST_SKIP() << "bounds no solid";
@@ -59,8 +58,8 @@ TEST_P(OrientedShapes, AreWhatTheyWere) {
 INSTANTIATE_TEST_SUITE_P(Catalog, OrientedShapes, testing::ValuesIn(test::catalog_names()),
                          [](const auto& name) { return test::test_name(name.param); });
 
-// A void faces the other way round than its body: the same triangles, turned, are the right ones.
-TEST(OrientedMesh, VoidsFaceTheirInside) {
+// A void faces the other way than its body: the same triangles, reversed, are correct.
+TEST(OrientedMesh, VoidsFaceInwards) {
   TriangleMesh mesh = test::box_between({0, 0, 0}, {3, 3, 3});
   append(mesh, test::box_between({1, 1, 1}, {2, 2, 2}));
   EXPECT_FALSE(topology(mesh, SiteTable(mesh)).betti);
@@ -78,8 +77,8 @@ std::string message_of(const TriangleMesh& mesh) {
   return "";
 }
 
-// Shells in shells, four deep, each facing at random: every second one is a void, whichever way it faced.
-TEST(OrientedMesh, ShellsInShells) {
+// Nested shells, four deep, in all combinations of orientations. Every second shell becomes a void.
+TEST(OrientedMesh, NestedShells) {
   Random random(5);
   for (int turn = 0; turn < 16; ++turn) {
     TriangleMesh mesh;
@@ -103,7 +102,8 @@ TEST(OrientedMesh, ShellsInShells) {
   }
 }
 
-// Half of a box's triangles: that with the first one is reversed, then the shell as a whole.
+// Half of the triangles of a box are reversed. The half of the first triangle decides, so the other half is reversed.
+// The shell is then reversed as a whole.
 TEST(OrientedMesh, TiesAreDecidedByTheFirstTriangle) {
   const TriangleMesh box = make_box();
   TriangleMesh mesh = box;
@@ -114,7 +114,7 @@ TEST(OrientedMesh, TiesAreDecidedByTheFirstTriangle) {
   EXPECT_EQ(out.reversed_shells, 1U);
 }
 
-TEST(OrientedMesh, RefusesWhatCannotBeTurned) {
+TEST(OrientedMesh, RejectsMeshesThatCannotBeOriented) {
   TriangleMesh open = make_box();
   open.triangles.pop_back();
   EXPECT_NE(message_of(open).find("not closed"), std::string::npos);
@@ -122,7 +122,7 @@ TEST(OrientedMesh, RefusesWhatCannotBeTurned) {
   line.vertices = {{0, 0, 0}, {1, 0, 0}};
   line.segments = {{0, 1}};
   EXPECT_NE(message_of(line).find("no triangles"), std::string::npos);
-  // The projective plane of six vertices: each edge has two triangles.
+  // The projective plane with six vertices: each edge has two triangles.
   TriangleMesh projective;
   Random random(1);
   for (int k = 0; k < 6; ++k) projective.vertices.push_back(random.in_cube());

@@ -1,5 +1,5 @@
-// Proves that boxes, and rectangles between them, that come from splits have the components that cutting the solid by
-// their sides shows, and that all of them pass.
+// Proves that the boxes of splits, and the rectangles between them, have the components that cutting the solid by their
+// sides gives. All of them pass.
 #include "solid/model/refined_region.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Found {
   std::size_t in_parts = 0;  ///< sides of boxes with several rectangles
   std::size_t several = 0;   ///< boxes with several components
   std::size_t unsure = 0;
-  std::size_t finer = 0;  ///< boxes that were asked to be small, with vertices in them
+  std::size_t finer = 0;  ///< boxes with vertices that must be small
 };
 
 test::SolidPart cut_to(test::SolidPart part, const Vec3d& low, const Vec3d& high, std::size_t axis) {
@@ -77,7 +77,7 @@ class RegionCheck {
     }
   }
 
-  /// @param side  of the box that it belongs to.
+  /// @param side  the side of the box that contains the rectangle.
   void check_rectangle(std::uint32_t r, test::SolidPart part, const BoxCell& box, std::size_t side) {
     const BoxRectangle& rectangle = region_.cells().rectangles()[r];
     const auto corner = [&](std::uint32_t segment, std::size_t end) {
@@ -105,13 +105,12 @@ class RegionCheck {
   Found& found_;
 };
 
-/// Where regions are to be finer than they must be: a part of the box around a body.
+/// The part of the box around a body in which regions must be finer.
 Box3 wanted_finer(const Box3& box) {
   return {box.lower + 0.2 * box.size(), box.lower + 0.5 * box.size()};
 }
 
-/// Whether boxes that share inner points with another one, and have a vertex of the mesh in them, are as small as
-/// asked.
+/// Checks that boxes are as small as requested if they overlap the finer part and contain a vertex of the mesh.
 void expect_finer(const TriangleMesh& mesh, const RefinedRegion& region, const Box3& finer, Found& found) {
   const Vec3d size = finer.size();
   for (std::size_t b = 0; b < region.boxes().size(); ++b) {
@@ -162,7 +161,7 @@ TEST(RefinedRegion, BoxesPassAndHaveTheComponentsOfASlowClipping) {
   EXPECT_GT(found.several, 30U);
 }
 
-TEST(RefinedRegion, IsAsFineAsAskedForAndStillPasses) {
+TEST(RefinedRegion, IsAsFineAsRequestedAndPasses) {
   Found found;
   for (const test::NamedMesh& named : test::thin_solids()) check(named, {2, 5}, true, found);
   EXPECT_EQ(found.unsure, 0U);

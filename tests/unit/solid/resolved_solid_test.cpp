@@ -1,6 +1,6 @@
-// Proves that meshes that cross, overlap or touch themselves are polyhedra where their crossings are resolved, with the
-// topology of the points around which they wind once or more, and that their triangles, vertices and sites are those of
-// the input, or lie on them.
+// Proves that meshes that cross, overlap or touch themselves become polyhedra with resolved crossings. Their topology
+// is that of the points with winding number 1 or more. Their triangles, vertices and sites are those of the input, or
+// lie on them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 using test::box_between;
 
-/// That a solid is a polyhedron with the inside that winding numbers tell, and numbers of its models.
+/// Expects a polyhedron whose inside equals that of winding numbers, with the given Betti numbers, also of its models.
 void expect_resolved(const TriangleMesh& mesh, const BettiNumbers& betti) {
   const Solid solid = Solid::of(mesh);
   ASSERT_EQ(solid.rule(), SolidRule::polyhedron) << solid.reason();
@@ -60,7 +60,7 @@ TEST(ResolvedSolid, ABoxGivenTwiceIsOne) {
   EXPECT_EQ(solid.bodies()[0].mesh.triangles.size(), 12U);
 }
 
-/// Rays from shells that cross may say anything of how these lie in each other.
+/// Rays from crossing shells do not determine how the shells are nested.
 TEST(ResolvedSolid, BoxesThatCrossAtRandom) {
   Random random(8);
   const auto place = [&](double least) {
@@ -68,7 +68,7 @@ TEST(ResolvedSolid, BoxesThatCrossAtRandom) {
   };
   for (int n = 0; n < 200; ++n) {
     TriangleMesh mesh = box_between({0.4, 0.4, 0.4}, {0.6, 0.6, 0.6});
-    append(mesh, box_between({0.5, 0.45, 0.45}, {0.7, 0.55, 0.55}));  // crosses the first in any case
+    append(mesh, box_between({0.5, 0.45, 0.45}, {0.7, 0.55, 0.55}));  // always crosses the first box
     for (int k = 0; k < 6; ++k) {
       const Vec3d lower = place(0);
       append(mesh, box_between(lower, lower + place(0.01)));
@@ -83,7 +83,7 @@ TEST(ResolvedSolid, BoxesThatCrossAtRandom) {
   }
 }
 
-TEST(ResolvedSolid, VoidsThatMeetWallsOpen) {
+TEST(ResolvedSolid, VoidsThatReachWallsAreOpen) {
   TriangleMesh mesh = box_between({0, 0, 0}, {2, 2, 2});
   append(mesh, box_between({0, 0.5, 0.5}, {1, 1, 1}, true));
   expect_resolved(mesh, {1, 0, 0});
@@ -97,8 +97,8 @@ TEST(ResolvedSolid, TwoRingsThatCrossHaveThreeHoles) {
   expect_resolved(mesh, {1, 3, 0});
 }
 
-/// Spheres that make a closed shell of bubbles: what they enclose together is a void.
-TEST(ResolvedSolid, SpheresAroundAVoid) {
+/// Spheres form a closed shell of bubbles, which encloses a void.
+TEST(ResolvedSolid, SpheresEncloseAVoid) {
   TriangleMesh mesh;
   for (const Vec3d& at :
        {Vec3d{1, 0, 0}, Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}, Vec3d{0, 0, -1}}) {
@@ -107,8 +107,8 @@ TEST(ResolvedSolid, SpheresAroundAVoid) {
   expect_resolved(mesh, {1, 0, 1});
 }
 
-/// A sphere with a part pulled through the opposite side: its tip is inside out.
-TEST(ResolvedSolid, ASphereThatIsPulledThroughItself) {
+/// A sphere with a part pulled through the opposite side. The tip of the part is inside out.
+TEST(ResolvedSolid, ASpherePulledThroughItself) {
   TriangleMesh mesh = make_sphere({.frequency = 8});
   for (Vec3d& v : mesh.vertices) {
     const double off = std::hypot(v.x, v.y);
@@ -118,7 +118,7 @@ TEST(ResolvedSolid, ASphereThatIsPulledThroughItself) {
 }
 
 TEST(ResolvedSolid, TrianglesWithoutArea) {
-  // The edge from 0 to 2 of a tetrahedron's face is cut on one side only; a flat triangle closes the gap.
+  // The edge from 0 to 2 of a face of a tetrahedron is cut on one side only. A triangle without area closes the gap.
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {0.5, 0.5, 0}, {1, 1, 0}, {1, 0, 0}, {0.25, 0.5, 1}};
   mesh.triangles = {{0, 2, 3}, {0, 1, 2}, {0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {0, 3, 4}};
@@ -142,8 +142,8 @@ TEST(ResolvedSolid, EdgesOfFourTrianglesAndVerticesOfTwoFans) {
   EXPECT_EQ(*apart.betti(), (BettiNumbers{2, 0, 0}));
 }
 
-/// Two boxes that meet along an edge, joined by boxes across both, above and below.
-TEST(ResolvedSolid, PartsThatMeetAlongAnEdgeAreApartThere) {
+/// Two boxes meet along an edge. Boxes above and below join them.
+TEST(ResolvedSolid, PartsThatMeetAlongAnEdgeAreSeparatedThere) {
   TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
   append(mesh, box_between({1, 1, 0}, {2, 2, 1}));
   append(mesh, box_between({0.2, 0.2, 0.7}, {1.8, 1.8, 2}));
@@ -155,8 +155,8 @@ TEST(ResolvedSolid, PartsThatMeetAlongAnEdgeAreApartThere) {
   EXPECT_EQ(Solid::of(mesh).resolved()->pinches, 1U) << "in its middle";
 }
 
-/// A double fan: the solid meets itself in the middle of its top.
-TEST(ResolvedSolid, PartsThatMeetInAVertexAreApartThere) {
+/// Two pyramids with a common apex, joined by boxes: the solid meets itself in the apex.
+TEST(ResolvedSolid, PartsThatMeetInAVertexAreSeparatedThere) {
   TriangleMesh mesh = box_between({-1, -1, -3}, {1, 1, -1});
   append(mesh, box_between({-1, -1, 1}, {1, 1, 3}));
   append(mesh, box_between({0.5, -0.5, -2}, {2, 0.5, 2}));
@@ -186,7 +186,7 @@ TEST(ResolvedSolid, VerticesTrianglesAndSitesLieOnTheInput) {
     for (std::uint32_t own = 0; own < own_sites.size(); ++own) {
       const SiteId site = body.input_site(SiteId(own), own_sites, input_sites);
       ASSERT_LT(site.value, input_sites.size());
-      // All corners of the own site lie on the plane, the line or the point of the other.
+      // All corners of the own site lie on the plane, the line or the point of the input site.
       const auto corners = input_sites.vertices(site);
       const auto at = [&](std::size_t k) {
         return mesh.vertices[static_cast<std::size_t>(corners[k] < 0 ? corners[0] : corners[k])];

@@ -1,4 +1,4 @@
-// Proves that components, and whether cubes pass, are what cutting the solid by the sides of every cube shows.
+// Proves that components, and the cubes that pass, equal those of cutting the solid by the sides of every cube.
 #include "support/slow_clipping.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 namespace blum::detail {
 namespace {
 
-TEST(SlowClipping, CutsABoxToABox) {
+TEST(SlowClipping, CutsABoxIntoBoxes) {
   const TriangleMesh box = make_box({.size = {2, 2, 2}});
   const GridPlanes planes({-1.53, -1.51, -1.57}, {1.03, 1.01, 1.02}, {0, 0, 0}, {3, 3, 3});
   int cubes = 0;
@@ -31,7 +31,7 @@ TEST(SlowClipping, CutsABoxToABox) {
   EXPECT_EQ(cubes, 27);
 }
 
-TEST(SlowClipping, KnowsAHandleAVoidAndAHoleInASquare) {
+TEST(SlowClipping, DetectsAHandleAVoidAndAHoleInASquare) {
   const auto shape_in = [](const TriangleMesh& mesh, const Vec3d& low, const Vec3d& high) {
     const GridPlanes planes(low, high - low, {0, 0, 0}, {1, 1, 1});
     test::PartShape found;
@@ -75,7 +75,8 @@ void compare_body(const TriangleMesh& mesh, const GridPlanes& planes, const std:
     }
     const bool passes = !std::binary_search(grid.failing_cubes().begin(), grid.failing_cubes().end(), cube);
     EXPECT_EQ(passes, shape.passes()) << name << " cube " << cube;
-    // What is around a hole is not joined to it, nor are the walls of a void to others: components are then not known.
+    // The surroundings of a hole are not joined to it, and the walls of a void are not joined to others. Components are
+    // then unknown.
     bool is_known = shape.voids == 0;
     const auto faces = grid.faces_of(cube);
     for (std::size_t f = 0; f < 6; ++f) {
@@ -103,7 +104,7 @@ void compare(const test::NamedMesh& named, const std::vector<int>& resolutions, 
   for (const int resolution : resolutions) {
     const double spacing = std::max({size.x, size.y, size.z}) / resolution;
     for (const double shift : shifts) {
-      // Another part of a cube along each axis, so that no plane passes through what is symmetric.
+      // The offset differs along each axis, so that no plane passes through a symmetric place.
       const Vec3d origin = solid.box().lower - Vec3d{shift, shift + 0.0347, shift + 0.0591} * spacing;
       for (const SolidBody& body : solid.bodies()) {
         const std::string name = named.name + " at " + std::to_string(resolution) + " by " + std::to_string(shift);
@@ -113,7 +114,7 @@ void compare(const test::NamedMesh& named, const std::vector<int>& resolutions, 
   }
 }
 
-TEST(SlowClipping, ShowsWhatTheGridFindsInThinSolids) {
+TEST(SlowClipping, EqualsTheGridInThinSolids) {
   Found found;
   for (const test::NamedMesh& named : test::thin_solids()) compare(named, {2, 5, 12}, found);
   EXPECT_EQ(found.unsure, 0U);
@@ -122,7 +123,7 @@ TEST(SlowClipping, ShowsWhatTheGridFindsInThinSolids) {
   EXPECT_GT(found.several, 1000U);
 }
 
-TEST(SlowClipping, ShowsWhatTheGridFindsInTheCatalogue) {
+TEST(SlowClipping, EqualsTheGridInTheCatalogue) {
   Found found;
   for (const ShapeInfo& shape : shape_catalog()) {
     const TriangleMesh mesh = shape.make(complete_parameters(shape, {}));

@@ -1,6 +1,5 @@
-// Proves that a mesh is taken apart into the bodies that it bounds, each with its topology and facing outwards, that
-// their sites are those of the input, that what bounds no polyhedron is said to, with the reason, and that points are
-// told to lie inside exactly.
+// Proves that a mesh is separated into bodies that face outwards, each with its topology and the sites of the input. A
+// mesh that does not bound a polyhedron is reported with the reason. Points are classified exactly.
 #include "blum/solid/solid.hpp"
 
 #include <gtest/gtest.h>
@@ -33,11 +32,11 @@ std::vector<BettiNumbers> betti_of(const Solid& split) {
   return betti;
 }
 
-/// Torus, box, box in the torus's hole, and a hollow box with a box in its void.
+/// A hollow torus, a box in the hole of the torus, and a hollow box with a box in its void.
 TriangleMesh many_bodies() {
   TriangleMesh mesh = make_torus({.ring_segments = 16, .tube_segments = 8});
   append(mesh, make_torus({.tube_radius = 0.1, .ring_segments = 16, .tube_segments = 8}));
-  mesh.vertices.push_back({100, 100, 100});  // named by nothing
+  mesh.vertices.push_back({100, 100, 100});  // unused vertex
   append(mesh, make_box({.size = {0.2, 0.2, 0.2}}));
   append(mesh, box_between({3, 3, 3}, {6, 6, 6}));
   append(mesh, box_between({4, 4, 4}, {5, 5, 5}));
@@ -54,7 +53,7 @@ TEST(Solid, OuterShellsHaveTheVoidsInThem) {
             "the mesh is closed, manifold and does not cross itself; 2 shells faced the wrong way and were reversed");
 }
 
-TEST(Solid, ShellsInEachOtherAreBodiesInTurn) {
+TEST(Solid, NestedShellsAreAlternatelyBodiesAndVoids) {
   const Solid split = Solid::of(make_nested_shells({.shells = 5, .frequency = 2}));
   EXPECT_EQ(betti_of(split), (std::vector<BettiNumbers>{{1, 0, 1}, {1, 0, 1}, {1, 0, 0}}));
   EXPECT_EQ(split.reversed_shells(), 0U);
@@ -78,7 +77,7 @@ TEST(Solid, CatalogueShapesAddUpToTheirNumbers) {
   EXPECT_GT(shapes, 15);
 }
 
-TEST(Solid, EachFacesOutwardsWhicheverWayItsShellsCame) {
+TEST(Solid, BodiesFaceOutwardsForAnyOrientationOfShells) {
   const TriangleMesh mesh = many_bodies();
   TriangleMesh turned = mesh;
   turned.triangles = reversed_triangles(mesh.triangles);
@@ -93,7 +92,7 @@ TEST(Solid, EachFacesOutwardsWhicheverWayItsShellsCame) {
   EXPECT_EQ(Solid::of(turned).reversed_shells(), 4U) << "all but the two voids";
 }
 
-TEST(Solid, TrianglesThatDisagreeAreReversed) {
+TEST(Solid, InconsistentTrianglesAreReversed) {
   Random random(2);
   for (const bool has_degenerate : {false, true}) {
     TriangleMesh mesh = many_bodies();
@@ -129,7 +128,7 @@ TEST(Solid, EveryTriangleIsInOneBody) {
   EXPECT_EQ(times, std::vector<int>(mesh.triangles.size(), 1));
 }
 
-/// The positions of the vertices of a site, in an order of their own.
+/// The sorted positions of the vertices of a site.
 std::vector<std::array<double, 3>> corners_of(const TriangleMesh& mesh, const SiteTable& sites, SiteId site) {
   std::vector<std::array<double, 3>> corners;
   for (const std::int32_t v : sites.vertices(site)) {
@@ -141,8 +140,8 @@ std::vector<std::array<double, 3>> corners_of(const TriangleMesh& mesh, const Si
   return corners;
 }
 
-TEST(Solid, SitesAreThoseOfTheInput) {
-  TriangleMesh mixed = many_bodies();  // its triangles in another order, so that bodies interleave
+TEST(Solid, SitesEqualThoseOfTheInput) {
+  TriangleMesh mixed = many_bodies();  // its triangles are reordered, so that bodies interleave
   Random random(1);
   for (std::size_t t = mixed.triangles.size(); t > 1; --t) {
     std::swap(mixed.triangles[t - 1], mixed.triangles[random.below(t)]);
@@ -174,7 +173,7 @@ TEST(Solid, BodiesMayTouch) {
   EXPECT_EQ(betti_of(split), (std::vector<BettiNumbers>(4, BettiNumbers{1, 0, 0})));
 }
 
-/// Says why a mesh bounds no polyhedron, and looks at what it is then.
+/// The reason why a mesh does not bound a polyhedron. Also checks the resulting solid.
 std::string obstacle_of(const TriangleMesh& mesh) {
   const Solid split = Solid::of(mesh);
   EXPECT_EQ(split.rule(), SolidRule::winding) << split.reason();
@@ -187,28 +186,28 @@ std::string obstacle_of(const TriangleMesh& mesh) {
   return split.reason().substr(before.size(), split.reason().size() - before.size() - after.size());
 }
 
-TEST(Solid, AMeshThatIsOpenIsNoPolyhedron) {
+TEST(Solid, AnOpenMeshIsNotAPolyhedron) {
   TriangleMesh mesh = make_box({});
   mesh.triangles.pop_back();
   EXPECT_EQ(obstacle_of(mesh), "it is open (3 boundary edges)");
 }
 
-TEST(Solid, AllThatIsInTheWayIsTold) {
+TEST(Solid, ReportsAllObstacles) {
   TriangleMesh mesh = make_box({});
   mesh.triangles.push_back({mesh.triangles[0][1], mesh.triangles[0][0], 7});
   const std::string why = obstacle_of(mesh);
   EXPECT_TRUE(why.starts_with("it is open (") && why.find("), it is not manifold (") != std::string::npos) << why;
 }
 
-TEST(Solid, ASurfaceOfOneSideIsNoPolyhedron) {
-  TriangleMesh mesh;  // the projective plane of six vertices
+TEST(Solid, AOneSidedSurfaceIsNotAPolyhedron) {
+  TriangleMesh mesh;  // the projective plane with six vertices
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 2}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
                     {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
   EXPECT_TRUE(obstacle_of(mesh).starts_with("its triangles face different ways ("));
 }
 
-TEST(Solid, AMeshWhoseCrossingsAreNotResolvedIsNoPolyhedron) {
+TEST(Solid, UnresolvedCrossingsAreNotAPolyhedron) {
   TriangleMesh mesh = box_between({0, 0, 0}, {2, 2, 2});
   append(mesh, box_between({1, 1, 1}, {3, 3, 3}));
   const TriangleMesh inwards{mesh.vertices, reversed_triangles(mesh.triangles), {}, {}};
@@ -221,7 +220,7 @@ TEST(Solid, AMeshWhoseCrossingsAreNotResolvedIsNoPolyhedron) {
             "magnitude apart");
 }
 
-TEST(Solid, NoTrianglesAreRefused) {
+TEST(Solid, RejectsMeshesWithoutTriangles) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}};
   mesh.segments = {{0, 1}};
@@ -238,7 +237,7 @@ TEST(Solid, TrianglesThatNameAVertexTwiceAreLeftOut) {
   EXPECT_EQ(split.bodies()[0].mesh.triangles.size(), 12U);
 }
 
-TEST(Solid, ShellsTellTheirDepthTheirBodyAndWhetherTheyWereReversed) {
+TEST(Solid, ShellsHaveDepthBodyAndOrientation) {
   const Solid solid = Solid::of(many_bodies());
   std::vector<std::uint32_t> depths;
   std::vector<std::uint32_t> bodies;
@@ -264,8 +263,8 @@ TEST(Solid, ReversedTrianglesAreCounted) {
   EXPECT_EQ(Solid::of(make_box({})).reversed_triangles(), 0U);
 }
 
-/// Compared with the full sum of solid angles, which is right but for points very near the surface.
-TEST(Solid, PointsInsideAreThoseOfTheWindingNumber) {
+/// The reference is the full sum of solid angles, which is exact except very close to the surface.
+TEST(Solid, PointsInsideFollowTheWindingNumber) {
   Random random(4);
   TriangleMesh open = make_torus({.ring_segments = 12, .tube_segments = 6});
   open.triangles.erase(open.triangles.begin());
@@ -286,7 +285,7 @@ TEST(Solid, PointsInsideAreThoseOfTheWindingNumber) {
   }
 }
 
-TEST(Solid, PointsNextToTheSurfaceAreToldExactly) {
+TEST(Solid, ClassifiesPointsNextToTheSurfaceExactly) {
   const TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
   const Solid solid = Solid::of(mesh);
   const double below = std::nextafter(1.0, 0.0);
@@ -302,7 +301,7 @@ TEST(Solid, PointsNextToTheSurfaceAreToldExactly) {
   EXPECT_FALSE(solid.inside({-1e-70, 0.5, 0.5}));
 }
 
-TEST(Solid, AnImageIsTheUnionOfItsClosedVoxelsOfWhichThereMustBeOne) {
+TEST(Solid, AnImageIsTheUnionOfAtLeastOneClosedVoxel) {
   VoxelImage image;
   image.grid = {{10, 20, 30}, {1, 2, 3}, {3, 3, 3}, {}};
   std::vector<std::uint8_t> values(27, 0);
@@ -323,7 +322,7 @@ TEST(Solid, AnImageIsTheUnionOfItsClosedVoxelsOfWhichThereMustBeOne) {
   EXPECT_THROW((void)Solid::of(image, LabelSelection::of_label(5)), InvalidImage);
 }
 
-TEST(Solid, OpenMeshesThatFaceInwardsAreToldSo) {
+TEST(Solid, DetectsOpenMeshesThatFaceInwards) {
   TriangleMesh mesh = make_box({});
   mesh.triangles.pop_back();
   EXPECT_FALSE(Solid::of(mesh).faces_inwards());
@@ -331,13 +330,13 @@ TEST(Solid, OpenMeshesThatFaceInwardsAreToldSo) {
   EXPECT_TRUE(Solid::of(mesh).faces_inwards());
 }
 
-/// The surface is the input, with what faced the wrong way turned: numbers stay.
+/// The surface is the input with reversed triangles corrected. Numbers stay.
 TEST(Solid, TheSurfaceIsTheInputFacingOutwards) {
   TriangleMesh mesh = box_between({0, 0, 0}, {3, 3, 3});
   TriangleMesh hole = box_between({1, 1, 1}, {2, 2, 2});
   reverse_triangles(hole);
   append(mesh, hole);
-  mesh.vertices.insert(mesh.vertices.begin(), {9, 9, 9});  // named by no triangle
+  mesh.vertices.insert(mesh.vertices.begin(), {9, 9, 9});  // used by no triangle
   for (Triangle& t : mesh.triangles) t = {t[0] + 1, t[1] + 1, t[2] + 1};
   const TriangleMesh given = mesh;
   std::swap(mesh.triangles[5][1], mesh.triangles[5][2]);
@@ -351,7 +350,7 @@ TEST(Solid, TheSurfaceIsTheInputFacingOutwards) {
   EXPECT_EQ(solid.surface().mesh.triangles, oriented_mesh(mesh).mesh.triangles);
 }
 
-TEST(Solid, TheSurfaceOfResolvedCrossingsTellsWhereItIsFrom) {
+TEST(Solid, TheSurfaceOfResolvedCrossingsNamesItsOrigin) {
   TriangleMesh mesh = make_box();
   append(mesh, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
   const Solid solid = Solid::of(mesh);
@@ -367,8 +366,8 @@ TEST(Solid, TheSurfaceOfResolvedCrossingsTellsWhereItIsFrom) {
   EXPECT_EQ(solid.problem(), "");
 }
 
-/// Every way in which a mesh bounds no bodies apart from each other has its words.
-TEST(Solid, ProblemsAreToldWithWhatToDo) {
+/// Each problem of a mesh that does not bound separate bodies has its own message.
+TEST(Solid, ReportsProblemsWithRemedies) {
   TriangleMesh open = make_box();
   open.triangles.pop_back();
   EXPECT_NE(Solid::of(open).problem().find("weld the mesh"), std::string::npos);
@@ -379,7 +378,7 @@ TEST(Solid, ProblemsAreToldWithWhatToDo) {
   EXPECT_NE(bodies.problem().find("crosses or touches itself: triangles"), std::string::npos);
 }
 
-TEST(Solid, CopiesShareWhatWasFound) {
+TEST(Solid, CopiesShareResults) {
   std::optional<Solid> first = Solid::of(make_box({}));
   const Solid second = *first;
   EXPECT_EQ(first->bodies().data(), second.bodies().data());

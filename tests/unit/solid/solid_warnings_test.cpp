@@ -1,5 +1,4 @@
-// Proves that a solid says what was reversed and that crossings were taken out, and nothing where it is that of the
-// mesh.
+// Proves that a solid warns of reversed triangles and resolved crossings, and that a correct mesh causes no warning.
 #include "blum/solid/solid_warnings.hpp"
 
 #include <gtest/gtest.h>
@@ -16,11 +15,11 @@ namespace {
 
 using test::box_between;
 
-TEST(SolidWarnings, OfABoxThereAreNone) {
+TEST(SolidWarnings, ABoxHasNone) {
   EXPECT_TRUE(solid_warnings(Solid::of(box_between({0, 0, 0}, {1, 1, 1}))).empty());
 }
 
-TEST(SolidWarnings, OfWhatWasReversed) {
+TEST(SolidWarnings, ReportReversedShellsAndTriangles) {
   TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
   mesh.triangles = reversed_triangles(mesh.triangles);
   const Warning shell{WarningCode::reversed_shells, "1 shell faces the wrong way and was reversed"};
@@ -33,7 +32,7 @@ TEST(SolidWarnings, OfWhatWasReversed) {
   EXPECT_EQ(reversal_warnings(3, 0)[0].text, "3 triangles face another way than the neighbours, and were reversed");
 }
 
-TEST(SolidWarnings, OfCrossings) {
+TEST(SolidWarnings, ReportCrossings) {
   TriangleMesh mesh = box_between({0, 0, 0}, {2, 2, 2});
   append(mesh, box_between({1, 1, 1}, {3, 3, 3}));
   const Solid solid = Solid::of(mesh);

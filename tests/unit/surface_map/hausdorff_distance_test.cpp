@@ -1,5 +1,5 @@
-// Hausdorff distances: intervals that hold known values and those of dense sampling, of soups of every kind and at
-// every scale; witnesses that are as far apart as they are said to be; the same for any threads.
+// Proves that intervals of Hausdorff distances contain known values and those of dense sampling, for soups of every
+// kind and at every scale. Witnesses are as far apart as stated. Results are the same for any number of threads.
 #include "blum/surface_map/hausdorff_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -29,14 +29,14 @@ double slow_distance(const MeshView& mesh, std::uint32_t primitive, const Vec3d&
   return triangle_distance({point, point, point}, {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}).distance;
 }
 
-/// What is closest to a point, primitive by primitive.
+/// Returns the distance of a point from a mesh, primitive by primitive.
 double slow_distance(const MeshView& mesh, const Vec3d& point) {
   double best = HUGE_VAL;
   for (std::uint32_t p = 0; p < primitive_count(mesh); ++p) best = std::min(best, slow_distance(mesh, p, point));
   return best;
 }
 
-/// Evenly spread points of a triangle, and how far any of its points is from one of them.
+/// Evenly spread points of a triangle, and the largest distance of any of its points from them.
 struct Spread {
   std::vector<Vec3d> points;
   double gap = 0;
@@ -54,7 +54,7 @@ Spread spread_over(const std::array<Vec3d, 3>& corners, int steps) {
   return out;
 }
 
-/// An interval that holds the one-sided distance, by brute force.
+/// An interval that contains the one-sided distance, by brute force.
 struct SlowBounds {
   double lower = 0;
   double upper = 0;
@@ -120,7 +120,7 @@ TEST(HausdorffDistance, OfBoxesInBoxes) {
   EXPECT_LE(found.upper - found.lower, 1e-6);
 }
 
-/// The furthest point lies inside of a triangle, where no vertex is.
+/// The furthest point lies inside a triangle, away from all vertices.
 TEST(HausdorffDistance, FindsTheMiddleOfATriangle) {
   const TriangleMesh plate = single({-3, -3, 0}, {3, -3, 0}, {0, 6, 0});
   TriangleMesh frame = plate;
@@ -147,14 +147,14 @@ TEST(HausdorffDistance, OfConcentricSpheresAndShiftedCopies) {
   EXPECT_GE(shifted.upper, 0.49);
 }
 
-TEST(HausdorffDistance, IsNothingToItselfAndToFinerCopies) {
+TEST(HausdorffDistance, IsZeroToItselfAndToFinerCopies) {
   const TriangleMesh mesh = make_organic({.frequency = 10});
   EXPECT_LT(hausdorff_distance(mesh, mesh).upper, 1e-14);
   const TriangleMesh finer = make_subdivided(mesh, 2);
   EXPECT_LT(hausdorff_distance(mesh, finer, {.tolerance = 1e-6}).upper, 1e-6 + 1e-14);
 }
 
-/// Most vertices stand where the other mesh has one, which need no search, in any order of vertices and triangles.
+/// Most vertices coincide with vertices of the other mesh and need no search, in any order of vertices and triangles.
 TEST(HausdorffDistance, OfCopiesWithAChangedPart) {
   const TriangleMesh mesh = make_sphere({.frequency = 24});
   TriangleMesh changed = mesh;
@@ -174,8 +174,8 @@ TEST(HausdorffDistance, OfCopiesWithAChangedPart) {
   expect_witnesses(found.backward, mesh, changed, 1.5);
 }
 
-/// Vertices at the same places that no triangle of the other mesh has are not part of its surface.
-TEST(HausdorffDistance, OfACopyWithVerticesThatNothingNames) {
+/// Coincident vertices that no triangle of the other mesh uses are not part of its surface.
+TEST(HausdorffDistance, OfACopyWithUnusedVertices) {
   const TriangleMesh mesh = make_sphere({.frequency = 24});
   TriangleMesh half = mesh;
   std::erase_if(half.triangles, [&](const Triangle& t) { return half.vertices[t[0]].x > 0.9; });
@@ -184,7 +184,7 @@ TEST(HausdorffDistance, OfACopyWithVerticesThatNothingNames) {
   EXPECT_LT(directed_hausdorff_distance(half, mesh).upper, 1e-14);
 }
 
-TEST(HausdorffDistance, HoldsWhatSamplingFindsOfSoups) {
+TEST(HausdorffDistance, ContainsSampledDistancesOfSoups) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
@@ -195,7 +195,7 @@ TEST(HausdorffDistance, HoldsWhatSamplingFindsOfSoups) {
   }
 }
 
-TEST(HausdorffDistance, HoldsWhatSamplingFindsOfNearCopies) {
+TEST(HausdorffDistance, ContainsSampledDistancesOfNearCopies) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE(seed);
     const TriangleMesh mesh = make_sphere({.frequency = 2});
@@ -248,7 +248,7 @@ TEST(HausdorffDistance, EndsAtTheLimitWithACertainInterval) {
   EXPECT_GE(early.upper, good.lower);
 }
 
-TEST(HausdorffDistance, SaysWhatIsWrong) {
+TEST(HausdorffDistance, RejectsInvalidInputAndCanBeCancelled) {
   const TriangleMesh mesh = make_box();
   EXPECT_THROW((void)hausdorff_distance(mesh, {}), InvalidMesh);
   EXPECT_THROW((void)hausdorff_distance(mesh, mesh, {.tolerance = 0}), InvalidOption);
@@ -267,7 +267,7 @@ TEST(HausdorffDistance, SaysWhatIsWrong) {
   EXPECT_THROW((void)hausdorff_distance(mesh, mesh, {}, context), Cancelled);
 }
 
-/// The bound of a piece is above the distance of each of its points, whatever is around it.
+/// The bound of a piece is at least the distance of each of its points, whatever surrounds the piece.
 TEST(DistanceBound, IsAboveAllDistances) {
   std::size_t better_than_size = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {

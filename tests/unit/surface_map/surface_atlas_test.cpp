@@ -1,5 +1,5 @@
-// Atlases: each triangle has the texels that reading within it looks at, and none is turned over; the points that stand
-// for texels are as close as is said.
+// Proves that an atlas gives each triangle the texels that reads within it use, and reverses no triangle. The points
+// that represent texels are as close as stated.
 #include "blum/surface_map/surface_atlas.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ double twice_area(const std::array<TexturePlace, 3>& c) {
   return (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
 }
 
-/// A random point of a triangle, and where it is in the texture.
+/// A random point of a triangle, and its place in the texture.
 struct Probe {
   Vec3d point;
   TexturePlace place;
@@ -41,7 +41,7 @@ Probe probe(const MeshView& mesh, const SurfaceAtlas& atlas, std::uint32_t t, Ra
   return {a * w + b * u + c * v, {pa.x * w + pb.x * u + pc.x * v, pa.y * w + pb.y * u + pc.y * v}};
 }
 
-/// The texels that bilinear reading looks at, with their weights.
+/// A texel that a bilinear read uses, with its weight.
 struct Reading {
   std::size_t texel = 0;
   double weight = 0;
@@ -171,7 +171,7 @@ TEST(SurfaceAtlas, TakesGivenTextureCoordinates) {
   for (const double reach : texel_reaches(mesh, atlas)) EXPECT_LT(reach, 0.5);
 }
 
-TEST(SurfaceAtlas, SaysWhatIsWrong) {
+TEST(SurfaceAtlas, RejectsInvalidInput) {
   const TriangleMesh box = make_box();
   EXPECT_THROW((void)surface_atlas(box, 0), InvalidOption);
   EXPECT_THROW((void)surface_atlas(box, NAN), InvalidOption);

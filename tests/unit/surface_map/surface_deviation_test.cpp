@@ -1,4 +1,4 @@
-// Deviations over an area: known means and percentiles, errors that hold.
+// Proves that deviations weighted by area have known means and percentiles, and that the stated errors hold.
 #include "blum/surface_map/surface_deviation.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace blum {
 namespace {
 
-/// Over a slope the distance from a plane runs evenly from 0 to 1.
+/// On this slope, the distance from the plane is evenly distributed from 0 to 1.
 TEST(SurfaceDeviation, OfASlope) {
   const TriangleMesh slope{{{0, 0, 0}, {2, 0, 1}, {2, 3, 1}, {0, 3, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
   const TriangleMesh plane{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
@@ -30,7 +30,7 @@ TEST(SurfaceDeviation, OfASlope) {
   EXPECT_LE(1 - found.largest, found.percentile_error);
 }
 
-/// Errors hold whatever the number of pieces: against that of many.
+/// The stated errors hold for any number of pieces, compared with a much finer result.
 TEST(SurfaceDeviation, KnowsItsErrors) {
   const TriangleMesh mesh = make_organic({.frequency = 6});
   const TriangleMesh other = make_torus();
@@ -47,7 +47,7 @@ TEST(SurfaceDeviation, KnowsItsErrors) {
   EXPECT_EQ(fine.sign_rule, SignRule::normals);
 }
 
-/// Sums of millions of terms lose no digits: of equal distances the mean is that distance.
+/// Sums of millions of terms lose no digits: the mean of equal distances is that distance.
 TEST(SurfaceDeviation, OfEqualDistancesIsExactForManyPieces) {
   const double size = 0x1p-60;
   const TriangleMesh tiny{{{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}}, {}, {}};
@@ -60,7 +60,7 @@ TEST(SurfaceDeviation, OfEqualDistancesIsExactForManyPieces) {
   }
 }
 
-TEST(SurfaceDeviation, OfWhatIsVeryFarIsFinite) {
+TEST(SurfaceDeviation, OfVeryDistantPointsIsFinite) {
   const double size = 1e-140;
   const TriangleMesh tiny{{{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}}, {}, {}};
   for (const double far : {1e10, 1e30, 1e99}) {
@@ -71,7 +71,7 @@ TEST(SurfaceDeviation, OfWhatIsVeryFarIsFinite) {
   }
 }
 
-/// By winding numbers of open meshes signs may change within pieces.
+/// For open meshes, signs by winding numbers may change within pieces.
 TEST(SurfaceDeviation, KnowsItsErrorsWhereSignsJump) {
   TriangleMesh bowl = make_sphere();
   std::erase_if(bowl.triangles, [&](const Triangle& t) {

@@ -1,5 +1,5 @@
-// Surface maps: texels hold exact distances, what is read between them is within the stated error, also of meshes that
-// move; summaries are those of the texels.
+// Proves that the texels of surface maps contain exact distances. Values read between texels are within the stated
+// error, also after meshes move. Summaries equal those of the texels.
 #include "blum/surface_map/surface_distance_map.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using test::place_of;
 using test::read_bilinear;
 using test::read_nearest;
 
-/// Errors at random points of the surface stay within the bounds; some come near them.
+/// Errors at random points of the surface stay within the bounds, and some come near them.
 void expect_errors(const SurfaceMap& map, const TriangleMesh& target, const TriangleMesh& other, SignMode sign,
                    std::size_t count) {
   const SurfaceSamples samples = sample_surface(target, count, {.seed = 7});
@@ -66,7 +66,7 @@ TEST(SurfaceDistanceMap, HoldsExactDistancesWithinItsErrors) {
   }
 }
 
-TEST(SurfaceDistanceMap, HoldsOfSoups) {
+TEST(SurfaceDistanceMap, HoldsForSoups) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     SCOPED_TRACE(seed);
     TriangleMesh target = make_soup({.triangles = 20, .awkward = 0.5, .seed = seed});
@@ -76,9 +76,8 @@ TEST(SurfaceDistanceMap, HoldsOfSoups) {
   }
 }
 
-/// Of the points of a triangle whose area is all rounding, the closest ones to places beyond its border are on its
-/// sides.
-TEST(SurfaceDistanceMap, HoldsOfNeedles) {
+/// If a triangle's area is pure rounding, its closest points to places beyond its border lie on its sides.
+TEST(SurfaceDistanceMap, HoldsForNeedles) {
   Random random(1314);
   const auto next = [&] { return Vec3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
   for (int round = 0; round < 300; ++round) {
@@ -90,7 +89,7 @@ TEST(SurfaceDistanceMap, HoldsOfNeedles) {
     const SurfaceMap map = surface_distance_map(target, point, {.texel = 0.05});
     const std::array<TexturePlace, 3>& at = map.atlas->corners[0];
     for (int k = 0; k <= 100; ++k) {
-      // On the longest side.
+      // The place lies on the longest side.
       const double part = k / 100.0;
       const double exact = length(a + (b - a) * part - point.vertices[0]);
       const TexturePlace place{at[0].x + (at[1].x - at[0].x) * part, at[0].y + (at[1].y - at[0].y) * part};
@@ -100,8 +99,8 @@ TEST(SurfaceDistanceMap, HoldsOfNeedles) {
   }
 }
 
-/// What float32 and the rounding of points lose is part of the errors.
-TEST(SurfaceDistanceMap, HoldsWhatRoundingLoses) {
+/// The errors include rounding to float32 and the rounding of points.
+TEST(SurfaceDistanceMap, CountsRoundingAsError) {
   for (const double scale : {1e-140, 1e-44, 1e-30, 1.0, 1e30, 1e37, 1e39, 1e140}) {
     SCOPED_TRACE(scale);
     TriangleMesh target{{{0, 0, 0}, {1e-9, 0, 0}, {0, 1e-9, 0}}, {{0, 1, 2}}, {}, {}};
@@ -111,13 +110,13 @@ TEST(SurfaceDistanceMap, HoldsWhatRoundingLoses) {
     const SurfaceMap map = surface_distance_map(target, point, {.texel = 1e-10 * scale});
     expect_errors(map, target, point, SignMode::none, 100);
   }
-  // Small, and far from the origin: the closest points of places beyond the border are rounded.
+  // The triangle is small and far from the origin, so the closest points of places beyond its border are rounded.
   const Vec3d far{288323, 1e5, -4e4};
   const TriangleMesh target{{far, far + Vec3d{3e-10, 0, 0}, far + Vec3d{0, 3e-10, 0}}, {{0, 1, 2}}, {}, {}};
   const TriangleMesh point{{far + Vec3d{1, 1, 1}}, {}, {}, {0}};
   const SurfaceMap map = surface_distance_map(target, point, {.texel = 1e-13});
   EXPECT_GT(map.error[0], 1e-10F);
-  // Where something is beyond reach, the rounding of the rest counts.
+  // If part of a triangle is further than `max_distance`, the rounding of the rest still counts.
   const TriangleMesh long_way{{{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}}, {{0, 1, 2}}, {}, {}};
   const TriangleMesh distant{{{1e6, 0, 0}}, {}, {}, {0}};
   const SurfaceMap limited = surface_distance_map(long_way, distant, {.texel = 1e-4, .max_distance = 1e6 - 5e-4});
@@ -125,7 +124,7 @@ TEST(SurfaceDistanceMap, HoldsWhatRoundingLoses) {
   EXPECT_GT(limited.error[0], 0.03F);
 }
 
-/// By winding numbers of open meshes the sign changes where the distance is not 0.
+/// For open meshes, signs by winding numbers may change at distances other than 0.
 TEST(SurfaceDistanceMap, KnowsThatSignsMayJump) {
   TriangleMesh bowl = make_sphere();
   std::erase_if(bowl.triangles, [&](const Triangle& t) {
@@ -161,8 +160,9 @@ TEST(SurfaceDistanceMap, FollowsMeshesThatMove) {
   EXPECT_THROW(mapper.move_target(other.vertices), InvalidMesh);
 }
 
-/// Triangles without texels sum up nothing, wherever they come in the order; charts whose area is lost have none.
-TEST(SurfaceDistanceMap, SaysThatTrianglesHaveNoTexels) {
+/// Triangles without texels have empty summaries, wherever they are in the order. Charts whose area is lost to rounding
+/// have no texels.
+TEST(SurfaceDistanceMap, ReportsTrianglesWithoutTexels) {
   const TriangleMesh target{
       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}, {6, 5, 5}, {5, 6, 5}}, {{0, 1, 2}, {3, 4, 5}}, {}, {}};
   const TriangleMesh other{{{0, 0, 3}}, {}, {}, {0}};
@@ -203,7 +203,7 @@ TEST(SurfaceDistanceMap, SumsUpTriangles) {
   }
 }
 
-TEST(SurfaceDistanceMap, AnswersWhatIsClose) {
+TEST(SurfaceDistanceMap, FindsTheClosestTexelAndTexelsWithinADistance) {
   const TriangleMesh target = make_organic({.frequency = 5});
   const SurfaceMap map = surface_distance_map(target, make_torus(), {.texel = 0.05, .max_distance = 0.3});
   const std::size_t closest = map.closest_texel().value();
@@ -270,7 +270,7 @@ TEST(SurfaceDistanceMap, IsTheSameForAnyThreads) {
   EXPECT_EQ(one.error, many.error);
 }
 
-TEST(SurfaceDistanceMap, SaysWhatIsWrong) {
+TEST(SurfaceDistanceMap, RejectsInvalidInput) {
   const TriangleMesh box = make_box();
   EXPECT_THROW((void)surface_distance_map(box, box, {.texel = -1}), InvalidOption);
   EXPECT_THROW((void)surface_distance_map(box, box, {.max_distance = -1}), InvalidOption);

@@ -1,5 +1,5 @@
-// What the values of a map are by area: known means and percentiles, texels of different sizes, maps without values,
-// maps that are not of the mesh.
+// Proves that statistics of maps are weighted by area. The tests use known means and percentiles, texels of different
+// sizes and maps without values. Maps of other meshes are rejected.
 #include "blum/surface_map/surface_map_statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 const TriangleMesh slope{{{0, 0, 0}, {2, 0, 1}, {2, 3, 1}, {0, 3, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
 const TriangleMesh plane{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
 
-/// Over a slope the distance from a plane runs evenly from 0 to 1.
+/// On this slope, the distance from the plane is evenly distributed from 0 to 1.
 TEST(SurfaceMapStatistics, OfASlope) {
   const SurfaceMapStatistics found = surface_map_statistics(slope, surface_distance_map(slope, plane, {.texel = 0.01}));
   EXPECT_NEAR(found.area, 3 * std::sqrt(5.0), 1e-12);
@@ -33,15 +33,15 @@ TEST(SurfaceMapStatistics, OfASlope) {
   }
 }
 
-/// A box of 1 x 1 x 1/4 is 1/4 thick over two thirds of its area, and 1 over the rest, however it is cut.
-TEST(SurfaceMapStatistics, AreThoseOfAreasWhateverTheSizeOfTriangles) {
+/// A box of 1 x 1 x 1/4 has thickness 1/4 on two thirds of its area and 1 on the rest, for any triangulation.
+TEST(SurfaceMapStatistics, AreWeightedByAreaForAnySizeOfTriangles) {
   const TriangleMesh box = make_box({.size = {1, 1, 0.25}});
   const SurfaceMapStatistics coarse = surface_map_statistics(box, thickness_map(box, {.texel = 0.02}));
   EXPECT_NEAR(coarse.area, 3, 1e-12);
   EXPECT_NEAR(coarse.mean, (2 * 0.25 + 1) / 3, 1e-6);
   EXPECT_NEAR(coarse.percentiles[3], 0.25, 1e-6);
   EXPECT_NEAR(coarse.percentiles[4], 1, 1e-6);
-  // One triangle in three, and other texels.
+  // Here one triangle is split into three, and texels have another size.
   TriangleMesh split = box;
   const Triangle t = split.triangles[0];
   const auto middle = static_cast<std::uint32_t>(split.vertices.size());
@@ -55,9 +55,9 @@ TEST(SurfaceMapStatistics, AreThoseOfAreasWhateverTheSizeOfTriangles) {
   EXPECT_NEAR(other.rms, coarse.rms, 1e-6);
 }
 
-/// Texels on the border of a triangle, whose squares are mostly outside, count by what of them is inside: over a
-/// triangle that rises from a side to a corner, the area above a height falls with its square.
-TEST(SurfaceMapStatistics, OfOneTriangleIsNotDrawnToItsBorder) {
+/// Border texels of a triangle lie mostly outside it and count by their inner part. The triangle rises from a side to a
+/// corner, so the area above height h is proportional to (1 - h)^2.
+TEST(SurfaceMapStatistics, OfOneTriangleAreNotBiasedByItsBorder) {
   const TriangleMesh triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}}, {{0, 1, 2}}, {}, {}};
   for (const double texel : {0.01, 0.05, 0.1}) {
     const SurfaceMapStatistics found =
@@ -70,7 +70,7 @@ TEST(SurfaceMapStatistics, OfOneTriangleIsNotDrawnToItsBorder) {
   }
 }
 
-TEST(SurfaceMapStatistics, CountOnlyWhatHasAValue) {
+TEST(SurfaceMapStatistics, CountOnlyTexelsWithAValue) {
   const SurfaceMap map = surface_distance_map(slope, plane, {.texel = 0.02, .max_distance = 0.5});
   const SurfaceMapStatistics found = surface_map_statistics(slope, map);
   EXPECT_NEAR(found.measured_area / found.area, 0.5, 0.02);
@@ -84,7 +84,7 @@ TEST(SurfaceMapStatistics, CountOnlyWhatHasAValue) {
   EXPECT_NEAR(none.area, 3 * std::sqrt(5.0), 1e-12);
 }
 
-/// Neither areas nor squares leave the range of numbers where the values are within it.
+/// Areas and squares neither overflow nor underflow if the values are in range.
 TEST(SurfaceMapStatistics, OfHugeAndTinyMeshes) {
   for (const double size : {1e-30, 1e30}) {
     TriangleMesh mesh = slope;

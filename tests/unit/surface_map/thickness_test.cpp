@@ -1,4 +1,5 @@
-// Thickness by rays and by balls, of plates, tubes, spheres and wedges: known values; against brute force.
+// Proves that thickness by rays and by balls equals known values of plates, hollow spheres, spheres and wedges, and
+// brute force.
 #include "blum/surface_map/thickness.hpp"
 
 #include <gtest/gtest.h>
@@ -23,13 +24,13 @@ TriangleMesh turned_box(const Vec3d& size) {
   return test::turned(test::box_between({0, 0, 0}, size));
 }
 
-TEST(RayThickness, OfPlatesIsTheirs) {
+TEST(RayThickness, OfPlatesIsTheirSize) {
   const Vec3d size{5, 3, 0.25};
   for (const TriangleMesh& plate : {test::box_between({0, 0, 0}, size), turned_box(size)}) {
     const SurfaceSamples samples = sample_surface(plate, 4000);
     const std::vector<Thickness> found = thickness(plate, samples.points);
     for (std::size_t k = 0; k < found.size(); ++k) {
-      // One of the three sizes: that along the normal.
+      // The thickness is the size along the normal, which is one of three.
       const double nearest = std::min({std::abs(found[k].thickness - size.x), std::abs(found[k].thickness - size.y),
                                        std::abs(found[k].thickness - size.z)});
       ASSERT_LT(nearest, 1e-12);
@@ -39,7 +40,7 @@ TEST(RayThickness, OfPlatesIsTheirs) {
   }
 }
 
-/// Also on edges and at vertices, where rays run along neighbours.
+/// On edges and at vertices, rays run along neighbouring triangles.
 TEST(RayThickness, OnBorders) {
   const TriangleMesh plate = turned_box({5, 3, 0.25});
   std::vector<Vec3d> points = plate.vertices;
@@ -51,7 +52,7 @@ TEST(RayThickness, OnBorders) {
   }
 }
 
-/// Points inside of triangles are asked where they are: of a prism between y = 0 and y = 1 - x / 3.
+/// Points inside triangles are evaluated exactly where they are. The prism lies between y = 0 and y = 1 - x / 3.
 TEST(RayThickness, InsideOfFacesIsExact) {
   const TriangleMesh prism{{{0, 0, 0}, {3, 0, 0}, {0, 1, 0}, {0, 0, 2}, {3, 0, 2}, {0, 1, 2}},
                            {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}},
@@ -62,7 +63,7 @@ TEST(RayThickness, InsideOfFacesIsExact) {
   }
 }
 
-TEST(BallThickness, OfPlatesIsThatOrTwiceTheWayToAnEdge) {
+TEST(BallThickness, OfPlatesIsTheirSizeOrTwiceTheDistanceToAnEdge) {
   const Vec3d size{5, 3, 0.25};
   const TriangleMesh plate = test::box_between({0, 0, 0}, size);
   const SurfaceSamples samples = sample_surface(plate, 4000);
@@ -78,8 +79,7 @@ TEST(BallThickness, OfPlatesIsThatOrTwiceTheWayToAnEdge) {
   }
 }
 
-/// A wedge whose sides open by an angle: at a way s from its edge the ray goes s tan(angle), the ball has a diameter of
-/// 2 s tan(angle / 2).
+/// At distance s from the edge of a wedge, the ray's length is s tan(angle). The ball's diameter is 2 s tan(angle / 2).
 TEST(Thickness, OfWedges) {
   for (const double angle : {10.0, 45.0, 80.0}) {
     const double a = angle * std::numbers::pi / 180;
@@ -103,7 +103,7 @@ TEST(Thickness, OfWedges) {
 }
 
 TEST(Thickness, OfSpheresNearsTheDiameter) {
-  // Errors fall with the square of the edges' length, as those of the normals do.
+  // Errors are quadratic in the edge length, like those of the normals.
   struct Case {
     ThicknessKind kind;
     double at_least;
@@ -124,8 +124,8 @@ TEST(Thickness, OfSpheresNearsTheDiameter) {
   }
 }
 
-/// Two round walls: inside of a tube the thickness is that of its wall, by both definitions.
-TEST(Thickness, OfTubesIsThatOfTheirWalls) {
+/// In this hollow sphere, the thickness is that of its wall, by both definitions.
+TEST(Thickness, OfHollowSpheresIsThatOfTheirWalls) {
   TriangleMesh tube = make_sphere({.frequency = 24});
   const double outer = length(tube.vertices[0]);
   TriangleMesh inner = test::moved(tube, 0.8);
@@ -144,7 +144,7 @@ Vec3d normal_of(const MeshView& mesh, std::size_t t) {
   return n / length(n);
 }
 
-/// As the definition says, triangle by triangle.
+/// Computes the smooth normal by its definition, triangle by triangle.
 Vec3d slow_smooth_normal(const MeshView& mesh, std::uint32_t triangle, const Vec3d& point, double cosine) {
   const std::array<Vec3d, 3> p = triangle_corners(mesh, triangle);
   const Vec3d own = normal_of(mesh, triangle);
@@ -167,7 +167,7 @@ Vec3d slow_smooth_normal(const MeshView& mesh, std::uint32_t triangle, const Vec
   return mean / length(mean);
 }
 
-/// The ball of a polyhedron itself, by going through all triangles: the smallest ball of those that touch one.
+/// Brute force goes through all triangles of the polyhedron and takes the smallest ball that touches one.
 TEST(BallThickness, AgreesWithBruteForce) {
   const TriangleMesh mesh = make_organic({.frequency = 5});
   const SurfaceSamples samples = sample_surface(mesh, 150);
@@ -199,7 +199,7 @@ TEST(BallThickness, AgreesWithBruteForce) {
   }
 }
 
-/// Triangles without area, such as those that close cracks in CAD meshes, have no normal and end no ball.
+/// Triangles without area close cracks in CAD meshes. They have no normal and limit no ball.
 TEST(BallThickness, LooksPastTrianglesWithoutArea) {
   TriangleMesh plate = test::box_between({0, 0, 0}, {4, 3, 0.5});
   plate.vertices.insert(plate.vertices.end(), {{1.4, 1, 0.5}, {1.6, 1, 0.5}, {1.5, 1, 0.5}});
@@ -254,8 +254,8 @@ TEST(ThicknessMap, HoldsThicknesses) {
   }
 }
 
-/// What a map knows of the texel before must not change a value.
-TEST(ThicknessMap, HoldsWhatEachPointHasAlone) {
+/// A map reuses results of the previous texel, which must not change a value.
+TEST(ThicknessMap, EqualsTheThicknessOfEachPointAlone) {
   const TriangleMesh mesh = make_organic({.frequency = 6, .seed = 2});
   for (const ThicknessKind kind : {ThicknessKind::ray, ThicknessKind::ball}) {
     const SurfaceMap map = thickness_map(mesh, {.texel = 0.03}, {.kind = kind, .separation = 50});
@@ -263,7 +263,7 @@ TEST(ThicknessMap, HoldsWhatEachPointHasAlone) {
     const std::vector<Thickness> alone = thickness(mesh, all.points, {.kind = kind, .separation = 50});
     std::size_t compared = 0;
     for (std::size_t k = 0; k < all.texels.size(); ++k) {
-      // At borders of triangles the points alone may be taken for their neighbours'.
+      // Near borders, a single point may be assigned to a neighbouring triangle.
       const std::uint32_t t = map.atlas->triangle[all.texels[k]].value;
       const auto [a, b, c] = triangle_corners(mesh, t);
       const Vec3d inwards = cross(b - a, c - a);
@@ -296,7 +296,7 @@ TEST(Thickness, WithoutAFarSideIsInfinite) {
   EXPECT_TRUE(std::isinf(thickness(inwards, ThicknessOptions{})[0].thickness));
 }
 
-TEST(Thickness, SaysWhatIsWrong) {
+TEST(Thickness, RejectsInvalidInput) {
   const TriangleMesh box = make_box();
   EXPECT_THROW((void)thickness(box, {.separation = 190}), InvalidOption);
   EXPECT_THROW((void)thickness(make_points({.points = 3}), ThicknessOptions{}), InvalidMesh);

@@ -1,5 +1,5 @@
-// The sites of a polyhedron: counted by hand on small solids, and on every generated solid those that points inside are
-// closest to, which a search that knows nothing of them finds; none that no point is closest to.
+// Proves that the sites of a polyhedron are those counted by hand on small solids. On every generated solid, they are
+// those that inner points are closest to, found by an independent search. No other sites are listed.
 #include "blum/voronoi/polyhedron_sites.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ std::size_t count(const PolyhedronSites& sites, EdgeTurn turn) {
   return static_cast<std::size_t>(std::count(sites.turn.begin(), sites.turn.end(), turn));
 }
 
-/// A prism over a polygon, without caps cut: fans around a point that sees all corners.
+/// Returns a prism over a polygon. Each cap is a fan around a point that sees all corners.
 TriangleMesh prism(const std::vector<std::array<double, 2>>& corners, const std::array<double, 2>& seen_from) {
   TriangleMesh out;
   const auto n = static_cast<std::uint32_t>(corners.size());
@@ -66,7 +66,7 @@ TEST(PolyhedronSites, OfAnL) {
   EXPECT_TRUE(sites.reflex_vertices.empty()) << "at the ends of the reflex edge a cap is closer";
 }
 
-/// A box with the box of a void in it: all edges and vertices of the void are sites.
+/// In a box with a box-shaped void, all edges and vertices of the void are sites.
 TEST(PolyhedronSites, OfAVoid) {
   TriangleMesh mesh = test::box_between({-2, -2, -2}, {2, 2, 2});
   TriangleMesh hole = test::box_between({-1, -1, -1}, {1, 1, 1});
@@ -78,7 +78,7 @@ TEST(PolyhedronSites, OfAVoid) {
   EXPECT_EQ(sites.reflex_vertices.size(), 8U);
 }
 
-/// A pyramid that points into a box: its tip is a site, of any number of edges.
+/// The tip of a pyramid that points into a box is a site, for any number of edges.
 TEST(PolyhedronSites, OfATip) {
   for (const std::uint32_t sides : {3U, 4U, 7U, 60U}) {
     SCOPED_TRACE(sides);
@@ -97,7 +97,7 @@ TEST(PolyhedronSites, OfATip) {
   }
 }
 
-/// At a saddle no direction goes against all edges.
+/// At a saddle, no direction is opposite to all edges.
 TEST(PolyhedronSites, DualConesOfFewEdges) {
   const auto cone_of = [&](std::vector<Vec3d> directions) { return voronoi::dual_cone({0, 0, 0}, directions).size(); };
   EXPECT_EQ(cone_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}), 3U);
@@ -111,7 +111,7 @@ TEST(PolyhedronSites, DualConesOfFewEdges) {
 
 class PolyhedronSitesOfShapes : public testing::TestWithParam<std::string> {};
 
-/// How far the triangles of an edge are from one plane: the sine of the angle between their normals.
+/// Returns the sine of the angle between the normals of an edge's triangles.
 double bend_of(const MeshView& mesh, const std::array<std::uint32_t, 2>& triangles) {
   std::array<Vec3d, 2> normals;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -121,7 +121,7 @@ double bend_of(const MeshView& mesh, const std::array<std::uint32_t, 2>& triangl
   return length(cross(normals[0], normals[1]));
 }
 
-/// From a reflex edge, between the domains of its triangles.
+/// Returns a direction from a reflex edge, between the domains of its triangles.
 Vec3d inner_direction(const MeshView& mesh, const std::array<std::uint32_t, 2>& triangles) {
   Vec3d out;
   for (const std::uint32_t t : triangles) {
@@ -131,13 +131,13 @@ Vec3d inner_direction(const MeshView& mesh, const std::array<std::uint32_t, 2>& 
   return out / length(out);
 }
 
-/// From a reflex vertex, in the middle of its dual cone; nullopt where rounding would tell it.
+/// Returns a direction from a reflex vertex, in the middle of its dual cone; nullopt if rounding would decide it.
 std::optional<Vec3d> inner_direction(const Vec3d& v, const std::vector<Vec3d>& ends) {
   const std::vector<std::uint32_t> cone = voronoi::dual_cone(v, ends);
   Vec3d out;
   for (std::size_t k = 0; k < cone.size(); ++k) {
     const Vec3d ray = cross(ends[cone[k]] - v, ends[cone[(k + 1) % cone.size()]] - v);
-    double along = 0;  // to the other edges, which it must go against
+    double along = 0;  // relative to all edges, which the ray must oppose
     for (const Vec3d& end : ends) along += dot(ray, (end - v) / length(end - v));
     const double sine = length(ray) / length(ends[cone[k]] - v) / length(ends[cone[(k + 1) % cone.size()]] - v);
     if (sine < 1e-6) return std::nullopt;
@@ -156,7 +156,7 @@ std::vector<Vec3d> ends_of(const MeshView& mesh, const SiteTable& table, std::ui
   return out;
 }
 
-/// Of points inside, close to edges and vertices, those that are closest to an edge or a vertex.
+/// Collects the edges and vertices that inner points near them are closest to.
 class ClosestInside {
  public:
   explicit ClosestInside(const TriangleMesh& mesh)
@@ -166,7 +166,7 @@ class ClosestInside {
     std::vector<Vec3d> queries;
     for (int k = 0; k < points; ++k) queries.push_back(place + random_.in_ball() * reach);
     for (const ClosestPoint& found : query_.nearest(queries)) {
-      // Distances that rounding makes tell nothing.
+      // Distances that are pure rounding carry no information.
       if (!(found.distance < -1e-5 * reach)) continue;
       const Site site = table.site(found.site);
       if (site.kind == SiteKind::edge) edges.insert(site.index);
@@ -184,7 +184,7 @@ class ClosestInside {
     }
   }
 
-  /// A point of a site is closest to a point beside it, inside, up to rounding.
+  /// Expects that a point of a site is closest to an inner point beside it, up to rounding.
   void expect_closest(const Vec3d& of_site, const Vec3d& direction, double step) const {
     const ClosestPoint found = query_.nearest(of_site + direction * step);
     EXPECT_LT(found.distance, 0) << step;
@@ -208,13 +208,13 @@ void expect_sites_closest(const Solid& solid) {
     const std::set<std::uint32_t> edges(sites.reflex_edges.begin(), sites.reflex_edges.end());
     const std::set<std::uint32_t> vertices(sites.reflex_vertices.begin(), sites.reflex_vertices.end());
     for (const std::uint32_t edge : inside.edges) {
-      if (bend_of(body.mesh, sites.triangles_of[edge]) < 1e-6) continue;  // rounding tells edge and face apart
+      if (bend_of(body.mesh, sites.triangles_of[edge]) < 1e-6) continue;  // only rounding distinguishes edge and face
       EXPECT_TRUE(edges.contains(edge)) << "points inside are closest to edge " << edge;
     }
     for (const std::uint32_t v : inside.vertices) {
       EXPECT_TRUE(vertices.contains(v)) << "points inside are closest to vertex " << v;
     }
-    // And each site is closest to points inside.
+    // Each site is also closest to points inside.
     for (const std::uint32_t edge : edges) {
       const auto& [a, b] = inside.table.edges()[edge];
       const Vec3d middle = (body.mesh.vertices[a] + body.mesh.vertices[b]) * 0.5;
@@ -230,8 +230,9 @@ void expect_sites_closest(const Solid& solid) {
   }
 }
 
-/// As it is made, with faces of many triangles in one plane, and turned, so that rounding bends many of them.
-TEST_P(PolyhedronSitesOfShapes, AreThoseThatPointsInsideAreClosestTo) {
+/// Tests each shape as generated, with many coplanar triangles in a face. Tests it also rotated, so that rounding bends
+/// many faces.
+TEST_P(PolyhedronSitesOfShapes, AreTheClosestSitesOfInnerPoints) {
   TriangleMesh mesh = make_shape(GetParam());
   if (mesh.triangles.empty()) GTEST_SKIP() << "no triangles";
   const Solid solid = Solid::of(mesh);
@@ -244,7 +245,7 @@ TEST_P(PolyhedronSitesOfShapes, AreThoseThatPointsInsideAreClosestTo) {
 INSTANTIATE_TEST_SUITE_P(Shapes, PolyhedronSitesOfShapes, testing::ValuesIn(test::catalog_names()),
                          [](const auto& info) { return test::test_name(info.param); });
 
-TEST(PolyhedronSites, SayWhatIsWrong) {
+TEST(PolyhedronSites, RejectInvalidMeshes) {
   TriangleMesh open = make_box({});
   open.triangles.pop_back();
   EXPECT_THROW((void)sites_of(open), InvalidMesh);

@@ -1,5 +1,5 @@
-// Sites along segments: known ones, and on generated solids those that exact comparisons of all labels find at many
-// places, between the changes that were told.
+// Proves that the sites along segments equal known ones. On generated solids, they equal those that exact comparisons
+// of all labels find at many places between the reported changes.
 #include "voronoi/line_labels.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,8 @@ TEST(SegmentLabels, AcrossABox) {
   EXPECT_FALSE(along(box, {-0.25, 0.5, 0.5}, 0.25, 0)) << "and all along it";
 }
 
-/// From the domain of a face of the void into that of its edge, the vertex, and back.
+/// One segment runs from the domain of a void's face into that of its edge. The other runs from an edge's domain into
+/// that of its end.
 TEST(SegmentLabels, OverFacesEdgesAndVertices) {
   const LabelledSolid solid(test::box_with_void());
   const auto past_edge = along(solid, {1.25, 0.25, 0.5}, 1.3125, 1);
@@ -90,7 +91,7 @@ struct Tally {
   std::size_t changes = 0;
 };
 
-/// Along random segments inside.
+/// Checks random segments inside the solid.
 Tally look_along_many(const LabelledSolid& solid) {
   const ClosestPointQuery query(solid.mesh, {.sign = SignMode::normals});
   const Box3 box = bounds(solid.mesh);
@@ -118,7 +119,7 @@ Tally look_along_many(const LabelledSolid& solid) {
   return out;
 }
 
-TEST_P(SegmentLabelsOfShapes, AreThoseAtManyPlaces) {
+TEST_P(SegmentLabelsOfShapes, AgreeWithExactComparisonsAtManyPlaces) {
   TriangleMesh mesh = make_shape(GetParam());
   if (mesh.triangles.empty()) GTEST_SKIP() << "no triangles";
   const Solid found = Solid::of(mesh);
@@ -127,14 +128,15 @@ TEST_P(SegmentLabelsOfShapes, AreThoseAtManyPlaces) {
   const Tally tally = look_along_many(solid);
   EXPECT_GE(tally.told, 2U);
   EXPECT_GT(tally.changes, 0U);
-  // Of these, rounding has bent the squares a little: doubles do not part the edges' regions.
+  // Rounding has bent the quadrilaterals of these shapes slightly, so doubles cannot separate the regions of their
+  // edges.
   const bool has_bent_faces = GetParam() == "torus" || GetParam() == "uv_sphere";
   if (!has_bent_faces) {
     EXPECT_EQ(tally.undecided, 0U);
   }
 }
 
-/// Turned, so that rounding bends faces: what is told is right, where it is.
+/// The shape is rotated, so rounding bends its faces. Reported sites must be right, but segments may stay undecided.
 TEST_P(SegmentLabelsOfShapes, AreRightWhereFacesAreBent) {
   TriangleMesh mesh = make_shape(GetParam());
   if (mesh.triangles.empty()) GTEST_SKIP() << "no triangles";

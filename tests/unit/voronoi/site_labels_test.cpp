@@ -1,5 +1,5 @@
-// Exact signs about the sites of a polyhedron: those of rational arithmetic, on points at random and on every kind of
-// border and wall; the closest labels are those that a search finds, and all of those that tie.
+// Proves that signs about the sites of a polyhedron equal those of rational arithmetic, at random points and on every
+// kind of border and wall. The closest labels include all ties and match those of a search.
 #include "voronoi/site_labels.hpp"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,8 @@ TEST(SiteLabels, TiesOfABox) {
 TEST(SiteLabels, TiesBetweenFacesEdgesAndVertices) {
   const LabelledSolid solid(test::box_with_void());
   ASSERT_EQ(solid.labels.site_count(), 32U);
-  // On the border of the domains of a face and its edge both are closest, on the vertex's axis three edges, too.
+  // Where the domains of a face and its edge meet, both are closest. At the vertex, a second edge and the vertex tie as
+  // well.
   EXPECT_EQ(closest_sites(solid, {1.25, 1, 0.125}).size(), 2U);
   EXPECT_EQ(closest_sites(solid, {1.25, 1, 1}).size(), 4U) << "a face, two edges and a vertex";
   EXPECT_EQ(closest_sites(solid, {1.25, 1.25, 1.25}).size(), 1U) << "the vertex";
@@ -86,7 +87,7 @@ TEST(SiteLabels, TiesBetweenFacesEdgesAndVertices) {
   EXPECT_LT(counts.exact, counts.all / 2);
 }
 
-/// What rational arithmetic says without any filter.
+/// Compares two distances in rational arithmetic, without a filter.
 int slow_comparison(const LabelledSolid& solid, const Label& a, const Label& b, const Vec3d& q) {
   using Q = cpp_rational;
   using Point = std::array<Q, 3>;
@@ -135,7 +136,7 @@ TEST(SiteLabels, ComparisonsAreThoseOfRationalNumbers) {
       const Label& a = all[random.below(all.size())];
       const Label& b = all[random.below(all.size())];
       Vec3d q = random.in_cube() * 4.0 - Vec3d{2, 2, 2};
-      // On a lattice, where much is equal.
+      // Half of the points lie on a lattice, where many distances are equal.
       if (round % 2 == 0) q = {std::round(q.x * 4) / 4, std::round(q.y * 4) / 4, std::round(q.z * 4) / 4};
       ASSERT_EQ(solid.labels.compare_distances(a, b, q), slow_comparison(solid, a, b, q)) << round;
     }
@@ -144,8 +145,8 @@ TEST(SiteLabels, ComparisonsAreThoseOfRationalNumbers) {
 
 class SiteLabelsOfShapes : public testing::TestWithParam<std::string> {};
 
-/// At random points inside, the site that a search in double finds is among the exact ones; where doubles see a tie,
-/// whichever.
+/// At random inner points, the site that a search in doubles finds is among the exact ones, or ties with them in
+/// doubles.
 TEST_P(SiteLabelsOfShapes, ClosestAreThoseOfASearch) {
   TriangleMesh mesh = make_shape(GetParam());
   if (mesh.triangles.empty()) GTEST_SKIP() << "no triangles";
@@ -173,7 +174,7 @@ TEST_P(SiteLabelsOfShapes, ClosestAreThoseOfASearch) {
                                                        solid.sites.turn[site.index] == EdgeTurn::flat);
     });
     if (is_same) continue;
-    // Then both are as far, up to rounding.
+    // Then both are equally far, up to rounding.
     double gap = 0;
     if (labels[0].kind == SiteKind::face) {
       const auto [a, b, c] = triangle_corners(solid.mesh, labels[0].index);

@@ -1,5 +1,5 @@
-// What an octree says is closest along its edges, against exact comparisons of all labels; how squares and cubes read
-// their borders.
+// Proves that the sites that an octree records along its edges equal those of exact comparisons of all labels. Squares
+// and cubes derive their contents from their borders.
 #include "voronoi/subdivision.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ struct Divided {
   voronoi::Subdivision cells;
 };
 
-/// The number of places along edges at which something else is closest than what the edge says.
+/// Returns the number of places along edges at which the recorded site is not the closest.
 std::size_t wrong_places(const Divided& divided, std::size_t edges) {
   const voronoi::CellTree& tree = divided.cells.tree;
   std::size_t wrong = 0;
@@ -83,23 +83,23 @@ void expect_right_edges(const TriangleMesh& mesh) {
   EXPECT_EQ(wrong_places(divided, 1000), 0U);
 }
 
-TEST(Subdivision, FindsWhatIsClosestAlongEdges) {
+TEST(Subdivision, FindsTheClosestSitesAlongEdges) {
   for (const TriangleMesh& mesh : {make_box(), test::box_with_void(), make_cylinder({.sides = 12}), make_star(),
                                    make_bracket(), make_torus({.ring_segments = 12, .tube_segments = 8})}) {
     expect_right_edges(mesh);
   }
 }
 
-/// Faces that rounding has bent by 1e-16: what is closest next to their edges the structure tells.
-TEST(Subdivision, FindsWhatIsClosestOverBentFaces) {
+/// Rounding has bent these faces by 1e-16. The structure of the mesh decides which site is closest next to their edges.
+TEST(Subdivision, FindsTheClosestSitesOverBentFaces) {
   for (const TriangleMesh& mesh : {make_box(), test::box_with_void(), make_cylinder({.sides = 24}), make_star()}) {
     expect_right_edges(test::turned(mesh));
   }
 }
 
-/// Every event lies on the borders of two squares for each cube around its edge; around a square, runs change at events
-/// alone, and each component joins events of at least two runs.
-TEST(SquareCells, AreOfTheBorder) {
+/// Every event lies on the borders of two squares for each cube around its edge. Around a square, runs change only at
+/// events. Each component joins events of at least two runs.
+TEST(SquareCells, FollowFromTheBorder) {
   const Divided divided(make_bracket());
   const voronoi::CellTree& tree = divided.cells.tree;
   std::size_t with_walls = 0;
@@ -113,7 +113,7 @@ TEST(SquareCells, AreOfTheBorder) {
       EXPECT_NE(divided.solid.labels.site_of(before.label), divided.solid.labels.site_of(behind.label));
       EXPECT_LT(cells.component[k], cells.component_count);
     }
-    // Components and regions of a disc: one more of both than events, as each event cuts the border once.
+    // In a disc, components and regions together are one more than events, because each event cuts the border once.
     if (cells.events.empty()) continue;
     ++with_walls;
     EXPECT_EQ(cells.component_count + cells.pieces.size(), cells.events.size() + 1);
@@ -121,9 +121,9 @@ TEST(SquareCells, AreOfTheBorder) {
   EXPECT_GT(with_walls, 1000U);
 }
 
-/// A room over a floor, above which a thin plate parts it in two; two small boxes place the grid such that a square of
-/// it lies across the part behind the plate, in which the floor is closest in the middle, and nothing of its region on
-/// the border. Planes seen from behind, as that of the plate, must not rule the floor out.
+/// Returns a room over a floor, divided above the floor by a thin plate. Two small boxes place the grid so that one of
+/// its squares crosses the part behind the plate. In the middle of that square the floor is closest, but the floor's
+/// region does not reach its border. Planes seen from behind, like that of the plate, must not exclude the floor.
 TriangleMesh room_with_a_plate() {
   constexpr double depth = 2.25;
   constexpr double plate = 0.05;
@@ -145,7 +145,7 @@ TriangleMesh room_with_a_plate() {
   return mesh;
 }
 
-TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
+TEST(SquareTest, FindsTheClosestSitesOfTheInteriorOnTheBorder) {
   Random random(5);
   for (const TriangleMesh& mesh :
        {room_with_a_plate(), test::turned(make_star()), make_bracket(), test::box_with_void()}) {

@@ -1,5 +1,5 @@
-// Voronoi complexes: known ones, certified ones of generated solids as they are and turned, places on walls, threads,
-// and what is refused.
+// Proves that Voronoi complexes have known numbers and are certified on generated solids, also rotated ones. Their
+// points lie on walls, and threads change nothing. Invalid input is rejected.
 #include "blum/voronoi/voronoi_complex.hpp"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST_P(Shapes, AreCertified) {
   expect_certified(voronoi_complex(GetParam().mesh, {.resolution = 1}).report);
 }
 
-/// Without the surface, faces have no regions of their own any more, and their holes no tunnels.
+/// Without the surface, faces have no regions, and their holes have no tunnels.
 TEST_P(Shapes, HaveWalls) {
   const VoronoiReport report = voronoi_complex(GetParam().mesh, {.part = VoronoiPart::walls, .resolution = 1}).report;
   expect_certified(report);
@@ -121,9 +121,9 @@ TEST_P(Shapes, HaveMedialAxesWithTheirTopology) {
 INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-/// Corners that are moved bend faces, as rounding does to 32 bits or a modeller's tolerance: by how much does not
-/// matter. Some of the edges at reflex vertices become convex, and the closed medial axis has parts there that meet in
-/// the vertex alone, which the complex keeps apart.
+/// Moved corners bend faces by any amount, as rounding to 32 bits or a modeller's tolerance does. Some edges at reflex
+/// vertices become convex. Parts of the closed medial axis then meet only in a vertex, and the complex keeps them
+/// apart.
 TEST(VoronoiComplex, OfFacesBentByAnyAmount) {
   for (const double by : {0.3, 0.03, 1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-11, 1e-13, 1e-15}) {
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
@@ -138,8 +138,8 @@ TEST(VoronoiComplex, OfFacesBentByAnyAmount) {
   }
 }
 
-/// A box of side 1 over n x n squares on each side. In the upper one vertices are moved down so that slopes are about
-/// the given one: pits apart from each other, around which all edges are reflex, or in rough ground.
+/// Returns a box of side 1 with n x n squares on each side. Vertices of the upper side are lowered so that slopes are
+/// about `slope`. They form separate pits, around which all edges are reflex, or rough ground.
 TriangleMesh dented_box(std::uint32_t n, double slope, bool is_rough, std::uint64_t seed) {
   TriangleMesh mesh;
   const auto add_side = [&](const Vec3d& origin, const Vec3d& along, const Vec3d& up) {
@@ -191,8 +191,8 @@ TEST(VoronoiComplex, OfShallowDents) {
   }
 }
 
-/// On a fine grid its edges meet some of these regions, and the medial axis has to do without parts of them in squares
-/// and cubes: a piece of one stood alone where that was left out.
+/// On a fine grid, grid edges meet some of these regions. The medial axis must omit parts of them in squares and cubes.
+/// Without that, a piece of one region stood alone.
 TEST(VoronoiComplex, OfShallowDentsOnAFineGrid) {
   TriangleMesh mesh = dented_box(4, 3e-4, true, 8);
   for (Vec3d& p : mesh.vertices) p.z = p.z > 0.9 ? p.z - 0.5 : p.z * 0.5;
@@ -202,8 +202,8 @@ TEST(VoronoiComplex, OfShallowDentsOnAFineGrid) {
   EXPECT_EQ(report.thin_vertices, 7U);
 }
 
-/// Sides of many triangles, turned and rounded to 32 bits, as in .stl files: faces, edges and vertices that are bent by
-/// 1e-7 meet in lines over the vertices, of which each square knows enough by its border.
+/// The box's sides have many triangles, rotated and rounded to 32 bits, as in .stl files. Faces, edges and vertices
+/// bent by 1e-7 meet in lines over the vertices. The border of each square suffices to resolve them.
 TEST(VoronoiComplex, OfManyTrianglesInSinglePrecision) {
   TriangleMesh mesh = test::turned(dented_box(6, 0, false, 1));
   for (Vec3d& p : mesh.vertices) {
@@ -217,9 +217,9 @@ TEST(VoronoiComplex, OfManyTrianglesInSinglePrecision) {
   }
 }
 
-/// A cube may pass before a square of it is split for a neighbour. Here it did not pass any more with what that told,
-/// and the medial axis had two holes.
-TEST(VoronoiComplex, TestsCubesAgainWhoseSquaresAreSplit) {
+/// A cube may pass before one of its squares is split for a neighbour. Here the cube failed after the split, and the
+/// medial axis had two holes.
+TEST(VoronoiComplex, RetestsCubesWhoseSquaresAreSplit) {
   const TriangleMesh mesh{{{-0.222702465, -1.480812526, 0.087165795},
                            {-1.446244102, 0.390766112, 0.075364739},
                            {1.143270779, -0.060162025, -0.969181359},
@@ -250,8 +250,8 @@ TEST(VoronoiComplex, TestsCubesAgainWhoseSquaresAreSplit) {
   }
 }
 
-/// The first corner of each triangle lies on a grid edge, on the wall exactly but for rounding: it is as far from the
-/// surface as its radius says.
+/// The first corner of each triangle lies on a grid edge and, up to rounding, on the wall. Its distance from the
+/// surface equals its radius.
 TEST(VoronoiComplex, CrossesGridLinesOnWalls) {
   const TriangleMesh mesh = make_bracket();
   const Complex complex = voronoi_complex(mesh).complex;
@@ -268,9 +268,9 @@ TEST(VoronoiComplex, CrossesGridLinesOnWalls) {
   EXPECT_LE(largest, 1e-9 * size);
 }
 
-/// At a point that is at most e from a wall two distances differ by 2 e at most; and next to each point of a wall there
-/// is one of the complex.
-TEST(VoronoiComplex, IsAsNearToTheWallsAsItSays) {
+/// At a point within e of a wall, two distances differ by at most 2 e. Each point of a wall has a point of the complex
+/// nearby.
+TEST(VoronoiComplex, IsWithinTheReportedDistanceOfTheWalls) {
   for (const double tolerance : {0.5, 0.1, 0.05}) {
     const VoronoiComplex walls =
         voronoi_complex(make_box(), {.part = VoronoiPart::walls, .resolution = 1, .tolerance = tolerance});
@@ -314,7 +314,7 @@ TEST(VoronoiRegions, OfABox) {
   }
 }
 
-/// Each triangle bounds two regions, from both sides: their volumes add up to that of the solid.
+/// Each triangle bounds two regions, one on each side. The volumes of all regions add up to that of the solid.
 TEST(VoronoiRegions, FillTheSolid) {
   for (const TriangleMesh& mesh : {make_bracket(), test::turned(make_bracket()), test::box_with_void(), make_star(),
                                    make_torus({.ring_segments = 12, .tube_segments = 8})}) {
@@ -336,21 +336,21 @@ TEST(VoronoiRegions, FillTheSolid) {
       area += 0.5 * length(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
     }
     EXPECT_NEAR(surface, area, 0.05 * area);
-    // Of regions thinner than a cube volumes are near 0, of whatever sign; none is turned inside out.
+    // Regions thinner than a cube have volumes near 0, of either sign. No region is inside out.
     const double least = -0.01 * facts.signed_volume;
     for (const VoronoiRegion& region : regions) EXPECT_GT(region.volume, least) << region.site;
   }
 }
 
-/// How often the triangles of each site run around a point: how often a ray from there leaves its region, less how
-/// often it enters. Exact; nullopt where the ray meets an edge.
+/// Returns how often the triangles of each site wind around a point: exits of a ray from its region minus entries. The
+/// count is exact; nullopt if the ray meets an edge.
 std::optional<std::map<std::int32_t, int>> turns_around(const Complex& complex, const Bvh& triangles, const Ray& ray) {
   const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
   const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
   std::map<std::int32_t, int> out;
   for (const RayCrossing& crossing : triangles.crossings(ray)) {
     if (crossing.on_border) return std::nullopt;
-    // Corners run counterclockwise as seen from the region of site_b, which a ray along the normal comes into.
+    // Corners run counterclockwise as seen from the region of site_b, which a ray along the normal enters.
     out[site_a[crossing.triangle.value]] += crossing.side;
     out[site_b[crossing.triangle.value]] -= crossing.side;
   }
@@ -391,8 +391,8 @@ Closest closest_site(const LabelledSolid& solid, const Vec3d& q) {
   return {out.site, out.distance, *std::min_element(distances.begin(), distances.end()) - out.distance};
 }
 
-/// At 100,000 random points: what is closer than all others by more than the complex may be off, by brute force over
-/// all sites, is the region that the point lies in, as oriented triangles say, and the only one.
+/// At about 100,000 random points, one site is closer than all others by more than the complex's error. By its oriented
+/// triangles, the region of that site contains the point, and no other region does.
 TEST(VoronoiRegions, HoldWhatIsClosest) {
   struct Tried {
     TriangleMesh mesh;
@@ -434,7 +434,7 @@ TEST(VoronoiRegions, HoldWhatIsClosest) {
   }
 }
 
-TEST(VoronoiRegions, RefuseWhatHasNoSites) {
+TEST(VoronoiRegions, RejectComplexesWithoutSites) {
   EXPECT_THROW((void)voronoi_regions(Complex{{{0, 0, 0}}, {}, {}, Columns(1), {}, {}}), InvalidOption);
 }
 
@@ -456,8 +456,8 @@ TEST(VoronoiComplex, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-/// With few splits cubes do not pass: then it says which.
-TEST(VoronoiComplex, SaysWhatDoesNotPass) {
+/// With few splits, some cubes do not pass. The report lists them.
+TEST(VoronoiComplex, ReportsFailingCells) {
   const VoronoiReport report = voronoi_complex(make_gear(), {.resolution = 1, .depth = 3}).report;
   EXPECT_FALSE(report.certified);
   ASSERT_FALSE(report.failing.empty());
@@ -476,14 +476,14 @@ TEST(VoronoiComplex, OfAFinerGrid) {
   EXPECT_GT(fine.report.cubes, 10 * coarse.report.cubes);
 }
 
-TEST(VoronoiComplex, RefusesWhatIsNoSolid) {
+TEST(VoronoiComplex, RejectsNonSolidsAndInvalidOptions) {
   TriangleMesh open = make_box();
   open.triangles.pop_back();
   EXPECT_THROW((void)voronoi_complex(open), InvalidMesh);
   EXPECT_THROW((void)voronoi_complex(TriangleMesh{}), InvalidMesh);
   TriangleMesh crossing = make_box();
   append(crossing, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
-  EXPECT_THROW((void)voronoi_complex(crossing), InvalidMesh);  // whose triangles would the sites be?
+  EXPECT_THROW((void)voronoi_complex(crossing), InvalidMesh);  // the triangles of the sites would be ambiguous
   crossing.triangles.pop_back();
   EXPECT_THROW((void)voronoi_complex(Solid::of(crossing)), InvalidMesh);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.resolution = 0}), InvalidOption);
@@ -492,7 +492,7 @@ TEST(VoronoiComplex, RefusesWhatIsNoSolid) {
   EXPECT_THROW((void)voronoi_complex(make_box(), {.max_cubes = 1}), InvalidOption);
 }
 
-/// Triangles that face the wrong way are turned, which changes no site.
+/// Triangles that face the wrong way are reversed, which changes no site.
 TEST(VoronoiComplex, OfAMeshThatFacesInwards) {
   TriangleMesh inside_out = test::box_with_void();
   reverse_triangles(inside_out);
@@ -504,7 +504,7 @@ TEST(VoronoiComplex, OfAMeshThatFacesInwards) {
   EXPECT_EQ(turned.complex.triangle_columns, given.complex.triangle_columns);
 }
 
-/// Where a mesh crosses itself the diagram is that of the solid without the crossings.
+/// If a mesh crosses itself, the diagram is that of the solid without the crossings.
 TEST(VoronoiComplex, OfASolidWhoseMeshCrossesItself) {
   TriangleMesh crossing = make_box();
   append(crossing, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
@@ -517,7 +517,7 @@ TEST(VoronoiComplex, OfASolidWhoseMeshCrossesItself) {
   EXPECT_EQ(of_solid.report.expected, of_surface.report.expected);
 }
 
-/// Bodies that share a place are one as points go, and two as triangles go.
+/// Bodies that share a point are one as a point set, but two by their triangles.
 TEST(VoronoiComplex, RefusesBodiesThatTouch) {
   TriangleMesh touching = make_box();
   append(touching, test::moved(make_box(), 1, {1, 1, 1}));
@@ -535,8 +535,8 @@ TEST(VoronoiComplex, OfSolidsFarFromTheOrigin) {
   EXPECT_THROW((void)voronoi_complex(test::moved(make_box(), 1, {1e10, 0, 0})), InvalidMesh);
 }
 
-/// A face in a plane of the grid ties with what is closest all over squares: another place of the grid passes.
-TEST(VoronoiComplex, WhereAFaceLiesInAPlaneOfTheGrid) {
+/// A face in a plane of the grid causes ties all over squares. Another position of the grid passes.
+TEST(VoronoiComplex, OfAFaceInAPlaneOfTheGrid) {
   constexpr double plane = 0.5464101615137754;  // the first grid's middle for a box from 0 to 1
   const std::vector<Point2> outline{{0, 0}, {1, 0}, {1, plane}, {0.5, plane}, {0.5, 1}, {0, 1}};
   TriangleMesh mesh = make_extrusion(outline, {});

@@ -1,5 +1,5 @@
-// Graphs of Voronoi diagrams: those of boxes and prisms are known; in all of them walls, seams and junctions name each
-// other, and walls are the borders of regions.
+// Proves that graphs of Voronoi diagrams of boxes and prisms are the known ones. In all graphs, walls, seams and
+// junctions list each other, and walls are the borders of regions.
 #include "blum/voronoi/voronoi_graph.hpp"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@
 namespace blum {
 namespace {
 
-/// Of a box of sides 1, 2, 3: a wall at each edge and one between the largest sides; where three walls meet at a corner
-/// a seam begins, and four more bound the wall in the middle.
+/// A box of sides 1, 2, 3 has a wall at each edge and one between the largest sides. At each corner three walls meet in
+/// a seam, and four more seams bound the wall in the middle.
 TEST(VoronoiGraph, OfABox) {
   const TriangleMesh mesh = test::box_between({-0.5, -1, -1.5}, {0.5, 1, 1.5});
   const VoronoiComplex found = voronoi_complex(mesh);
@@ -89,7 +89,7 @@ TEST(VoronoiGraph, PartsNameEachOther) {
   }
 }
 
-/// Of walls alone: no regions, as these need the surface.
+/// Walls alone have no regions, because regions need the surface.
 TEST(VoronoiGraph, OfWallsAlone) {
   const VoronoiComplex walls = voronoi_complex(make_star(), {.part = VoronoiPart::walls});
   const VoronoiGraph graph = voronoi_graph(walls.complex);
