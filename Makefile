@@ -28,7 +28,7 @@ demo: setup ## Build the tool and run the main job on a generated shape: a field
 	@tools/build.sh release $(configure_options) -DBLUM_TESTS=OFF -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
 
-simulate: ## Run a simulation without a missed collision, and make a page of it in out/simulations: make simulate S=cloth (or bodies, breaking, large) FRAMES=60
+simulate: ## Run a simulation, check it for missed collisions, and make a page of it in out/simulations: make simulate S=cloth (or bodies, breaking, large) FRAMES=60
 	@tools/setup.sh --tests
 	@tools/build.sh release $(configure_options) -DBLUM_TESTS=ON -- blum simulations
 	@tools/simulate.sh '$(or $(S),cloth)' out/simulations $(if $(FRAMES),--frames '$(FRAMES)')
@@ -38,7 +38,7 @@ python: ## Build the Python package alone: build/release/python, for PYTHONPATH,
 	@tools/build.sh release $(configure_options) -DBLUM_TESTS=OFF -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_python
 	@echo "make python: PYTHONPATH=$(CURDIR)/build/release/python build/venv/bin/python"
 
-format: ## Bring the sources into the project's format (clang-format 19)
+format: ## Format the sources (clang-format 19)
 	@tools/setup.sh --lint
 	@tools/format.sh
 
@@ -57,7 +57,7 @@ check: ## Build and run the tests whose names match: make check T=geometry, T=te
 bench: ## Build and run the benchmarks, with their peers
 	@tools/bench.sh
 
-viewer: ## Build the page of blum view, apps/viewer/dist/viewer.html, from its sources, and test it (Node, Chromium)
+viewer: ## Build and test the page of blum view, apps/viewer/dist/viewer.html (Node, Chromium)
 	@tools/setup.sh --viewer
 	@tools/viewer.sh install
 	@tools/viewer.sh build
@@ -68,7 +68,7 @@ docs: ## Build the API pages and check the documents' links: build/docs/html/ind
 	@tools/setup.sh --docs
 	@tools/docs.sh
 
-coverage: ## Print the share of lines that tests run, by layer: make coverage, or with L="core complex" of these alone
+coverage: ## Print the share of lines that tests run, by layer: make coverage, or L="core complex" for only these
 	@tools/coverage.sh $(L)
 
 asan: ## Run the tests under AddressSanitizer and UndefinedBehaviorSanitizer
@@ -80,14 +80,14 @@ tsan: ## Run the tests that use threads under ThreadSanitizer
 fuzz: ## Run every fuzz target for a short while (FUZZ_SECONDS=15 each)
 	@tools/fuzz.sh
 
-configurations: ## Build every switched-off part, and test the scalar and the serial paths
+configurations: ## Build configurations with parts switched off, and test the scalar and the serial paths
 	@tools/check_configurations.sh
 
-findings: ## Run what findings/ keeps of other packages, with pinned versions from PyPI (a few minutes; not part of CI)
+findings: ## Run the scripts of findings/ on other packages, with pinned versions from PyPI (a few minutes; not part of CI)
 	@failed=0; for finding in findings/*.sh; do echo "== $$finding"; "$$finding" || failed=1; done; exit $$failed
 
 install: build ## Install the library and the tool under PREFIX (/usr/local)
 	cmake --install build/release --prefix $(PREFIX)
 
-clean: ## Remove everything that was built
+clean: ## Remove all build results
 	rm -rf build out

@@ -1,5 +1,4 @@
-// Example: the certificate of a medial axis: what was checked, what it shows, and what it says of an axis that is
-// wrong.
+// Example: the certificate of a medial axis, and the reasons for rejecting a broken axis.
 #include <iostream>
 
 #include "blum/certificate/certificate.hpp"
@@ -14,7 +13,7 @@ namespace {
 void show(const char* what, const blum::Certificate& certificate) {
   std::cout << what << ": " << (certificate.holds() ? "holds" : "does NOT hold") << '\n';
   for (const blum::BodyCheck& body : certificate.bodies) {
-    std::cout << "  a body with " << body.solid[1] << " tunnels and " << body.solid[2] << " voids; the axis in it has "
+    std::cout << "  body with " << body.solid[1] << " tunnels and " << body.solid[2] << " voids; its axis has "
               << body.axis[1] << " and " << body.axis[2] << ": " << blum::to_string(body.proven) << '\n';
   }
   for (const auto& mismatch : certificate.mismatches) std::cout << "  " << mismatch << '\n';
@@ -23,17 +22,18 @@ void show(const char* what, const blum::Certificate& certificate) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  // A closed mesh from a file, or a ring: a solid with one tunnel.
+  // Reads a closed mesh, or makes a torus, which is a solid with one tunnel.
   const blum::TriangleMesh mesh = argc > 1 ? blum::read_mesh(argv[1]) : blum::make_torus();
   const blum::Complex axis = blum::medial_axis(mesh, {.resolution = 64}).simplify(90);
 
-  // Topology, radii, footprints and places of the axis, against the mesh, by code that has no part in making it.
+  // Checks topology, radii, footprints and positions against the mesh. The checking code takes no part in the
+  // construction.
   const blum::Certificate certificate = blum::certify(axis, mesh);
   show("the axis", certificate);
-  std::cout << "  radii are off by at most " << certificate.geometry.radius_error << '\n';
+  std::cout << "  largest error of a radius: " << certificate.geometry.radius_error << '\n';
 
-  // Half of the triangles alone is caught, and the certificate says why: the tunnel is gone, and vertices of no
-  // triangle are components by themselves.
+  // With only half of the triangles, the certificate is refused and states the reasons. The tunnel is lost, and each
+  // isolated vertex is a component.
   blum::Complex half;
   half.positions = axis.positions;
   half.triangles = axis.triangles;

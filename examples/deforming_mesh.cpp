@@ -1,4 +1,4 @@
-// Example: fields of a mesh that deforms, frame after frame, with progress and a way to stop.
+// Example: fields of a deforming mesh, frame by frame, with progress and cancellation.
 #include <cmath>
 #include <iostream>
 #include <stop_token>
@@ -22,8 +22,8 @@ blum::TriangleMesh bent(const blum::TriangleMesh& rest, double phase) {
 int main() try {
   const blum::TriangleMesh rest = blum::make_torus();
 
-  // One grid for all frames. Whatever does not change between frames is the solver's: the buffers of the field and,
-  // while the triangles stay the same, the list of edges. Nothing else is kept, so vertices may move freely.
+  // One grid serves all frames. The solver keeps the buffers of the field and, while the triangles stay the same, the
+  // list of edges. It keeps nothing else, so vertices may move freely.
   const blum::GridSpec grid = blum::grid_in({{-1.6, -1.6, -0.8}, {1.6, 1.6, 0.8}}, 64);
   std::stop_source stop;
   blum::Context context;
@@ -40,7 +40,7 @@ int main() try {
   }
   std::cout << (reports > 0 ? "progress was reported\n" : "no progress was reported\n");
 
-  // Another thread, or a signal handler, would call this.
+  // Usually, another thread or a signal handler calls this.
   stop.request_stop();
   try {
     (void)solver.compute(rest);

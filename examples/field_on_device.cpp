@@ -1,4 +1,4 @@
-// Example: fields on a graphics processor, with the CPU where there is none, and how to tell.
+// Example: fields on a graphics processor, or on the CPU if there is none.
 #include <cstdint>
 #include <iostream>
 #include <string>
@@ -12,18 +12,18 @@ int main() try {
   const blum::TriangleMesh mesh = blum::make_shape("torus_knot");
   const blum::GridSpec grid = blum::grid_around(blum::bounds(mesh), 64);
 
-  // The first CUDA device if there is one, else the CPU; Device::cuda() would insist.
+  // Uses the first CUDA device, or the CPU if there is none. Device::cuda() would throw instead.
   const blum::Field field = blum::distance_field(mesh, grid, {}, {.device = blum::Device::automatic()});
   std::cout << "computed on " << to_string(field.device) << '\n';
 
-  // For meshes that are in a device's memory already, and fields that stay there. What memory to write to may be yours
-  // (of cudaMalloc), or Blum's; what is queued runs on a stream of yours.
+  // DeviceFieldSolver takes meshes in a device's memory and leaves fields there. The memory of a field may come from
+  // cudaMalloc or from Blum. The work runs on your stream.
   try {
     blum::DeviceFieldSolver solver(grid, {.band = 0.2});
     const blum::DeviceMemory distance(solver.device(), grid.node_count() * sizeof(float));
     const blum::DeviceMemory site(solver.device(), grid.node_count() * sizeof(std::uint32_t));
-    std::cout << to_string(solver.device()) << " has " << distance.size() + site.size() << " bytes for a field\n";
-    // solver.set_connectivity({vertices, triangles}, stream), once; then for each frame
+    std::cout << to_string(solver.device()) << " holds " << distance.size() + site.size() << " bytes for a field\n";
+    // Call solver.set_connectivity({vertices, triangles}, stream) once. Then call for each frame
     // solver.compute(vertices, {static_cast<float*>(distance.data()), static_cast<std::uint32_t*>(site.data())},
     // stream);
   } catch (const blum::DeviceError& error) {

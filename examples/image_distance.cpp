@@ -10,7 +10,7 @@
 #include "blum/io/image_io.hpp"
 
 int main(int argc, char** argv) try {
-  // An image from a file (labels 1, 2, 3 are looked at), or a network of tubes with slices twice as thick as wide.
+  // Reads an image, of which labels 1 to 3 are used, or makes a network of tubes with slices twice as thick as wide.
   const blum::VoxelImage image =
       argc > 1 ? blum::read_image(argv[1]) : blum::make_tube_image({.spacing = {0.5, 0.5, 1}, .labelled = true});
 
@@ -22,7 +22,7 @@ int main(int argc, char** argv) try {
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const float depth = -*std::min_element(fields[k].distance.begin(), fields[k].distance.end());
     const float height = *std::max_element(fields[k].distance.begin(), fields[k].distance.end());
-    std::cout << "label " << k + 1 << ": at most " << depth << " deep, and nothing further from it than " << height
+    std::cout << "label " << k + 1 << ": largest depth inside " << depth << ", largest distance outside " << height
               << '\n';
   }
 
@@ -30,7 +30,7 @@ int main(int argc, char** argv) try {
   const blum::Field& field = fields.front();
   const auto deepest =
       static_cast<std::size_t>(std::min_element(field.distance.begin(), field.distance.end()) - field.distance.begin());
-  std::cout << "the deepest voxel of label 1, " << deepest << ", is closest to voxel " << field.site[deepest].value
+  std::cout << "deepest voxel of label 1: " << deepest << ", its closest voxel outside: " << field.site[deepest].value
             << '\n';
   blum::write_field("label1.nrrd", field);
   std::cout << "wrote label1.nrrd and label1.site.nrrd\n";

@@ -1,4 +1,4 @@
-// Example: the medial axis of a mesh at several angles, its certificate, and how to keep it.
+// Example: the medial axis of a mesh at several angles, its certificate, and how to write it.
 #include <cmath>
 #include <cstddef>
 #include <iostream>
@@ -11,7 +11,7 @@
 #include "blum/shapes/shape_catalog.hpp"
 
 int main(int argc, char** argv) try {
-  // A mesh from a file, or a bracket that Blum makes.
+  // Reads a mesh, or makes a bracket.
   const blum::TriangleMesh mesh = argc > 1 ? blum::read_mesh(argv[1]) : blum::make_shape("bracket");
 
   // One computation for all angles.
@@ -20,9 +20,9 @@ int main(int argc, char** argv) try {
   const blum::MedialAxis axis = blum::medial_axis(mesh, options);
   const blum::MedialAxisReport& report = axis.report();
   std::cout << "solid: " << to_string(report.rule) << ", " << report.reason << '\n';
-  if (!report.topology_matches) std::cout << "something is thinner than a voxel: raise the resolution\n";
+  if (!report.topology_matches) std::cout << "the model lacks the solid's topology; the certificate states why\n";
 
-  // Axes at rising angles are parts of each other.
+  // The axis of a larger angle is a part of each axis of a smaller angle.
   for (const double theta : {20.0, 60.0, 120.0}) {
     const blum::MedialCounts counts = count(axis.simplify(theta));
     std::cout << "theta " << theta << ": " << counts.triangles << " triangles in " << counts.sheets << " sheets, "
@@ -31,17 +31,17 @@ int main(int argc, char** argv) try {
 
   const blum::Complex complex = axis.simplify(60);
 
-  // Radii and footprints: how thick the solid is where the ball is the largest.
+  // The largest ball shows the thickness of the solid: its radius, and the angle between its footprints.
   const blum::MedialView view(complex);  // its columns
   std::size_t widest = 0;
   for (std::size_t v = 0; v < view.radius.size(); ++v) {
     if (view.radius[v] > view.radius[widest]) widest = v;
   }
-  std::cout << "largest ball: radius " << view.radius[widest] << ", walls seen "
-            << std::round(view.separation_angle[widest]) << " degrees apart, the closest at site "
-            << view.site(widest, 0).value << '\n';
+  std::cout << "largest ball: radius " << view.radius[widest] << ", separation angle "
+            << std::round(view.separation_angle[widest]) << " degrees, closest site " << view.site(widest, 0).value
+            << '\n';
 
-  // Checked against the mesh, by code that shares nothing with the construction.
+  // Checks the axis against the mesh, with code that takes no part in the construction.
   if (report.rule == blum::SolidRule::polyhedron) {
     const blum::Certificate certificate = blum::certify(complex, mesh);
     for (const auto& mismatch : certificate.mismatches) std::cout << "NOT certified: " << mismatch << '\n';
@@ -54,7 +54,7 @@ int main(int argc, char** argv) try {
   metadata.source = "medial_axis_of_mesh";
   metadata.theta = 60;
   metadata.solid_rule = to_string(report.rule);
-  metadata.grid = report.grid;  // for `blum verify`, where the solid is known as voxels only
+  metadata.grid = report.grid;  // `blum verify` needs the grid if the solid is known only as voxels
   blum::write_medial("medial.vtp", complex, metadata);
   std::cout << "wrote medial.vtp\n";
   return 0;

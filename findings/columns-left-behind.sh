@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
-# pyvista.to_trimesh triangulates a mesh, and attaches the data of the mesh before that.
+# pyvista.to_trimesh triangulates a mesh but attaches the data of the mesh before triangulation.
 #
-# Versions: pyvista 0.49.1 with vtk 9.7.2, trimesh 5.2.0. The function is there since PyVista 0.47.
+# Versions: pyvista 0.49.1 with vtk 9.7.2, trimesh 5.2.0. The function exists since PyVista 0.47.
 # With triangulate=True it takes the surface, drops lines and points, and splits polygons.
-# face_attributes and vertex_attributes are then copied from the mesh as it was given.
+# It then copies face_attributes and vertex_attributes from the original mesh.
 # Neither package compares their lengths with the surface.
-# Of polygons there is no warning; where lines are present, one tells of a copy inside only.
+# Polygons cause no warning. Lines cause a warning, which only mentions an internal copy.
 #
 # Expected: each triangle has the value of its cell, each vertex the value of its point.
 # Seen: 12 triangles of a cube of 6 quads have 6 values.
-# Two lines and two triangles: triangle i has the value of cell i, and so that of a line.
-# A line and a quad become 2 triangles with 2 values, of which the first is the line's.
+# With two lines and two triangles, triangle i has the value of cell i, which is a line.
+# A line and a quad become 2 triangles with 2 values; the first value belongs to the line.
 # A block of 27 points keeps 26 vertices and 27 values.
-# There, vertices 13 to 25 have the value of another point.
+# Vertices 13 to 25 of the block have the value of another point.
 #
-# It hurts whoever colours, filters or exports by such values.
-# Of meshes with lines it hurts most: lines come first in VTK, so every triangle is off.
+# Affected: users who colour, filter or export by such values.
+# Meshes with lines suffer most: lines come first in VTK, so every triangle has a wrong value.
 # Medial axes and other complexes of edges and triangles are such meshes.
-# Way round: make a mesh of the triangles alone, with their values, and convert that.
+# Workaround: make a mesh of the triangles alone, with their values, and convert that mesh.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -38,7 +38,7 @@ warnings.simplefilter("ignore")
 
 
 def place(points):
-    """A value that tells where a point is."""
+    """A value that identifies the place of a point."""
     return np.asarray(points, float) @ (1, 10, 100)
 
 
@@ -75,7 +75,7 @@ assert mixed[0] == 2 and mixed[1] == [8, 0], changed
 assert block[2:5] == (26, 27, 13), changed
 assert quads[5] == block[5] == 0, changed
 
-# The way round.
+# The workaround.
 mesh = pyvista.PolyData(corners, faces=[3, 0, 1, 2, 3, 0, 2, 3], lines=[2, 4, 5, 2, 5, 4])
 values = np.array([8.0, 8, 0, 0])
 alone = pyvista.PolyData.from_regular_faces(mesh.points, mesh.regular_faces)

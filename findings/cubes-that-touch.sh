@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
-# Two cubes that share an edge, with its two vertices, lose triangles without an error.
+# Two cubes that share an edge and its two vertices lose triangles without an error.
 #
-# Versions: manifold3d 3.5.4, meshlib 3.1.4.297; trimesh 5.2.0 beside them.
+# Versions: manifold3d 3.5.4, meshlib 3.1.4.297; trimesh 5.2.0 for comparison.
 # The mesh has 14 vertices and 24 triangles, is closed and faces outwards.
 # Four triangles meet at the common edge, so it is not a 2-manifold.
 # Manifold accepts such edges, and gives each body its own vertices.
 #
-# Expected: the status is NoError, and the volume 2, in whatever order triangles are listed.
+# Expected: for every order of the triangles, the status is NoError and the volume is 2.
 # Seen, manifold3d: 16 of 48 orders of the same triangles have a volume of 1.833 or 1.667.
 # The orders are the 24 rotations of the list, forwards and backwards.
-# One vertex and two triangles are gone then, and the status is NoError all the same.
-# Mesh and Mesh64 agree. With vertices of its own for each cube, all orders give 2.
-# Seen, meshlib: an .off file of the mesh comes in with 18 of 24 triangles, open, of volume 1.5.
-# Its .obj and .ply files come in whole, as 16 vertices and closed, as do arrays.
+# One vertex and two triangles are then missing, but the status is still NoError.
+# Mesh and Mesh64 agree. If each cube has its own vertices, all orders give 2.
+# Seen, meshlib: an .off file of the mesh is read with 18 of 24 triangles, open, of volume 1.5.
+# Its .obj and .ply files, and arrays, are read completely, closed and with 16 vertices.
 # Seen, trimesh: body_count is 1, and split gives 2 bodies.
 #
-# It hurts whoever joins parts that touch, as in assemblies, voxel meshes and lattices.
-# A corner of the part is cut off, and nothing in the result tells.
-# Way round: give each body its own vertices before a boolean.
+# Affected: users who join parts that touch, for example in assemblies, voxel meshes and lattices.
+# A corner of the part is cut off, and nothing in the result reports that.
+# Workaround: give each body its own vertices before a boolean.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
-# Manifold 3.5.4: decompose() of a hollow part returns a full one and a solid of negative volume.
+# Manifold 3.5.4: decompose() of a hollow part returns a full part and a solid of negative volume.
 #
 # Versions: manifold3d 3.5.4.
 # decompose() returns "a vector of Manifolds that are topologically disconnected", and its documentation
 # calls it "the inverse operation of Compose". It separates surfaces, not bodies.
 #
-# Expected: a box with a void is one body, so the list has one entry of volume 7.
+# Expected: a box with a void is one body, so the list has one entry with volume 7.
 # Expected: compose(decompose(x)), and the union of the parts, is x.
 # Seen: the list has two entries with the volumes 8 and -1, both without an error.
-# Two such boxes give four entries; nothing in the list says which void belongs to which box.
-# compose() of the list, and batch_boolean() with Add, which compose's deprecation names instead, give
-# the volume 8: the void is filled.
+# Two such boxes give four entries; nothing in the list assigns a void to its box.
+# compose() of the list gives the volume 8, so the void is filled. So does batch_boolean() with Add, which
+# compose's deprecation recommends.
 # Subtracting the void from the box gives 9.
 #
-# It hurts users who split build plates or assemblies into parts: hollow parts print full, sums of
-# volumes are right only by chance of cancelling, and counts of parts are too large.
-# Way round: put each part of negative volume to the smallest part of positive volume around it, and
-# subtract its complement, the same surface turned around.
+# Affected: users who split build plates or assemblies into parts. Hollow parts print full, and counts of
+# parts are too large. Sums of volumes are right only because the errors cancel.
+# Workaround: assign each part of negative volume to the smallest part of positive volume around it, and
+# subtract its complement, the same surface reversed.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -3,18 +3,18 @@
 #
 # Versions: pyvista 0.49.1, vtk 9.7.2.
 # reflect() keeps the order of the corners, so the faces of a mirrored part point inwards.
-# select_interior_points replaces select_enclosed_points, which is deprecated. Its default method takes
-# the sign of compute_implicit_distance; its documentation calls that method the more reliable one.
+# select_interior_points replaces select_enclosed_points, which is deprecated. The default method takes
+# the sign of compute_implicit_distance; the documentation calls this method more reliable.
 #
-# Expected: the inside of a closed surface does not depend on the order of its corners, as in the filter
-# that it replaces; or the check of the surface, on by default, rejects a surface that faces inwards.
+# Expected: the inside of a closed surface does not depend on the order of its corners, as in the old
+# filter. Or the default check of the surface rejects a surface that faces inwards.
 # Seen: a cube and its mirror image have the same volume and both pass the check.
 # For the mirror image, points inside are False and points outside are True.
 # The old filter, and method="cell_locator", select the same points for both.
 #
-# It hurts users of symmetric parts, half models and images with a left-handed frame, who follow the
-# deprecation warning. The answer has the right type and shape, and nothing warns.
-# Way round: mesh.compute_normals(auto_orient_normals=True) first, or method="cell_locator".
+# Affected: users of symmetric parts, half models and images with a left-handed frame, who follow the
+# deprecation warning. The result has the right type and shape, and there is no warning.
+# Workaround: call mesh.compute_normals(auto_orient_normals=True) first, or method="cell_locator".
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,26 +1,26 @@
 #!/usr/bin/env bash
-# VTK 9.7 numbers a wedge (a prism of 6 nodes) the other way round than VTK 9.6.
+# VTK 9.7 and VTK 9.6 number a wedge (a prism of 6 nodes) in opposite directions.
 #
 # Versions: vtk 9.6.2 beside vtk 9.7.2 with pyvista 0.49.1 and meshio 5.3.5.
 # Up to 9.6 the normal of nodes 0, 1, 2 pointed out of the cell; from 9.7 it points into it.
-# Gmsh numbers wedges as 9.7 does. VTK 9.3.1 and 9.5.2 number them as 9.6.2 does.
+# Gmsh numbers wedges like 9.7. VTK 9.3.1 and 9.5.2 number them like 9.6.2.
 # Readers do not reorder the nodes of older files; .vtu and .vtk files keep their version number.
 #
 # Expected: a file has the same volume in both versions.
 # Expected: all filters of one version follow one numbering.
 # Seen: a box of two wedges and a hexahedron, written by 9.6, has the volume 2; read by 9.7 it is 0.
-# From 9.7 to 9.6 the same happens. This holds for .vtu, .vtk and .vtkhdf.
+# The same happens from 9.7 to 9.6. It affects .vtu, .vtk and .vtkhdf.
 # meshio still writes the old numbering: a Gmsh file that it converts has the volume 0 in 9.7.
 # Within 9.7.2 itself, vtkGeometryFilter follows the new numbering, vtkDataSetSurfaceFilter the old.
-# Of a box that 9.7 takes for right, the latter makes a surface with 4 edges where triangles disagree.
+# For a box that 9.7 accepts, the latter makes a surface with 4 edges at which triangles disagree.
 # extract_surface of PyVista calls that filter by default.
 # vtkMassProperties gives this surface, closed but of mixed orientation, the volume 0.4 instead of 2.
-# vtkImplicitPolyDataDistance is 0.2 at a point inside of it, instead of -0.2.
+# vtkImplicitPolyDataDistance is 0.2 at a point inside this surface, instead of -0.2.
 #
-# It hurts whoever keeps prism meshes in files, as of boundary layers and extrusions.
-# Volumes of wedges cancel those of other cells in sums, and nothing warns.
-# Way round: look at vtkCellSizeFilter's volumes after reading; swap nodes 1, 2 and 4, 5 where negative.
-# Extract surfaces with vtkGeometryFilter, in PyVista by algorithm="geometry".
+# Affected: users who keep prism meshes in files, for example of boundary layers and extrusions.
+# Volumes of wedges cancel those of other cells in sums, and there is no warning.
+# Workaround: check vtkCellSizeFilter's volumes after reading; swap nodes 1, 2 and 4, 5 if they are negative.
+# Extract surfaces with vtkGeometryFilter, in PyVista with algorithm="geometry".
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -30,7 +30,7 @@ python3 -m venv new
 old/bin/pip install --quiet --disable-pip-version-check vtk==9.6.2 numpy==2.4.6
 new/bin/pip install --quiet --disable-pip-version-check vtk==9.7.2 numpy==2.4.6 pyvista==0.49.1 meshio==5.3.5
 
-# A unit cube of two prisms and a hexahedron beside it, in the node order of Gmsh.
+# A unit cube of two prisms with a hexahedron beside it, in the node order of Gmsh.
 cat >box.msh <<'END'
 $MeshFormat
 2.2 0 8

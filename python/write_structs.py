@@ -37,7 +37,7 @@ def quoted(text: str) -> str:
 
 
 def comment(doc: str, unit: str) -> str:
-    return f"  #: {doc}{f'; {unit}' if unit else ''}"
+    return f"  #: {doc}{f' ({unit})' if unit else ''}"
 
 
 def class_of(name: str, entry: dict[str, Any]) -> str:

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# `make bench`: builds every benchmark with its peers, runs it, and leaves its figures as JSON in out/bench, as tables
-# in docs/generated/performance.md and as plots in docs/pictures.
-#   tools/bench.sh [PROGRAM ...]   only these, for example field_bench, image_peers or skeleton_peers; then no report is written
+# `make bench`: builds and runs every benchmark with its peers. Writes the figures as JSON to out/bench, as tables to
+# docs/generated/performance.md and as plots to docs/pictures.
+#   tools/bench.sh [PROGRAM ...]   runs only these, without a report: field_bench, image_peers, skeleton_peers, ...
 # BENCH_OPTIONS: options for Google Benchmark, for example BENCH_OPTIONS=--benchmark_filter=bunny.
-# BLUM_BENCH_PEER_NODES=all: peers compute every node, also where that takes minutes (default: 2,200,000 nodes, spread
-# evenly, and scaled). BLUM_BENCH_RUNS: runs per case (default: 25 below 0.3 s, 5 below 2 s, 3 below 20 s, else 1).
+# BLUM_BENCH_PEER_NODES=all: peers compute every node, which may take minutes. By default they compute 2,200,000 evenly
+# spread nodes, and the time is scaled.
+# BLUM_BENCH_RUNS: runs per case (default: 25 below 0.3 s, 5 below 2 s, 3 below 20 s, else 1).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -29,7 +30,7 @@ for program in "${programs[@]}"; do
   fi
   if [[ $program == skeleton_peers ]]; then
     for shape in bumpy organs pores; do
-      # Only one shape for the slow ones: ITK alone takes nine minutes for it.
+      # The slow peers run only one shape; ITK alone takes nine minutes for it.
       peers=scikit-image
       if [[ $shape == bumpy ]]; then peers=scikit-image,kimimaro,itk; fi
       BLUM_CLI="$PWD/build/bench/bin/blum" build/venv/bin/python bench/peers/skeleton_peers.py --shape "$shape" \

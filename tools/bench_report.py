@@ -3,8 +3,8 @@
 
     tools/bench_report.py [FOLDER]      FOLDER holds *.json (default out/bench)
 
-Ratios are on CPU seconds of the whole process (they barely depend on other load) and on wall-clock seconds.
-Cases that did not run, or whose peer is not installed, say so.
+Ratios compare CPU seconds of the whole process, which barely depend on other load, and wall-clock seconds.
+Cases that did not run, or lack an installed peer, appear with that reason.
 """
 
 import json
@@ -36,7 +36,7 @@ class Results:
                 self.cases[case["name"].removesuffix("/iterations:1/manual_time")] = case
 
     def get(self, name):
-        """The case, or the reason why there is none."""
+        """The case, or the reason for its absence."""
         case = self.cases.get(name)
         if case is None:
             return "not run"
@@ -75,7 +75,7 @@ def threads_row(results, name):
     one = {"cpu_s": case["one_cpu_s"], "wall_s": case["one_wall_s"]}
     speedup = f"{one['wall_s'] / case['wall_s']:.2f}x"
     cores = case["cpu_s"] / case["wall_s"]
-    if cores < 1.5:  # other work took the second core: says nothing about Blum
+    if cores < 1.5:  # other work took the second core, so the ratio is meaningless
         speedup = f"no result: the two threads got {cores:.2f} cores ({speedup})"
     return [title, both(case), f"one thread: {both(one)}", f"{one['cpu_s'] / case['cpu_s']:.2f}x (1.00x: no CPU lost)",
             speedup, "1.7x", "1.9x"]
@@ -91,7 +91,7 @@ def simd_row(results, name):
 
 
 def winding_row(results, n):
-    """The extra time of winding signs, against one query per node (with its hierarchy)."""
+    """The extra time of winding signs, compared with one query per node (with its hierarchy)."""
     title = f"sign `winding`, bunny (open) {n}^3, versus one fast winding number query per node"
     case, peer = results.get(f"sign-winding/bunny/{n}/blum"), results.get(f"sign-winding/bunny/{n}/query-per-node")
     if not isinstance(case, str):
@@ -110,7 +110,7 @@ def image_row(results):
     blum, scipy = images["programs"]["blum unsigned"], images["programs"]["scipy with indices"]
     cpu = None if isinstance(ours, str) else ours["cpu_time"] / 1000
     blum_text = f"{seconds(blum['seconds'])} wall"
-    if cpu:  # image_peers.py does not tell Blum's CPU seconds
+    if cpu:  # image_peers.py does not report Blum's CPU seconds
         blum_text += f"; {seconds(cpu)} CPU in another program and run (distance_transform_bench)"
     scipy_text = f"{seconds(scipy['cpu_seconds'])} CPU, {seconds(scipy['seconds'])} wall, one thread"
     return [title, blum_text, scipy_text, f"{scipy['cpu_seconds'] / cpu:.3g}x" if cpu else "-",
@@ -139,7 +139,7 @@ def skeleton_rows(results):
         for peer in ("scikit-image", "kimimaro", "itk"):
             title = f"medial axis, image {report['side']}^3 ({shape}, {share:.0f} % solid), versus {peer}"
             if peer not in programs:
-                if shape == "bumpy":  # the others are timed against one peer alone
+                if shape == "bumpy":  # the other shapes have only one peer
                     rows.append([title, "-", "not run", "-", "-", must, aim])
                 continue
             theirs = programs[peer]
@@ -150,7 +150,7 @@ def skeleton_rows(results):
 
 
 def medial_rows(results):
-    """Goals of medial axes that no peer is timed for."""
+    """Goals of medial axes without a peer."""
     rows = [plain_row("medial axis, rocker-arm at 256, with its certificate", results.get("medial/rocker-arm/256"),
                       "wall_s", "s", "10 s", "2 s")]
     least, most = results.get("medial-image/64"), results.get("medial-image/640")
@@ -269,7 +269,7 @@ def scaling(results, points):
 
 
 def floor_cpu(results, nodes):
-    """CPU seconds of writing 8 bytes a node to new memory, at the rate measured at 512^3."""
+    """CPU seconds to write 8 bytes for each node to new memory, at the rate measured at 512^3."""
     case = results.get("floor/new-memory/512/write")
     return None if isinstance(case, str) else case["cpu_s"] * nodes / case["nodes"]
 

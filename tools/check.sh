@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# `make check T=PATTERN`: a quick round. Configures, builds the programs that the tests matching PATTERN need, and runs
-# these tests: ctest's names, as test_geometry.Bvh.FindsTheNearest, example.field_of_mesh, pytest.test_cli; or viewer.
-#   tools/check.sh PATTERN [PRESET]   a regular expression; preset release, or dev
-# Which programs those are is read from the sources: a program is built where PATTERN matches its name, or a suite or a
-# test in it. What a parametrised test is called before the suite (On/) and after the test (/Cpu) may be in PATTERN.
+# `make check T=PATTERN`: a quick round. Configures, builds the programs of the tests that match PATTERN, and runs these
+# tests. PATTERN matches ctest's names, for example test_geometry.Bvh.FindsTheNearest, example.field_of_mesh or
+# pytest.test_cli; or it is viewer.
+#   tools/check.sh PATTERN [PRESET]   a regular expression; preset release (default) or dev
+# A program is built if PATTERN matches its name, or a suite or test in its sources. PATTERN may contain the prefix
+# (On/) and the suffix (/Cpu) of a parametrised test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/cache.sh

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Checks the messages of commits by the rule in CONTRIBUTING.md, "Commits and review".
 
-  tools/check_commits.py              commits that are not in origin's main yet, from the one on that brought this file;
-                                      none where no such branch is known
-  tools/check_commits.py FROM..TO     those of a range
+  tools/check_commits.py              commits that are not in origin's main, from the commit on that added this file;
+                                      no commits if such a branch is unknown
+  tools/check_commits.py FROM..TO     commits of a range
 
 - A subject has at most 72 characters, is one idea (no semicolon), and ends without a full stop.
-- A line between subject and body is empty; lines of the body have at most 100 characters, but for links.
-- Nothing that should have become part of another commit: fixup!, squash!, amend!, WIP.
+- An empty line separates subject and body. Lines of the body have at most 100 characters, except for links.
+- No commit that belongs into another one: fixup!, squash!, amend!, WIP.
 
-Merges are not looked at. Prints what breaks a rule, and exits with 1 where there is something.
+Merges are not checked. Prints each broken rule, and exits with 1 if there is one.
 """
 
 import re
@@ -21,20 +21,20 @@ BASES = ("refs/remotes/origin/main", "refs/remotes/origin/HEAD")
 
 
 def git(*arguments: str) -> str | None:
-    """What git prints; None where it fails."""
+    """The output of git; None if git fails."""
     done = subprocess.run(["git", *arguments], check=False, capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else None
 
 
 def before_the_rule() -> list[str]:
-    """What leaves out the commits that are older than this file."""
+    """Arguments for git rev-list that leave out commits older than this file."""
     added = (git("log", "--diff-filter=A", "--format=%H", "--", ":(top)tools/check_commits.py") or "").split()
     parents = f"{added[-1]}^@" if added else ""
     return ["--not", parents] if parents and git("rev-parse", "--verify", "--quiet", f"{added[-1]}^") else []
 
 
 def new_commits() -> list[str] | None:
-    """The commits that are not in origin's main, for git rev-list; None where that cannot be said."""
+    """Arguments for git rev-list that select commits not in origin's main; None if unknown."""
     for base in BASES:
         if git("rev-parse", "--verify", "--quiet", f"{base}^{{commit}}") is None:
             continue

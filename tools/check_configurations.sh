@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Builds what can be switched off, switched off, and runs the tests that differ there: parts without their packages, the
-# scalar and the serial path. (Clang builds everything for tools/sanitize.sh asan and for clang-tidy.)
+# Builds configurations with parts switched off, and runs the tests that differ there: parts without their packages, the
+# scalar path and the serial path. (Clang builds everything for tools/sanitize.sh asan and for clang-tidy.)
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/cache.sh
 
-# One configuration: name, then CMake options. Builds everything, and runs ctest where there are tests.
+# Builds one configuration: name, then CMake options.
 configuration() {
   local name=$1 folder=build/$1
   shift
@@ -14,7 +14,7 @@ configuration() {
   cmake --build "$folder" --parallel "${JOBS:-$(nproc)}" || return
 }
 
-# The core, geometry, grid and reference layers: configuring fails when they look for any package of a third party.
+# The core, geometry, grid and reference layers. Configuring fails if they search for any third-party package.
 compiler_alone() {
   local forbidden=() package
   for package in TBB hwy Boost ZLIB PNG CLI11 nlohmann_json GTest benchmark; do
@@ -24,8 +24,8 @@ compiler_alone() {
   tests/install/run.sh "build/$1"
 }
 
-# A configuration in which no other code runs than elsewhere but in some layers: name, these layers' test programs as a
-# regular expression, then CMake options. Suites that repeat much, or are slow, are left to `make test`.
+# Builds a configuration in which only some layers run other code, and tests these: name, a regular expression for their
+# test programs, then CMake options. `make test` runs suites that repeat much or are slow.
 with_tests() {
   local name=$1 programs=$2
   shift 2
@@ -50,10 +50,10 @@ case ${1:-} in
     ;;
   compiler-alone) compiler_alone compiler-alone STD ;;
   compiler-alone-serial) compiler_alone compiler-alone-serial SERIAL ;;
-  # Other instructions in geometry and field, and std::thread in core.
+  # Uses other instructions in geometry and field, and std::thread in core.
   scalar) with_tests scalar 'core|geometry|field|property|regression' -DBLUM_CLI=OFF -DBLUM_SIMD=OFF -DBLUM_THREADS=STD ;;
-  # No threads in core: every loop runs otherwise. And the tool without its precompiled header, which might hide that a
-  # file lacks an include.
+  # Uses no threads in core, so that every loop runs differently. Builds the tool without its precompiled header, which
+  # might hide a missing include.
   serial) with_tests serial '.*' -DBLUM_PCH=OFF -DBLUM_THREADS=SERIAL ;;
   *)
     echo "configurations: unknown configuration $1" >&2

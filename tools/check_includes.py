@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""Checks who may include whom. Prints each line that breaks a rule, and exits with 1 where there is one.
+"""Checks the rules of includes. Prints each line that breaks a rule, and exits with 1 if there is one.
 
-- A layer sees the public headers of lower layers and its own; its sources see their own internals besides.
-- The certificate checks what others make: of other layers it sees only what SHARED lists, and nothing that constructs.
-- io sees every layer; no layer sees io. Apps, bindings and examples see public headers and their own files only;
-  tests and benchmarks may look inside.
-- A layer sees no other layer than CMake lets it link, and may see all of those that CMakeLists.txt names for it.
-- Large integers are in src/exact, whose headers sources of layers above it see.
-- Public headers name nothing but the standard library and Blum.
-- One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/geometry/bvh/*_kernels.cpp; compression is in src/io.
-- field/cpu and field/cuda do not see each other; CUDA is in src/field/cuda.
-- No call of debug_dump() is left behind: its header is for tests, and for a while in other files while they are debugged.
+- A layer may include the public headers of lower layers and its own. Its sources may also include its internals.
+- The certificate checks the results of other layers. Apart from core and complex, it may include only headers in
+  SHARED. None of them constructs an axis.
+- io may include every layer; no layer may include io.
+- Apps, bindings and examples may include only public headers and their own files. Tests and benchmarks may include
+  internals.
+- A layer may include exactly the layers that CMakeLists.txt links to it.
+- Large integers are in src/exact. Sources of layers above it may include its headers.
+- Public headers include only the standard library and Blum.
+- One file starts threads (src/core/parallel.cpp). SIMD is in src/field/cpu and src/geometry/bvh/*_kernels.cpp.
+  Compression is in src/io.
+- field/cpu and field/cuda may not include each other. CUDA is in src/field/cuda.
+- Only tests may include the header of debug_dump(); other files only temporarily, while they are debugged.
 """
 
 import pathlib
@@ -37,10 +40,10 @@ LOWER = {
     "certified": {"core", "geometry", "grid", "complex", "solid", "field", "axis", "medial_axis", "certificate"},
 }
 LOWER["io"] = set(LOWER)
-# Single headers of layers that a layer does not see otherwise. The certificate takes types of input and names from
-# these, and has searches and predicates of its own. Four things it does share: self-intersections and the sign of a
-# determinant, whose answers are exact and tested against slow ones; the mesh without its crossings, whose shells,
-# crossings and inside it checks itself; and the numbers of sites, which files hold.
+# Single headers of layers that a layer may not include otherwise. The certificate takes types of input and names from
+# these headers, and has its own searches and predicates. It shares code for four facts. Self-intersections and the sign
+# of a determinant are exact and tested against slow versions. The certificate itself checks the shells, crossings and
+# inside of the resolved mesh. Files contain the numbers of sites.
 SHARED = {
     "certificate": {
         "blum/geometry/orient3d.hpp",
@@ -56,8 +59,8 @@ SHARED = {
 
 DEBUG_DUMP = "include/blum/core/debug_dump.hpp"
 
-STANDARD = re.compile(r"[a-z_]+")  # <vector>, <stop_token>: no dot, no slash
-SYSTEM = re.compile(r"(sys/\w+|unistd|fcntl|linux/\w+|sched|dlfcn)\.h")  # what the C++ standard library lacks; sources only
+STANDARD = re.compile(r"[a-z_]+")  # for example <vector> and <stop_token>, without dot and slash
+SYSTEM = re.compile(r"(sys/\w+|unistd|fcntl|linux/\w+|sched|dlfcn)\.h")  # only in sources
 STARTS_THREADS = {"thread", "future", "execution", "pthread.h", "omp.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:<([^>]+)>|"([^"]+)")')
 
@@ -68,9 +71,9 @@ def layer_of(path: pathlib.PurePosixPath) -> str:
 
 
 def third_party_rule(source: str, name: str) -> str | None:
-    """Why a source under src/ may not include <name>, a header outside of Blum; None where it may."""
+    """The reason why a source under src/ may not include <name>, a header outside of Blum; None if it may."""
     if name in STARTS_THREADS or name.startswith("tbb/"):
-        # context.cpp asks for the number of cores.
+        # context.cpp queries the number of cores.
         allowed = source == "src/core/parallel.cpp" or (source == "src/core/context.cpp" and name == "thread")
         return None if allowed else "only src/core/parallel.cpp starts threads"
     if name.startswith("hwy/"):
@@ -88,13 +91,13 @@ def third_party_rule(source: str, name: str) -> str | None:
 
 
 def blum_rule(source: pathlib.PurePosixPath, target: pathlib.PurePosixPath) -> str | None:
-    """Why `source` may not include the project's file `target`; None where it may."""
+    """The reason why `source` may not include the project's file `target`; None if it may."""
     top = source.parts[0]
     public = target.parts[0] == "include"
     if str(target) == DEBUG_DUMP and top != "tests" and str(source) != "src/core/debug_dump.cpp":
         return "debug_dump() is for debugging: take the call out (CONTRIBUTING.md, Debugging)"
     if top == "bench" and str(target) == "src/field/cpu/tile_kernel.hpp":
-        return None  # to time one instruction set against another
+        return None  # for comparing the speed of instruction sets
     if top in ("apps", "examples", "python"):
         return None if public or target.parts[0] == top else f"{top} sees public headers only"
     if top in ("tests", "bench"):
@@ -107,7 +110,7 @@ def blum_rule(source: pathlib.PurePosixPath, target: pathlib.PurePosixPath) -> s
         return None
     if other != own and other not in LOWER.get(own, set()):
         return f"{own} does not see {other}"
-    if not public and other != own and other != "exact":  # it has no public headers, as these would name Boost
+    if not public and other != own and other != "exact":  # exact has no public headers; they would name Boost
         return f"internals of {other} are its own"
     back_ends = {source.parts[2:3], target.parts[2:3]}
     if top == "src" and back_ends == {("cpu",), ("cuda",)}:
@@ -116,7 +119,7 @@ def blum_rule(source: pathlib.PurePosixPath, target: pathlib.PurePosixPath) -> s
 
 
 def resolve(source: pathlib.PurePosixPath, name: str) -> pathlib.PurePosixPath | None:
-    """The project's file that `name` stands for in `source`."""
+    """The project's file that `source` includes as `name`."""
     places = [source.parent / name, pathlib.PurePosixPath("include") / name, pathlib.PurePosixPath("src") / name]
     if source.parts[0] in ("tests", "bench"):
         places.append(pathlib.PurePosixPath(source.parts[0]) / name)
@@ -144,7 +147,7 @@ def check_line(source: pathlib.PurePosixPath, angled: str | None, quoted: str | 
 
 
 def check_cmake() -> list[str]:
-    """Where LOWER and the layers of CMakeLists.txt differ. src/field/reference is a target of its own there."""
+    """Differences of LOWER and the layers of CMakeLists.txt, where src/field/reference is a separate target."""
     linked: dict[str, set[str]] = {}
     text = (PROJECT / "CMakeLists.txt").read_text(encoding="utf-8")
     for name, rest in re.findall(r"blum_add_layer\((\w+)([^)]*)\)", text):
@@ -165,7 +168,7 @@ def check_cmake() -> list[str]:
 
 
 def check_shared() -> list[str]:
-    """Headers that SHARED names and that do not exist."""
+    """Headers in SHARED that do not exist."""
     names = sorted(name for headers in SHARED.values() for name in headers)
     return [f"SHARED names {name}, which does not exist" for name in names if not (PROJECT / "include" / name).is_file()]
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the links of the Markdown files: linked files and headings of the project exist, and no link spans two lines.
+"""Checks the links of Markdown files: linked files and headings of the project exist, and no link spans two lines.
+
 Prints broken links, and exits with 1 if there are any. Links to other sites are not followed."""
 
 import pathlib
@@ -20,7 +21,7 @@ def markdown_files() -> list[pathlib.Path]:
 
 
 def anchors(path: pathlib.Path) -> set[str]:
-    """The anchors that a page's headings get, as common hosts make them."""
+    """The anchors of a page's headings, in the common form of Markdown hosts."""
     found: set[str] = set()
     for heading in re.findall(r"^#{1,6}\s+(.*?)\s*#*$", FENCE.sub("", path.read_text(encoding="utf-8")), re.MULTILINE):
         explicit = re.search(r"\{#([\w-]+)\}", heading)

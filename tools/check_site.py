@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Checks a built site: `tools/check_site.py FOLDER`.
 
-Each link leads to a file of the site and to an anchor that exists; each picture, script and style is in the folder, so
-that the site opens from a disk; a search index exists. Prints problems, and exits with 1 if there are any. Links to
-other sites are not followed.
+Each link leads to an existing file and anchor of the site. Each picture, script and style is in the folder, so that the
+site opens from a disk. A search index exists. Prints problems, and exits with 1 if there are any. Links to other sites
+are not followed.
 """
 
 import html.parser
@@ -11,7 +11,7 @@ import pathlib
 import sys
 import urllib.parse
 
-#: Elements whose files the browser loads by itself.
+#: Elements whose files the browser loads.
 LOADED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Checks the text of the project's files. Prints each place that breaks a rule, and exits with 1 where there is one.
+"""Checks the text of the project's files. Prints each place that breaks a rule, and exits with 1 if there is one.
 
-- No name in code that docs/glossary.md gives another one for.
-- No word that marks unfinished work, and no absolute path of some machine.
-- C++ and Python files have at most 900 lines; C++ headers open with what they are, their licence, and `#pragma once`.
-- No tabs (but in makefiles), no spaces at line ends, a line feed at the end.
+- No code uses a name that docs/glossary.md replaces.
+- No word marks unfinished work, and no absolute path names a machine's folder.
+- C++ and Python files have at most 900 lines. C++ headers open with a description, the licence and `#pragma once`.
+- Files have no tabs (except makefiles) and no spaces at line ends, and end with a line feed.
 """
 
 import pathlib
@@ -17,7 +17,7 @@ LONGEST = 900
 CODE = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".ts"}
 TEXT = CODE | {".txt", ".md", ".json", ".cff", ".in", ".yml", ".yaml", ".toml", ""}
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK|[Nn]ot implemented|[Ss]tub|[Pp]laceholder)\b")
-# Names that code had once, and the terms of docs/glossary.md that stand for them.
+# Former names in code, and the terms of docs/glossary.md that replace them.
 REPLACED = {
     "bounding_box": "bounds",
     "cavity": "void",

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `pip install .` as a user does it, and a wheel that works where the sources are not: builds a wheel with all that pip
-# brings, installs it in a new virtual environment, and uses the package and the tool from another folder.
+# Checks `pip install .` and that the wheel works without the sources. Builds a wheel with pip's own build environment,
+# installs it in a new virtual environment, and uses the package and the tool from another folder.
 #   tools/check_wheel.sh [PYTHON]   an interpreter of 3.11 or newer (default python3)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,7 +10,7 @@ tools/setup.sh --tests
 python=${1:-python3}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-# The compiler by the name that the other builds use, so that they share a compiler cache.
+# Names the compiler as the other builds do, so that they share a compiler cache.
 options=()
 [[ -n ${CI:-} ]] && options+=(--config-settings=cmake.define.BLUM_WERROR=ON)
 "$python" -m venv "$folder/venv"

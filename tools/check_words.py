@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Checks the English of documents, comments, docstrings and messages (CONTRIBUTING.md, "Words").
 
-  tools/check_words.py              the files that tools/words-checked.txt lists; exits with 1 if a rule is broken
-  tools/check_words.py PATH ...     these files or folders instead, listed or not
-  tools/check_words.py --count      broken rules per folder, of all files
+  tools/check_words.py              checks the files in tools/words-checked.txt; exits with 1 if a rule is broken
+  tools/check_words.py PATH ...     checks these files or folders instead
+  tools/check_words.py --count      counts broken rules in each folder, for all files
 
 Rules:
 - Programs return, report, list, contain or compute; they never tell.
 - No sentence starts with "What", "Whether" or "Of", unless it is a question.
-- Not "is no" (but "there is no"): "is not a", or another verb.
+- Not "is no", except "there is no": "is not a", or another verb.
 - A sentence has at most 25 words. Code in backquotes, a link's address, a formula and a number are one word each.
 """
 
@@ -25,7 +25,7 @@ from check_text import PROJECT, tracked_files
 CHECKED = PROJECT / "tools/words-checked.txt"
 MOST_WORDS = 25
 FOLDERS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md")
-FOLDERS += ("docs", "include", "src", "apps", "python", "examples")
+FOLDERS += ("docs", "include", "src", "apps", "python", "examples", "bench", "tests")
 SUFFIXES = {".md", ".hpp", ".cpp", ".cu", ".cuh", ".py", ".ts"}
 
 TELL = re.compile(r"\b(tells?|told|telling|retold)\b", re.IGNORECASE)
@@ -35,10 +35,10 @@ FIRST_WORD = re.compile(r"^(What|Whether|Of)\b")
 SENTENCE_END = re.compile(r"(?<=[.!?])[)\"']*\s+(?=[\"'(*]*[A-Z`\[])|(?<=:)\s*\n\s*\n")
 ABBREVIATION = re.compile(r"\b(e\.g|i\.e|cf|vs|etc|Fig|Sec|Eq|approx|ca|al|no|resp)\.$", re.IGNORECASE)
 WORD = re.compile(r"[^\W_][\w'\u2019-]*")
-# Neighbours that operators join.
+# Neighbouring words that operators join.
 FORMULA = re.compile(r"[\w.]+(\s*[=<>+*/^|\u2264\u2265\u00b7\u00d7]+\s*[\w.]+)+")
 
-#: A piece of text and the line on which it starts.
+#: The first line of a piece of text, and the text.
 Piece = tuple[int, str]
 
 
@@ -72,8 +72,8 @@ TAG = re.compile(
 )
 
 
-def cpp_pieces(text: str) -> Iterator[Piece]:
-    """Comments, one after another as a paragraph, and literals that follow each other as a message."""
+def cpp_pieces(text: str, with_strings: bool) -> Iterator[Piece]:
+    """Comments, with successive ones as one paragraph, and literals, with adjacent ones as one message."""
     comments: list[str] = []
     literals: list[str] = []
     comment_at = literal_at = last_comment = last_literal_end = 0
@@ -82,6 +82,8 @@ def cpp_pieces(text: str) -> Iterator[Piece]:
         if token.startswith("'"):
             continue
         if token.startswith('"'):
+            if not with_strings:
+                continue
             if literals and text[last_literal_end : match.start()].strip(" \n") != "":
                 yield literal_at, "".join(literals)
                 literals = []
@@ -109,7 +111,7 @@ def cpp_pieces(text: str) -> Iterator[Piece]:
         yield literal_at, "".join(literals)
 
 
-def python_pieces(text: str) -> Iterator[Piece]:
+def python_pieces(text: str, with_strings: bool) -> Iterator[Piece]:
     """Comments, docstrings without their examples, and other strings."""
     comments: list[str] = []
     start = last = 0
@@ -126,6 +128,8 @@ def python_pieces(text: str) -> Iterator[Piece]:
         yield start, " ".join(comments)
     nodes = list(ast.walk(ast.parse(text)))
     parts = {part for node in nodes if isinstance(node, ast.JoinedStr) for part in node.values}
+    if not with_strings:
+        nodes = [node.value for node in nodes if isinstance(node, ast.Expr)]  # docstrings
     for node in nodes:
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in parts:
             yield from string_pieces(node.lineno, node.value)
@@ -135,7 +139,7 @@ def python_pieces(text: str) -> Iterator[Piece]:
 
 
 def string_pieces(line: int, said: str) -> Iterator[Piece]:
-    """Paragraphs of a docstring; its examples and the names of its parameters are left out."""
+    """Paragraphs of a docstring, without examples and names of parameters."""
     paragraph: list[str] = []
     start = line
     for offset, row in enumerate([*said.split("\n"), ""]):
@@ -185,11 +189,13 @@ def problems_of(sentence: str) -> list[str]:
 
 
 def pieces_of(path: pathlib.Path, text: str) -> Iterator[Piece]:
+    """The texts of a file. Strings of tests are left out, because most of them are contents of files."""
     if path.suffix == ".md":
         return markdown_pieces(text)
+    with_strings = not path.is_relative_to(PROJECT / "tests")
     if path.suffix == ".py":
-        return python_pieces(text)
-    return cpp_pieces(text)
+        return python_pieces(text, with_strings)
+    return cpp_pieces(text, with_strings)
 
 
 def check(path: pathlib.Path) -> list[str]:

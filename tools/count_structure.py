@@ -3,13 +3,13 @@
 
   tools/count_structure.py [REVISION | FROM..TO] [--json]
 
-- Files and lines: C++ and CUDA files of src/LAYER and include/blum/LAYER. Small ones have fewer than 60 lines.
-- An internal header is a .hpp of src. Its users are the files of src and include that include it, but for the source of
-  its own name. With a single user, it might as well be part of that.
-- With a revision or a range of Git: files that its commits touched, in all and by the median commit, and in which
-  places.
+- Files and lines are those of C++ and CUDA files in src/LAYER and include/blum/LAYER. Small files have fewer than 60
+  lines.
+- An internal header is a .hpp of src. Its users are the files of src and include that include it, except the source of
+  the same name. A header with a single user could be part of this user.
+- With a revision or range of Git: the number and places of touched files, and the median number per commit.
 
-The same text for the same files. --json prints the same figures as one object, and the names of headers and files.
+The same files always give the same text. --json prints the figures and the names of headers and files as one object.
 """
 
 import argparse
@@ -34,7 +34,7 @@ def git(*arguments: str) -> str:
 
 
 def sources() -> list[pathlib.PurePosixPath]:
-    """C++ and CUDA files of src and include, those of Git and those that will be."""
+    """C++ and CUDA files of src and include that Git tracks or does not ignore."""
     names = git("ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", "src", "include").split("\0")
     paths = sorted(pathlib.PurePosixPath(name) for name in names if name)
     return [path for path in paths if path.suffix in (".hpp", ".cpp", ".cu", ".cuh") and (PROJECT / path).is_file()]
@@ -52,7 +52,7 @@ def included(source: pathlib.PurePosixPath) -> set[pathlib.PurePosixPath]:
 
 
 def single_users(paths: list[pathlib.PurePosixPath]) -> tuple[int, dict[str, str]]:
-    """How many internal headers there are; those with a single user, and that."""
+    """The number of internal headers, and the headers with a single user together with this user."""
     users: dict[pathlib.PurePosixPath, set[pathlib.PurePosixPath]] = {
         path: set() for path in paths if path.parts[0] == "src" and path.suffix == ".hpp"
     }
@@ -103,7 +103,7 @@ def touched(revision: str) -> dict:
 
 
 def place_of(path: pathlib.PurePosixPath) -> str:
-    """src/LAYER, include/blum/LAYER; of other folders the first, of files at the top themselves."""
+    """The place of a file: src/LAYER, include/blum/LAYER, another top folder, or a file at the top."""
     depth = {"src": 2, "include": 3, "apps": 2}.get(path.parts[0], 1)
     return "/".join(path.parts[: min(depth, max(len(path.parts) - 1, 1))])
 

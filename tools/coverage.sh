@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# `make coverage`: the share of lines that the tests labelled fast run, of each layer and in all (g++ --coverage, gcov).
-#   tools/coverage.sh [LAYER ...]   these layers alone, by their own tests, test_LAYER: much sooner
-# Figures for people: nothing fails where they are low. What no test runs is in build/coverage/missed.txt.
+# `make coverage`: prints the share of lines that tests labelled fast run, by layer and in total (g++ --coverage, gcov).
+#   tools/coverage.sh [LAYER ...]   only these layers, by their own tests, test_LAYER: much faster
+# Low figures are not a failure. build/coverage/missed.txt lists the lines that no test runs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -23,7 +23,7 @@ tools/setup.sh --tests
 tools/build.sh coverage -DBLUM_CLI=OFF "${targets[@]}"
 find build/coverage -name '*.gcda' -delete
 log=build/coverage/ctest.log
-# A suite that was not built, as one of another layer, is no failure here.
+# A suite that was not built, for example of another layer, is not a failure here.
 if ! ctest --test-dir build/coverage --parallel "${JOBS:-$(nproc)}" --output-on-failure --no-tests=error "${tests[@]}" \
   --exclude-regex '_NOT_BUILT$' >"$log" 2>&1; then
   tail -n 40 "$log"

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Counts the lines that ran in a build with --coverage, by layer.
+"""Counts, for each layer, the lines that ran in a build with --coverage.
 
   tools/coverage_report.py BUILD_FOLDER [LAYER ...]
 
-Lines are those that gcov counts, of src and include; one that ran in any program ran. Prints a table, and leaves the
-lines that did not run in BUILD_FOLDER/missed.txt, as ranges for each file.
+Counts the lines of src and include that gcov reports. A line ran if it ran in any program. Prints a table, and writes
+the lines that did not run to BUILD_FOLDER/missed.txt, as ranges for each file.
 """
 
 import collections
@@ -21,7 +21,7 @@ PROJECT = check_includes.PROJECT
 
 
 def lines_of(notes: pathlib.Path) -> dict[str, dict[int, bool]]:
-    """The lines of the project's files that an object holds, and whether each ran."""
+    """The lines of the project's files in an object; a value is True if the line ran."""
     command = ["gcov", "--json-format", "--stdout", notes.name]
     done = subprocess.run(command, cwd=notes.parent, check=True, capture_output=True, text=True)
     found: dict[str, dict[int, bool]] = {}

@@ -1,7 +1,7 @@
-"""Pages of the C++ reference, one for each public header, made of Doxygen's XML (tools/stage_site.py).
+"""Makes pages of the C++ reference from Doxygen's XML, one for each public header (tools/stage_site.py).
 
-Breathe, the usual way from Doxygen to Sphinx, stops at the specialised templates of these headers. A page lists the
-declarations of its header in their order, as they are in the code, each with its contract.
+Breathe, the usual bridge from Doxygen to Sphinx, fails on the specialised templates of these headers. A page lists the
+declarations of its header in the order of the code, each with its contract.
 """
 
 import pathlib
@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-#: Kinds of declarations that stand alone, and titles of the parts of a contract.
+#: Kinds of compounds that get a section, and titles of the parts of a contract.
 COMPOUNDS = ("struct", "class", "union")
 SECTIONS = {
     "return": "Returns",
@@ -24,7 +24,7 @@ LISTS = {"param": "Parameters", "templateparam": "Template parameters", "excepti
 
 
 def plain(element: ET.Element | None) -> str:
-    """The text of an element, white space folded."""
+    """The text of an element with folded white space."""
     return "" if element is None else re.sub(r"\s+", " ", "".join(element.itertext())).strip()
 
 
@@ -33,7 +33,7 @@ def code(text: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """Text of a comment as Markdown, which must not read it as markup."""
+    """Text of a comment, escaped so that Markdown does not read it as markup."""
     return re.sub(r"([\\`*_\[\]<>|$])", r"\\\1", text)
 
 
@@ -46,7 +46,7 @@ def line_of(member: ET.Element) -> int:
 class Header:
     name: str
     doc: str = ""
-    titles: set[str] = field(default_factory=set)  # anchors that are set
+    titles: set[str] = field(default_factory=set)  # anchors on the page
     entries: list[tuple[int, str]] = field(default_factory=list)  # line of the header, Markdown
 
 
@@ -62,7 +62,7 @@ class Reference:
                 name = plain(compound.find("compoundname"))
                 self.anchors[compound.get("id", "")] = (
                     self.anchor(name) + "-type"
-                )  # case is ignored: estimate, Estimate
+                )  # distinguishes Estimate from estimate, because anchors ignore case
             for member in compound.iter("memberdef"):
                 scope = plain(compound.find("compoundname")) if compound.get("kind") in COMPOUNDS else ""
                 if member.get("kind") != "variable" or not scope:
@@ -74,7 +74,7 @@ class Reference:
 
     @staticmethod
     def anchor(name: str) -> str:
-        signs = "".join(f"-{ord(sign)}" for sign in re.sub(r"[\w:]", "", name))  # of operators
+        signs = "".join(f"-{ord(sign)}" for sign in re.sub(r"[\w:]", "", name))  # for operators
         return "cpp-" + re.sub(r"[^\w]+", "-", name.removeprefix("blum::")).strip("-") + signs
 
     def pages(self) -> dict[str, Header]:
@@ -101,7 +101,7 @@ class Reference:
         return self.headers.setdefault(name, Header(name))
 
     def heading(self, element: ET.Element, header: Header, title: str, level: int) -> str:
-        """A heading with the anchor of an element; empty for an overload of what the page has already."""
+        """A heading with the anchor of an element; empty for an overload of an earlier function."""
         anchor = self.anchors[element.get("id", "")]
         if anchor in header.titles:
             return ""
@@ -134,7 +134,7 @@ class Reference:
 
     @staticmethod
     def is_deleted_or_default(member: ET.Element) -> bool:
-        """True for members that only state how objects are copied."""
+        """True for destructors and for defaulted or deleted members."""
         return bool(re.search(r"=\s*(default|delete)\s*$", plain(member.find("argsstring")))) or plain(
             member.find("name")
         ).startswith("~")
@@ -295,7 +295,7 @@ class Reference:
 
 
 def write_pages(xml: pathlib.Path, site: pathlib.Path) -> None:
-    """Writes cpp/index.md, an index of each layer, and a page of each header that declares something."""
+    """Writes cpp/index.md, an index for each layer, and a page for each header with declarations."""
     layers: dict[str, list[str]] = {}
     for name, header in sorted(Reference(xml).pages().items()):
         if not header.entries:

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# Compiles everything that is CUDA: the module and the programs of bench/gpu, with warnings as errors. Where there is no
-# nvcc, its wheels are installed from PyPI into build/cuda-toolkit first (300 MB). Nothing is run: that takes a GPU, and
-# bench/gpu.sh.
+# Compiles all CUDA code, the module and the programs of bench/gpu, with warnings as errors. If nvcc is missing, first
+# installs its wheels from PyPI into build/cuda-toolkit (300 MB). Runs nothing; bench/gpu.sh runs the programs on a GPU.
 #   tools/cuda.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,7 +17,7 @@ find_nvcc() {
 if ! find_nvcc >/dev/null; then
   python3 -m venv "$toolkit"
   "$toolkit/bin/pip" install --quiet -r bench/gpu/requirements.txt
-  # nvcc links with what is in lib64; the wheels have it in lib.
+  # nvcc links with libraries in lib64; the wheels have them in lib.
   for folder in "$toolkit"/lib/python3*/site-packages/nvidia/cu13; do ln -sfn lib "$folder/lib64"; done
 fi
 CUDACXX=$(find_nvcc)

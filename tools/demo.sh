@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# `make demo`: the main job end to end, on a shape that Blum generates.
+# `make demo`: runs the main job end to end on a generated shape.
 #   tools/demo.sh BLUM_PROGRAM OUTPUT_FOLDER
-#   tools/demo.sh --time JOBS       only says how long building the tool takes
+#   tools/demo.sh --time JOBS       only prints the time for building the tool
 set -euo pipefail
 
 if [[ $1 == --time ]]; then
@@ -26,7 +26,7 @@ step "$blum" slice "$out/bracket.nrrd" -o "$out/distance.png" --axis z --show di
 step "$blum" slice "$out/bracket.nrrd" -o "$out/sites.png" --axis z --show sites
 step "$blum" medial "$out/bracket.ply" -o "$out/axis.vtp" --theta 60 --resolution 160
 step "$blum" verify "$out/bracket.ply" "$out/axis.vtp"
-# A coarser field, and the axes of all angles, for a page that is small.
+# A coarser field and the axes of all angles keep the page small.
 step "$blum" field "$out/bracket.ply" -o "$out/field.npz" --resolution 128 --quiet
 step "$blum" medial "$out/bracket.ply" -o "$out/angles.npz" --theta 10 --nested --resolution 160 --quiet
 step "$blum" view "$out/bracket.ply" "$out/field.npz" "$out/angles.npz" -o "$out/page.html"

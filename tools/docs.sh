@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# `make docs`: one static site of guides, theory and the references of C++ and Python, in build/docs/html. Sphinx joins
-# the Markdown pages, Doxygen's reading of the headers, and the package's docstrings. Warnings and broken links are errors.
+# `make docs`: builds one static site of guides, theory and the C++ and Python references, in build/docs/html. Sphinx
+# joins the Markdown pages, Doxygen's output for the headers and the package's docstrings. Warnings and broken links are
+# errors.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

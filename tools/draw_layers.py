@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Draws the layers and what they include of each other: docs/pictures/layers.svg.
+"""Draws the layers and their includes: docs/pictures/layers.svg.
 
   tools/draw_layers.py           writes the picture
-  tools/draw_layers.py --check   exits with 1 where it is not what the sources say, or a layer has no row in the page
-                                 that shows it, docs/architecture.md
+  tools/draw_layers.py --check   exits with 1 if the picture is out of date, or a layer has no row in
+                                 docs/architecture.md
 
 Layers and their folders come from the blum_add_layer() lines of CMakeLists.txt, arrows from the includes of src and
-include. A layer's level is one above the highest that it includes something of. A layer that all above the lowest level
-include is the floor: its arrows are left out. Arrows have few widths, by the number of includes, so that the picture
-stays the same until layers come nearer to each other or further apart.
+include. The level of a layer is one above the highest layer that it includes. A layer that all layers above the lowest
+level include is the floor, and its arrows are left out. The number of includes selects one of a few arrow widths, so
+that small changes leave the picture as it is.
 """
 
 import collections
@@ -23,16 +23,16 @@ import check_includes
 PROJECT = check_includes.PROJECT
 PICTURE = PROJECT / "docs/pictures/layers.svg"
 PAGE = PROJECT / "docs/architecture.md"
-STEPS = ((30, 6.0), (10, 3.2), (1, 1.4))  # at least so many includes: the width of the arrow
+STEPS = ((30, 6.0), (10, 3.2), (1, 1.4))  # minimum number of includes, width of the arrow
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#a6569c", "#8c6d1f", "#5b6ee1", "#b3404a", "#4a7a8c")
 COLORS += ("#5d7f14", "#c2185b", "#00838f", "#7a4a2b")
 WIDTH, MARGIN, ROOM_HEIGHT, ROW_DISTANCE, GAP = 900, 14, 62, 138, 38
-FLOOR_DISTANCE = 80  # from the floor's row to the next, between which there are no arrows
-LANE = 9  # between arrows that pass a gap side by side
+FLOOR_DISTANCE = 80  # from the floor's row to the next row; no arrows lie between them
+LANE = 9  # distance of arrows that pass a gap side by side
 
 
 def layers() -> dict[str, list[str]]:
-    """The layers, in the order of CMakeLists.txt, with the folders in each that have sources of their own."""
+    """The layers in the order of CMakeLists.txt, with their folders that have their own sources."""
     text = (PROJECT / "CMakeLists.txt").read_text(encoding="utf-8")
     found: dict[str, list[str]] = {}
     for name, rest in re.findall(r"blum_add_layer\((\w+)([^)]*)\)", text):
@@ -43,7 +43,7 @@ def layers() -> dict[str, list[str]]:
 
 
 def includes(names: set[str]) -> collections.Counter:
-    """How many times one layer includes a file of another one."""
+    """The number of includes from one layer to another, for each pair."""
     counts: collections.Counter = collections.Counter()
     for folder in ("include", "src"):
         for path in sorted((PROJECT / folder).rglob("*")):
@@ -62,7 +62,7 @@ def includes(names: set[str]) -> collections.Counter:
 
 
 def levels(names: list[str], counts: collections.Counter) -> dict[str, int]:
-    """One above the highest layer that a layer includes something of."""
+    """The level of each layer: one above the highest layer that it includes."""
     level = dict.fromkeys(names, 0)
     for _ in names:
         for upper, lower in counts:
@@ -73,7 +73,7 @@ def levels(names: list[str], counts: collections.Counter) -> dict[str, int]:
 
 
 class Drawing:
-    """Rooms in rows, and arrows between them that pass rows in between through the gaps of rooms."""
+    """Layers as rooms in rows, with arrows that pass other rows through the gaps between rooms."""
 
     def __init__(self, names: list[str], counts: collections.Counter):
         self.level = levels(names, counts)
@@ -88,7 +88,7 @@ class Drawing:
         targets = [name for name in names if any(pair[1] == name for pair in self.counts)]
         self.color = {name: COLORS[i % len(COLORS)] for i, name in enumerate(targets)}
 
-    # Places. Row 0 is at the bottom.
+    # Positions. Row 0 is at the bottom.
 
     def room_width(self, row: int) -> float:
         number = len(self.rows[row])
@@ -97,7 +97,7 @@ class Drawing:
         return min(190.0, (WIDTH - 2 * MARGIN - (number + 1) * GAP) / number)
 
     def pitch(self, row: int) -> float:
-        """From the middle of a room to that of the next one."""
+        """The distance between the middles of neighbouring rooms."""
         return (WIDTH - 2 * MARGIN - GAP) / len(self.rows[row])
 
     def middle(self, name: str) -> float:
@@ -109,7 +109,7 @@ class Drawing:
         return self.height - MARGIN - ROOM_HEIGHT - up
 
     def gaps(self, row: int) -> list[float]:
-        """Where arrows may pass a row: at the sides, and beside each room."""
+        """The places where arrows may pass a row: at the sides, and beside each room."""
         aside = (self.room_width(row) + GAP) / 2
         places = [MARGIN + GAP / 2, WIDTH - MARGIN - GAP / 2]
         for name in self.rows[row]:
@@ -121,7 +121,7 @@ class Drawing:
         return apart
 
     def route(self, upper: str, lower: str) -> list[tuple[int, int]]:
-        """The rows that an arrow passes, and the gap that it takes in each: the way with the least to go sideways."""
+        """The rows that an arrow passes and the gap in each, on the way with the least sideways movement."""
         between = range(self.level[upper] - 1, self.level[lower], -1)
         best: tuple[float, list[tuple[int, int]]] = (math.inf, [])
         start, goal = self.anchor_guess(upper, lower), self.middle(lower)
@@ -135,14 +135,14 @@ class Drawing:
         return best[1]
 
     def anchor_guess(self, upper: str, lower: str) -> float:
-        """Where an arrow leaves its room, before others are looked at: as near below its goal as the room is wide."""
+        """The place where an arrow leaves its room, ignoring other arrows: as close to its goal as the room allows."""
         half = self.room_width(self.level[upper]) / 2 - 12
         return min(max(self.middle(lower), self.middle(upper) - half), self.middle(upper) + half)
 
     # The order of rooms in their rows.
 
     def cost(self) -> float:
-        """How far arrows go sideways, and how often they cross."""
+        """The sideways movement of arrows and the number of their crossings."""
         total = 0.0
         steps = []  # (upper row, x there, x below, weight)
         for (upper, lower), number in self.counts.items():
@@ -160,7 +160,7 @@ class Drawing:
         return total
 
     def improve(self) -> None:
-        """Swaps rooms of a row as long as that makes the drawing better."""
+        """Swaps rooms of a row as long as the cost falls."""
         best = self.cost()
         better = True
         while better:
@@ -177,9 +177,9 @@ class Drawing:
     # Arrows.
 
     def arrows(self) -> list[tuple[str, str, list[tuple[float, float]]]]:
-        """Each arrow as points that it passes, straight down at each."""
+        """Each arrow as the points that it passes vertically."""
         routes = {pair: self.route(*pair) for pair in self.counts}
-        aims = {}  # where an arrow heads from its room, and whence it comes to the other one
+        aims = {}  # the first place an arrow heads for, and the last one it comes from
         for (upper, lower), route in routes.items():
             first = self.gaps(route[0][0])[route[0][1]] if route else self.middle(lower)
             last = self.gaps(route[-1][0])[route[-1][1]] if route else self.middle(upper)
@@ -202,8 +202,9 @@ class Drawing:
         return result
 
     def spread(self, name: str, aims: list[float]) -> list[float]:
-        """Places along a side of a room for arrows with these aims, which rise: evenly; along a wide room below their
-        aims, where these are not too close to each other."""
+        """Places along a side of a room for arrows with these rising aims.
+
+        The places are even. Along a wide room they lie below the aims, if these are far enough apart."""
         half = self.room_width(self.level[name]) / 2 - 14
         low, high = self.middle(name) - half, self.middle(name) + half
         step = 2 * half / max(len(aims), 1)
@@ -216,7 +217,7 @@ class Drawing:
         return [min(place, high - (len(places) - 1 - i) * apart) for i, place in enumerate(places)]
 
     def lanes(self, routes: dict, leaves: dict, reaches: dict) -> dict:
-        """How far beside the middle of a gap each arrow passes it: those that come from the left on the left."""
+        """The offset of each arrow from the middle of a gap; arrows from the left pass on the left."""
         passing = collections.defaultdict(list)
         for pair, route in routes.items():
             for row, gap in route:
@@ -239,7 +240,7 @@ def text_element(x: float, y: float, size: int, text: str, more: str = "") -> st
 
 
 def path_of(points: list[tuple[float, float]], head: float) -> str:
-    """A curve that goes straight down at each of its points, and ends a head before the last."""
+    """A curve that is vertical at each of its points and ends one arrowhead before the last."""
     points = [*points[:-1], (points[-1][0], points[-1][1] - head)]
     text = f"M{points[0][0]:.1f} {points[0][1]:.1f}"
     for (x0, y0), (x1, y1) in itertools.pairwise(points):
@@ -265,7 +266,7 @@ def arrow(points: list[tuple[float, float]], number: int, color: str) -> list[st
 
 
 def wrapped(words: list[str], width: float, size: int) -> list[str]:
-    """The words in as many lines as they need."""
+    """The words, wrapped into lines of the given width."""
     lines: list[str] = []
     for word in words:
         longer = f"{lines[-1]}, {word}" if lines else word
@@ -291,7 +292,7 @@ def room(drawing: Drawing, name: str, folders: list[str]) -> list[str]:
 
 
 def level_names(drawing: Drawing) -> list[str]:
-    """The numbers of the rows, beside them."""
+    """The numbers of the rows beside the rows."""
     parts = []
     for row in range(len(drawing.rows)):
         y = drawing.top(row) + ROOM_HEIGHT / 2
@@ -300,7 +301,7 @@ def level_names(drawing: Drawing) -> list[str]:
 
 
 def legend(y: float) -> list[str]:
-    """What the widths mean, in one line."""
+    """The meaning of the widths in one line."""
     parts = [text_element(MARGIN + 20, y + 4, 12, "includes:", 'text-anchor="start" fill="#444"')]
     x = MARGIN + 84
     most = math.inf

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `make fuzz`: builds the libFuzzer targets with clang and runs each for FUZZ_SECONDS (15), from its corpus.
-# What a run finds grows in build/fuzz/corpus; an input that breaks a reader is kept in build/fuzz/findings.
+# build/fuzz/corpus collects new inputs of all runs; build/fuzz/findings keeps each input that breaks a reader.
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +15,7 @@ run_target() {
   mkdir -p "$grown"
   local folders=("$grown")
   [[ -d $seeds ]] && folders+=("$seeds")
-  # A header of a few bytes that makes a reader ask for much memory is a finding, too: hence the limits.
+  # The limits also report short headers that make a reader allocate much memory.
   "build/fuzz/bin/$target" -max_total_time="${FUZZ_SECONDS:-15}" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 \
     -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$target-" "${folders[@]}" >"build/fuzz/$target.log" 2>&1 ||
     {
@@ -27,7 +27,7 @@ run_target() {
 export -f run_target
 
 tools/results.py check "$results" fuzz-build -- tools/build.sh fuzz -DBLUM_WERROR=ON
-# As many at once as there are cores.
+# Runs one target for each core in parallel.
 # shellcheck disable=SC2016  # $0 is the inner shell's
 for folder in tests/fuzz/corpus/*; do basename "$folder"; done |
   xargs -P "${JOBS:-$(nproc)}" -I '{}' tools/results.py check "$results" '{}' -- \

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# `make lint`: format, clang-tidy of what changed (tools/tidy.py), shell scripts, layer rules and their picture, text
-# rules, English, links, messages of new commits, Python (ruff) and the viewer (tsc, ESLint), each counted as one check.
+# `make lint`: checks format, changed sources (clang-tidy, tools/tidy.py), shell scripts, layer rules and their picture,
+# text rules, English, links, messages of new commits, Python (ruff) and the viewer (tsc, ESLint). Each counts as one
+# check.
 #   tools/lint.sh [CHECK ...]   only these: format includes picture text words links commits shell python viewer tidy
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
@@ -11,7 +12,7 @@ shell_scripts() {
   shellcheck "${files[@]}"
 }
 
-# The Python package, its tests and its examples: ruff's rules and form.
+# Checks the rules and the format of ruff for the Python package, tests and examples.
 python_sources() {
   if [[ ! -x build/venv/bin/ruff ]]; then
     echo "lint: ruff is missing: run make lint, or tools/setup.sh --lint" >&2

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Makes the pictures of medial axes in docs/pictures, from shapes that `blum make` and the tests make. Needs VTK, NumPy
-and Pillow, and manifold3d for those of the tests.
+"""Makes the pictures of medial axes in docs/pictures from shapes of `blum make` and of the tests.
+
+Needs VTK, NumPy and Pillow, and manifold3d for shapes of the tests.
 
     tools/medial_gallery.py BLUM_PROGRAM [FOLDER] [--only NAME ...]      FOLDER is docs/pictures by default
 
-Each is drawn by tools/medial_pictures.py, from files that `blum medial` certified, and of 256 colours where the file
-would be large otherwise.
+tools/medial_pictures.py draws each picture from files that `blum medial` certified. Large files are reduced to 256
+colours.
 """
 
 import argparse
@@ -26,12 +27,12 @@ MOST_BYTES = 150_000
 
 @dataclasses.dataclass
 class Picture:
-    name: str  # of medial-NAME.png
-    shape: list[str]  # what `blum make` is given; or "made", family and number of a solid of tests/made
+    name: str  # NAME in medial-NAME.png
+    shape: list[str]  # arguments of `blum make`; or "made", family and number of a solid of tests/made
     eye: str = "1,-1.6,0.9"
     color: str = "radius"
     thetas: tuple[int, ...] = THETAS
-    options: list[str] = dataclasses.field(default_factory=list)  # of `blum medial`
+    options: list[str] = dataclasses.field(default_factory=list)  # options of `blum medial`
     panel: int = PANEL
 
 
@@ -52,14 +53,14 @@ PICTURES = [
 
 
 def voxel_faces(image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Corners and squares of the faces between voxels that are 0 and others; voxel (x, y, z) is image[z, y, x]."""
+    """Corners and squares of the faces between zero and nonzero voxels; voxel (x, y, z) is image[z, y, x]."""
     inside = np.pad(image.transpose(2, 1, 0) != 0, 1)
     step = np.eye(3)
     squares = []
     for axis in range(3):
         u, v = step[(axis + 1) % 3], step[(axis + 2) % 3]
         differs = np.delete(inside, 0, axis) != np.delete(inside, -1, axis)
-        # The first of the two voxels has its centre at (place - 1), because of the layer around the image.
+        # The padding around the image puts the centre of the first voxel at (place - 1).
         first = np.argwhere(differs) - 1 + 0.5 * (step[axis] - u - v)
         squares.append(np.stack([first, first + u, first + u + v, first + v], axis=1))
     vertices, place = np.unique(np.concatenate(squares).reshape(-1, 3), axis=0, return_inverse=True)

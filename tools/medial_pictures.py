@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Draws a solid, translucent, and a medial axis in it, seen from several sides, as one PNG. Needs VTK and NumPy.
+"""Draws a translucent solid with its medial axis from several sides as one PNG. Needs VTK and NumPy.
 
   medial_pictures.py MESH AXIS.npz ... -o OUT.png [--color radius|angle|sheet] [--views N] [--eye X,Y,Z]
                      [--size PIXELS]
 
-MESH is .obj, .off, .stl or .ply; AXIS.npz is what `blum medial` writes. Several axes stand side by side, each with its
-theta, and share their colours. Sheets are surfaces, curves (and narrow sheets) thick lines, vertices of
-nothing else dots.
+MESH is .obj, .off, .stl or .ply; AXIS.npz comes from `blum medial`. Several axes stand side by side, each with its
+theta, and share their colours. Sheets appear as surfaces, curves and narrow sheets as thick lines, isolated vertices as
+dots.
 """
 
 import argparse
@@ -16,7 +16,7 @@ import os
 import pathlib
 import sys
 
-if not os.environ.get("DISPLAY"):  # else VTK looks for a screen first, and complains
+if not os.environ.get("DISPLAY"):  # else VTK searches for a screen and reports an error
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 import numpy as np
@@ -24,11 +24,11 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 TITLES = {"radius": "Radius", "angle": "Separation angle (degrees)", "sheet": "Sheet"}
-OVERSAMPLING = 2  # pixels drawn for each one of the picture along each axis
+OVERSAMPLING = 2  # Drawn pixels per pixel of the picture, along each axis.
 BAR_HEIGHT = 90  # pixels
 CAPTION_HEIGHT = 36  # pixels
-NARROW = 1 / 150  # of the whole axis: sheets of less than this width on average are drawn as lines
-# Where the eye is, as seen from the middle of the solid: the first ones show the most.
+NARROW = 1 / 150  # Sheets with a smaller mean width, relative to the axis, appear as lines.
+# Directions from the middle of the solid to the eye. The first directions show the most.
 EYES = [(1, -1.6, 0.9), (-1.6, -1, 0.7), (0, 0, 1), (0, -1, 0), (1, 0, 0), (-1, 1.6, -0.9)]
 
 
@@ -88,7 +88,7 @@ def poly_data(vertices: np.ndarray, *, triangles=None, edges=None, points=None) 
 
 
 def sheet_table(count: int) -> vtk.vtkLookupTable:
-    """Hues that differ most between sheets next to each other in number; the last colour is that of no sheet."""
+    """Hues that differ most between sheets with neighbouring numbers; the last colour is for cells without a sheet."""
     table = vtk.vtkLookupTable()
     table.SetNumberOfTableValues(count + 1)
     for sheet in range(count):
@@ -99,7 +99,7 @@ def sheet_table(count: int) -> vtk.vtkLookupTable:
 
 
 def smooth_table(low: float, high: float) -> vtk.vtkColorTransferFunction:
-    """Dark blue over green to yellow: rising lightness, so that it also reads in grey and for the colour-blind."""
+    """Dark blue over green to yellow, with rising lightness for grey prints and colour-blind readers."""
     colors = [(0.27, 0.0, 0.33), (0.23, 0.32, 0.55), (0.13, 0.57, 0.55), (0.37, 0.79, 0.38), (0.99, 0.91, 0.15)]
     table = vtk.vtkColorTransferFunction()
     for place, color in zip(np.linspace(low, high if high > low else low + 1, len(colors)), colors):
@@ -141,14 +141,14 @@ class Axis:
         self.caption = path.stem if theta is None else f"theta {theta} degrees"
 
     def curves(self) -> np.ndarray:
-        """The edges that are sides of no triangle."""
+        """The edges that are not sides of a triangle."""
         count = len(self.vertices)
         sides = np.sort(self.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges = np.sort(self.edges, axis=1)
         return self.edges[~np.isin(edges @ [count, 1], sides @ [count, 1])]
 
     def sides_of_narrow_sheets(self, sheet: np.ndarray) -> np.ndarray:
-        """Sheets of a pixel or two would not be seen, most of all along curves."""
+        """The sides of triangles of sheets that would be too narrow to see as surfaces."""
         if len(self.triangles) == 0:
             return self.triangles[:, :2]
         corners = self.vertices[self.triangles]
@@ -179,7 +179,7 @@ class Axis:
 
 
 def table_of(axes: list[Axis], color: str):
-    """The colours of all axes."""
+    """The common colours of all axes."""
     if color == "sheet":
         return sheet_table(max(axis.sheet_count() for axis in axes))
     values = np.concatenate([axis.values for axis in axes])
@@ -228,7 +228,7 @@ def empty_view() -> vtk.vtkRenderer:
 
 
 def frame(camera: vtk.vtkCamera, eye: tuple[float, float, float], points: np.ndarray) -> None:
-    """Looks along parallel rays from the side of the eye, so that all points just fit."""
+    """Sets a parallel projection from the direction of the eye in which all points just fit."""
     back = np.array(eye, dtype=float) / np.linalg.norm(eye)
     up = np.array((0, 1, 0) if eye[0] == eye[1] == 0 else (0, 0, 1), dtype=float)
     right = np.cross(up, back)
@@ -306,14 +306,14 @@ def caption(text: str) -> vtk.vtkRenderer:
 
 
 class Panels:
-    """Parts of a picture, each with what is drawn in it. Pixels count from the upper left corner."""
+    """Parts of a picture with their contents. Pixels count from the upper left corner."""
 
     def __init__(self, width: int, height: int):
         self.size = (width, height)
         self.window = vtk.vtkRenderWindow()
         self.window.SetOffScreenRendering(1)
         self.window.SetAlphaBitPlanes(1)
-        self.window.SetMultiSamples(0)  # depth peeling, which orders what is translucent, does without
+        self.window.SetMultiSamples(0)  # depth peeling, which orders translucent surfaces, excludes it
         self.window.SetSize(width * OVERSAMPLING, height * OVERSAMPLING)
 
     def add(self, view: vtk.vtkRenderer, left: int, top: int, width: int, height: int) -> None:
@@ -328,11 +328,11 @@ def draw(mesh: vtk.vtkPolyData, axes: list[Axis], options: argparse.Namespace) -
     eyes = ([options.eye] if options.eye else []) + EYES
     points = np.concatenate([vtk_to_numpy(mesh.GetPoints().GetData())] + [axis.vertices for axis in axes])
     has_captions = len(axes) > 1
-    # Several axes: one column for each, one row for each side. One axis: its sides, row after row.
+    # Several axes have one column each and one row for each view. The views of one axis fill row after row.
     columns = len(axes) if has_captions else 2 if options.views == 4 else min(options.views, 3)
     rows = options.views if has_captions else -(-options.views // columns)
     top = CAPTION_HEIGHT if has_captions else 0
-    bar_height = 0 if options.color == "sheet" else BAR_HEIGHT  # numbers of sheets mean nothing
+    bar_height = 0 if options.color == "sheet" else BAR_HEIGHT  # numbers of sheets have no meaning
     panels = Panels(columns * size, top + rows * size + bar_height)
     actors = []
     for axis in axes:

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Makes the medial axes of all shapes that `blum make` knows, and writes their certificates as a table.
+"""Computes the medial axes of all shapes of `blum make`, and writes their certificates as a table.
 
     tools/medial_table.py BLUM_PROGRAM [-o OUT.md] [--data FOLDER] [--resolution N] [--only SHAPE ...]
 
-OUT.md is docs/generated/medial-axes.md by default. With --data, the meshes below a folder follow those of the
-catalogue. Takes some twenty minutes on two cores; a line on standard error for each shape.
+OUT.md is docs/generated/medial-axes.md by default. With --data, the meshes below a folder follow the catalogue's
+shapes. Takes about twenty minutes on two cores, and prints a line on standard error for each shape.
 """
 
 import argparse
@@ -19,8 +19,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 THETAS = [0, 20, 60, 90, 120, 170]
-SIZES_AT = 60  # degrees: at which vertices, triangles and sheets are counted
-COVER_AT = 20  # degrees: at which solid_to_balls is told
+SIZES_AT = 60  # degrees, theta for the numbers of vertices, triangles and sheets
+COVER_AT = 20  # degrees, theta for solid_to_balls
 CERTIFIED, FAILED, UNCERTIFIED = 0, 1, 3  # exit statuses of `blum medial`
 HEADER = ["shape", "solid", "axis", "certified", "vertices", "triangles", "sheets", "seconds", "radius error",
           "uncovered"]
@@ -46,7 +46,7 @@ def meshes_below(folder):
 
 
 def measure(blum, path, resolution, folder):
-    """The summary of `blum medial`, or in one sentence why there is none."""
+    """The summary of `blum medial`, or one sentence with the reason for its absence."""
     summary = folder / "summary.json"
     summary.unlink(missing_ok=True)
     command = [blum, "medial", path, "-o", folder / "axis.npz", "--theta", ",".join(map(str, THETAS)),
@@ -69,7 +69,7 @@ def rule_of(certificate):
 
 
 def axis_text(solid):
-    """The Betti numbers of the axis: once where they are the same at all angles."""
+    """The Betti numbers of the axis; once if they are the same at all angles."""
     told = {axis["theta"]: betti(axis["certificate"]["axis_betti"]) for axis in solid["axes"]}
     if len(set(told.values())) == 1:
         return next(iter(told.values()))
@@ -81,7 +81,7 @@ def seconds(value):
 
 
 def diagonal_of(solid):
-    """Of the smallest voxel."""
+    """The diagonal of the smallest voxel."""
     body = min(solid["bodies"], key=lambda body: body["spacing"])
     spacing = solid["grid"]["spacing"]
     scale = body["spacing"] / min(spacing)

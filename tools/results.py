@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
-"""Counts results of tests and checks, over several programs, and closes with one line.
+"""Counts results of tests and checks over several programs, and closes with one line.
 
-  results.py check DIR NAME -- COMMAND...   run a command; it counts as one check, passed when it exits with 0
-  results.py junit DIR NAME FILE [INNER]    count the tests of a JUnit file (ctest, vitest); no tests is a failure. A test
-                                            pytest.X of ctest stands for those of the JUnit file INNER/X.xml; one of
-                                            these that was skipped is a failure, too, but for want of the data folder or
-                                            of a CUDA device
+  results.py check DIR NAME -- COMMAND...   run a command as one check, which passes if the command exits with 0
+  results.py junit DIR NAME FILE [INNER]    count the tests of a JUnit file (ctest, vitest); no tests is a failure. The
+                                            tests of INNER/X.xml replace a test pytest.X of ctest. A skipped one counts
+                                            as failed, unless it lacks the data folder or a CUDA device
   results.py fail DIR NAME REASON           count one failure
-  results.py summary DIR                    list what failed and was skipped; last line `N passed, N failed[, N skipped]`
+  results.py summary DIR                    list failures and skips; last line `N passed, N failed[, N skipped]`
 
-Every command but `summary` adds a file to DIR, and exits with 0 also on failure, so that the rest still runs; `summary`
-exits with 1 where anything failed or nothing passed. With the data folder present (BLUM_DATA_DIR, else ../shared/data
-beside the project), a test that was skipped for want of data counts as failed.
+Every command except `summary` adds a file to DIR, and exits with 0 also on failure, so that later steps still run.
+`summary` exits with 1 if a test failed or nothing passed. If the data folder exists (BLUM_DATA_DIR, else ../shared/data
+beside the project), a test that was skipped for lack of data counts as failed.
 """
 
 import json
@@ -35,7 +34,7 @@ def data_present() -> bool:
 def record(folder: str, name: str, passed: int, failed: list[str], skipped: list[str], seconds: float = 0) -> None:
     path = pathlib.Path(folder)
     path.mkdir(parents=True, exist_ok=True)
-    # The order of the names is the order in which the results came in.
+    # The numbers in file names keep the order of the results.
     number = len(list(path.glob("*.json")))
     entry = {"name": name, "passed": passed, "failed": failed, "skipped": skipped, "seconds": round(seconds, 1)}
     (path / f"{number:03}-{name}.json").write_text(json.dumps(entry, indent=1), encoding="utf-8")
@@ -54,7 +53,7 @@ def check(folder: str, name: str, command: list[str]) -> None:
 
 
 def outcome(case: ElementTree.Element, label: str, complete: bool) -> tuple[str, str]:
-    """passed, failed or skipped, and the label to list it under."""
+    """The outcome of a test (passed, failed or skipped) and its label in the list."""
     if case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail":
         return "failed", label
     skip = case.find("skipped")
@@ -71,8 +70,9 @@ def outcome(case: ElementTree.Element, label: str, complete: bool) -> tuple[str,
 
 
 def inner_outcomes(file: pathlib.Path, outer: tuple[str, str]) -> list[tuple[str, str]]:
-    """What the tests of one pytest file came to; its test of ctest alone where it left no results, or none failed there
-    though the whole did."""
+    """The outcomes of the tests of one pytest file.
+
+    A failure is added if the file has no results, or if its test of ctest failed although none of its tests did."""
     try:
         cases = list(ElementTree.parse(file).getroot().iter("testcase"))
     except (OSError, ElementTree.ParseError):

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Runs the tests under sanitizers.
 #   tools/sanitize.sh asan|tsan
-# asan: AddressSanitizer and UndefinedBehaviorSanitizer, every test program; with clang, whose warnings are errors here.
-# tsan: ThreadSanitizer over std::thread, the tests of the layers that run threads (of proximity, surface maps and
-#   Voronoi complexes those of threads), with g++.
-# Left out are tests labelled slow or many (tests/CMakeLists.txt), which repeat what others run once.
+# asan: AddressSanitizer and UndefinedBehaviorSanitizer for every test program, with clang, whose warnings are errors.
+# tsan: ThreadSanitizer with std::thread and g++, for the tests of the layers that run threads. The tests of proximity,
+#   surface_map and voronoi run only if their name contains Threads.
+# Tests labelled slow or many (tests/CMakeLists.txt) are left out, because they repeat code that other tests run once.
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,7 +18,7 @@ case $preset in
   asan)
     targets=()
     selection=(--label-exclude 'slow|many')
-    # A failed allocation must reach Blum's own handling as it does without the sanitizer.
+    # A failed allocation must reach Blum's own handling, as without the sanitizer.
     export ASAN_OPTIONS=allocator_may_return_null=1:detect_stack_use_after_return=1
     export UBSAN_OPTIONS=print_stacktrace=1
     ;;

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs what Blum needs on Debian 12 (and its kin), or says what is missing.
+# Installs the packages that Blum needs on Debian 12 and its relatives, or lists the missing ones.
 #   tools/setup.sh [--python] [--tests] [--bench] [--docs] [--lint] [--fuzz] [--viewer] [--ci] [--all] [--check]
-# Without options: what the library and the command-line tool need. --check only looks, and installs nothing.
-# As root, or where sudo works, apt installs what is missing; anyone else gets the command to run, and exit status 1.
-# Running it again does nothing. BLUM_SETUP=skip in the environment: trust that everything is there.
+# Without options, the packages are those of the library and the command-line tool. --check installs nothing.
+# As root, or if sudo works, apt installs missing packages. Otherwise the script prints the command to run, and exits
+# with 1. A second run does nothing. BLUM_SETUP=skip in the environment assumes that everything is installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,7 +17,7 @@ lint=(clang-format-19 clang-19 shellcheck python3 python3-venv ca-certificates)
 fuzz=(clang-19 libclang-rt-19-dev)
 ci=(ccache)
 
-# What the page of `blum view` is built and tested with, where there is none of it yet, or too old a one.
+# Node and Chromium build and test the page of `blum view`. Installs them if they are missing or too old.
 viewer=(ca-certificates)
 if ! command -v npm >/dev/null || ! node -e 'process.exit(process.versions.node.split(".")[0] < 18 ? 1 : 0)' 2>/dev/null; then
   viewer+=(nodejs npm)
@@ -79,7 +79,7 @@ if ! command -v dpkg-query >/dev/null; then
   exit 1
 fi
 
-# Runs a command as root; fails without a question where no one can answer it.
+# Runs a command as root; fails without a prompt if no one can answer it.
 as_root() {
   if [[ $EUID -eq 0 ]]; then
     env DEBIAN_FRONTEND=noninteractive "$@"
@@ -94,7 +94,7 @@ can_install() {
   [[ $EUID -eq 0 ]] || { command -v sudo >/dev/null && { [[ -t 0 ]] || sudo -n true 2>/dev/null; }; }
 }
 
-# Whether apt's lists, as they are, know every package.
+# Succeeds if apt's current lists contain every package.
 apt_knows() {
   local package
   for package in "$@"; do

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# `make simulate`: runs a simulation of examples/simulations, and makes a page of its frames.
+# `make simulate`: runs a simulation of examples/simulations and makes a page of its frames.
 #   tools/simulate.sh cloth|bodies|breaking|large OUTPUT_FOLDER [--frames N]
-# Ctrl-C ends it after the frame at hand, with a page of what there is.
-# It ends with an error where the library's own continuous check finds a collision that was missed.
+# Ctrl-C ends it after the current frame, with a page of the frames so far.
+# It fails if the library's continuous check finds a missed collision.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -3,8 +3,8 @@
 
   tools/stage_site.py FOLDER XML
 
-The pages are the project's Markdown files, a page of file formats, one page for each public header (from Doxygen's XML
-in the folder XML) and one for each part of the Python package (from its docstrings).
+The pages are the project's Markdown files and a page of file formats. Each public header has a page from Doxygen's XML
+in the folder XML. Each module of the Python package has a page from its docstrings.
 """
 
 import ast
@@ -21,7 +21,7 @@ import cpp_pages
 
 PROJECT = pathlib.Path(__file__).resolve().parent.parent
 
-#: Sections of the navigation: title, and pages in their order. Pages of docs/ that are not here follow by name.
+#: Sections of the navigation: titles, and pages in order. Other pages of docs/ follow by name.
 SECTIONS = {
     "Guide": [
         "docs/guide/getting-started.md",
@@ -52,7 +52,7 @@ FOLDER_LINK = re.compile(r"(?<!!)\[((?:[^\]\[]|\[[^\]]*\])*)\]\(([^)\s:#]+)\)")
 
 
 def plain_folder(folder: pathlib.Path, link: re.Match[str]) -> str:
-    """A link to a folder of the project as plain text: the site has no page for it."""
+    """A link to a folder of the project as plain text, because the site has no page for folders."""
     return link[1] if (folder / link[2]).is_dir() else link[0]
 
 
@@ -68,7 +68,7 @@ def write(path: pathlib.Path, text: str) -> None:
 
 
 def copy_pages(site: pathlib.Path) -> None:
-    """Copies the Markdown pages, and all files of the project that they link to. README.md becomes index.md."""
+    """Copies the Markdown pages and the project's files that they link to. README.md becomes index.md."""
     for name in tracked("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/*.md"):
         text = (PROJECT / name).read_text(encoding="utf-8")
         folder = (PROJECT / name).parent
@@ -84,7 +84,7 @@ def copy_pages(site: pathlib.Path) -> None:
 
 
 def format_page() -> str:
-    """The page of file formats, made of the library's table."""
+    """The page of file formats, from the library's table."""
     out = ["# File formats\n"]
     for content in dict.fromkeys(row.content for row in blum.file_formats()):
         out.append(

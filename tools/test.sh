@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# `make test`: sets up what is missing, builds, and runs every test: those of ctest, with pytest among them, and a consumer
-# of the installed library. Closes with `N passed, N failed[, N skipped]`. With RESULTS set, adds to that folder and leaves the closing
-# line to the caller (.ci/run).
+# `make test`: installs missing packages, builds, and runs every test: ctest's, including pytest, and a consumer of the
+# installed library. Closes with `N passed, N failed[, N skipped]`. With RESULTS set, adds the counts to that folder and
+# leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,19 +1,21 @@
 #!/usr/bin/env python3
-"""clang-tidy over the sources that a build folder compiles, of the library, the tools, the examples and the bindings.
+"""Runs clang-tidy over the compiled sources of the library, the tools, the examples and the bindings.
 
-  tools/tidy.py          what changed since the commit in tools/tidy-base: changed sources, and sources that include
-                         a changed header (its nearest ones: those that name it, or name a header that does)
-  tools/tidy.py --all    all of it (`make tidy`); where all is well and committed, the commit becomes tools/tidy-base
-  tools/tidy.py --deep   all of it, and the static analyzer searches as deep as it does by itself: else it looks at
-                         20,000 states of a function, which takes a third of the time
+  tools/tidy.py          checks sources that changed since the commit in tools/tidy-base, and the nearest sources that
+                         include a changed header, directly or through other headers
+  tools/tidy.py --all    checks all sources (`make tidy`); if all pass and everything is committed, the commit becomes
+                         tools/tidy-base
+  tools/tidy.py --deep   checks all sources with the static analyzer's own limit; otherwise it visits 20,000 states of a
+                         function, which takes a third of the time
 
-The commit in tools/tidy-base passed all of it. Where it is unknown (a shallow clone), or .clang-tidy changed, all is
-checked. Build folder: build/release, configured when it is not there. JOBS limits how many run at once.
+All sources of the commit in tools/tidy-base passed. If this commit is unknown (a shallow clone) or .clang-tidy changed,
+all sources are checked. The build folder is build/release, and is configured if it is missing. JOBS limits the number
+of parallel runs.
 
-Every source is read by itself, without precompiled headers: one that relies on these for an include fails.
+Every source is read without precompiled headers, so a source that relies on their includes fails.
 
-What passed is remembered beside the compiler cache: the same preprocessed source, checks and clang-tidy need not pass
-twice, also in another clone.
+Passed sources are recorded beside the compiler cache. The same preprocessed source, checks and clang-tidy are not run
+again, also not in another clone.
 """
 
 import concurrent.futures
@@ -38,7 +40,7 @@ QUICK = [f"--extra-arg={word}" for word in ("-Xclang", "-analyzer-config", "-Xcl
 
 
 def without_precompiled(words: list[str]) -> list[str]:
-    """A compiler's arguments without CMake's precompiled header, which g++ makes and clang cannot read."""
+    """A compiler's arguments without CMake's precompiled header; clang cannot read that of g++."""
     kept = []
     skipped = False
     for word, following in zip(words, [*words[1:], ""], strict=True):
@@ -52,7 +54,7 @@ def without_precompiled(words: list[str]) -> list[str]:
 def compile_commands() -> dict[str, list[str]]:
     """The compiler's arguments for each source, without the compiler and its output.
 
-    Sources that are compiled several at a time (BLUM_UNITY) have those of the file that includes them.
+    Sources of a unity build (BLUM_UNITY) have the arguments of the file that includes them.
     """
     if not (BUILD / "compile_commands.json").is_file():
         subprocess.run(["cmake", "--preset", "release"], cwd=PROJECT, check=True, stdout=subprocess.DEVNULL)
@@ -85,7 +87,7 @@ def git(*arguments: str) -> list[str]:
 
 
 def changed_files() -> set[str] | None:
-    """What differs from the recorded commit; None where that cannot be said."""
+    """The files that differ from the recorded commit; None if that is unknown."""
     commit = BASE.read_text(encoding="utf-8").strip() if BASE.is_file() else ""
     known = (
         commit
@@ -107,7 +109,7 @@ def changed_files() -> set[str] | None:
 
 
 def includers() -> dict[str, set[str]]:
-    """For each of the project's files, those that include it."""
+    """For each of the project's files, the files that include it."""
     found: dict[str, set[str]] = {}
     for folder in ("include", *FOLDERS):
         for path in (PROJECT / folder).rglob("*.[ch]pp"):
@@ -140,7 +142,7 @@ def cache_folder() -> pathlib.Path:
 
 
 def key_of(file: str, arguments: list[str], common: str) -> str | None:
-    """Names what clang-tidy would see of a source; None where it cannot be preprocessed."""
+    """A hash of clang-tidy's input for a source; None if preprocessing fails."""
     command = ["clang++-19", "-E", "-C", "-Wno-everything", *arguments, str(PROJECT / file)]
     done = subprocess.run(command, cwd=BUILD, check=False, capture_output=True)
     if done.returncode != 0:
@@ -191,7 +193,7 @@ def main(arguments: list[str]) -> int:
 
 
 def record() -> None:
-    """Everything passed: the commit is where the next runs begin."""
+    """Records the commit as the base of the next runs, after everything passed."""
     if "".join(git("status", "--porcelain")):
         print("clang-tidy: everything passed, with changes that are not committed: tools/tidy-base stays as it is")
         return

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# The page of `blum view`: apps/viewer. Only who changes it needs this, and Node 18 or newer (tools/setup.sh --viewer):
-# the built page, apps/viewer/dist/viewer.html, is part of the sources.
-#   tools/viewer.sh install   the pinned packages, into apps/viewer/node_modules
-#   tools/viewer.sh build     dist/viewer.html
-#   tools/viewer.sh check     builds it anew and compares it with dist/viewer.html, byte for byte
-#   tools/viewer.sh lint      tsc --strict, eslint
-#   tools/viewer.sh test      vitest; JUnit results go to build/viewer/test.xml
-#   tools/viewer.sh e2e       in Chromium, with build/release/bin/blum (or $BLUM_CLI); results in build/viewer/e2e.xml
-#   tools/viewer.sh pictures  e2e, and the pictures of docs/guide/viewer.md
+# Builds and tests the page of `blum view`, apps/viewer. Only changes of the page need this script and Node 18 or newer
+# (tools/setup.sh --viewer), because the built page, apps/viewer/dist/viewer.html, is part of the sources.
+#   tools/viewer.sh install   installs the pinned packages into apps/viewer/node_modules
+#   tools/viewer.sh build     builds dist/viewer.html
+#   tools/viewer.sh check     builds the page and compares it with dist/viewer.html, byte for byte
+#   tools/viewer.sh lint      runs tsc --strict and eslint
+#   tools/viewer.sh test      runs vitest; JUnit results go to build/viewer/test.xml
+#   tools/viewer.sh e2e       tests in Chromium, with build/release/bin/blum or $BLUM_CLI; results: build/viewer/e2e.xml
+#   tools/viewer.sh pictures  runs e2e and makes the pictures of docs/guide/viewer.md
 #   tools/viewer.sh all       install, check, test, e2e, each counted (RESULTS as in tools/lint.sh, which lints)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,9 +23,9 @@ in_viewer() {
 
 install() {
   mkdir -p "$out"
-  # Installed already, as the lock file says?
+  # Skips packages that match the lock file.
   sha256sum --status -c "$out/installed.sha256" 2>/dev/null && [[ -d apps/viewer/node_modules ]] && return
-  # As the lock file says. Not `npm ci`, which also wants the native parts of all other systems to be in it.
+  # Installs the versions of the lock file. `npm ci` would also require the native parts of all other systems in it.
   in_viewer npm install --no-save --no-audit --no-fund --ignore-scripts
   sha256sum apps/viewer/package-lock.json >"$out/installed.sha256"
 }

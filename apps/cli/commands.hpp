@@ -10,13 +10,15 @@
 
 namespace blum::cli {
 
-/// The tool and its arguments, for functions that add a subcommand.
+/// The command-line tool and its arguments. It is passed to the functions that add subcommands.
 struct CommandLine {
   const Command& app;
-  std::vector<std::string>& arguments;  ///< first to last; a subcommand may remove some of its own
+  /// In the order of the command line; a function may remove arguments of its own subcommand.
+  std::vector<std::string>& arguments;
 };
 
-// Each function adds its subcommand to the tool. The subcommand runs once the command line is read.
+// Each of the following functions adds its subcommand to the tool. The subcommand runs after the whole command line has
+// been read.
 void add_field_command(const CommandLine& line);
 void add_slice_command(const CommandLine& line);
 void add_make_command(const CommandLine& line);
@@ -37,7 +39,8 @@ void add_clean_command(const CommandLine& line);
 void add_voronoi_command(const CommandLine& line);
 void add_view_command(const CommandLine& line);
 
-/// All subcommands, in the order of the help. A new one needs its own file, a line above, a line here, and a test.
+/// All subcommands, in the order of the help. A new subcommand needs a source file, a declaration above, an entry here,
+/// and a test.
 inline constexpr std::array commands{
     add_field_command,     add_slice_command,  add_make_command,        add_info_command,    add_formats_command,
     add_medial_command,    add_verify_command, add_reconstruct_command, add_surface_command, add_centreline_command,

@@ -73,8 +73,8 @@ int run(std::vector<std::string> arguments) {
 }
 
 /// Long computations allocate and free arrays of megabytes in each step. By default, glibc returns freed memory to the
-/// system at once. The system then clears its pages for the next step, which takes a tenth of the time. Keeping freed
-/// memory may raise the peak by a quarter.
+/// system at once. The system must then clear its pages for the next step, which takes a tenth of the total time. So
+/// freed memory is kept. The peak memory may be a quarter larger.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int mebibyte = 1 << 20;

@@ -1,12 +1,14 @@
-"""Collision candidates for ipctk, the IPC Toolkit, from Blum: the same barrier as from its own broad phase.
+"""Passes Blum's collision candidates to ipctk, the IPC Toolkit; the barrier equals that of ipctk's broad phase.
 
     python candidates_for_ipctk.py [START END] [-o FORCES.csv] [--dhat DISTANCE]
 
-START and END are frames of one mesh; without them, a sheet that is rolled up, and pushed into itself by a wave. Contact
-potentials take what is closer than DISTANCE at the start, the length of the step what collides on the way to the end.
-Blum tells just these pairs; ipctk's broad phase those whose boxes touch, of which it then sorts out most.
+START and END are frames of one mesh. Without them, the mesh is a rolled sheet that a wave pushes into itself.
 
-ipctk is not needed by Blum: pip install ipctk. Without it, this program says so and does nothing.
+Contact potentials need pairs closer than DISTANCE at the start. The step length needs pairs that collide on the way to
+the end. Blum returns exactly these pairs. The broad phase of ipctk returns pairs with touching boxes, and ipctk then
+discards most of them.
+
+Blum does not need ipctk (pip install ipctk). Without ipctk, this program prints that and does nothing.
 """
 
 import argparse
@@ -23,16 +25,16 @@ try:
 except ImportError:
     ipctk = None
 
-TURNS, GAP = 4, 0.02  # of the rolled sheet: between its layers
+TURNS, GAP = 4, 0.02  # of the rolled sheet; GAP lies between its layers
 
 
 def rolled_sheet(along=120, across=60):
-    """A sheet rolled up around z, which does not touch itself; and where its vertices are pushed to."""
+    """A sheet rolled up around z that does not touch itself, and its vertices after a push."""
     turn, height = np.meshgrid(np.linspace(0, TURNS, along), np.linspace(0, 2, across), indexing="ij")
     outwards = np.stack([np.cos(2 * np.pi * turn), np.sin(2 * np.pi * turn), 0 * turn], axis=-1)
     start = (0.15 + GAP * turn)[..., None] * outwards
     start[..., 2] = height
-    push = GAP * np.cos(np.pi * turn) * np.sin(2 * np.pi * height)  # of layers beside each other the other way round
+    push = GAP * np.cos(np.pi * turn) * np.sin(2 * np.pi * height)  # opposite for neighbouring layers
     number = np.arange(along * across).reshape(along, across)
     a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
     triangles = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
@@ -41,14 +43,14 @@ def rolled_sheet(along=120, across=60):
 
 
 def timed(work):
-    """What it returns, and the seconds that it took."""
+    """The result of a call, and its seconds."""
     begin = time.perf_counter()
     value = work()
     return value, time.perf_counter() - begin
 
 
 def handed_over(vertex_face, edge_edge):
-    """ipctk's candidates: from pairs of a vertex and a face, and of two edges, by their numbers in the mesh."""
+    """ipctk's candidates for pairs of vertex and face and pairs of edges, by numbers in the mesh."""
     candidates = ipctk.Candidates()
     vertices, faces = vertex_face.T.tolist()
     candidates.fv_candidates = list(map(ipctk.FaceVertexCandidate, faces, vertices))
@@ -57,20 +59,20 @@ def handed_over(vertex_face, edge_edge):
 
 
 def edge_numbers(edges, ends):
-    """Which rows of `edges`, as close_features() sorts them, have these ends."""
+    """The rows of `edges`, as sorted by close_features(), that have these ends."""
     count = int(edges.max()) + 1
     first, second = np.sort(ends.astype(np.int64), axis=-1).T
     return np.searchsorted(edges[:, 0].astype(np.int64) * count + edges[:, 1], first * count + second)
 
 
 def pairs_of(candidates):
-    """The numbers of (face, vertex) and of (edge, edge), as sets."""
+    """The sets of (face, vertex) and (edge, edge) numbers."""
     faces = {(one.face_id, one.vertex_id) for one in candidates.fv_candidates}
     return faces, {tuple(sorted((one.edge0_id, one.edge1_id))) for one in candidates.ee_candidates}
 
 
 def collisions_of(candidates, shape, positions, dhat):
-    """What the barrier is a sum over."""
+    """The collisions over which the barrier sums."""
     collisions = ipctk.NormalCollisions()
     collisions.build(candidates, shape, positions, dhat)
     return collisions
@@ -88,7 +90,7 @@ def size(candidates):
 
 
 def compare_barriers(close, seconds, shape, positions, dhat):
-    """The same barrier from both; returns the forces on the vertices."""
+    """Compares the barriers of both candidates; returns the forces on the vertices."""
     ours, handing = timed(lambda: handed_over(close.vertex_face, close.edge_edge))
     own, building = timed(lambda: built(shape, positions, dhat / 2))
     print(f"within {dhat:.4g}:")
@@ -99,7 +101,7 @@ def compare_barriers(close, seconds, shape, positions, dhat):
     for name, candidates in (("Blum", ours), ("ipctk", own)):
         found, seconds = timed(lambda candidates=candidates: collisions_of(candidates, shape, positions, dhat))
         energy, gradient = potential(found, shape, positions), potential.gradient(found, shape, positions)
-        distance = np.sqrt(found.compute_minimum_distance(shape, positions))  # ipctk tells its square
+        distance = np.sqrt(found.compute_minimum_distance(shape, positions))  # ipctk returns the squared distance
         print(f"  barrier of {name}'s: {energy:.12g}, smallest distance {distance:.12g}; sorted out in {seconds:.3f} s")
         answers.append((energy, distance, gradient))
     (energy, distance, gradient), (its_energy, its_distance, its_gradient) = answers
@@ -111,7 +113,7 @@ def compare_barriers(close, seconds, shape, positions, dhat):
 
 
 def compare_steps(mesh, shape, edges, positions, end):
-    """How far vertices may go towards the end, by ipctk's test of the candidates of both."""
+    """Compares the steps that ipctk allows towards the end with the candidates of both."""
     found, seconds = timed(lambda: blum.continuous_collisions(mesh, end))
     vertex_face = np.column_stack([found.vertex_face[:, 0], found.face])
     edge_edge = np.column_stack([edge_numbers(edges, found.edge_edge[:, k : k + 2]) for k in (0, 2)])
@@ -128,9 +130,9 @@ def compare_steps(mesh, shape, edges, positions, end):
         )
         print(f"  step by {name}'s: {step:.6f}, {seconds:.3f} s")
         steps.append(step)
-    # ipctk stops before things touch, also where they would only pass close by: its candidates hold such pairs, too.
+    # ipctk stops before contact, and also for pairs that only pass close by. Its own candidates include such pairs.
     first = 1 if found.earliest is None else found.earliest
-    assert steps[1] - 1e-5 <= steps[0] <= first + 1e-5  # times are told to 1e-6
+    assert steps[1] - 1e-5 <= steps[0] <= first + 1e-5  # times are early by at most 1e-6
     shorter = mesh.vertices + steps[0] * (end - mesh.vertices)
     assert steps[0] == 1 or blum.continuous_collisions(mesh, shorter).earliest is None
 
@@ -161,7 +163,7 @@ def main() -> None:
         mesh, end = rolled_sheet()
     print(mesh)
     positions, end = np.asfortranarray(mesh.vertices), np.asfortranarray(end)
-    # A little more than dhat, where the barrier is 0: rounding cannot leave out what is there.
+    # The barrier is 0 at dhat. A slightly larger distance prevents rounding from dropping pairs.
     close, seconds = timed(lambda: blum.close_features(mesh, arguments.dhat * (1 + 1e-9)))
     shape = ipctk.CollisionMesh(positions, close.edges, mesh.triangles)
     forces = compare_barriers(close, seconds, shape, positions, arguments.dhat)

@@ -1,9 +1,9 @@
-"""How far a robot arm stays from an obstacle, and from itself, on its way: exact at each step.
+"""Computes the exact clearance of a moving robot arm from an obstacle, and from itself, at each step.
 
     python clearance_of_arm.py [OBSTACLE] [-o CLEARANCE.csv] [--steps N]
 
-Without a mesh, a bracket that Blum generates. The arm is four links that turn; only their transforms change, so that a
-step costs no more than the query.
+Without a mesh, the obstacle is a generated bracket. The arm has four rotating links. Only their transforms change, so a
+step costs only the query.
 """
 
 import argparse
@@ -15,8 +15,8 @@ from itertools import pairwise
 import blum
 import numpy as np
 
-LENGTHS = [1.2, 1.0, 0.8, 0.4]  # of the links
-START = np.radians([80, 60, 50, 30])  # the angles of the joints: the first around z, the others around y
+LENGTHS = [1.2, 1.0, 0.8, 0.4]  # lengths of the links
+START = np.radians([80, 60, 50, 30])  # angles of the joints: the first around z, the others around y
 END = np.radians([240, 75, 45, 60])
 BASE = np.array([4.0, 1.5, 0.0])
 ARM, OBSTACLE = 1, 2  # layers
@@ -46,7 +46,7 @@ def move(*offset):
 
 
 def places(angles):
-    """Where each link is."""
+    """The transform of each link."""
     place = move(*BASE)
     for k, angle in enumerate(angles):
         place = place @ turn(2 if k == 0 else 1, angle)
@@ -71,7 +71,7 @@ def main() -> None:
     scene.add(obstacle, layers=OBSTACLE)
     links = [scene.add(link(length), layers=ARM) for length in LENGTHS]
     for first, second in pairwise(links):
-        scene.exclude(first, second)  # neighbours meet at their joint
+        scene.exclude(first, second)  # neighbouring links meet at their joint
 
     rows = []
     for part in np.linspace(0, 1, arguments.steps):
@@ -79,7 +79,7 @@ def main() -> None:
         for number, place in zip(links, places(angles), strict=True):
             scene.update(number, transform=place)
         found = scene.separation()
-        near = found.object[:, 0] == 0  # the obstacle is the first object, the links come behind it
+        near = found.object[:, 0] == 0  # the obstacle is the first object, before the links
         outside, own = found.distance[near].min(), found.distance[~near].min()
         closest = found[int(np.flatnonzero(near)[found.distance[near].argmin()])]
         rows.append([part, outside, own, closest.object[1], *closest.point[1]])

@@ -1,8 +1,8 @@
-"""How far a point robot stays from the obstacles of a scene on its way: exact closest points, not a grid's.
+"""Computes the exact clearance of a moving point robot from the obstacles of a scene, without a grid.
 
     python clearance_of_scene.py [MESH] [-o CLEARANCE.csv] [--steps N]
 
-Without a mesh, a chain of linked rings that Blum generates. The way is a helix through the scene.
+Without a mesh, the scene is a generated chain of linked rings. The way is a helix through the scene.
 """
 
 import argparse
@@ -15,7 +15,7 @@ import numpy as np
 
 
 def helix(bounds, steps):
-    """(steps, 3): a way of three turns around the middle of a box, from end to end of its longest axis."""
+    """(steps, 3): three turns around the middle of a box, from end to end of its longest axis."""
     lower, upper = np.array(bounds)
     size = upper - lower
     axis = int(np.argmax(size))

@@ -1,8 +1,8 @@
-"""The signed distance field of a mesh, as three slices with contour lines.
+"""Draws the signed distance field of a mesh as three slices with contour lines.
 
     python field_slices.py [MESH] [-o PICTURE]
 
-Without a mesh, a gear that Blum generates. Needs Matplotlib.
+Without a mesh, generates a gear. Needs Matplotlib.
 """
 
 import argparse
@@ -24,7 +24,7 @@ def main() -> None:
 
     mesh = blum.read_mesh(arguments.mesh) if arguments.mesh else blum.generate("gear")
     field = blum.distance_field(mesh, resolution=arguments.resolution)
-    print(f"{mesh}: {field}, deepest {-field.distance.min():.4g}")
+    print(f"{mesh}: {field}, largest depth {-field.distance.min():.4g}")
 
     lower, upper = np.array(field.grid.bounds)
     nz, ny, nx = field.distance.shape

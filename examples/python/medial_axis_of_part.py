@@ -1,8 +1,8 @@
-"""The medial axis of a CAD part, simplified, certified and written; where the part is thinnest and thickest.
+"""Computes, certifies and writes the medial axis of a CAD part, and prints the range of its thickness.
 
     python medial_axis_of_part.py [MESH] [-o AXIS] [--theta DEGREES]
 
-Without a mesh, a bracket that Blum generates.
+Without a mesh, generates a bracket.
 """
 
 import argparse
@@ -26,7 +26,7 @@ def main() -> None:
 
     piece = axis.simplify(arguments.theta)
     print(piece.certificate)
-    # On the inside of sheets: at rims the radius says where the axis ends, not how thick the part is.
+    # Rims are left out, because their radius shows the end of the axis and not the thickness of the part.
     inner = np.isin(piece.role, [blum.ROLES.index("sheet"), blum.ROLES.index("curve")])
     thickness = 2 * piece.radius[inner]
     print(f"thickness {thickness.min():.4g} to {thickness.max():.4g}, median {np.median(thickness):.4g}")

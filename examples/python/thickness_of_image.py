@@ -1,8 +1,8 @@
-"""The local thickness of an image: at each voxel, the diameter of the largest medial ball that holds it.
+"""Computes the local thickness of an image: at each voxel, the diameter of the largest medial ball around it.
 
     python thickness_of_image.py [IMAGE] [-o THICKNESS.nrrd] [--threshold T]
 
-Without an image, a network of tubes that Blum generates. Spacing is taken from the file.
+Without an image, generates a network of tubes. The file provides the spacing.
 """
 
 import argparse
@@ -12,13 +12,13 @@ import numpy as np
 
 
 def local_thickness(image: blum.Image, threshold: float | None) -> np.ndarray:
-    """Twice the radius of the largest ball around, per voxel, in the units of the spacing; 0 outside of the solid."""
+    """The diameter of the largest ball around each voxel, in the units of the spacing; 0 outside the solid."""
     piece = blum.medial_axis(image, threshold=threshold).simplify(0)
     solid = blum.selected_voxels(image, threshold=threshold)
     positions = image.grid.positions()
     thickness = np.zeros(solid.shape, dtype=np.float32)
     spacing = np.array(image.spacing)
-    # The balls from small to large, each written over what it holds.
+    # Writes the balls from small to large, so that larger balls replace smaller ones.
     for v in np.argsort(piece.radius):
         centre, radius = piece.vertices[v], piece.radius[v]
         at = image.grid.direction.T @ (centre - image.grid.origin) / spacing

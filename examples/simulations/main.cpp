@@ -1,4 +1,4 @@
-// Simulations that end with no missed collision, by the library's own continuous check: simulations --help.
+// Example: simulations without a missed collision, by the library's continuous check. See simulations --help.
 #include <charconv>
 #include <cmath>
 #include <csignal>
@@ -29,18 +29,18 @@ constexpr int most_frames = 1000;
 
 constexpr const char* help = R"(simulations cloth|bodies|breaking|large [FOLDER] [--frames N]
 
-Runs N frames (1 to 1000, default 60; of large 12) of a simulation, and writes FOLDER/frame_000.ply and so on, and FOLDER/pairs.json,
-which `blum view FOLDER/frame_*.ply --frames --pairs FOLDER/pairs.json -o page.html` shows. FOLDER is named as the
-simulation by default. Results are written to FOLDER.part, and take the place of earlier ones when all is done, or when
-Ctrl-C ends the run after the frame at hand. Without arguments it runs a few frames of each, and writes nothing.
+Runs N frames (1 to 1000; default 60, for large 12) of a simulation. Writes FOLDER/frame_000.ply and so on, and
+FOLDER/pairs.json. `blum view FOLDER/frame_*.ply --frames --pairs FOLDER/pairs.json -o page.html` shows them. FOLDER is
+the name of the simulation by default. Results go to FOLDER.part. They replace earlier results at the end, or when
+Ctrl-C ends the run after the current frame. Without arguments, runs a few frames of each and writes nothing.
 
-Each step is asked about with continuous collisions, among all objects and of each that is not rigid with itself, and
-shortened where something would meet. Exit status: 0 where no collision was missed, 2 bad usage, 1 any other failure.
+Continuous collision checks cover all pairs of objects, and each object that is not rigid with itself. A step is
+shortened before objects meet. Exit status: 0 if no collision was missed, 2 for bad usage, 1 for any other failure.
 )";
 
 volatile std::sig_atomic_t is_stopped = 0;
 
-/// The command line makes no sense: exit status 2.
+/// Error of the command line, with exit status 2.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -73,7 +73,7 @@ Arguments read(const std::vector<std::string>& given) {
       out.words.push_back(given[k]);
     }
   }
-  if (out.words.size() > 2) throw UsageError("'" + out.words[2] + "' was not expected: one folder holds all");
+  if (out.words.size() > 2) throw UsageError("'" + out.words[2] + "' was not expected: give only one folder");
   return out;
 }
 
@@ -85,14 +85,14 @@ std::unique_ptr<Scene> make(const std::string& name) {
   return nullptr;
 }
 
-/// Results in a folder, under draft names until all of them are there.
+/// Results in a folder, which stay in a draft folder until they are complete.
 class Results {
  public:
-  /// @throws FileError where the folder cannot be made, before any work is done.
+  /// @throws FileError if the folder cannot be made, before any work.
   explicit Results(fs::path folder) : folder_(std::move(folder)), draft_(folder_.string() + ".part") {
     guarded([&] {
       if (fs::exists(folder_) && !fs::is_directory(folder_)) {
-        throw blum::FileError("'" + folder_.string() + "' is no folder; name another one");
+        throw blum::FileError("'" + folder_.string() + "' is not a folder; name another one");
       }
       fs::create_directories(folder_);
       fs::remove_all(draft_);
@@ -100,7 +100,7 @@ class Results {
     });
   }
   [[nodiscard]] const fs::path& draft() const { return draft_; }
-  /// Takes the place of earlier results.
+  /// Replaces earlier results.
   void publish() const {
     guarded([&] {
       for (const fs::path& old : results_in(folder_)) fs::remove(old);
@@ -125,7 +125,7 @@ class Results {
       work();
     } catch (const fs::filesystem_error& error) {
       throw blum::FileError("cannot write '" + error.path1().string() + "': " + error.code().message() +
-                            "; name a folder that may be written");
+                            "; name a writable folder");
     }
   }
 
@@ -133,7 +133,7 @@ class Results {
   fs::path draft_;
 };
 
-/// What the viewer draws and charts of a frame.
+/// Writes the pairs and times of frames that the viewer draws.
 class Record {
  public:
   explicit Record(const fs::path& path) : file_(path) {
@@ -153,11 +153,11 @@ class Record {
     file_ << "], \"stages\": {\"boxes\": " << sum.hierarchy_seconds << ", \"close pairs\": " << sum.close_seconds
           << ", \"continuous collisions\": " << sum.impact_seconds << "}}";
   }
-  /// @throws FileError where not all of it could be written.
+  /// @throws FileError if the file is not written completely.
   void finish() {
     file_ << "\n]}\n";
     file_.close();
-    if (!file_) throw blum::FileError("cannot write pairs.json to its end: is the disk full?");
+    if (!file_) throw blum::FileError("cannot write all of pairs.json; check the free disk space");
   }
 
  private:
@@ -183,7 +183,7 @@ void add(const StepReport& step, StepReport& sum) {
   sum.shown.insert(sum.shown.end(), step.shown.begin(), step.shown.end());
 }
 
-/// @return whether no step passed anything through anything.
+/// @return true if no collision was missed.
 bool run(const std::string& name, int frames, const std::optional<fs::path>& folder) {
   const std::unique_ptr<Scene> scene = make(name);
   std::optional<Results> results;
@@ -244,7 +244,7 @@ int main(int argc, char** argv) try {
   }
   std::signal(SIGINT, [](int) { is_stopped = 1; });
   constexpr int usual_frames = 60;
-  constexpr int frames_of_large = 12;  // 500,000 triangles: minutes
+  constexpr int frames_of_large = 12;  // 500,000 triangles take minutes
   const int frames = arguments.frames.value_or(words[0] == "large" ? frames_of_large : usual_frames);
   return run(words[0], frames, fs::path(words.back())) ? 0 : 1;
 } catch (const UsageError& error) {

@@ -25,7 +25,7 @@ Vec3d turned(const Vec3d& p, double angle) {
   return {std::cos(angle) * p.x - std::sin(angle) * p.y, std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
 }
 
-/// Squares of a grid that closes around, cut into triangles.
+/// Triangles of a grid that closes around an axis.
 std::vector<blum::Triangle> around(std::uint32_t rows, std::uint32_t columns) {
   std::vector<blum::Triangle> out;
   for (std::uint32_t row = 0; row + 1 < rows; ++row) {
@@ -40,7 +40,7 @@ std::vector<blum::Triangle> around(std::uint32_t rows, std::uint32_t columns) {
   return out;
 }
 
-/// A body of revolution in a skirt, whose uppermost row goes with it.
+/// An ellipsoid in a skirt; the uppermost row of the skirt moves with the body.
 class Cloth : public Scene {
  public:
   Cloth() : Scene({.thickness = 0.008, .iterations = 20}) {
@@ -92,7 +92,7 @@ class Cloth : public Scene {
 
 class Bowl : public Scene {
  public:
-  // Contacts are no wider than some edge lengths: else each triangle would touch dozens of others.
+  // Contacts are at most a few edge lengths wide. Otherwise each triangle would touch dozens of others.
   Bowl(int bodies, int frequency) : Scene({.thickness = std::min(0.012, 0.12 / frequency)}) {
     Object bowl;
     bowl.mesh = bowl_mesh();
@@ -100,7 +100,7 @@ class Bowl : public Scene {
     world.add(std::move(bowl));
     for (int k = 0; k < bodies; ++k) {
       Object one;
-      // Two on each level, on opposite sides.
+      // Each level has two bodies on opposite sides.
       const int level = k / 2;
       const double angle = pi * (k % 2) + 0.8 * level;
       one.mesh = moved(shape(k, frequency), {0.28 * std::cos(angle), 0.28 * std::sin(angle), 0.1 + 0.46 * level});
@@ -110,7 +110,7 @@ class Bowl : public Scene {
   }
 
  private:
-  /// Balls, rings, boxes and lumps in turn, about 0.4 across.
+  /// Balls, rings, boxes and lumps in turn, each about 0.4 wide.
   static TriangleMesh shape(int k, int frequency) {
     switch (k % 4) {
       case 0:
@@ -127,7 +127,7 @@ class Bowl : public Scene {
         return blum::make_organic({.radius = 0.17, .frequency = frequency, .seed = static_cast<std::uint64_t>(k)});
     }
   }
-  /// Half a ball, thick enough to be a solid, open above.
+  /// Half a sphere, open above.
   static TriangleMesh bowl_mesh() {
     constexpr std::uint32_t rows = 20;
     constexpr std::uint32_t columns = 48;
@@ -150,7 +150,7 @@ class Bowl : public Scene {
   }
 };
 
-/// A wall of bricks with fine cracks between them, on a floor.
+/// A wall of bricks with fine cracks between the bricks, on a floor.
 class Breaking : public Scene {
  public:
   Breaking() : Scene({.step = 1.0 / 480, .thickness = 0.006, .iterations = 8, .friction = 0.02}) {
@@ -172,7 +172,7 @@ class Breaking : public Scene {
     ball_ = world.add(std::move(ball));
   }
 
-  /// Bricks close to the ball leave the wall, which is then a mesh of other triangles.
+  /// Bricks close to the ball leave the wall, so the wall gets other triangles.
   void drive(double, const StepReport&) override {
     if (bricks_.empty()) return;
     const auto gap = world.scene().separation(world.object(wall_).id, world.object(ball_).id);

@@ -9,12 +9,12 @@
 
 namespace simulations {
 
-/// A world, and what happens to it.
+/// A world with a script that drives it.
 class Scene {
  public:
   explicit Scene(const WorldOptions& options) : world(options), step(options.step) {}
   virtual ~Scene() = default;
-  /// Called before each step. @param time in seconds. @param last what the step before found.
+  /// Called before each step. @param time in seconds. @param last report of the previous step.
   virtual void drive(double time, const StepReport& last) {
     static_cast<void>(time);
     static_cast<void>(last);
@@ -24,11 +24,11 @@ class Scene {
   double step;  ///< seconds
 };
 
-/// A skirt on a body that sways and turns.
+/// Makes a skirt on a body that sways and turns.
 [[nodiscard]] std::unique_ptr<Scene> make_cloth_scene();
-/// Ten bodies that fall into a bowl. @param frequency of their meshes: 20 * frequency^2 triangles, or about as many.
+/// Makes bodies that fall into a bowl. @param frequency each mesh has about 20 * frequency^2 triangles.
 [[nodiscard]] std::unique_ptr<Scene> make_bowl_scene(int bodies, int frequency);
-/// A wall that breaks into bricks where a ball hits it.
+/// Makes a wall that breaks into bricks where a ball hits the wall.
 [[nodiscard]] std::unique_ptr<Scene> make_breaking_scene();
 
 }  // namespace simulations

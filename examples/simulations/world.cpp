@@ -29,7 +29,7 @@ Vec3d mean(const std::vector<Vec3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// The weights of a triangle's corners in a point of it.
+/// Barycentric coordinates of a point in a triangle.
 std::array<double, 3> weights(const Vec3d& p, const std::array<Vec3d, 3>& t) {
   const Vec3d u = t[1] - t[0];
   const Vec3d v = t[2] - t[0];
@@ -44,7 +44,7 @@ std::array<double, 3> weights(const Vec3d& p, const std::array<Vec3d, 3>& t) {
 
 }  // namespace
 
-/// Two triangles that are to keep apart along a direction.
+/// Two triangles that must keep a distance along a direction.
 struct World::Contact {
   std::array<std::size_t, 2> object{};
   std::array<blum::Triangle, 2> corners{};
@@ -109,14 +109,14 @@ World::Positions World::predicted() const {
   return to;
 }
 
-/// Whether bodies are compared with themselves: triangles beside each other are always close, and no contacts.
+/// Compares bodies with themselves or not. Neighbouring triangles are always close, but are not contacts.
 void World::compare_selves(bool all) {
   for (const auto& object : objects_) {
     if (object && object->kind != Kind::driven && !object->self) scene_.exclude(object->id, object->id, !all);
   }
 }
 
-/// Pairs that are close now: whatever they do, they are to stay on their sides.
+/// Pairs that are close at the start of a step. Both triangles must stay on their sides.
 std::vector<World::Contact> World::contacts(StepReport& report) {
   Stopwatch watch;
   compare_selves(false);
@@ -210,7 +210,7 @@ blum::SceneCollisions World::collisions(const Positions& to) const {
   return scene_.continuous(motions);
 }
 
-/// Where something would meet, its particles go less far; where they still would after many rounds, not at all.
+/// Shortens the ways of particles that would collide. After many rounds, particles that still collide do not move.
 void World::shorten(Positions& to, StepReport& report) {
   constexpr int most_rounds = 30;
   Stopwatch watch;
@@ -230,7 +230,7 @@ void World::shorten(Positions& to, StepReport& report) {
   report.impact_seconds += watch.lap();
 }
 
-/// Counts collisions, and keeps some of them.
+/// Counts collisions, and records some of them.
 void World::show(const blum::SceneCollisions& found, const Positions& to, StepReport& report) const {
   constexpr std::size_t most_shown = 500;
   for (const blum::ObjectCollisions& pair : found.objects) {
@@ -243,7 +243,7 @@ void World::show(const blum::SceneCollisions& found, const Positions& to, StepRe
   }
 }
 
-/// Which part of their way particles may go: a part of that until they meet.
+/// Limits the shares of colliding particles to a part of their way to contact.
 void World::limit(const blum::ObjectCollisions& pair, double part, Shares& shares) const {
   const std::size_t a = number(pair.first).value();
   const std::size_t b = number(pair.second).value();
@@ -263,7 +263,7 @@ void World::limit(const blum::ObjectCollisions& pair, double part, Shares& share
 }
 
 void World::go_less_far(const Object& object, const std::vector<double>& shares, std::vector<Vec3d>& to) {
-  // What is driven waits as a whole.
+  // A driven object is shortened as a whole.
   const bool is_driven = object.kind == Kind::driven;
   const double all = shares.empty() ? 1 : *std::min_element(shares.begin(), shares.end());
   for (std::size_t v = 0; v < to.size(); ++v) {

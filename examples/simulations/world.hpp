@@ -1,7 +1,7 @@
 // Blum: bodies and cloth that never pass through each other, for examples. SPDX-License-Identifier: Apache-2.0
 //
-// They are made of particles, moved by position-based dynamics (Müller and others 2007). Each step is asked about with
-// continuous collisions, and shortened where something would meet.
+// Objects consist of particles that move by position-based dynamics (Müller and others 2007). Each step is checked for
+// continuous collisions, and shortened before objects meet.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace simulations {
 
-/// How far two particles of a body keep apart.
+/// A distance that two particles keep.
 struct Spring {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -25,56 +25,56 @@ struct Spring {
 enum class Kind {
   cloth,  ///< held together by springs
   body,   ///< keeps its shape (Müller and others 2005: shape matching)
-  driven  ///< goes where it is told, as far as nothing is in the way
+  driven  ///< moves to its goal as far as no object blocks the way
 };
 
 /// One object of a world.
 struct Object {
-  blum::TriangleMesh mesh;  ///< where it is
+  blum::TriangleMesh mesh;  ///< at the current position
   Kind kind = Kind::body;
-  /// Whether parts of it push each other apart. All but driven ones, which are rigid, are kept from passing through
-  /// themselves.
+  /// True if parts of the object push each other apart. All objects except driven ones, which are rigid, are checked
+  /// against passing through themselves.
   bool self = false;
-  double mass = 1;                ///< of each particle; driven objects give way to nothing
-  std::vector<bool> pinned = {};  ///< particles that stay; none where empty
+  double mass = 1;                ///< of each particle; driven objects do not give way
+  std::vector<bool> pinned = {};  ///< fixed particles; none if empty
   std::vector<Spring> springs = {};
   std::vector<blum::Vec3d> velocity = {};
-  std::vector<blum::Vec3d> rest = {};  ///< of bodies: their shape
-  std::vector<blum::Vec3d> goal = {};  ///< of driven ones, and of pinned particles: where to be after the step
+  std::vector<blum::Vec3d> rest = {};  ///< bodies: shape at rest
+  std::vector<blum::Vec3d> goal = {};  ///< driven objects and pinned particles: positions after the step
   blum::ObjectId id = {};
 };
 
 struct WorldOptions {
   double step = 1.0 / 120;  ///< seconds
-  double thickness = 0.01;  ///< how close surfaces come, mesh units
-  int iterations = 12;      ///< of constraints
-  double damping = 0.995;   ///< of velocities, a step
-  double friction = 0.3;    ///< part of the velocity along a contact that it takes, a step
+  double thickness = 0.01;  ///< smallest distance of surfaces, mesh units
+  int iterations = 12;      ///< iterations of constraints
+  double damping = 0.995;   ///< factor of velocities for each step
+  double friction = 0.3;    ///< share of the velocity along a contact that is lost in each step
   blum::Vec3d gravity{0, 0, -9.8};
 };
 
-/// What one step took, and found.
+/// Times and results of one step.
 struct StepReport {
-  double hierarchy_seconds = 0;  ///< for boxes around what moved
-  double close_seconds = 0;      ///< for close pairs
-  double impact_seconds = 0;     ///< for continuous collisions
+  double hierarchy_seconds = 0;  ///< for boxes around moved objects
+  double close_seconds = 0;      ///< for searching close pairs
+  double impact_seconds = 0;     ///< for finding continuous collisions
   std::size_t close_pairs = 0;
   std::size_t impacts = 0;  ///< collisions that were prevented
-  int rounds = 0;           ///< how often the step was shortened
+  int rounds = 0;           ///< number of times that the step was shortened
   struct Impact {
     blum::Vec3d first, second;
     double time;
   };
-  std::vector<Impact> shown;  ///< some of these collisions, where they would have been
+  std::vector<Impact> shown;  ///< some of the prevented collisions, at their places
 };
 
 class World {
  public:
   explicit World(const WorldOptions& options) : options_(options) {}
 
-  /// @return its number among the objects.
+  /// @return the number of the object.
   std::size_t add(Object object);
-  /// Another mesh for an object: its triangles may be others.
+  /// Replaces an object. Its mesh may have other triangles.
   void replace(std::size_t object, Object by);
 
   [[nodiscard]] std::size_t size() const { return objects_.size(); }
@@ -85,16 +85,16 @@ class World {
 
   StepReport step();
 
-  /// How many collisions the library finds in all steps so far, from where objects were to where they went: none.
+  /// The number of collisions that the library finds in the motions of all steps so far. It must be 0.
   [[nodiscard]] std::size_t collisions_in_steps() const { return collisions_in_steps_; }
 
-  /// Everything in one mesh.
+  /// All objects in one mesh.
   [[nodiscard]] blum::TriangleMesh mesh() const;
 
  private:
-  /// Where particles go.
+  /// Positions of the particles of each object after a step.
   using Positions = std::vector<std::vector<blum::Vec3d>>;
-  /// Which part of their way particles go.
+  /// Share of its way that each particle moves.
   using Shares = std::vector<std::vector<double>>;
 
   struct Contact;
@@ -120,10 +120,10 @@ class World {
   std::size_t collisions_in_steps_ = 0;
 };
 
-/// Springs along all edges of a mesh, and between the corners across each edge, that bend it less stiffly.
+/// Springs along all edges of a mesh, and weaker ones between the two corners across each edge, against bending.
 [[nodiscard]] std::vector<Spring> springs_of(const blum::TriangleMesh& mesh, double bending);
 
-/// The rotation that takes one set of points best to another, both around their means (Müller and others 2016).
+/// The rotation that best maps one set of points to another, around their means (Müller and others 2016).
 [[nodiscard]] blum::Mat3 best_rotation(const std::vector<blum::Vec3d>& from, const std::vector<blum::Vec3d>& to,
                                        const blum::Vec3d& from_mean, const blum::Vec3d& to_mean);
 

@@ -46,7 +46,7 @@ using DistancesIn = In<double, nb::shape<-1>>;
 
 void check_counts(std::size_t points, std::initializer_list<std::size_t> others) {
   for (const std::size_t count : others) {
-    if (count != points) throw InvalidOption("there must be as many of each");
+    if (count != points) throw InvalidOption("the arrays must have equal numbers of rows");
   }
 }
 
@@ -73,7 +73,8 @@ Out<double> weights(const MeshArrays& mesh, const PointsIn& closest, const Indic
     one.point = vectors(closest)[k];
     if (site.data()[k] >= 0) one.site = SiteId(static_cast<std::uint32_t>(site.data()[k]));
     const std::int32_t of = triangle.data()[k];
-    if (of >= static_cast<std::int64_t>(view.triangles.size())) throw InvalidOption("there is no such triangle");
+    if (of >= static_cast<std::int64_t>(view.triangles.size()))
+      throw InvalidOption("a triangle index is not below the number of triangles");
     if (of >= 0) one.triangle = TriangleId(static_cast<std::uint32_t>(of));
     out[k] = barycentric(view, one).value_or(std::array<double, 3>{nan, nan, nan});
   }

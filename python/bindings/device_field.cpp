@@ -91,7 +91,7 @@ std::optional<NamedType> named_type(const std::string& name) {
 
 DeviceArray of_capsule(nb::ndarray<> import) {
   if (import.device_type() != nb::device::cuda::value && import.device_type() != nb::device::cuda_managed::value) {
-    throw InvalidOption("its DLPack capsule is of another kind of device than CUDA's");
+    throw InvalidOption("its DLPack capsule is not for a CUDA device");
   }
   DeviceArray array;
   array.data = import.data();

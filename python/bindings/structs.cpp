@@ -127,10 +127,9 @@ void bind_members(nb::module_& m, const StructType& type, bool is_options) {
   nb::list members;
   for (const StructMember& member : type.members) {
     if (member.type == nullptr) {
-      members.append(
-          stated("label", "Integer | None", nb::none(), "", "images: the voxels of this value are the ones"));
-      members.append(
-          stated("threshold", "Real | None", nb::none(), "", "images: those of at least this value; excludes a label"));
+      members.append(stated("label", "Integer | None", nb::none(), "", "images: selects the voxels of this value"));
+      members.append(stated("threshold", "Real | None", nb::none(), "",
+                            "images: selects the voxels of at least this value; excludes a label"));
       continue;
     }
     // Only options have defaults. Results may have types whose Python classes exist only once the package is complete.

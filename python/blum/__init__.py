@@ -1,7 +1,7 @@
 """Blum: exact distance fields, Voronoi diagrams and certified medial axes of 3D shapes.
 
 A mesh is any object with vertices and triangles. An image is an array indexed [z, y, x]. Lengths have the units of the
-input, and distances are negative inside. The verbs are those of the C++ library and the command-line tool:
+input, and distances are negative inside. Functions are named as in the C++ library and the command-line tool:
 
     field = blum.distance_field(vertices, triangles, resolution=256)
     found = blum.closest_points(mesh, points)

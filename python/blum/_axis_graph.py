@@ -1,6 +1,6 @@
 """Graphs of medial axes.
 
-They have sheets, seams, curves and junctions.
+A graph lists the sheets, seams, curves and junctions of an axis.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ def axis_graph(
     Parameters
     ----------
     axis : MedialComplex
-        With radii and sheets. Another complex with these columns works, too.
+        It must have radii and sheets. Another complex with these columns is also accepted.
     mesh, triangles
-        The mesh of the axis, as for :func:`distance_field`. With it, `patches` are its smooth parts. Every sheet then
-        has the `patch_pairs` on its two sides. Default: the mesh that the axis was made from. Axes from files have
-        none.
+        The mesh of the axis, as for :func:`distance_field`. If the mesh is known, `patches` contains the smooth parts
+        of the mesh, and each sheet has `patch_pairs` for its two sides. Default: the mesh from which the axis was made.
+        For an axis from a file, no mesh is known.
     threads, progress
         As for :func:`distance_field`.
     **options
@@ -50,8 +50,8 @@ def axis_graph(
     Returns
     -------
     AxisGraph
-        Numbers of seams, curves, junctions and patches are indices into its lists. Sheets have the numbers of
-        `triangle_sheet`. `.to_networkx()` converts it.
+        Numbers of seams, curves, junctions and patches are indices into the lists of the graph. Sheets are numbered as
+        in `triangle_sheet`. `.to_networkx()` converts the graph.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def write_graph(
 
 
 def _stated(axis: Complex, options: AxisGraphOptions) -> dict[str, Any]:
-    """Returns the options, with the known theta of the axis as the angle up to which cells exist for homotopy alone."""
+    """Returns the options. If the axis's theta is known, it is the default of `homotopy_angle`."""
     theta = getattr(getattr(axis, "_origin", None), "theta", None)
     return ({} if theta is None else {"homotopy_angle": theta}) | dict(options)
 

@@ -1,6 +1,6 @@
 """Centrelines of labelled images.
 
-They are graphs of curves with radii.
+A centreline is a graph of curves with radii.
 """
 
 from __future__ import annotations
@@ -80,8 +80,8 @@ class Centreline:
     def to_networkx(self) -> Any:
         """Returns a networkx.MultiGraph.
 
-        Nodes have `kind`, `position` and `radius`. Edges have the branch's numbers, `points` and `radii`. A closed
-        curve gets a node of its own, of kind "closed". Raises ImportError if networkx is missing.
+        Nodes have `kind`, `position` and `radius`. Edges have the numeric members of the branch, `points` and `radii`.
+        A closed curve gets a node of its own, of kind "closed". Raises ImportError if networkx is missing.
 
         Examples
         --------
@@ -114,7 +114,7 @@ class Centreline:
 
 
 class Centrelines(Sequence[Centreline]):
-    """Centrelines of an image, by ascending label, or in the order of the requested labels.
+    """Centrelines of an image, in the order of the requested labels; by default by ascending label.
 
     Examples
     --------
@@ -173,7 +173,7 @@ def centreline(
 
     Each nonzero value is a label, unless `labels`, `label` or `threshold` selects voxels. Voids are filled first. The
     curves have the components and tunnels of the label. The radius at a point is that of the circle with the area of
-    the section there. A free end lies where its ball touches the tip.
+    the section there. The ball around a free end touches the tip of the label.
 
     Parameters
     ----------

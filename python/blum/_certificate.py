@@ -28,7 +28,7 @@ __all__ = ["solid_rule"]
 
 @dataclass(frozen=True)
 class Claim:
-    """Axis as its certificate sees it, with its own claims or those of the file that it was read from."""
+    """Axis in the form that certification needs, with its claims. An axis from a file has the claims of the file."""
 
     complex: Complex  #: The axis.
     has: Mapping[str, bool]  #: Attributes that exist: radii, footprints, angles, sites, labels. Others are fillers.
@@ -125,7 +125,7 @@ class ShapeVerifier:
 
 
 def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
-    """Returns the claims of an axis, for the library to check. `sites` is the kind of its sites if it states none."""
+    """Returns the claims of an axis, for the library to check. `sites` is the default kind of sites."""
     return {
         "version": claim.version,
         "solid_rule": claim.rule,

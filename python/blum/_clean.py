@@ -1,6 +1,6 @@
 """Cleaned meshes.
 
-They are closed, face outwards, and have no needles and no redundant vertices.
+Cleaned meshes are closed, face outwards, and have no needles and no redundant vertices.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ def clean_mesh(
     Parameters
     ----------
     mesh : mesh or Solid
-        A closed mesh, as for :func:`distance_field`, or a :class:`Solid`. The mesh may face any way and cross itself.
-        The result is then near the surface without the crossings.
+        A closed mesh, as for :func:`distance_field`, or a :class:`Solid`. Its triangles may face any way, and may
+        cross. If they cross, the result is near the surface without the crossings.
     tolerance : float
         Guaranteed bound on the deviation, mesh units. No point of the result is further than this from the mesh, and no
         point of the mesh is further than this from the result.
@@ -108,7 +108,8 @@ def oriented_mesh(
 ) -> OrientedMesh:
     """Returns the same triangles in the same order, all facing away from the solid that they bound.
 
-    Triangles that disagree with most of their shell are reversed first, then shells that face the solid.
+    First, triangles that face another way than most of their shell are reversed. Then, shells that face into the solid
+    are reversed.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class NearPrimitives:
 
 @takes("ClosestPointOptions")
 class ClosestPointQuery:
-    """Exact closest-point queries on one mesh. They may run on many threads at once, but not during :meth:`refit`.
+    """Exact closest-point queries on one mesh. Queries may run on many threads at once, but not during :meth:`refit`.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ class ClosestPointQuery:
         ----------
         points : array of shape (..., 3)
         distance : float
-            Mesh units, not negative. `max_distance` limits it, too.
+            Mesh units, not negative. The `max_distance` of the query object is a further limit.
         threads, progress
             As for :func:`distance_field`.
 
@@ -165,7 +165,7 @@ class ClosestPointQuery:
     ) -> NearPrimitives:
         """Returns the k closest triangles, segments and points for each query.
 
-        There are fewer if the mesh has fewer, or fewer within `max_distance`.
+        A query has fewer than k results if the mesh has fewer than k primitives within `max_distance`.
 
         Parameters
         ----------
@@ -190,15 +190,15 @@ class ClosestPointQuery:
             return NearPrimitives(*self._query.nearest_primitives(rows, count, integer(threads, "threads"), report))
 
     def refit(self, vertices: Any, *, threads: int = 0, progress: Progress = False) -> None:
-        """Moves the vertices of the mesh. Results are those of a new query object, which takes longer to make.
+        """Moves the vertices of the mesh. Later results equal those of a new query object, which takes longer to make.
 
-        It must not run at the same time as queries. Unsigned, it takes some 2 ms for 100,000 triangles on two cores.
-        Signs are planned again, as in a new query object.
+        This method must not run at the same time as queries. Without signs, it takes about 2 ms for 100,000 triangles
+        on two cores. The sign rule is chosen again, as in a new query object.
 
         Parameters
         ----------
         vertices : (n, 3) array
-            As many vertices as the mesh has after welding.
+            New positions of all vertices that the mesh has after welding.
         threads, progress
             As for :func:`distance_field`.
 
@@ -265,9 +265,10 @@ def winding_number(
         As for :func:`distance_field`.
     points : array of shape (..., 3)
     max_error : float
-        Bound on the error of each value; below 2e-11 it counts as 2e-11. It matters if the surface has a long boundary.
-        Soups of 70,000 triangles take some 30 microseconds per point at 1e-3, and 250 at 1e-6. Closed meshes, and
-        meshes with some holes, take 0.2 to 2 microseconds.
+        Bound on the error of each value; smaller bounds than 2e-11 count as 2e-11. If the surface has a long boundary,
+        a smaller bound takes more time. Soups of 70,000 triangles take about 30 microseconds per point with a bound of
+        1e-3, and 250 microseconds with 1e-6. Closed meshes, and meshes with a few holes, take 0.2 to 2 microseconds per
+        point.
 
     Examples
     --------

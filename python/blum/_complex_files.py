@@ -80,10 +80,10 @@ def write_complex(
     metadata : mapping of strings to strings, optional
         Texts for the file.
     further : mapping of names to complexes, optional
-        Complexes beside the first one, for .npz files only. Names consist of letters and digits.
+        Further complexes for the same file, which must be .npz. Names consist of letters and digits.
     allow_loss : bool
-        True: columns and metadata that the format cannot hold (.obj: all of them) are left out. False: they are
-        rejected.
+        True: columns and metadata that the format cannot hold (.obj: all of them) are left out. False: such columns and
+        metadata are rejected.
 
     Raises
     ------

@@ -24,7 +24,7 @@ _LEGACY = 1  # The legacy default stream, in CUDA and DLPack.
 
 
 def cuda_devices() -> CudaDevices:
-    """Returns the CUDA devices that `device=` may name, or the reason why none exists.
+    """Returns the CUDA devices that the argument `device` accepts, or the reason why no device exists.
 
     Examples
     --------
@@ -40,8 +40,8 @@ def cuda_devices() -> CudaDevices:
 class DeviceArray:
     """Array in a CUDA device's memory, for ``torch.from_dlpack``, ``cupy.from_dlpack`` and similar functions.
 
-    It is not copied. It has ``__dlpack__`` and ``__cuda_array_interface__``. The importer waits on its own stream until
-    the array is computed.
+    Importing does not copy the array. The array has ``__dlpack__`` and ``__cuda_array_interface__``. The importing
+    library waits on its own stream until the array is computed.
 
     Examples
     --------
@@ -142,7 +142,7 @@ class DeviceField:
 
     @property
     def distance(self) -> Any:
-        """Distances, negative inside when signed: float32 (z, y, x), mesh units. A DeviceArray, or that of `out`."""
+        """Distances, negative inside when signed: float32 (z, y, x), mesh units. A DeviceArray, or the `out` array."""
         return self._distance
 
     @property
@@ -256,7 +256,7 @@ class _DeviceSolver:
     def _take(
         self, value: Any, name: str, shape: tuple[int | None, ...], types: tuple[str, ...], stream: int
     ) -> _core.DeviceArray:
-        """Imports and checks an array. Work queued on the stream from now on sees its content."""
+        """Imports and checks an array. Work that is queued on the stream afterwards reads the array's content."""
         array = _imported(value, name, self._solver, stream, self._instead)
         if array.type not in types:
             raise TypeError(f"{name} must hold {' or '.join(np.dtype(kind).name for kind in types)}")
@@ -277,16 +277,16 @@ class _DeviceSolver:
 class DeviceFieldSolver(_DeviceSolver):
     """Fields of deforming meshes in a CUDA device's memory, returned as arrays there, without copies.
 
-    Arrays come in by DLPack or ``__cuda_array_interface__`` (PyTorch, CuPy, JAX, Numba, Warp) and must be C-contiguous.
-    Fields go out by the same protocols. :class:`FieldSolver` takes meshes in the host's memory.
+    Arrays are imported through DLPack or ``__cuda_array_interface__`` (PyTorch, CuPy, JAX, Numba, Warp) and must be
+    C-contiguous. Fields are returned with the same protocols. :class:`FieldSolver` takes meshes in the host's memory.
 
     Parameters
     ----------
     grid : Grid
     device : "cuda" or "cuda:K"
     **options
-        For `sign`, "auto" and "winding" both use the winding number. For closed meshes that face outwards, it gives the
-        same sides as "normals". "normals" itself needs a mesh in the host's memory. `order` must be 1.
+        For `sign`, "auto" and "winding" both use the winding number. For closed meshes that face outwards, the winding
+        number gives the same signs as "normals". "normals" itself needs a mesh in the host's memory. `order` must be 1.
 
     Examples
     --------
@@ -331,8 +331,8 @@ class DeviceFieldSolver(_DeviceSolver):
     ) -> DeviceField:
         """Queues the field of a mesh and returns it. It does not wait for the device.
 
-        There are two exceptions: New triangles, segments or points wait for the device. The oldest call is waited for
-        when 64 calls are in flight.
+        It waits for the device in two cases. Calls with new triangles, segments or points wait. If 64 calls are not
+        finished, a call waits for the oldest one.
 
         Parameters
         ----------
@@ -340,10 +340,11 @@ class DeviceFieldSolver(_DeviceSolver):
             If a vertex is not finite, every distance becomes NaN. No error is raised, because nothing waits for the
             device.
         triangles, segments, points : (m, 3), (m, 2), (m,) of int32, uint32 or int64, on the device
-            If none of them is given, those of the last call are used. This saves the search for edges and its wait.
+            If none of the three is given, the arrays of the last call are used. This saves the search for edges and its
+            wait.
         out : (distance, site), optional
             Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape. Without sites, the
-            second is None.
+            second entry is None.
         stream : int, or a stream of PyTorch, CuPy or Warp
             Stream of the work. Default: the legacy default stream.
 
@@ -422,13 +423,14 @@ class DeviceDistanceTransform(_DeviceSolver):
     def compute(self, values: Any, *, out: tuple[Any, Any] | None = None, stream: Any = None) -> DeviceField:
         """Queues the transform of an image and returns it. It does not wait for the device.
 
-        There is one exception: the oldest call is waited for when 64 calls are in flight.
+        There is one exception: if 64 calls are not finished, a call waits for the oldest one.
 
         Parameters
         ----------
         values : (z, y, x) of booleans or numbers, on the device
-            If no voxel is selected, or in a signed transform every voxel, distances are infinite (or the band's),
-            without sites. No error is raised, because nothing waits for the device.
+            If no voxel is selected, distances are infinite (with a band: its half-width), and no voxel has a site. A
+            signed transform has the same result if every voxel is selected. No error is raised, because nothing waits
+            for the device.
         out : (distance, site), optional
             Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape.
         stream : int, or a stream of PyTorch, CuPy or Warp

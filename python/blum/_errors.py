@@ -1,6 +1,6 @@
 """Exceptions and warnings.
 
-Each exception also derives from the built-in one that fits.
+Each exception also derives from a built-in exception of the same kind.
 """
 
 __all__ = [

@@ -1,6 +1,6 @@
 """Extended medial axes.
 
-Their sheets reach the surface, for meshes of shell elements.
+The sheets of an extended axis reach the surface. They serve as meshes of shell elements.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ _CoreComplex = _core.Complex
 class ExtendedAxis(Complex):
     """Medial axis whose sheets reach the surface; the result of :func:`extend_axis`.
 
-    It has the vertices and triangles of the axis in their order, then the new ones. Its edges are the curves of the
-    axis.
+    The vertices and triangles of the axis come first, in their order. The new vertices and triangles follow. The edges
+    of the result are the curves of the axis.
 
     Examples
     --------
@@ -126,17 +126,17 @@ def extend_axis(
 ) -> ExtendedAxis:
     """Returns the sheets of a medial axis, extended from their rims to the surface: a mesh for shell elements.
 
-    Use an axis of 100 to 120 degrees. A smaller angle adds sheets that run into edges; a larger one leaves gaps where
-    walls meet. A rim that meets another sheet first ends there, without sharing vertices with it. The topology is that
-    of the axis.
+    Use an axis at theta 100 to 120. A smaller angle adds sheets that run into edges; a larger angle leaves gaps where
+    walls meet. If a rim reaches another sheet before the surface, the extension ends at that sheet, but shares no
+    vertices with it. The result has the topology of the axis.
 
     Parameters
     ----------
     axis : MedialComplex
-        With radii and sheets. Another complex with these columns works, too.
+        It must have radii and sheets. Another complex with these columns is also accepted.
     mesh, triangles
-        The mesh of the axis, as for :func:`distance_field`. Default: the mesh that the axis was made from. Axes from
-        files have none.
+        The mesh of the axis, as for :func:`distance_field`. Default: the mesh from which the axis was made. For an axis
+        from a file, the mesh must be given.
     threads, progress
         As for :func:`distance_field`.
     **options

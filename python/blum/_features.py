@@ -50,8 +50,8 @@ class FeaturePairs:
 def close_features(mesh: MeshLike, distance: Real, *, threads: int = 0, progress: Progress = False) -> FeaturePairs:
     """Returns all close pairs of a vertex and a triangle, and of two edges, that share no vertex. The answer is exact.
 
-    Contact potentials of simulations need these pairs. Vertices in one place are one vertex. Edges are the sides of
-    triangles and the segments of the mesh. Vertices are those of its triangles, segments and points.
+    Contact potentials of simulations need these pairs. Vertices with the same position count as one vertex. Edges are
+    the sides of triangles and the segments of the mesh. Vertices are those of its triangles, segments and points.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def close_features(mesh: MeshLike, distance: Real, *, threads: int = 0, progress
 
 
 def _named_vertices(mesh: Mesh) -> IntArray:
-    """Returns the vertices that triangles, segments or points name."""
+    """Returns the vertices that triangles, segments or points use."""
     named = np.concatenate([mesh.triangles.ravel(), mesh.segments.ravel(), mesh.points])
     return np.unique(named).astype(np.int32)
 

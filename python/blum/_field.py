@@ -41,13 +41,12 @@ __all__ = ["Field", "FieldSolver", "distance_field", "read_field", "selected_vox
 class Field:
     """Distance and closest site at every node of a grid; the result of :func:`distance_field` and similar functions.
 
-    ``Field(distance, grid)`` makes one from an array (z, y, x) of float32, which is copied, for example to extract
-    surfaces.
+    ``Field(distance, grid)`` makes a field from an array (z, y, x), which is copied, for example to extract surfaces.
 
     Parameters
     ----------
     distance : (z, y, x) array
-        Real numbers, mesh units. They become float32.
+        Real numbers, mesh units. The field stores them as float32.
     grid : Grid
         Its shape must be that of `distance`.
 
@@ -113,7 +112,7 @@ class Field:
     def distance2(self) -> npt.NDArray[np.float32] | None:
         """Distance to the second site, never negative: float32 (z, y, x), mesh units. None for a field of order 1.
 
-        If no site may be second, it is infinite, or with a band the band's half-width.
+        If a node has no second site, the value is infinite; with a band, it is the band's half-width.
         """
         return self._distance2
 
@@ -192,8 +191,8 @@ class Field:
     ) -> FloatArray | tuple[FloatArray, FloatArray]:
         """Returns the distance at points of shape (..., 3), trilinear between nodes. It is NaN outside the grid.
 
-        It is not exact: next to edges and bisectors it is off by up to about half a cell's diagonal.
-        :func:`closest_points` is exact.
+        The interpolated distance is not exact. Next to edges and bisectors, errors are up to about half the diagonal of
+        a grid cell. :func:`closest_points` is exact.
 
         Parameters
         ----------
@@ -243,7 +242,7 @@ class Field:
             return mesh_of_arrays(self._core.zero_surface(number(level, "level"), integer(threads, "threads"), report))
 
     def write(self, path: PathLike, *, progress: Progress = False) -> None:
-        """Writes .nrrd (with files for sites and order 2 beside it), .npz or .vti.
+        """Writes .nrrd (with separate files for sites and for order 2), .npz or .vti.
 
         Files appear under their names only when they are complete. If a field without sites replaces a field with sites
         as .nrrd, the file of the old sites is removed.
@@ -265,7 +264,7 @@ class Field:
         """Returns a pyvista.ImageData with the point data `distance` and `site`; without PyVista, a dict of arrays.
 
         A field of order 2 also has `distance2` and `site2`. The point data are copies, because VTK would hold the
-        library's memory until after Python's end, which then reports a leak.
+        library's memory beyond the end of Python, and a leak would be reported.
 
         Examples
         --------
@@ -323,7 +322,7 @@ def _restored(
 
 
 def _objects_array(objects: Any) -> npt.NDArray[np.uint32] | None:
-    """Returns the object of each vertex as numbers from 0, for any integers that name objects."""
+    """Returns the object of each vertex as numbers from 0. Any integers may identify objects."""
     if objects is None:
         return None
     labels = as_array(objects, "objects")
@@ -357,9 +356,9 @@ def distance_field(
         Vertices (n, 3) and triangles (m, 3). Or one argument: a :class:`Mesh`, a path, a pair (vertices, triangles), or
         an object of trimesh, Open3D, meshio or PyVista. Any soup is valid.
     resolution : int
-        Nodes along the longest side of the padded box around the mesh.
+        Number of nodes along the longest side of the padded box around the mesh.
     spacing : float, optional
-        Distance between nodes, mesh units. Replaces `resolution`.
+        Distance between neighbouring nodes, mesh units. Replaces `resolution`.
     padding : float
         Padding of the box on each side, as a fraction of its longest side.
     bounds : ((x0, y0, z0), (x1, y1, z1)), optional
@@ -367,7 +366,7 @@ def distance_field(
     grid : Grid, optional
         The grid itself. Excludes `bounds` and `spacing`.
     weld : float, optional
-        Merges vertices at most this far apart first, mesh units. 0 merges equal ones. Default: as for
+        First merges vertices at most this far apart, mesh units. 0 merges equal vertices. Default: as for
         :func:`read_mesh`.
     objects : (n,) of integers, optional
         The object of each vertex, for ``order=2, second="other-object"``. Default: the connected parts of the mesh.
@@ -382,8 +381,8 @@ def distance_field(
     Returns
     -------
     Field
-        float32 distances. They differ from the exact ones by at most 1e-6 of the diagonal of the box around mesh and
-        grid.
+        Distances are float32. They differ from the exact distances by at most 1e-6 of the diagonal of the box around
+        mesh and grid.
 
     Raises
     ------
@@ -425,8 +424,8 @@ class FieldSolver:
     device
         As for :func:`distance_field`.
     reuse : bool
-        True: every frame is written into the same arrays. This is faster, but the next frame overwrites them. False:
-        each frame has its own arrays.
+        True: all frames are written into the same arrays, so the next frame overwrites the last one. This is faster.
+        False: each frame has its own arrays.
     **options
 
     Examples
@@ -557,7 +556,7 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
 
 
 def read_field(path: PathLike) -> Field:
-    """Reads a field from .nrrd (with the sites beside it), .npz or .vti.
+    """Reads a field from .nrrd (with the separate file of sites), .npz or .vti.
 
     Examples
     --------

@@ -83,8 +83,8 @@ class Grid:
     def within(cls, bounds: Any, *, resolution: Integer = 256, spacing: Real | None = None) -> Grid:
         """Returns a grid over a box, without padding.
 
-        A side that is not a whole number of steps long grows to the next whole number, centred. The grid then extends
-        beyond the box by less than half a step at each end.
+        If a side of the box is not a whole multiple of the spacing, the grid is longer than that side. It extends
+        beyond the box by the same length at both ends, less than half a spacing.
 
         Parameters
         ----------

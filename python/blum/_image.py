@@ -28,7 +28,7 @@ class Image:
     Parameters
     ----------
     values : (z, y, x) array
-        Booleans, integers or floats. C-contiguous arrays are not copied. A picture with two axes is one layer:
+        Booleans, integers or floats. C-contiguous arrays are not copied. Pass a picture with two axes as one layer:
         ``picture[None]``.
     spacing, origin : three numbers, optional
         In x, y, z order: the reverse of the array's axes. A single number stands for all three.
@@ -73,7 +73,7 @@ class Image:
 
     @property
     def values(self) -> npt.NDArray[Any]:
-        """Voxels: (z, y, x). They may change in place between calls. Another array needs another Image."""
+        """Voxels: (z, y, x). Values may change in place between calls. For another array, make another Image."""
         return self._values
 
     @property

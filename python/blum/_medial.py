@@ -25,7 +25,7 @@ __all__ = ["MedialAxis", "medial_axis"]
 
 
 class MedialAxis:
-    """Medial axis of a solid for all angles theta at once; the result of :func:`medial_axis`.
+    """Medial axis of a solid for all thresholds theta of the separation angle; the result of :func:`medial_axis`.
 
     Examples
     --------
@@ -51,17 +51,18 @@ class MedialAxis:
         return found
 
     def simplify(self, theta: Real = 60.0, *, fit: bool = False) -> MedialComplex:
-        """Returns the part of the axis with a separation angle above theta, and the cells that connect it.
+        """Returns the part of the axis whose separation angle exceeds theta, and the cells that connect this part.
 
-        The homotopy type is the same for every theta. The result for a larger theta is part of that for a smaller one,
-        unless `fit` moves borders. The cost is linear in the result.
+        The homotopy type is the same for every theta. The result for a larger theta is a part of the result for a
+        smaller theta, unless `fit` moves borders. The cost is linear in the result.
 
         Parameters
         ----------
         theta : float
-            Degrees, `least_theta` to `greatest_theta`.
+            Threshold of the separation angle, in degrees: `least_theta` to `greatest_theta`.
         fit : bool
-            True: moves seams to where three walls are equally far, and rims to where the separation angle is theta.
+            True: moves seams to points at the same distance from three walls, and rims to points with the separation
+            angle theta.
 
         Raises
         ------
@@ -93,16 +94,17 @@ class MedialAxis:
         """Returns the axis at theta with a certificate that holds, as `blum medial` writes it.
 
         Up to three forms are tried. The first has fitted borders and few vertices. The second has borders at the cells
-        of the grid. The third has all vertices. If none is certified, they are tried on a grid that is shifted by part
-        of a voxel. A warning names the checks that failed. The mesh or image must be unchanged. With another
-        `least_theta`, sheets may end elsewhere within a voxel.
+        of the grid. The third has all vertices. If no form is certified, all three are tried again on a grid that is
+        shifted by part of a voxel. A warning names the checks that failed. The mesh or image must not have changed
+        since the call of :func:`medial_axis`. With another `least_theta`, the ends of sheets may differ by up to a
+        voxel.
 
         Parameters
         ----------
         theta : float
             As for :meth:`simplify`.
         tolerance : float, optional
-            As for :meth:`MedialComplex.decimate`. 0 keeps all vertices, and borders at the cells.
+            As for :meth:`MedialComplex.decimate`. 0 keeps all vertices, and leaves borders at the cells of the grid.
         allow_uncertified : bool
             True: returns the best axis even if it is not certified, with a warning. Check `.certificate` then.
         threads, progress
@@ -169,10 +171,10 @@ class MedialAxis:
         return self.simplify(theta).graph(**options)
 
     def nested(self) -> NestedComplex:
-        """Returns the results of simplify() for all angles from `least_theta` on, in one complex.
+        """Returns the results of simplify() for all angles from `least_theta` to 180, in one complex.
 
-        It serves sliders, for example. The cost is near-linear in the axis at the least angle. Raises InvalidOption
-        unless `greatest_theta` is 180.
+        Such a complex can serve a slider for theta, for example. The cost is near-linear in the size of the axis at
+        `least_theta`. Raises InvalidOption unless `greatest_theta` is 180.
 
         Examples
         --------
@@ -183,7 +185,7 @@ class MedialAxis:
         return NestedComplex(self._core.nested(), self.least_theta)
 
     def write(self, path: PathLike) -> None:
-        """Writes the axis at the least angle with those of all larger angles to .npz, as `blum medial --nested` does.
+        """Writes the axes of `least_theta` and of all larger theta to .npz, as `blum medial --nested` does.
 
         `blum view` and :func:`view` show such a file with a slider for theta.
 
@@ -204,7 +206,7 @@ class MedialAxis:
 
 
 def _origin_of(origin: Origin, report: MedialAxisReport, angle: float) -> Origin:
-    """Returns the origin of the axis at one angle."""
+    """Returns the origin of the axis at one theta."""
     return replace(
         origin,
         theta=angle,
@@ -226,7 +228,7 @@ def medial_axis(
     progress: Progress = False,
     **options: Unpack[MedialAxisOptions],
 ) -> MedialAxis:
-    """Computes the medial axis of the solid that a mesh or an image bounds. It has the topology of that solid.
+    """Computes the medial axis of the solid of a mesh or an image. The axis has the topology of the solid.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Columns of medial axes.
 
-Columns are arrays. A nested complex holds the axes of all angles.
+Columns are arrays. A nested complex holds the axes of all thresholds theta.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ _CoreComplex = _core.Complex
 class MedialColumns(Complex):
     """Columns of a medial axis as properties, for axes of one angle and of all angles.
 
-    A property raises :class:`InvalidOption` if the axis lacks its column, for example because its file does not hold
-    it.
+    A property raises :class:`InvalidOption` if the axis lacks its column, for example because the file of the axis does
+    not hold that column.
 
     Examples
     --------
@@ -64,12 +64,13 @@ class MedialColumns(Complex):
     ) -> AxisGraph:
         """Returns the sheets, seams, curves and junctions, with areas, lengths and thicknesses; see :func:`axis_graph`.
 
-        For axes of all angles, they are those at the least angle.
+        For axes of all theta, the graph is that of the axis at `least_theta`.
 
         Parameters
         ----------
         mesh, triangles
-            The mesh of the axis. Default: the mesh that the axis was made from. Axes from files have none.
+            The mesh of the axis. Default: the mesh from which the axis was made. For an axis from a file, no mesh is
+            known.
         threads, progress
             As for :func:`distance_field`.
         **options
@@ -117,7 +118,7 @@ class MedialColumns(Complex):
 
     @cached_property
     def footprints(self) -> FloatArray:
-        """Closest point of the surface, and that of the other wall: (n, 2, 3). A copy of two columns."""
+        """Closest point of the surface, and closest point of the opposite wall: (n, 2, 3). A copy of two columns."""
         return _stacked(self._needed("vertices", "footprint_0"), self._needed("vertices", "footprint_1"))
 
     @cached_property
@@ -142,7 +143,7 @@ class MedialColumns(Complex):
 
     @property
     def edge_angle(self) -> npt.NDArray[np.float32]:
-        """Separation angle of each edge: (e,), degrees. 0 if only homotopy keeps the edge."""
+        """Separation angle of each edge: (e,), degrees. 0 if the edge exists only to keep the homotopy type."""
         found: npt.NDArray[np.float32] = self._needed("edges", "separation_angle")
         return found
 
@@ -154,7 +155,7 @@ class MedialColumns(Complex):
 
     @property
     def triangle_angle(self) -> npt.NDArray[np.float32]:
-        """Separation angle of each triangle: (m,), degrees. 0 if only homotopy keeps the triangle."""
+        """Separation angle of each triangle: (m,), degrees. 0 if the triangle exists only to keep the homotopy type."""
         found: npt.NDArray[np.float32] = self._needed("triangles", "separation_angle")
         return found
 
@@ -162,8 +163,8 @@ class MedialColumns(Complex):
     def triangle_sheet(self) -> IntArray:
         """Sheet of each triangle: (m,), 0 to sheet_count - 1.
 
-        For a mesh, numbers follow from the faces on both sides of a sheet. A sheet has the same number wherever the
-        mesh lies, and on every grid that shows the same sheets.
+        For a mesh, the faces on both sides of a sheet determine its number. The position of the mesh does not change
+        the number. All grids that show the same sheets give the same numbers.
         """
         found: IntArray = self._needed("triangles", "sheet")
         return found
@@ -176,7 +177,7 @@ class MedialColumns(Complex):
 
 @dataclass(frozen=True, eq=False)
 class Present:
-    """Parts of a :class:`NestedComplex` that exist at an angle: True or False for each.
+    """Masks of the vertices, edges and triangles of a :class:`NestedComplex`: True if the element exists at one theta.
 
     Examples
     --------
@@ -193,11 +194,11 @@ class Present:
 
 
 class NestedComplex(MedialColumns):
-    """Medial axes of one solid at all angles from `least_theta` on, as sets of points.
+    """Medial axes of one solid for all theta from `least_theta` to 180 degrees, as sets of points.
 
-    :meth:`MedialAxis.nested` returns it. It serves to show axes, and to cut them at any angle without further
-    computation. Vertices at the same place are one, and parts without extent are left out. So its topology may differ
-    from that of the solid. Roles of vertices and sheets are those at the least angle. An edge with several roles is
+    :meth:`MedialAxis.nested` returns it. Use it to show the axis of any theta without further computation. Vertices
+    with the same position are merged, and parts without extent are left out. So the topology of this complex may differ
+    from that of the solid. Roles of vertices and sheets are those at `least_theta`. An edge with several roles is
     listed several times.
 
     Examples
@@ -219,30 +220,30 @@ class NestedComplex(MedialColumns):
 
     @property
     def vertex_until(self) -> npt.NDArray[np.float32]:
-        """Angle up to which each vertex exists: (n,), degrees. It exists if theta is less."""
+        """Upper limit of theta for each vertex: (n,), degrees. A vertex exists if theta is below its limit."""
         found: npt.NDArray[np.float32] = self.vertex_columns["until"]
         return found
 
     @property
     def edge_from(self) -> npt.NDArray[np.float32]:
-        """Angle from which each edge has its role: (e,), degrees. It has it if edge_from <= theta < edge_until."""
+        """Least theta for the role of each edge: (e,), degrees. The role exists if edge_from <= theta < edge_until."""
         found: npt.NDArray[np.float32] = self.edge_columns["from"]
         return found
 
     @property
     def edge_until(self) -> npt.NDArray[np.float32]:
-        """Angle up to which each edge has its role: (e,), degrees."""
+        """Upper limit of theta for the role of each edge: (e,), degrees. See edge_from."""
         found: npt.NDArray[np.float32] = self.edge_columns["until"]
         return found
 
     @property
     def triangle_until(self) -> npt.NDArray[np.float32]:
-        """Angle up to which each triangle exists: (m,), degrees. It exists if theta is less."""
+        """Upper limit of theta for each triangle: (m,), degrees. A triangle exists if theta is below its limit."""
         found: npt.NDArray[np.float32] = self.triangle_columns["until"]
         return found
 
     def at(self, theta: Real) -> Present:
-        """Returns the parts that exist at an angle. They cover the result of simplify(theta).
+        """Returns the parts that exist at one theta. These parts cover the result of simplify(theta).
 
         Parameters
         ----------

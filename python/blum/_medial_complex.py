@@ -1,6 +1,6 @@
 """Medial axes as complexes.
 
-They have files and certificates.
+Such axes have files and certificates.
 """
 
 from __future__ import annotations
@@ -190,7 +190,7 @@ class MedialComplex(MedialColumns):
         """Numbers of vertices, triangles, sheets, curve edges, rim edges, seam edges and junctions.
 
         Without roles and sheets, `sheets`, `rim_edges`, `seam_edges` and `junctions` are None. `curve_edges` then
-        counts the edges of no triangle.
+        counts the edges without triangles.
         """
         counts: dict[str, int | None] = dict(_core.medial_counts(self._core))
         if not self.has["labels"]:
@@ -199,17 +199,17 @@ class MedialComplex(MedialColumns):
 
     @property
     def theta(self) -> float | None:
-        """Angle of the axis, degrees. None if unknown."""
+        """Threshold of the separation angle (theta), degrees. None if unknown."""
         return self._origin.theta
 
     @property
     def grid(self) -> Grid | None:
-        """Grid of the voxel centres, of the first body or of the image. None if unknown."""
+        """Grid of the voxel centres: of the first body of a mesh, or of the image. None if unknown."""
         return self._origin.grid
 
     @property
     def deviation(self) -> float | None:
-        """Bound on the distance from the axis with all vertices, mesh units. None if none were removed."""
+        """Bound on the distance from the axis with all vertices, mesh units. None if no vertices were removed."""
         return self._origin.deviation
 
     @cached_property
@@ -226,7 +226,7 @@ class MedialComplex(MedialColumns):
     def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
         """Returns the axis without the sheets whose largest separation angle is at most theta.
 
-        Sheets are removed as a whole, the smallest angle first. A sheet is removed only if that keeps the topology.
+        Sheets are removed as a whole, the smallest angle first. A sheet stays if its removal would change the topology.
 
         Parameters
         ----------
@@ -251,9 +251,9 @@ class MedialComplex(MedialColumns):
     def decimate(self, tolerance: Real | None = None, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
         """Returns the same axis with fewer vertices and triangles, as `blum medial` writes it.
 
-        Sheets, seams, rims and curves move by at most the tolerance. Radii, interpolated linearly, change by at most as
-        much. :attr:`deviation` contains the bound that holds. Remaining vertices keep their positions and attributes.
-        The topology and the connections of sheets, seams and curves stay the same.
+        Sheets, seams, rims and curves move by at most the tolerance. Radii are interpolated linearly between vertices,
+        and also change by at most the tolerance. :attr:`deviation` contains the bound that holds. Remaining vertices
+        keep their positions and attributes. The topology and the connections of sheets, seams and curves stay the same.
 
         Parameters
         ----------
@@ -295,7 +295,8 @@ class MedialComplex(MedialColumns):
         Parameters
         ----------
         mesh, triangles
-            The mesh of the axis. Default: the mesh that the axis was made from. Axes from files have none.
+            The mesh of the axis. Default: the mesh from which the axis was made. For an axis from a file, the mesh must
+            be given.
         threads, progress
             As for :func:`distance_field`.
         **options
@@ -395,8 +396,9 @@ class MedialComplex(MedialColumns):
     def to_pyvista(self) -> Any:
         """Returns a pyvista.PolyData of triangles and edges. Without PyVista, returns a dict of arrays.
 
-        It has all columns of vertices, and the angles, roles and sheets of cells. Cell data list the edges before the
-        triangles, as PolyData does. `sheet` and `role` are -1 for cells without one.
+        The result has all columns of vertices, and the angles, roles and sheets of its cells (edges and triangles).
+        Cell data list the edges before the triangles, as PolyData does. `sheet` and `role` are -1 for cells without
+        one.
 
         Examples
         --------
@@ -445,7 +447,7 @@ def _restored(
 
 
 def claim_of(axis: MedialComplex) -> Claim:
-    """Returns an axis as its certificate sees it."""
+    """Returns an axis in the form that certification needs."""
     if not isinstance(axis, MedialComplex):
         raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
     origin = axis._origin
@@ -521,14 +523,15 @@ def certify(
 ) -> Certificate:
     """Checks an axis against the mesh or image whose solid it claims to have, and returns a certificate.
 
-    Betti numbers are compared body by body. For polyhedra, loops and closed surfaces must enclose the tunnels and voids
-    of their body, by linking numbers (``homology``). Vertices, radii, footprints, sites and angles are checked with
-    exact searches. Edges must lie in the solid. Points of sheets and curves must be in the middle between two walls.
-    Parts at well more than theta must not be missing; see :class:`MedialCheck`. Roles and sheets must fit the
-    triangles; see :class:`LabelCheck`. Angles of triangles and edges must fit their places; see :class:`AngleCheck`.
+    Betti numbers are compared body by body. For polyhedra, loops of the axis must run around the tunnels of their body,
+    and closed surfaces around its voids. Linking and winding numbers decide this (``homology``). Vertices, radii,
+    footprints, sites and angles are checked with exact searches. Edges must lie in the solid. Points of sheets and
+    curves must be midway between two walls. Parts with angles well above theta must not be missing; see
+    :class:`MedialCheck`. Roles and sheets must fit the triangles; see :class:`LabelCheck`. Angles of triangles and
+    edges must fit their positions; see :class:`AngleCheck`.
 
-    The claims of the axis, or of its file, are checked as `blum verify` does. They are the rule of its solid, the sides
-    of its voxels, and its attributes.
+    The claims of the axis, or of its file, are checked as `blum verify` does. These claims are the rule of the solid,
+    the sides of the voxels, and the attributes of the axis.
 
     The checking code is independent of the construction, except for a list of shared parts
     (docs/decisions/0007-certificate.md).
@@ -539,15 +542,16 @@ def certify(
     shape, triangles
         The mesh, as for :func:`distance_field`, or the image, as for :func:`distance_transform`.
     label, threshold
-        Images: voxels of the solid. Default: those that the axis names, otherwise the nonzero voxels.
+        Images: voxels of the solid. Default: the voxels that the axis records; without a record, the nonzero voxels.
     grid : Grid, optional
-        Meshes that do not bound a polyhedron: grid of the centres of the solid's voxels. Default: that of the axis.
+        Meshes that do not bound a polyhedron: grid of the centres of the solid's voxels. Default: the grid that the
+        axis records.
     weld : float, optional
         Meshes: as for :func:`distance_field`. Default for a path: the value in the file of the axis.
     threads, progress
         As for :func:`distance_field`.
     **options
-        An option that is not given is checked if the axis has the attribute.
+        A check without a given option runs if the axis has the attribute that the check needs.
 
     :class:`AxisVerifier` reads the shape once for several axes.
 

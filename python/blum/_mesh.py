@@ -71,7 +71,8 @@ class Mesh:
     segments : (s, 2) array of integers, optional
         Vertices of free segments.
     points : (p,) array of integers, optional
-        Vertices that belong to the shape by themselves. Without triangles, segments and points, all vertices do.
+        Vertices that are free points of the shape. Without triangles, segments and points, all vertices are free
+        points.
 
     Arrays must not change during a call. They may change between calls (see :class:`FieldSolver`).
 
@@ -105,7 +106,7 @@ class Mesh:
 
     @property
     def vertices(self) -> FloatArray:
-        """Positions: (n, 3), mesh units. They may change in place between calls. Another array needs another Mesh."""
+        """Positions: (n, 3), mesh units. Values may change in place between calls. Other arrays need another Mesh."""
         return self._vertices
 
     @property
@@ -194,7 +195,7 @@ class Mesh:
 
 
 def _padded(cells: IntArray) -> npt.NDArray[Any] | None:
-    """Returns cells as VTK lists them, each after its number of corners. None without cells."""
+    """Returns cells in the form of VTK: each is preceded by its number of corners. None without cells."""
     if len(cells) == 0:
         return None
     width = np.full((len(cells), 1), cells.shape[1], dtype=np.int64)
@@ -377,8 +378,8 @@ def read_mesh(path: PathLike, *, weld: Real | None = None) -> Mesh:
     ----------
     path : path
     weld : float, optional
-        Merges vertices at most this far apart, mesh units. 0 merges equal ones. Default: 0 for .stl, no merging for
-        others.
+        Merges vertices at most this far apart, mesh units. 0 merges equal vertices. Default: 0 for .stl, no merging for
+        other formats.
 
     Raises
     ------
@@ -404,14 +405,14 @@ def read_mesh(path: PathLike, *, weld: Real | None = None) -> Mesh:
 
 
 def weld(mesh: MeshLike, tolerance: Real = 0.0) -> Mesh:
-    """Returns the mesh with merged vertices: those in one place, or joined by steps of at most a tolerance.
+    """Returns the mesh with merged vertices: vertices that coincide, or are joined by steps of at most `tolerance`.
 
     Parameters
     ----------
     mesh : mesh
         As for :func:`distance_field`.
     tolerance : float
-        Longest step, mesh units. A chain of steps becomes one vertex, however long it is.
+        Longest step, mesh units. All vertices of a chain of steps become one vertex, however long the chain is.
 
     Examples
     --------
@@ -566,7 +567,7 @@ class Sites:
 
     @property
     def edges(self) -> IntArray:
-        """Vertices of each edge: (E, 2), the smaller one first."""
+        """Vertices of each edge: (E, 2), the smaller index first."""
         found: IntArray = self._table.edges
         return found
 
@@ -620,7 +621,7 @@ class Sites:
         return found
 
     def triangles(self, ids: Any) -> IntArray:
-        """Returns the smallest triangle that contains each site, -1 if none: (n,).
+        """Returns the smallest index of a triangle that contains each site, -1 if no triangle does: (n,).
 
         Examples
         --------
@@ -727,7 +728,7 @@ class WindingNumber:
         return values.reshape(shape)
 
     def is_inside(self, points: Any, *, threads: int = 0, progress: Progress = False) -> npt.NDArray[np.bool_]:
-        """Returns True for each of the points (..., 3) whose winding number is above 1/2, as the full sum decides it.
+        """Returns True for each of the points (..., 3) whose winding number, by the full sum, is above 1/2.
 
         Examples
         --------

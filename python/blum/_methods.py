@@ -14,8 +14,9 @@ class AxisGraphMethods:
         "wall". An incidence joins a sheet and its seam, a seam and its junction, or a sheet and a junction on it. A
         wall joins a sheet and a patch, with its `share`.
 
-        The other attributes are the members that are values, for example `thickness_median` and `position_x`. The
-        GraphML files of `MedialComplex.write_graph` hold the same graph. Raises ImportError if networkx is missing.
+        The other attributes are members of the element that are single values, for example `thickness_median` and
+        `position_x`. The GraphML files of `MedialComplex.write_graph` hold the same graph. Raises ImportError if
+        networkx is missing.
 
         Examples
         --------

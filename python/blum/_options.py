@@ -52,6 +52,6 @@ def _type(kind: str) -> Any:
 
 def _documented(name: str, kind: str, default: Any, unit: str, doc: str) -> str:
     """Returns the documentation of one option."""
-    text = f"{doc}{f', {unit}' if unit else ''}. Default: {default!r}."
+    text = f"{doc}{f' ({unit})' if unit else ''}. Default: {default!r}."
     lines = textwrap.fill(text[0].upper() + text[1:], 110, initial_indent=8 * " ", subsequent_indent=8 * " ")
     return f"    {name} : {_core.enums.get(kind, kind)}\n{lines}\n"

@@ -50,7 +50,8 @@ class SignedDistances:
     def barycentric(self) -> FloatArray:
         """Weights of the triangle's corners, whose weighted mean is the closest point: (..., 3).
 
-        They are NaN without a triangle. They are computed at the first access, from the mesh's vertices at that time.
+        Weights are NaN if the closest point lies on no triangle. They are computed at the first access, from the mesh's
+        vertices at that time.
         """
         rows, shape = points_and_shape(self.closest, "points")
         site, triangle = (np.ascontiguousarray(ids.reshape(-1)) for ids in (self.site, self.triangle))
@@ -135,7 +136,7 @@ def sample_surface(
     progress: Progress = False,
     **options: Unpack[SampleOptions],
 ) -> SurfaceSamples:
-    """Returns random points of a surface, uniform by area. They are the same for the same mesh and seed.
+    """Returns random points of a surface, uniform by area. The same mesh and seed give the same points.
 
     Parameters
     ----------
@@ -193,7 +194,7 @@ def sample_near(
 ) -> NearSamples:
     """Returns random points near a surface with their exact signed distances, for example to train networks.
 
-    The points near the surface come first, then those in the box (`in_box`).
+    The points near the surface come first, then the points that are uniform in the box (`in_box`).
 
     Parameters
     ----------

@@ -61,14 +61,14 @@ def continuous_collisions(
     """Returns all pairs of a vertex and a triangle, and of two edges, of a mesh that meet while its vertices move.
 
     Vertices move along straight lines. The set of pairs is exact for the given coordinates. Pairs that share a vertex
-    are left out. Vertices in one place at both ends are one vertex.
+    are left out. Vertices that coincide at both times count as one vertex.
 
     Parameters
     ----------
     mesh : mesh
         The mesh at time 0, as for :func:`distance_field`.
     end : (n, 3) array, or mesh
-        Its vertices at time 1, or the mesh at time 1 with the same triangles. C-contiguous float64 is not copied.
+        The vertices at time 1, or the mesh at time 1 with the same triangles. C-contiguous float64 is not copied.
     threads, progress
         As for :func:`distance_field`.
     **options
@@ -112,7 +112,7 @@ def vertex_face_impacts(
     Returns
     -------
     (n,) array
-        Times from 0 to 1, never after the contact; NaN if they do not meet.
+        Times from 0 to 1, never after the first contact; NaN if vertex and triangle do not meet.
 
     Examples
     --------

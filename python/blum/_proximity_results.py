@@ -46,7 +46,7 @@ class PrimitivePair:
 class ProximityPairs:
     """Pairs of primitives and their closest points, as arrays.
 
-    `pairs[k]` is one pair, and `pairs[1:5]` is a part. Without pairs, it is false.
+    `pairs[k]` is one pair, and `pairs[1:5]` contains several. An object without pairs is false.
 
     Examples
     --------
@@ -94,7 +94,7 @@ class ProximityPairs:
 
     @property
     def closest(self) -> PrimitivePair | None:
-        """Pair with the smallest distance; the first of equal ones. None without pairs."""
+        """Pair with the smallest distance; the first one if several are equally close. None without pairs."""
         return self[int(np.argmin(self.distance))] if len(self) else None
 
     def __repr__(self) -> str:

@@ -1,6 +1,6 @@
 """Proximity scenes.
 
-They compute distances and collisions among meshes that move.
+Scenes compute distances and collisions among meshes that move.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ _ALL_LAYERS = 0xFFFFFFFF
 class ProximityScene:
     """Meshes that move, deform and change, with queries of proximity among them. Exact for the given coordinates.
 
-    A scene keeps copies of its meshes. Results do not depend on the number of threads. After any updates, they are
-    those of a new scene. If pairs are equally far apart, the pair with the smallest (object, primitive) of the first,
-    then of the second, is returned. Threads that share a scene wait for each other.
+    A scene keeps copies of its meshes. Results do not depend on the number of threads. After updates, results equal
+    those of a new scene. If several pairs are equally far apart, the smallest one is returned: by (object, primitive)
+    of its first primitive, then of its second. Threads that share a scene wait for each other.
 
     Parameters
     ----------
@@ -103,13 +103,13 @@ class ProximityScene:
         layers : int
             Layers that contain the object, one bit for each.
         meets : int
-            Layers whose objects it is compared with. Two objects are compared if each is in a layer that the other one
-            meets.
+            Layers whose objects this object is compared with. Two objects are compared if each is in a layer that the
+            other one meets.
         compare_self : bool
             True: the object is compared with itself, except primitives that share a vertex. (In C++
             `ObjectOptions::self`.)
         name : str
-            Name in messages. Without one, they contain "object 3".
+            Name of the object in messages. Default: "object 3", with its number.
         transform
             See :meth:`update`.
         threads, progress
@@ -178,12 +178,13 @@ class ProximityScene:
         index : int
             Number of the object.
         vertices : (n, 3) array, optional
-            New positions before the transform, as many as the object has.
+            New positions of all vertices, before the transform.
         transform : (4, 4) or (3, 4) array, or a pair (rotation (3, 3), translation (3,)), optional
             Pose of the object, applied to the positions of its vertices. It is absolute, not relative to the last pose.
-            It must be rigid to 1e-9, so in double precision. :func:`closest_rotation` converts others.
+            It must be rigid to within 1e-9, so it needs double precision. :func:`closest_rotation` converts less
+            precise rotations.
         mesh : mesh, optional
-            Another mesh for the object, whose transform and comparisons stay. Excludes `vertices`.
+            Another mesh for the object. Its transform and comparisons stay the same. Excludes `vertices`.
         threads, progress
             As for :func:`distance_field`.
 
@@ -216,7 +217,7 @@ class ProximityScene:
                 self._scene.set_place(which, place)
 
     def exclude(self, a: Integer, b: Integer, excluded: bool = True) -> None:
-        """Excludes a pair of objects, or an object with itself, whatever their layers; or includes it again.
+        """Excludes a pair of objects, or one object and itself, from comparisons, or includes the pair again.
 
         Examples
         --------
@@ -293,10 +294,10 @@ class ProximityScene:
     def closest_primitives(
         self, max_distance: Real = np.inf, *, threads: int = 0, progress: Progress = False
     ) -> ProximityPairs:
-        """Returns, for each primitive of the scene, the closest one that it is compared with.
+        """Returns, for each primitive of the scene, the closest primitive that it is compared with.
 
-        Primitives without another one within the distance are left out. Pairs are sorted by ascending object, then
-        primitive, of the first.
+        A primitive is left out if no such primitive is within `max_distance`. Pairs are sorted by the object, then the
+        primitive, of their first primitive.
 
         Parameters
         ----------
@@ -342,7 +343,7 @@ class ProximityScene:
     def collisions(self, *, threads: int = 0, progress: Progress = False) -> ProximityPairs:
         """Returns all compared pairs of primitives that have a point in common.
 
-        For one object, this includes pairs that share a vertex and have more in common than the shared corner or edge.
+        Within one object, pairs that share a vertex are included if they have more in common than a corner or an edge.
 
         Examples
         --------
@@ -368,7 +369,7 @@ class ProximityScene:
     ) -> list[Penetration]:
         """Returns the connected parts of the overlap of two solids, the deepest first.
 
-        The list is empty if they only touch. For one object twice, returns the overlaps of its parts.
+        The list is empty if the solids only touch. If both are the same object, returns the overlaps of its parts.
 
         Parameters
         ----------
@@ -466,9 +467,9 @@ class ProximityScene:
     ) -> ProximityPairs:
         """Returns the signed distances of all compared pairs of solids.
 
-        They are the pairs of :meth:`separation`. For solids that overlap, the pair has a negative distance. Its points
-        are the deepest point of the deepest part and the closest point of the other surface. `closest` is then the
-        deepest pair.
+        The results are the pairs of :meth:`separation`. For solids that overlap, the pair has a negative distance. The
+        points of this pair are the deepest point of the deepest part and the closest point of the other surface.
+        `closest` is then the deepest pair.
 
         Parameters
         ----------
@@ -505,8 +506,8 @@ class ProximityScene:
         ----------
         motions : dict
             The end of the motion of each moving object: vertices (n, 3) before its transform, or a transform, or
-            ``{"vertices": ..., "transform": ...}``. Both have the forms of :meth:`update`. A mesh with as many vertices
-            may replace the vertices.
+            ``{"vertices": ..., "transform": ...}``. Both have the forms of :meth:`update`. A mesh with the same number
+            of vertices may be given for the vertices.
         threads, progress
             As for :func:`distance_field`.
         **options
@@ -587,7 +588,7 @@ def closest_primitives(
     meshes : mesh, or a list of meshes
         As for :func:`distance_field`.
     max_distance : float
-        Primitives without another one within this distance are left out. Mesh units.
+        A primitive is left out if no other primitive is within this distance. Mesh units.
     compare_self : bool, optional
         True: each mesh is compared with itself. Default: True for a single mesh.
     threads, progress
@@ -621,8 +622,8 @@ def collisions(
     meshes : mesh, or a list of meshes
         As for :func:`distance_field`.
     max_distance : float
-        Mesh units. At 0, primitives that share a vertex are returned if they have more in common than that. Above 0,
-        they are left out.
+        Mesh units. If it is 0, primitives that share a vertex are returned if they have further points in common. If it
+        is above 0, primitives that share a vertex are left out.
     compare_self : bool, optional
         True: each mesh is compared with itself. Default: True for a single mesh.
     threads, progress
@@ -762,7 +763,7 @@ def closest_rotation(matrix: Any) -> FloatArray:
     ----------
     matrix : (3, 3), (3, 4) or (4, 4) array
         A rotation, or a transform, of which only the rotation changes. Its columns must have length 1 and be
-        perpendicular, to 0.1.
+        perpendicular, to within 0.1.
 
     Examples
     --------

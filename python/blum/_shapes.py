@@ -86,7 +86,7 @@ def generate(name: _ImageName, **parameters: Real) -> Image: ...  # type: ignore
 @overload
 def generate(name: str, **parameters: Real) -> Mesh: ...
 def generate(name: str, **parameters: Real) -> Mesh | Image:
-    """Makes the shape of a name: a :class:`Mesh`, or an :class:`Image` if the name ends in ``_image``.
+    """Makes the shape with the given name: a :class:`Mesh`, or an :class:`Image` if the name ends in ``_image``.
 
     :func:`shapes` and ``blum make NAME --help`` list the parameters.
 
@@ -125,7 +125,7 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
     outline : (n, 2) array
         A simple polygon, in either direction.
     holes : list of (k, 2) arrays
-        Simple polygons inside it, in either direction. They must not touch it or each other.
+        Simple polygons inside the outline, in either direction. They must not touch the outline or each other.
     thickness : float
         Mesh units.
     stacks : int
@@ -149,7 +149,7 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
 
 
 def noisy(mesh: MeshLike, amplitude: Real, *, seed: Integer = 1, weld: Real | None = None) -> Mesh:
-    """Returns a copy whose vertices are moved by random vectors, uniform in a ball. It may cross itself.
+    """Returns a copy whose vertices are moved by random vectors, uniform in a ball. The copy may cross itself.
 
     Parameters
     ----------

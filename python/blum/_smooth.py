@@ -31,9 +31,9 @@ def smooth_surface(
     """Returns a smooth, closed mesh between the selected voxels of an image and all others.
 
     The centres of the selected voxels are inside, all other centres outside. Each vertex stays within half a voxel,
-    along each axis, of its place on the surface of the voxels' boxes. The mesh is manifold and does not cross itself.
-    It bounds as many components, tunnels and voids as the voxels have. Its medial axis lacks the small sheets that the
-    steps of boxes cause.
+    along each axis, of its initial position on the surface of the voxels' boxes. The mesh is manifold and does not
+    cross itself. Its solid has the same numbers of components, tunnels and voids as the voxels. The medial axis of the
+    mesh lacks the small sheets that the steps of the voxels' boxes cause.
 
     Parameters
     ----------

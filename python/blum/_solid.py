@@ -55,7 +55,7 @@ class CellularModel:
 
     @property
     def report(self) -> CellularModelReport:
-        """Counts of its cells, and the places that fail."""
+        """Counts of the model's cells, and the boxes that fail the test."""
         found: CellularModelReport = self._core.report
         return found
 
@@ -96,17 +96,18 @@ class CellularModel:
 class Solid:
     """Solid of a mesh or an image: its rule, its bodies and their topology.
 
-    Closed meshes that do not cross themselves are polyhedra, shell by shell. Shells and triangles that face the wrong
-    way are reversed. Meshes that cross themselves become polyhedra if few triangles cross: the solid is where the
-    winding number is 1 or more. For other meshes, the solid is where the winding number is above 1/2. For images, it is
-    the union of the selected voxels, which touch in corners.
+    Closed meshes that do not cross themselves bound polyhedra. Shells and triangles that face the wrong way are
+    reversed. Meshes that cross themselves become polyhedra if few triangles cross: the solid is where the winding
+    number is 1 or more. For other meshes, the solid is where the winding number is above 1/2. For images, the solid is
+    the union of the selected voxels; voxels that touch in a corner are connected.
 
     Parameters
     ----------
     shape, triangles
         A mesh, as for :func:`distance_field`, or an image: an array [z, y, x], an :class:`Image` or a path.
     label, threshold
-        Images: voxels of this value, or of at least this value. Default: the nonzero voxels.
+        Images: `label` selects voxels of this value, `threshold` voxels of at least this value. Default: the nonzero
+        voxels.
     weld : float, optional
         Meshes: as for :func:`distance_field`.
     threads, progress
@@ -150,7 +151,7 @@ class Solid:
 
     @property
     def rule(self) -> str:
-        """Rule for its inside: "polyhedron", "winding" or "voxels"."""
+        """Rule that decides which points are inside: "polyhedron", "winding" or "voxels"."""
         return self._core.rule
 
     @property
@@ -160,7 +161,7 @@ class Solid:
 
     @property
     def problem(self) -> str:
-        """Reason why a mesh does not bound bodies that do not touch, with advice. Empty if it does."""
+        """Reason why the mesh does not bound bodies that are apart, with advice. Empty if it bounds such bodies."""
         return self._core.problem
 
     @property
@@ -173,13 +174,14 @@ class Solid:
 
     @property
     def betti(self) -> Betti | None:
-        """Components, tunnels and voids. None for "winding", for which only voxels have numbers."""
+        """Components, tunnels and voids. None for "winding", because only the voxels of such a solid have Betti
+        numbers."""
         numbers: Any = self._core.betti
         return None if numbers is None else betti_of(numbers)
 
     @property
     def bodies(self) -> tuple[SolidBody, ...]:
-        """Polyhedra: the bodies, each facing outwards. "winding": one, of all triangles. Images: none."""
+        """Polyhedra: the bodies, each facing outwards. "winding": one body with all triangles. Images: none."""
         return tuple(
             SolidBody(mesh_of_arrays(arrays), vertices, triangles, betti_of(betti), tuple(map(int, shells)))
             for arrays, vertices, triangles, betti, shells in self._core.bodies
@@ -202,7 +204,7 @@ class Solid:
 
     @property
     def resolved(self) -> CrossingCounts | None:
-        """Counts of the crossings that were resolved. None if none were."""
+        """Counts of the crossings that were resolved. None if no crossings were resolved."""
         found: CrossingCounts | None = self._core.resolved
         return found
 

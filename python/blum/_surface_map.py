@@ -1,6 +1,6 @@
 """Distances over surfaces.
 
-They are maps as textures, thickness, Hausdorff distances and deviations.
+The module computes maps as textures, thickness, Hausdorff distances and deviations.
 """
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ __all__ = [
 class SurfaceMap:
     """Distance vector field over the surface of a mesh, as a texture.
 
-    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture, with rows from the top. Its value is that
-    of one point of one triangle. Between texels, lookups use the nearest texel or are bilinear.
+    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture; row 0 is at the top. Its value is that of
+    one point of one triangle. Between texels, lookups use the nearest texel or are bilinear.
 
     Examples
     --------
@@ -120,7 +120,8 @@ class SurfaceMap:
         units : str
             Units of the mesh, for example "mm", for the bar and the metadata.
         range : (float, float), optional
-            Distances at the ends of the colours. Default: those of the map.
+            Distances at the two ends of the colour scale. Default: smallest and largest value of the map; except for
+            thickness, 0 is included.
 
         Examples
         --------
@@ -150,9 +151,9 @@ class SurfaceMap:
 
     @cached_property
     def object(self) -> IntArray:
-        """Index of the closest one of the other meshes, in their order: (h, w). -1 if none.
+        """Index of the closest of the other meshes at each texel: (h, w). -1 if no closest point was found.
 
-        Maps from files raise ValueError, because files do not record it.
+        Maps from files raise ValueError, because files do not record this index.
         """
         if self._others is None:
             raise ValueError("the map is from a file, and files do not record which of the other meshes is closest")
@@ -203,7 +204,7 @@ def surface_distance_map(
     target : mesh
         A mesh with triangles, as for :func:`distance_field`.
     *others : meshes
-        Any soups. :attr:`SurfaceMap.object` contains the closest one of each texel.
+        Any soups. :attr:`SurfaceMap.object` contains the index of the closest of these meshes for each texel.
     weld, threads, progress
         As for :func:`distance_field`.
     **options
@@ -237,7 +238,7 @@ class SurfaceMapper:
         As for :func:`surface_distance_map`.
     texture_coordinates : array (t, 3, 2), optional
         Texture coordinates of the corners of each triangle of the target, 0 to 1, v down (OBJ files have 1 - v).
-        Triangles must not overlap. Default: a layout of its own.
+        Triangles must not overlap. Default: a layout that Blum makes.
     texture_size : (int, int), optional
         Width and height of the given texture, in texels.
     weld, threads, progress
@@ -284,7 +285,7 @@ class SurfaceMapper:
             )
 
     def move_target(self, vertices: Any) -> None:
-        """Sets new positions of the target's vertices, as many as it has.
+        """Sets new positions of all vertices of the target.
 
         Examples
         --------
@@ -301,7 +302,7 @@ class SurfaceMapper:
         self._target = Mesh(moved.copy(), mesh.triangles, mesh.segments, mesh.points)
 
     def move_other(self, vertices: Any, *, threads: int = 0) -> None:
-        """Sets new positions of the other mesh's vertices, as many as it has.
+        """Sets new positions of all vertices of the other mesh.
 
         Examples
         --------
@@ -462,15 +463,16 @@ def thickness(
     - `ray`: distance from the point, against the normal of its triangle, to the first other triangle through which the
       ray leaves the solid.
 
-    - `ball`: diameter of the largest ball that touches the surface at the point from inside. It contains no point of a
-      triangle that is turned by `separation` or more. Triangles that are turned by less count as one smooth surface.
+    - `ball`: diameter of the largest ball that touches the surface at the point from inside. The ball contains no point
+      of a triangle whose normal differs from that of the point's triangle by `separation` or more. Triangles whose
+      normals differ by less count as one smooth surface.
 
     Parameters
     ----------
     solid : mesh
         Its triangles must face outwards.
     points : array of shape (..., 3), optional
-        Each stands for the closest point of the surface. Default: the centroids of the triangles.
+        Each point is replaced by the closest point of the surface. Default: the centroids of the triangles.
     weld, threads, progress
         As for :func:`distance_field`.
     **options

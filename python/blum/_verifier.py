@@ -20,7 +20,7 @@ __all__ = ["AxisVerifier"]
 
 
 class AxisVerifier:
-    """Certifier of axes of one mesh or image, which it reads once. Six axes take little longer than one.
+    """Certifier of axes of one mesh or image, which is read only once. Six axes take little longer than one axis.
 
     The certificates are those of :func:`certify`.
 
@@ -67,7 +67,7 @@ class AxisVerifier:
         label, threshold, grid, threads, progress
             As for :func:`certify`.
         **options
-            An option that is not given is checked if the axis has the attribute.
+            A check without a given option runs if the axis has the attribute that the check needs.
 
         Examples
         --------

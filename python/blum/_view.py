@@ -1,6 +1,6 @@
 """Views in a browser.
 
-`view()` makes a page of objects in memory, as `blum view` makes it of files.
+`view()` makes a page that shows objects in memory. The command `blum view` makes such pages from files.
 """
 
 from __future__ import annotations
@@ -50,11 +50,11 @@ def view(*things: Viewable, output: PathLike | None = None, show: bool | None = 
         :class:`MedialAxis`, :class:`MedialComplex`, :class:`SurfaceMap` and :class:`Image`. Arrays [z, y, x], and paths
         of files that `blum view` shows.
     named
-        The same with names: ``view(part=mesh, distance=field)``.
+        The same kinds of objects with names: ``view(part=mesh, distance=field)``.
     output : path, optional
         The page, .html or .htm. Default: a file in a new temporary folder, which is not removed.
     show : bool, optional
-        True: opens it in the desktop's browser. Default: True if `output` is not given.
+        True: opens the page in the desktop's browser. Default: True if `output` is not given.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def view(*things: Viewable, output: PathLike | None = None, show: bool | None = 
     ------
     InvalidOption, TypeError, KeyboardInterrupt
     FileError
-        Also if one of several files cannot be read. The page then shows the others, and names it.
+        Also if one of several files cannot be read. The page then shows the others, and lists that file.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def _make_page(files: list[Path], page: Path) -> None:
 
 
 def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]) -> Path:
-    """Returns the file that shows an object: its own, or a written one."""
+    """Returns the file that shows an object: a path as given, or a newly written file."""
     if isinstance(thing, (str, os.PathLike)):
         return existing_file(thing).absolute()
     if isinstance(thing, (MedialAxis, MedialComplex)):

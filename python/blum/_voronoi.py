@@ -61,13 +61,14 @@ class VoronoiComplex(Complex):
 
     @property
     def triangle_sites(self) -> IntArray:
-        """Sites of the regions on both sides of each triangle: (m, 2), the smaller one first. -1 outside."""
+        """Sites of the regions on both sides of each triangle: (m, 2), the smaller index first. -1 outside."""
         columns = self.triangle_columns
         return np.stack([columns["site_a"], columns["site_b"]], axis=1)
 
     @property
     def footprints(self) -> FloatArray:
-        """Closest points of the surface: (n, 2, 3). If more than two exist, those that are seen furthest apart."""
+        """Closest points of the surface: (n, 2, 3). If more than two exist, the two with the largest angle between
+        them."""
         columns = self.vertex_columns
         return np.stack([columns["footprint_0"], columns["footprint_1"]], axis=1)
 
@@ -78,7 +79,7 @@ class VoronoiComplex(Complex):
         return found
 
     def sites(self) -> list[VoronoiSite]:
-        """Returns the parts of the mesh that the numbers of `triangle_sites` and of regions stand for.
+        """Returns the sites: the faces, edges and vertices of the mesh to which `triangle_sites` and the regions refer.
 
         Each has `kind` ("face", "edge" or "vertex"), `triangles` (of a face) and `vertices` (of an edge or a vertex).
 
@@ -124,10 +125,11 @@ class VoronoiComplex(Complex):
         return found
 
     def medial_axis(self, theta: Real = 1.0, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
-        """Returns the medial axis with separation angles above theta, and the cells that connect it.
+        """Returns the part of the medial axis with separation angles above theta, and the cells that connect this part.
 
-        The complex must have been made with `part="medial"`. Triangles of at most theta are removed by elementary
-        collapses, so the topology stays. The result for a larger theta is part of that for a smaller one.
+        The complex must have been made with `part="medial"`. Triangles with angles of at most theta are removed by
+        elementary collapses, so the topology stays. The result for a larger theta is a part of the result for a smaller
+        theta.
 
         Parameters
         ----------
@@ -158,7 +160,7 @@ class VoronoiComplex(Complex):
         return MedialComplex._of(core, EVERYTHING, origin)
 
     def with_failing_cells(self) -> Complex:
-        """Returns this complex with the sides of the failing cubes as edges. The diagram may be wrong there.
+        """Returns this complex with the sides of the failing cubes as edges. The diagram may be wrong in these cubes.
 
         Edges have a column `obstacle`: 1 (square), 2 (tunnel), 3 (enclosed), 4 (face hole), 5 (handle), 6 (joins) and 7
         (contradiction).
@@ -177,8 +179,8 @@ class VoronoiComplex(Complex):
         """Writes .vtp, .ply, .obj (without columns), .npz or .glb. :func:`read_complex` reads all of them except .glb.
 
         The file appears under its name only when it is complete. A diagram that is not certified is rejected unless
-        `allow_uncertified` is True, because parts of it may be missing or wrong. Its file then records that, and has
-        the failing cubes as edges.
+        `allow_uncertified` is True, because parts of it may be missing or wrong. The file then records that the diagram
+        is not certified, and has the sides of the failing cubes as edges.
 
         Examples
         --------

@@ -1,6 +1,6 @@
 """Brute force for tests.
 
-The functions are slow and simple, in double precision.
+The functions search exhaustively in double precision. They are slow and simple.
 """
 
 from __future__ import annotations

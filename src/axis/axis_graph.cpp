@@ -28,7 +28,7 @@ using detail::SurfacePatches;
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// Follows seams and curves from junction to junction.
+/// Follows each seam and curve from junction to junction, and adds it to the graph as one line.
 class LineWalker {
  public:
   LineWalker(const AxisParts& parts, std::optional<double> homotopy_angle, AxisGraph& graph)
@@ -50,11 +50,13 @@ class LineWalker {
       const std::uint32_t vertex = graph_.junctions[j].vertex;
       for (const std::uint32_t e : parts_.incidence().edges_of_vertex()[vertex]) begin_at(vertex, e);
     }
-    // The rest has no junctions. The first edge of a loop begins at its smallest vertex.
+    // The edges that are left form loops without junctions. The line of a loop begins at the first end of the loop's
+    // first edge.
     for (std::uint32_t e = 0; e < line_of_edge_.size(); ++e) begin_at(parts_.incidence().edges()[e][0], e);
   }
 
-  /// For each of incidence().edges(): place of its line in the seams or the curves.
+  /// Returns for each edge of incidence().edges() the index of its line in the graph's seams or curves; none for other
+  /// edges.
   [[nodiscard]] const std::vector<std::uint32_t>& line_of_edge() const { return line_of_edge_; }
 
  private:
@@ -107,7 +109,7 @@ class LineWalker {
     line.arc_length.push_back(line.length);
   }
 
-  /// Returns the edge that goes on from a vertex; none at a junction and at the end of a loop.
+  /// Returns the next edge of a line that has reached a vertex; none at a junction or at the end of a loop.
   [[nodiscard]] std::uint32_t next_edge(std::uint32_t vertex, EdgePart part) const {
     if (junction_at_[vertex] != none) return none;
     for (const std::uint32_t e : parts_.incidence().edges_of_vertex()[vertex]) {
@@ -145,12 +147,12 @@ class LineWalker {
 
   const AxisParts& parts_;
   AxisGraph& graph_;
-  std::vector<bool> is_for_homotopy_;        ///< of edges
-  std::vector<std::uint32_t> junction_at_;   ///< of each vertex
-  std::vector<std::uint32_t> line_of_edge_;  ///< among the seams or the curves
+  std::vector<bool> is_for_homotopy_;        ///< for each edge: true if it exists for homotopy alone
+  std::vector<std::uint32_t> junction_at_;   ///< for each vertex: its index in the junctions, or none
+  std::vector<std::uint32_t> line_of_edge_;  ///< for each edge: index of its line in the seams or the curves, or none
 };
 
-/// @throws InvalidOption if a column is missing that is needed.
+/// @throws InvalidOption if a column is missing: the radii of vertices or the sheets of triangles.
 void check_needed(const Complex& axis) {
   if (!axis.positions.empty() && axis.vertex_columns.find(medial_columns::radius) == nullptr) {
     throw InvalidOption(missing_medial_column("vertices", medial_columns::radius));
@@ -160,8 +162,8 @@ void check_needed(const Complex& axis) {
   }
 }
 
-/// Adds to each sheet the pairs of patches that the footprints of its vertices lie on. Each corner of a triangle stands
-/// for a third of the area.
+/// Adds to each sheet the pairs of patches that contain the two footprints of its vertices. Each corner of a triangle
+/// contributes a third of the triangle's area to its pair.
 class PatchPairs {
  public:
   PatchPairs(const AxisParts& parts, const SurfacePatches& patches, AxisGraph& graph)
@@ -191,7 +193,8 @@ class PatchPairs {
   }
 
  private:
-  /// Finds for each vertex the numbers of two sets of patches; none if it does not know two walls.
+  /// Finds for each vertex the numbers of two sets of patches, one for each footprint. They are none if the vertex has
+  /// no two footprints with known sites.
   void find_sides() {
     const MedialView& axis = parts_.view();
     for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
@@ -216,7 +219,7 @@ class PatchPairs {
   std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
   std::vector<std::vector<std::uint32_t>> sets_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sides_;
-  std::vector<std::map<std::pair<std::uint32_t, std::uint32_t>, double>> areas_;  ///< of each sheet
+  std::vector<std::map<std::pair<std::uint32_t, std::uint32_t>, double>> areas_;  ///< for each sheet, by pair
 };
 
 AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const AxisGraphOptions& options,

@@ -9,8 +9,9 @@
 namespace blum::detail {
 namespace {
 
-/// Returns the least value up to which a share of the weight lies, by halving. Parts that no longer matter are left
-/// out.
+/// Returns the smallest value x for which at least the given share of the weight has values of at most x. The interval
+/// from `low` to `high` is halved 50 times. Parts that lie entirely outside the current interval are dropped from the
+/// sums.
 double quantile(std::vector<LinearPart> parts, double share, double low, double high) {
   constexpr int halvings = 50;
   double missing = 0;  // weight
@@ -30,7 +31,7 @@ double quantile(std::vector<LinearPart> parts, double share, double low, double 
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// Returns the corner of a triangle that a vertex is.
+/// Returns which corner (0, 1, 2) of a triangle is the given vertex.
 std::uint32_t corner_of(const std::array<std::uint32_t, 3>& triangle, std::uint32_t vertex) {
   return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
 }

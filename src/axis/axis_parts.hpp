@@ -17,7 +17,7 @@
 
 namespace blum::detail {
 
-/// Number that is linear over an edge or a triangle.
+/// Quantity that varies linearly over an edge or a triangle.
 struct LinearPart {
   static LinearPart on_edge(double a, double b, double length) {
     return {{std::min(a, b), std::min(a, b), std::max(a, b)}, length, true};
@@ -31,50 +31,52 @@ struct LinearPart {
   double weight;                 ///< length or area
   bool is_edge;
 
-  /// Returns the share of the edge or triangle in which the number is at most `value`.
+  /// Returns the share of the length or area in which the quantity is at most `value`.
   [[nodiscard]] double share_up_to(double value) const;
 };
 
-/// Computes the low value and the median of a number over parts: 5 % and half of the weight lie up to these. If no part
-/// has weight, all parts count the same.
+/// Computes the 5 % quantile (`spread.low`) and the median of a quantity over weighted parts. If the total weight is 0,
+/// all parts get equal weights.
 /// @param parts   not empty.
-/// @param spread  with its minimum and maximum.
-/// Cost: O(parts), some ten times.
+/// @param spread  must contain the minimum and the maximum.
+/// Cost: about ten passes over the parts.
 void add_quantiles(std::vector<LinearPart> parts, AxisSpread& spread);
 
-/// Kind of an edge by its triangles: none; one; two of one sheet; two of different sheets; more.
+/// Kind of an edge. It has no triangle (`curve`), one (`rim`), two of the same sheet (`inner`), two of different sheets
+/// (`crease`), or more (`seam`).
 enum class EdgePart : std::uint8_t { curve, rim, inner, crease, seam };
 
-/// Axis cut open along seams, creases, and where a sheet only touches itself. Corners of triangles that are glued
-/// together through inner edges are one vertex of the cut-open sheet.
+/// Axis whose sheets are cut apart along seams and creases, and at vertices where a sheet only touches itself. Corners
+/// of triangles form one cut vertex if inner edges connect their triangles around the vertex.
 class AxisParts {
  public:
-  /// @param axis  has all columns and no problem. It must stay unchanged.
+  /// @param axis  has all columns, and problem_of_medial() finds no problem in it. It must outlive this object
+  ///              unchanged.
   AxisParts(const Complex& axis, const Context& context);
 
   [[nodiscard]] const MedialView& view() const { return view_; }
   [[nodiscard]] const Incidence& incidence() const { return incidence_; }
   [[nodiscard]] EdgePart part(std::uint32_t edge) const { return parts_[edge]; }
   [[nodiscard]] double edge_length(std::uint32_t edge) const;
-  /// Returns the place of a triangle's sheet among those that have triangles.
+  /// Returns the index of a triangle's sheet in sheet_numbers().
   [[nodiscard]] std::uint32_t sheet_place(std::uint32_t triangle) const {
     return place_of_sheet_[static_cast<std::size_t>(view_.sheet[triangle])];
   }
   /// Numbers of the sheets that have triangles, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& sheet_numbers() const { return sheet_numbers_; }
-  /// Returns the vertex of the cut-open sheet for a corner (0, 1, 2) of a triangle.
+  /// Returns the cut vertex of a corner (0, 1, 2) of a triangle.
   [[nodiscard]] std::uint32_t cut_vertex(std::uint32_t triangle, std::uint32_t corner) const {
     return cut_vertex_[3 * triangle + corner];
   }
-  /// Returns true and the kind of a junction. Returns false if the vertex is the middle of a sheet, a rim, a seam or a
-  /// curve.
+  /// Returns true and the kind if a vertex is a junction. Returns false if the vertex lies inside a sheet, or on a rim,
+  /// seam or curve between its ends.
   [[nodiscard]] std::pair<bool, JunctionKind> junction(std::uint32_t vertex) const;
 
  private:
   struct Around {
     std::uint32_t rims = 0, seams = 0, curves = 0;
-    std::uint32_t fans = 0;       ///< cut vertices here
-    bool has_closed_fan = false;  ///< one of them has no border
+    std::uint32_t fans = 0;       ///< number of cut vertices at the vertex
+    bool has_closed_fan = false;  ///< true if triangles surround one of the cut vertices completely
   };
   void find_parts();
   void number_sheets();
@@ -88,9 +90,10 @@ class AxisParts {
   std::vector<Around> around_;
 };
 
-/// Adds to `graph` its sheets, without their patches, and the sums over them. `graph.seams` must be complete.
-/// @param homotopy_angle  triangles of at most this angle exist for homotopy alone; without it, none does.
-/// @param seam_of_edge  place in the seams for each of incidence().edges().
+/// Adds to `graph` the sheets, except for their patches, and the sums over all sheets. `graph.seams` must be complete.
+/// @param homotopy_angle  triangles of at most this angle (degrees) exist for homotopy alone. Without a value, no
+///                        triangle does.
+/// @param seam_of_edge  for each edge of incidence().edges(): the index of its seam in `graph.seams`.
 void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge,
                 std::optional<double> homotopy_angle, AxisGraph& graph);
 

@@ -46,13 +46,14 @@ class AxisCollapser {
     if (++steps_ % steps_between_looks == 0) throw_if_cancelled(context_);
   }
 
-  /// Returns the angle that both ends of an edge see. Along a seam, it is larger than those of its triangles.
+  /// Returns the smaller separation angle of an edge's ends. Along a seam it is larger than the angles of the
+  /// triangles.
   [[nodiscard]] float own_angle(std::uint32_t edge) const {
     const auto& [a, b] = incidence_.edges()[edge];
     return static_cast<float>(std::min(vertex_angles_[a], vertex_angles_[b]));
   }
 
-  /// Returns the only triangle that is left at an edge; none if several or no triangles are left.
+  /// Returns the last triangle that is left at an edge; none unless exactly one is left.
   [[nodiscard]] std::uint32_t only_triangle(std::uint32_t edge) const {
     if (triangles_left_[edge] != 1) return none;
     const std::span<const std::uint32_t> all = incidence_.triangles_of_edge()[edge];
@@ -65,7 +66,7 @@ class AxisCollapser {
     for (std::uint32_t e = 0; e < edge_count(); ++e) {
       triangles_left_.push_back(static_cast<std::uint32_t>(incidence_.triangles_of_edge()[e].size()));
     }
-    // By ascending angle, then number of the free edge.
+    // Ordered by ascending angle, then by ascending number of the free edge.
     using Waiting = std::pair<float, std::uint32_t>;
     std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> line;
     const auto offer = [&](std::uint32_t edge) {
@@ -89,7 +90,7 @@ class AxisCollapser {
     }
   }
 
-  /// Returns the largest of the angle of an edge and those of the triangles that were at it.
+  /// Returns the largest of an edge's own angle and the angles of all triangles that the input has at it.
   [[nodiscard]] float angle_of_edge(std::uint32_t edge) const {
     float largest = own_angle(edge);
     for (const std::uint32_t t : incidence_.triangles_of_edge()[edge]) largest = std::max(largest, angles_[t]);
@@ -173,11 +174,12 @@ class AxisCollapser {
   std::span<const double> vertex_angles_;
   Incidence incidence_;
   std::vector<bool> is_triangle_gone_, is_edge_gone_, is_vertex_gone_;
-  std::vector<std::uint32_t> triangles_left_;  ///< of each edge
+  std::vector<std::uint32_t> triangles_left_;  ///< for each edge: number of triangles left
   std::size_t steps_ = 0;
 };
 
-/// @throws InvalidOption if a column is missing that cannot be replaced.
+/// @throws InvalidOption if a column is missing: radii, footprints, sites or angles of vertices, or angles of
+/// triangles.
 void check_columns(const Complex& walls) {
   const auto has = [&](const Columns& columns, std::string_view kind, std::string_view name) {
     if (columns.find(name) == nullptr) throw InvalidOption(missing_medial_column(kind, name));

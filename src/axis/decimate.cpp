@@ -19,10 +19,11 @@ namespace {
 using detail::DecimatorInput;
 using detail::SheetDecimator;
 
-/// Levels, as parts of the tolerance: vertices that move sheets by at most the first one are removed first.
+/// Limits of the successive passes, as fractions of the tolerance. Each pass removes only vertices whose removal moves
+/// sheets by at most its limit.
 constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 0.8};
 
-/// Returns the edges that bound sheets: those that are listed, and those where sheets of two numbers meet.
+/// Returns the edges that bound sheets: the edges that the axis lists, and those between triangles of different sheets.
 std::vector<std::array<std::uint32_t, 2>> borders_of(const Complex& axis, const Context& context) {
   std::vector<std::array<std::uint32_t, 2>> borders = axis.edges;
   const Incidence incidence(axis.view(), context);
@@ -45,13 +46,13 @@ DecimatorInput input_of(const Complex& axis, const Context& context) {
                        .borders = borders_of(axis, context)};
   input.points.reserve(axis.positions.size());
   for (std::size_t v = 0; v < axis.positions.size(); ++v) input.points.push_back({axis.positions[v], view.radius[v]});
-  // Sheets that meet without a seam have a kind of border of their own.
+  // Edges between two sheets without a seam get the kind -1, which no role has.
   input.border_kind.assign(input.borders.size(), -1);
   for (std::size_t e = 0; e < axis.edges.size(); ++e) input.border_kind[e] = static_cast<int>(view.edge_role(e));
   return input;
 }
 
-/// Gives rims and seams the largest angle of the triangles that are left at them.
+/// Sets the angle of each rim and seam edge to the largest angle of its remaining triangles.
 void give_borders_angles(Complex& axis) {
   const auto of_triangle = axis.triangle_columns.get<float>(medial_columns::separation_angle);
   std::vector<std::pair<std::array<std::uint32_t, 2>, float>> sides;
@@ -67,7 +68,7 @@ void give_borders_angles(Complex& axis) {
   for (std::size_t e = 0; e < axis.edges.size(); ++e) {
     const std::array<std::uint32_t, 2> edge{std::min(axis.edges[e][0], axis.edges[e][1]),
                                             std::max(axis.edges[e][0], axis.edges[e][1])};
-    // The last of an edge's sides has the largest angle.
+    // The sides are sorted, so the last side of an edge has the largest angle.
     const auto after = std::upper_bound(sides.begin(), sides.end(), edge,
                                         [](const auto& value, const auto& side) { return value < side.first; });
     if (after != sides.begin() && std::prev(after)->first == edge) angles[e] = std::prev(after)->second;

@@ -36,22 +36,22 @@ using detail::SearchMesh;
 using detail::StripOutline;
 
 constexpr std::size_t rims_per_range = 64;
-/// New vertices that are closer together than this part of the radius become one.
+/// New vertices become one if their distance is at most this fraction of the radius at the rim.
 constexpr double one_point = 1e-3;
 
-/// Continuation of a corner of a rim.
+/// A corner of a rim, and the point to which the rim is extended there.
 struct Continued {
   RimStart start;
-  bool stays = false;               ///< it is at the border or on another sheet
-  std::optional<RimTarget> target;  ///< none if it stays or nothing is met
+  bool stays = false;               ///< not extended: at the border of the solid or on another sheet
+  std::optional<RimTarget> target;  ///< none if the corner stays, or if nothing is within its reach
 };
 
-/// Triangles in front of a rim edge. Their points are numbered as in fill_strip().
+/// Triangles in front of a rim edge. They use the point numbers of fill_strip().
 struct Strip {
   std::vector<Vec3d> line;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  bool is_pinched = false;   ///< both ends of the rim lead to one point
-  bool is_left_out = false;  ///< for its shape, or because it would leave the solid
+  bool is_pinched = false;   ///< both ends of the rim edge have the same target
+  bool is_left_out = false;  ///< no triangles, because they would fold back, leave the solid or close a hole
 };
 
 double area_of(const std::vector<Vec3d>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
@@ -97,7 +97,7 @@ class AxisExtender {
  private:
   [[nodiscard]] Vec3d at(std::uint32_t v) const { return axis_.positions[v]; }
 
-  /// Copies what stays: vertices, triangles, and the edges of no triangle.
+  /// Copies from the axis all vertices and triangles, and the edges without triangles.
   void begin_result() {
     Complex& out = out_.surface;
     out.positions = axis_.positions;
@@ -127,7 +127,7 @@ class AxisExtender {
     }
   }
 
-  /// Returns for each corner the radius up to which it counts as at the border.
+  /// Returns for each corner the largest radius at which it still counts as lying at the border of the solid.
   [[nodiscard]] std::vector<double> radii_at_borders() const {
     std::vector<double> of_sheet(sheet_count(axis_), 0);
     for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -142,8 +142,8 @@ class AxisExtender {
     return of_corner;
   }
 
-  /// First all rims go on as far as they can. Then each ends at what it meets of the others. So walls end at each other
-  /// if their sheets both end before they meet.
+  /// The first round extends each rim without regard to the others. The second round also stops each rim at the strips
+  /// of the first round. So two sheets that both end before they meet are extended up to each other.
   void find_strips() {
     find_starts();
     const SearchMesh surface(boundary_of(solid_), context_);
@@ -167,7 +167,7 @@ class AxisExtender {
     });
   }
 
-  /// Returns a mesh of all strips. Its first vertices are those of the axis.
+  /// Returns a mesh of all strips. It starts with all vertices of the axis.
   [[nodiscard]] TriangleMesh strips_as_mesh() const {
     TriangleMesh all{axis_.positions};
     for (std::size_t e = 0; e < strips_.size(); ++e) {
@@ -209,7 +209,7 @@ class AxisExtender {
     return strip;
   }
 
-  /// Fills a strip with triangles. If its line has no proper triangles, its ends alone may have.
+  /// Fills a strip with triangles. If that fails for the whole line, the ends of the line alone are tried.
   void fill(const RimEdge& edge, bool is_final, Strip& strip) const {
     const auto is_inside = [&](const Vec3d& p) { return solid_.inside(p); };
     const std::array rim{at(edge.vertices[0]), at(edge.vertices[1])};
@@ -226,7 +226,7 @@ class AxisExtender {
     leave_out(strip);
   }
 
-  /// Removes the points between the targets of the rim's ends.
+  /// Removes from the strip's line all points between the targets of the rim edge's ends.
   void keep_ends(const RimEdge& edge, Strip& strip) const {
     strip.line.clear();
     for (const std::uint32_t c : edge.corners) {
@@ -243,8 +243,8 @@ class AxisExtender {
 
   // --- The result.
 
-  /// Numbers the targets of corners as new vertices; those of pinched strips are one. Around a loop one strip is left
-  /// out, because the others would close a hole with it.
+  /// Makes a new vertex of each corner's target; the two targets of a pinched strip become one vertex. If a loop
+  /// consists of pinched strips, one strip is left out, because all of them together would close a hole.
   std::vector<std::uint32_t> number_new_vertices() {
     detail::UnionFind corners(rims_.corners.size());
     detail::UnionFind vertices(axis_.positions.size());
@@ -293,7 +293,7 @@ class AxisExtender {
     const auto moved = std::count_if(edge.corners.begin(), edge.corners.end(),
                                      [&](std::uint32_t c) { return continued_[c].target.has_value(); });
     const bool is_plain = std::cmp_equal(strip.line.size(), moved);
-    // A border edge of two strips would close a hole.
+    // Two strips with a common border edge would close a hole.
     if (is_plain && !strip.is_pinched && !border_.insert(std::minmax(ends[0], ends[1])).second) {
       leave_out(strip);
       return;
@@ -369,8 +369,8 @@ class AxisExtender {
   const ExtendOptions& options_;
   const Context& context_;
   Rims rims_;
-  std::vector<Continued> continued_;  ///< of each corner
-  std::vector<Strip> strips_;         ///< of each rim edge
+  std::vector<Continued> continued_;  ///< for each corner of the rims
+  std::vector<Strip> strips_;         ///< for each edge of the rims
   std::set<std::pair<std::uint32_t, std::uint32_t>> border_;
   std::vector<double> thickness_;
   std::vector<std::int32_t> sheet_;

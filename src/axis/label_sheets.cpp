@@ -19,7 +19,7 @@
 namespace blum::detail {
 namespace {
 
-/// Two triangles that share an edge with no other.
+/// Two triangles at an edge that no third triangle has.
 struct Hinge {
   std::array<std::uint32_t, 2> vertices;
   std::array<std::uint32_t, 2> triangles;
@@ -28,10 +28,10 @@ struct Hinge {
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Cosine of 37 degrees.
 constexpr double sharp = 0.8;
-/// Pieces with fewer triangles than this are small.
+/// Groups of joined triangles are small if they have fewer triangles than this.
 constexpr std::size_t few = 8;
-/// Number of triangles away from seams that show how a sheet lies, and number of those among which they are searched
-/// for.
+/// Largest number of triangles whose normals are averaged, and largest number of triangles that the search for them
+/// visits.
 constexpr std::size_t most_samples = 12;
 constexpr std::size_t most_looked_at = 96;
 
@@ -52,7 +52,8 @@ Vec3d leaf(const Complex& axis, const std::array<std::uint32_t, 2>& edge, std::u
   return squared > 0 ? out - along * (dot(out, along) / squared) : out;
 }
 
-/// Returns the cosine of the angle at a hinge: -1 if it is flat or a triangle has no area.
+/// Returns the cosine of the angle between the two triangles of a hinge. It is -1 if they lie in a plane or if one has
+/// no area.
 double cosine_of(const Complex& axis, const Hinge& hinge) {
   const Vec3d a = leaf(axis, hinge.vertices, hinge.triangles[0]);
   const Vec3d b = leaf(axis, hinge.vertices, hinge.triangles[1]);
@@ -85,7 +86,7 @@ class SheetJoiner {
         join(hinges_[h]);
       }
     }
-    // The flattest come first, so that small pieces join the sheets that they belong to.
+    // The flattest hinges come first. So each small group joins the sheet that continues it most smoothly.
     std::sort(beside_seams.begin(), beside_seams.end(), [&](const auto& a, const auto& b) {
       return std::tie(a.first, hinges_[a.second].triangles) < std::tie(b.first, hinges_[b.second].triangles);
     });
@@ -124,14 +125,14 @@ class SheetJoiner {
     if (a == b) return false;
     if (std::min(size_[a], size_[b]) < few) return true;
     if (cosine > -sharp) return false;
-    // Pieces that lie only along seams are as crooked as these.
+    // Groups that lie only along seams are as crooked as the seams, so their normals decide nothing.
     if (std::min(inner_size_[a], inner_size_[b]) < few) return true;
     const Vec3d p = normal_near(hinge.triangles[0]);
     const Vec3d q = normal_near(hinge.triangles[1]);
     return std::abs(dot(p, q)) >= sharp * length(p) * length(q);
   }
 
-  /// Returns the mean direction across a piece around a triangle, away from seams.
+  /// Returns the mean normal (not a unit vector) of triangles near the given one, in its group and away from seams.
   [[nodiscard]] Vec3d normal_near(std::uint32_t triangle) {
     const std::uint32_t piece = pieces_.find(triangle);
     std::vector<std::uint32_t> line{triangle};
@@ -157,29 +158,29 @@ class SheetJoiner {
   const Complex& axis_;
   const std::vector<Hinge>& hinges_;
   detail::UnionFind pieces_;
-  std::vector<std::size_t> size_, inner_size_;  ///< of pieces: triangles, and those away from seams
+  std::vector<std::size_t> size_, inner_size_;  ///< for each group: all triangles; those away from seams
   std::vector<bool> is_on_seam_, is_inner_;
-  std::vector<std::array<std::uint32_t, 3>> hinge_at_;  ///< of each triangle
+  std::vector<std::array<std::uint32_t, 3>> hinge_at_;  ///< for each triangle: indices of its hinges, or none
 };
 
-/// Joins triangles at hinges, except beside seams where two sheets meet. Seams may lie a step beside the crease of two
-/// sheets, first on one side of it and then on the other. Then the two sheets are connected at the step. So beside
-/// seams nothing is joined where the axis bends by 37 degrees or more. The bend is taken at the hinge, and between the
-/// parts a few triangles away from the seam. Parts of only a few triangles join the neighbour with which they are
-/// flattest.
-/// @param axis  whose edges have roles.
+/// Joins triangles at hinges into sheets, except where two sheets meet beside a seam. A seam of the complex may zigzag
+/// around the true crease of two sheets. Then hinges connect the two sheets at the steps of the zigzag. So a hinge that
+/// touches a seam is not joined if the axis bends by 37 degrees or more. The bend is measured at the hinge itself, and
+/// between the mean normals of both groups away from the seam. A group of fewer than 8 triangles always joins the
+/// neighbour at its flattest hinge.
+/// @param axis  its edges have roles.
 detail::UnionFind join_sheets(const Complex& axis, const std::vector<Hinge>& hinges) {
   return SheetJoiner(axis, hinges).join();
 }
 
 constexpr std::int32_t no_sheet = -1;
 
-/// Returns a role as columns contain it.
+/// Returns the number that columns contain for a role.
 constexpr std::int32_t number_of(MedialRole role) {
   return static_cast<std::int32_t>(role);
 }
 
-/// Data of a vertex from its edges.
+/// Counts of the edges at a vertex, and the sheets at it.
 struct Around {
   std::uint32_t rims = 0, seams = 0, curves = 0;
   std::int32_t sheet = no_sheet;
@@ -188,7 +189,7 @@ struct Around {
 
 MedialRole role_of(const Around& a) {
   if (a.curves == 0 && a.seams == 0) {
-    if (a.sheet == no_sheet) return MedialRole::curve;                    // a vertex alone
+    if (a.sheet == no_sheet) return MedialRole::curve;                    // a vertex without edges
     if (a.rims > 2 || a.has_several_sheets) return MedialRole::junction;  // sheets only touch here
     return a.rims > 0 ? MedialRole::rim : MedialRole::sheet;
   }
@@ -197,7 +198,7 @@ MedialRole role_of(const Around& a) {
   return MedialRole::junction;
 }
 
-/// Adds the sides of triangles that are rims or seams to the edges. Returns those that are neither.
+/// Adds the sides of triangles that are rims or seams to the edges of the axis. Returns all other sides as hinges.
 std::vector<Hinge> add_rims_and_seams(Complex& axis, const Incidence& incidence) {
   const std::span<const float> angles = axis.triangle_columns.get<float>(medial_columns::separation_angle);
   std::vector<Hinge> hinges;
@@ -229,7 +230,8 @@ void number_sheets(Complex& axis, detail::UnionFind sheets) {
   const std::span<std::int32_t> sheet_of = axis.triangle_columns.edit<std::int32_t>(medial_columns::sheet);
   std::int32_t count = 0;
   for (std::uint32_t t = 0; t < sheet_of.size(); ++t) {
-    // The smallest triangle of a sheet represents it, and so gets its number before the others.
+    // find() returns the sheet's triangle of lowest index, so the sheet already has its number when its other triangles
+    // follow.
     const std::uint32_t first = sheets.find(t);
     sheet_of[t] = first == t ? count++ : sheet_of[first];
   }

@@ -12,14 +12,14 @@
 namespace blum::detail {
 namespace {
 
-constexpr double wall_angle = 150;  ///< degrees: walls that are seen at this angle or more face each other
+constexpr double wall_angle = 150;  ///< degrees: two walls face each other if the separation angle is at least this
 
 /// Data of a sheet while it is measured.
 struct Measured {
-  std::vector<LinearPart> thickness, angle, wall;  ///< of triangles; `wall`: thickness of those between walls
-  Vec3d corners;                                   ///< sum of all
+  std::vector<LinearPart> thickness, angle, wall;  ///< by triangle; `wall`: thickness between facing walls
+  Vec3d corners;                                   ///< sum of the positions of all corners
   std::int64_t border_sides = 0, cut_vertices = 0;
-  bool is_shown = false;  ///< some triangle does not exist for homotopy alone
+  bool is_shown = false;  ///< at least one triangle does not exist for homotopy alone
 };
 
 class SheetMeasurer {
@@ -104,7 +104,7 @@ class SheetMeasurer {
     parts.push_back(LinearPart::on_triangle(values, area));
   }
 
-  /// Adds a side of a triangle. Returns true if it is a part of the border.
+  /// Adds a side of a triangle to its sheet. Returns true if the side belongs to the sheet's border.
   bool add_side(std::uint32_t t, std::uint32_t edge) {
     const EdgePart part = parts_.part(edge);
     if (part == EdgePart::inner) return false;

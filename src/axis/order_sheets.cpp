@@ -16,24 +16,25 @@
 namespace blum::detail {
 namespace {
 
-/// A good part has at least this share of the largest area. Parts of symmetrical sheets are as large, or twice or three
-/// times so. This share is none of these.
+/// A key counts if its area is at least this share of the largest area of a key. In symmetrical sheets, one area is
+/// often equal to, twice or three times another. This share is far from 1, 1/2 and 1/3, so rounding decides nothing.
 constexpr double good_part = 0.41;
 
-/// Vertices next to an edge between patches count less, because they could belong to either.
+/// Weight of vertices with a footprint on an edge between patches. It is below 1 because the footprint could belong to
+/// either patch.
 constexpr double weight_of_shared = 0.2;
-/// Sheets with less than this part of the total area come last. They may exist on one grid and not on another, and
-/// would change the numbers of others.
+/// Sheets with less than this share of the total area get the last numbers. Such a sheet may exist on one grid only,
+/// and would otherwise change the numbers of larger sheets.
 constexpr double least_part = 0.001;
 
 constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max();
 
-/// Areas by key.
+/// Sums of areas by key.
 class Areas {
  public:
   void add(std::uint64_t key, double area) { areas_[key] += area; }
 
-  /// Returns the smallest key with a good part of the area; unknown if no key has area.
+  /// Returns the smallest key whose area is at least the share `good_part` of the largest; unknown if no key has area.
   [[nodiscard]] std::uint64_t smallest() const {
     double most = 0;
     for (const auto& [key, area] : areas_) most = std::max(most, area);
@@ -59,7 +60,7 @@ std::span<const std::int32_t> sheets_of(const Complex& axis) {
 }
 
 /// Gives sheets new numbers.
-/// @param order  their old ones.
+/// @param order  old numbers of the sheets, in the order of the new ones.
 void renumber(Complex& axis, const std::vector<std::uint32_t>& order) {
   std::vector<std::int32_t> number(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) number[order[k]] = static_cast<std::int32_t>(k);
@@ -74,8 +75,8 @@ struct Traits {
   Vec3d centroid;
   bool is_crumb = false;
   std::uint64_t pair = unknown;
-  /// Sum of the distances of the centroid from all anchors, each with its weight. Sheets at mirrored places may be
-  /// equally far from one anchor, but not in the sum.
+  /// Weighted sum of the centroid's distances from all anchors. Mirrored sheets may be equally far from one anchor, but
+  /// their weighted sums differ.
   double distance = 0;
 };
 
@@ -98,9 +99,10 @@ class Sorter {
   }
 
  private:
-  /// Patches that a vertex lies between, the smaller number first, and its weight for its sheet.
+  /// The pair of patches of a vertex's footprints (the smaller number in the high bits), and the vertex's weight in its
+  /// sheet.
   struct Sides {
-    std::uint64_t pair = unknown;  ///< if it does not know two walls
+    std::uint64_t pair = unknown;  ///< unknown without two footprints on known patches
     double weight = 1;
   };
   [[nodiscard]] std::vector<Sides> sides_of_vertices() const {

@@ -9,16 +9,16 @@
 namespace blum::detail {
 namespace {
 
-/// Degrees by which edges in flat and in smooth parts bend at most.
+/// Largest bends at edges inside flat and inside smooth patches, in degrees.
 constexpr double flat = 1;
 constexpr double smooth = 30;
-/// Flat parts count if they have at least this part of the surface. No part of a regular prism or of a box of squares
-/// has exactly this, so that rounding decides nothing.
+/// A flat patch gets its own number if it has at least this share of the surface's area. No face of a regular prism, or
+/// of a box made of squares, has exactly this share, so rounding decides nothing.
 constexpr double least_part = 0.00437;
-/// Least distance of an anchor from the line or plane of those before, as a part of the reach.
+/// Least distance of an anchor from the point, line or plane through the earlier anchors, as a fraction of `reach_`.
 constexpr double apart = 0.0937;
 
-/// Returns the smallest face of the input in each patch.
+/// Returns for each patch the lowest index that one of its faces has in the input.
 std::vector<std::uint32_t> first_faces(const SurfacePatches& patches, const PatchedMesh& part) {
   std::vector<std::uint32_t> first(patches.patches().size(), PatchNumbers::none);
   for (std::uint32_t t = 0; t < part.triangle_of.size(); ++t) {
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> first_faces(const SurfacePatches& patches, const Patc
   return first;
 }
 
-/// Returns the number of each triangle of a part: even for flat parts, odd for smooth ones.
+/// Returns for each triangle of the mesh the number of its patch: even for flat patches, odd for smooth ones.
 std::vector<std::uint32_t> numbers_of_faces(const PatchedMesh& part, const SiteTable& own, const Context& context) {
   const SurfacePatches flats(part.mesh, own, flat, context);
   const SurfacePatches rest(part.mesh, own, smooth, context);
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> numbers_of_faces(const PatchedMesh& part, const SiteT
   return numbers;
 }
 
-/// Returns the distance of a point from the point, line or plane through up to three others.
+/// Returns the distance of a point from one, two or three others: from the point, the line or the plane through them.
 double distance_from(const std::vector<Vec3d>& others, const Vec3d& point) {
   const Vec3d way = point - others[0];
   if (others.size() == 1) return length(way);
@@ -76,7 +76,7 @@ void PatchNumbers::add(const PatchedMesh& part, const SiteTable& own, const Cont
     }
   }
   for (std::uint32_t site = 0; site < of_own.size(); ++site) {
-    // A site that no triangle has may have no counterpart in the input.
+    // A site without triangles may have no counterpart in the input.
     if (of_own[site] == none) continue;
     const std::size_t to = part.input_site(SiteId(site)).value;
     number_of_[to] = std::min(number_of_[to], of_own[site]);

@@ -82,7 +82,7 @@ class Pruner {
   }
 
  private:
-  /// By ascending angle, then number.
+  /// Sheets in the order of their removal: by ascending angle, then ascending number.
   using Waiting = std::pair<float, std::uint32_t>;
   using Line = std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>>;
 
@@ -145,7 +145,7 @@ class Pruner {
     if (++steps_ % steps_between_looks == 0) throw_if_cancelled(context_);
   }
 
-  /// Returns the only triangle left at an edge if it is of the sheet, else none.
+  /// Returns the triangle at an edge if it is the only one left and belongs to the sheet; otherwise none.
   [[nodiscard]] std::uint32_t free_triangle(std::uint32_t e, std::uint32_t sheet) const {
     if (is_edge_gone_[e] || triangle_count_[e] != 1) return none;
     for (const std::uint32_t t : incidence_.triangles_of_edge()[e]) {
@@ -161,7 +161,8 @@ class Pruner {
     for (const std::uint32_t v : edge_ends(e)) edges_left_[v] += is_gone ? -1U : 1U;
   }
 
-  /// Collapses a sheet from its rim. If a part of it is left, restores all of it and returns false.
+  /// Removes a sheet by collapses from its rim. If some of its triangles cannot be removed, restores the sheet and
+  /// returns false.
   bool consume(std::uint32_t sheet) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> gone;
     std::vector<std::uint32_t> line;
@@ -180,7 +181,7 @@ class Pruner {
     return false;
   }
 
-  /// Removes curves from a free end on, as long as `goes` returns true for their edges.
+  /// Removes the edges of a curve one by one, starting at a free end, while `goes` returns true for the next edge.
   template <class Goes>
   void trim_from(std::uint32_t vertex, const Goes& goes) {
     while (vertex != none && !is_vertex_gone_[vertex] && edges_left_[vertex] == 1) {
@@ -199,7 +200,7 @@ class Pruner {
     }
   }
 
-  /// Removes edges that a sheet leaves behind beside its neighbours, from their free ends.
+  /// Removes the edges of a removed sheet that now belong to no triangle, starting at their free ends.
   void trim(std::uint32_t sheet) {
     std::vector<std::uint32_t> own;
     for (const std::uint32_t t : triangles_of_sheet_[sheet])
@@ -221,8 +222,8 @@ class Pruner {
   const Context& context_;
   Incidence incidence_;
   std::vector<float> angle_of_edge_;
-  std::vector<std::uint32_t> triangle_count_;  ///< triangles left, per edge
-  std::vector<std::uint32_t> edges_left_;      ///< edges left, per vertex
+  std::vector<std::uint32_t> triangle_count_;  ///< for each edge: number of triangles left
+  std::vector<std::uint32_t> edges_left_;      ///< for each vertex: number of edges left
   std::vector<bool> is_triangle_gone_, is_edge_gone_, is_vertex_gone_;
   std::vector<std::vector<std::uint32_t>> triangles_of_sheet_;
   std::vector<float> angle_of_sheet_;
@@ -230,7 +231,7 @@ class Pruner {
   std::size_t steps_ = 0;
 };
 
-/// @throws InvalidOption if a column is missing that decides what is removed.
+/// @throws InvalidOption if a column is missing: the angles of edges, or the angles or sheets of triangles.
 void check_needed(const Complex& axis) {
   const auto check = [](const Columns& columns, bool has_rows, const char* kind, std::string_view name) {
     if (has_rows && columns.find(name) == nullptr) throw InvalidOption(missing_medial_column(kind, name));

@@ -12,14 +12,14 @@ namespace blum::detail {
 namespace {
 
 constexpr double tangent_of_cone = 2.1445;  // of 65 degrees
-constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing may be in between
-constexpr double nearly_none = 1e-6;        // of the way: anything met there is where it begins
-constexpr double sine_of_meeting = 0.26;    // of 15 degrees: at less, one sheet goes on
+constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing may lie in this part
+constexpr double nearly_none = 1e-6;        // of the way: crossings in this part are the start itself
+constexpr double sine_of_meeting = 0.26;    // of 15 degrees: at smaller angles, the sheet continues the rim
 constexpr double cosine_of_meeting = 0.966;
 constexpr int most_halvings = 6;
-/// Planes whose normals have a smaller determinant have no common point that is worth computing.
+/// The common point of three planes is computed only if the determinant of their unit normals is at least this.
 constexpr double least_determinant = 0.05;
-/// A line and a direction span a plane if the sine of the angle between them is at least this.
+/// Two directions define a plane only if the sine of the angle between them is at least this.
 constexpr double least_slant = 0.1;
 constexpr double corner_tolerance = 1e-6;  // of the reach
 
@@ -27,7 +27,7 @@ struct Point2 {
   double x = 0, y = 0;
 };
 
-/// Plane of a start, with the start as origin and its direction as x.
+/// Coordinates in the plane of a start: its point is the origin, its direction the x-axis.
 struct Frame {
   Vec3d origin, x, y, normal;
 
@@ -35,7 +35,8 @@ struct Frame {
   [[nodiscard]] Vec3d lifted(const Point2& p) const { return origin + x * p.x + y * p.y; }
 };
 
-/// Returns the segment in which a plane cuts a triangle; nullopt if it does not cut it or contains it.
+/// Returns the segment in which the frame's plane cuts a triangle; nullopt if the plane misses or contains the
+/// triangle.
 std::optional<std::array<Vec3d, 2>> section(const std::array<Vec3d, 3>& corners, const Frame& frame) {
   std::array<double, 3> side{};
   for (std::size_t k = 0; k < 3; ++k) side[k] = dot(corners[k] - frame.origin, frame.normal);
@@ -49,7 +50,7 @@ std::optional<std::array<Vec3d, 2>> section(const std::array<Vec3d, 3>& corners,
   return found == 2 ? std::optional(ends) : std::nullopt;
 }
 
-/// Returns the part of a segment in the cone around x, or nullopt if it lies outside.
+/// Returns the part of a segment within 65 degrees of the x-axis; nullopt if all of it lies outside.
 std::optional<std::array<Point2, 2>> in_cone(const Point2& a, const Point2& b) {
   double from = 0;
   double to = 1;
@@ -81,7 +82,8 @@ std::optional<Frame> frame_of(const RimStart& start) {
   return Frame{start.at, cross(y, *start.normal), y, *start.normal};
 }
 
-/// Returns the closest point in the plane and the cone, visible or not.
+/// Returns the surface point closest to the origin, in the frame's plane and within 65 degrees of its x-axis. The point
+/// need not be visible.
 std::optional<RimTarget> closest_in_plane(const SearchMesh& surface, const Frame& frame, double reach) {
   std::optional<RimTarget> best;
   std::tuple best_of(reach, std::numeric_limits<std::uint32_t>::max());
@@ -102,7 +104,7 @@ std::optional<RimTarget> closest_in_plane(const SearchMesh& surface, const Frame
   return best;
 }
 
-/// Returns the point where three planes through points meet: x with normal . x = normal . point.
+/// Returns the common point x of three planes, each given by a normal and a point: normal . x = normal . point.
 std::optional<Vec3d> meeting_point(const std::array<Vec3d, 3>& normals, const std::array<Vec3d, 3>& points) {
   const double determinant = dot(normals[0], cross(normals[1], normals[2]));
   if (std::abs(determinant) < least_determinant) return std::nullopt;
@@ -117,7 +119,7 @@ bool is_own(const RimStart& start, const Triangle& triangle) {
   return std::find_first_of(triangle.begin(), triangle.end(), start.own.begin(), start.own.end()) != triangle.end();
 }
 
-/// Returns the start halfway between two others.
+/// Returns a start halfway between two starts; nullopt if their directions nearly cancel.
 std::optional<RimStart> halfway(const RimStart& a, const RimStart& b) {
   RimStart out = a;
   out.at = (a.at + b.at) * 0.5;
@@ -211,7 +213,8 @@ std::vector<Vec3d> RimReach::between(const Stop& a, const Stop& b, double tolera
   return path;
 }
 
-/// Returns the target at a point: on the surface, or on a sheet or strip that meets the plane of a start.
+/// Returns the target within `tolerance` of a point: on the surface, or else on a sheet or strip. A sheet or strip must
+/// form at least 15 degrees with the plane of the start.
 std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, const RimStart& start) const {
   if (const auto near = obstacles_.surface->bvh().nearest_primitives(point, 1, tolerance); !near.empty()) {
     return RimTarget{near[0].point, obstacles_.surface->normal(near[0].primitive)};
@@ -257,11 +260,13 @@ void RimReach::add_between(const Stop& a, const Stop& b, double tolerance, int d
   add_between(*middle, b, tolerance, depth + 1, path);
 }
 
-/// Returns the point where the planes at two targets meet a plane between their starts, if an obstacle is there.
+/// Returns the point where the planes at two targets intersect, in a plane between their starts. Returns nullopt if no
+/// obstacle is at that point.
 std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) const {
   const std::optional<RimStart> start = halfway(a.start, b.start);
   if (!start) return std::nullopt;
-  // A plane through both targets. One along the sheet may be tilted, and far off at the corner.
+  // The plane between the starts contains both targets. The sheet's own plane may be tilted, and thus far from the
+  // corner.
   const double gap = length(b.target.at - a.target.at);
   Vec3d normal = cross(b.target.at - a.target.at, start->outwards) / gap;
   if (length(normal) < least_slant) normal = start->normal.value_or(Vec3d{});

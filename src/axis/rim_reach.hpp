@@ -14,7 +14,7 @@
 
 namespace blum::detail {
 
-/// Triangle mesh in which points are looked up. It owns its data.
+/// Triangle mesh with search trees. It owns its data.
 class SearchMesh {
  public:
   /// @param mesh  has triangles.
@@ -22,8 +22,8 @@ class SearchMesh {
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
-  [[nodiscard]] const BoxBvh& boxes() const { return boxes_; }  ///< of the triangles
-  [[nodiscard]] Vec3d normal(std::uint32_t triangle) const;     ///< unit length; 0 without area
+  [[nodiscard]] const BoxBvh& boxes() const { return boxes_; }  ///< tree of the triangles' boxes
+  [[nodiscard]] Vec3d normal(std::uint32_t triangle) const;     ///< unit vector; 0 if the triangle has no area
 
  private:
   TriangleMesh mesh_;
@@ -31,20 +31,20 @@ class SearchMesh {
   BoxBvh boxes_;
 };
 
-/// Point of a rim in its solid, and the way from there.
+/// Point of a rim, and the way outwards from it through the solid.
 struct RimStart {
   Vec3d at;
   Vec3d outwards;                      ///< Unit length.
   std::optional<Vec3d> normal;         ///< Plane to stay in. If none, the way follows `outwards`.
   double radius = 0;                   ///< Distance to the surface.
   double reach = 0;                    ///< Greatest length of the way.
-  std::array<std::uint32_t, 2> own{};  ///< Vertices of the axis that it lies on or between.
+  std::array<std::uint32_t, 2> own{};  ///< Vertices of the axis that the point lies on or between.
 };
 
 enum class RimEnd : std::uint8_t {
-  border,  ///< on the surface of the solid
-  sheet,   ///< on another sheet or its continuation
-  open,    ///< at the end of the reach, if nothing was met
+  border,  ///< the target lies on the surface of the solid
+  sheet,   ///< the target lies on another sheet or its strips
+  open,    ///< the way has its full length `reach` and met nothing
 };
 
 struct RimTarget {
@@ -53,30 +53,31 @@ struct RimTarget {
   RimEnd end = RimEnd::border;
 };
 
-/// Meshes that rims may meet. All must outlive it.
+/// Meshes that the way from a rim may meet. All must outlive this object.
 struct RimObstacles {
   const SearchMesh* surface = nullptr;  ///< of the solid
-  const SearchMesh* sheets = nullptr;   ///< of the axis: its vertices and triangles
-  const SearchMesh* strips = nullptr;   ///< continue these; their first vertices are those of the axis; may be null
+  const SearchMesh* sheets = nullptr;   ///< vertices and triangles of the axis
+  const SearchMesh* strips = nullptr;   ///< continue the sheets; start with the vertices of the axis; may be null
 };
 
 class RimReach {
  public:
-  /// @param allows_open  true if a rim that meets nothing ends at its reach; otherwise it has no target.
+  /// @param allows_open  true if a way that meets nothing has a target at its full length. Otherwise such a way has no
+  ///                     target.
   RimReach(const RimObstacles& obstacles, bool allows_open) : obstacles_(obstacles), allows_open_(allows_open) {}
 
-  /// Returns the closest point of the surface in the plane of a start, within 65 degrees of its direction and visible
-  /// from the start. Without a plane, it is the point that the direction leads to. If the way meets sheets or strips
-  /// before that at 15 degrees or more, that point is returned.
+  /// Returns the end of the way from a start. It is the closest visible surface point in the plane of the start, within
+  /// 65 degrees of its direction. If the start has no plane, it is the first surface point along its direction. If the
+  /// way first meets a sheet or strip at 15 degrees or more, the meeting point is returned instead.
   [[nodiscard]] std::optional<RimTarget> find(const RimStart& start) const;
 
   struct Stop {
     RimStart start;
     RimTarget target;
   };
-  /// Returns the points between two targets on a line along the obstacles that they lie on. The middle of each segment
-  /// is at most `tolerance` off, if possible. Points are corners where the planes at two points meet, and targets of
-  /// starts halfway.
+  /// Returns the inner points of a line between two targets, along the obstacles that contain them. The middle of each
+  /// segment is at most `tolerance` away from the obstacles, if 6 halvings reach that. Each point is a corner between
+  /// the planes at two targets, or the target of a start halfway between two others.
   [[nodiscard]] std::vector<Vec3d> between(const Stop& a, const Stop& b, double tolerance) const;
 
  private:

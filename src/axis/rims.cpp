@@ -20,8 +20,8 @@ const Vec3d& point(const StripOutline& outline, std::uint32_t number) {
   return number < first_of_line ? outline.rim[number] : outline.line[number - first_of_line];
 }
 
-/// Returns the quality of a triangle: twice its area seen along the normal, divided by the square of its longest side.
-/// It is -1 if the triangle is turned too far.
+/// Returns the quality of a triangle: twice its area as projected along the outline's normal, divided by the square of
+/// its longest side. It is -1 if the triangle's normal is 80 degrees or more from the outline's.
 double quality(const StripOutline& outline, const std::array<std::uint32_t, 3>& triangle) {
   const Vec3d& a = point(outline, triangle[0]);
   const Vec3d& b = point(outline, triangle[1]);
@@ -32,8 +32,8 @@ double quality(const StripOutline& outline, const std::array<std::uint32_t, 3>& 
   return along / std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
 }
 
-/// Returns triangles of which the one at the rim has line[k] as its tip. The others fan out from the rim's ends on both
-/// sides.
+/// Returns triangles over a strip. One contains both ends of the rim edge and line[k]. The others fan out from the rim
+/// edge's ends: from the first end before line[k], from the second end after it.
 std::vector<std::array<std::uint32_t, 3>> fans(std::uint32_t line_points, std::uint32_t k) {
   std::vector<std::array<std::uint32_t, 3>> triangles{{1, 0, first_of_line + k}};
   for (std::uint32_t p = 0; p + 1 < line_points; ++p) {
@@ -95,11 +95,12 @@ class RimFinder {
     }
   }
 
-  /// Adds a corner for each group of triangles around a vertex that are connected through edges at it, seams included.
+  /// Adds corners at a vertex. Triangles around the vertex form a group if edges at the vertex, seams included, connect
+  /// them. Each group with a rim edge gets one corner.
   void add_corners(std::uint32_t v) {
     const std::span<const std::uint32_t> around = incidence_.triangles_of_vertex()[v];
     detail::UnionFind groups(around.size());
-    std::map<std::uint32_t, std::uint32_t> first_at;  // of an edge: a triangle's place in `around`
+    std::map<std::uint32_t, std::uint32_t> first_at;  // by edge: index in `around` of its first triangle
     for (std::uint32_t k = 0; k < around.size(); ++k) {
       for (const std::uint32_t e : incidence_.sides()[around[k]]) {
         if (!has_end(e, v)) continue;
@@ -107,7 +108,7 @@ class RimFinder {
         if (!is_new) groups.join(known->second, k);
       }
     }
-    std::map<std::uint32_t, std::uint32_t> corner_of;  // of a group
+    std::map<std::uint32_t, std::uint32_t> corner_of;  // by group
     for (const RimEnd& end : at_vertex_[v]) {
       RimEdge& edge = rims_.edges[end.edge];
       const auto place = std::lower_bound(around.begin(), around.end(), edge.triangle) - around.begin();
@@ -143,8 +144,9 @@ class RimFinder {
     rims_.corners.push_back(corner);
   }
 
-  /// Returns the mean normal of triangles by their area, so that slivers hardly tilt it. Triangles that are connected
-  /// with the given ones within the radius count, too, because small triangles at rims are rough.
+  /// Returns the mean normal of triangles around a vertex, weighted by area so that slivers hardly tilt it. Small
+  /// triangles at rims are rough. So connected triangles within the vertex's radius count as well, up to about 64
+  /// triangles.
   [[nodiscard]] std::optional<Vec3d> tangent_normal(std::uint32_t v, std::vector<std::uint32_t> triangles) const {
     for (std::size_t k = 0; k < triangles.size() && triangles.size() < most_in_tangent; ++k) {
       for (const std::uint32_t e : incidence_.sides()[triangles[k]]) {
@@ -166,8 +168,9 @@ class RimFinder {
     return length(sum) > 0 ? std::optional(unit(sum)) : std::nullopt;
   }
 
-  /// Returns the mean outward direction of the rim edges of a group. Long edges count no more than three times the
-  /// shortest. So a corner between a long and a short side looks to the middle, and a step in a rim hardly matters.
+  /// Returns the mean outward direction of the rim edges of a group, weighted by length. The weight is at most three
+  /// times the shortest edge. So the direction lies near the middle even between a long and a short edge, and a step in
+  /// a rim hardly changes it.
   [[nodiscard]] Vec3d outwards_of(std::uint32_t v, const std::optional<Vec3d>& normal,
                                   std::span<const std::uint32_t> around, detail::UnionFind& groups,
                                   std::uint32_t group) const {

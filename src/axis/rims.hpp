@@ -14,48 +14,51 @@
 
 namespace blum::detail {
 
-/// Rim edge and the points in front of it.
+/// A rim edge and the line of points in front of it.
 struct StripOutline {
-  std::array<Vec3d, 2> rim;     ///< Ends, in the order of the triangle.
-  std::span<const Vec3d> line;  ///< From the first end's side to the other's, at least one point.
-  Vec3d normal;                 ///< Unit normal of the triangle.
+  std::array<Vec3d, 2> rim;     ///< Ends of the edge, in the order of its triangle.
+  std::span<const Vec3d> line;  ///< From near the first end to near the second; at least one point.
+  Vec3d normal;                 ///< Unit normal of the edge's triangle.
 };
 
-/// Returns triangles over the points rim[0], rim[1], line[0], line[1], ... by number. One of them has both ends of the
-/// rim, and all face as the rim's triangle does. The choice with the best worst triangle is taken. Returns nullopt if
-/// no choice keeps all triangles within 80 degrees of the normal.
+/// Returns triangles between a rim edge and its line. They number the points rim[0], rim[1], line[0], line[1], ... from
+/// 0. One triangle contains both ends of the rim edge, and all face as the edge's own triangle does. Among all choices,
+/// the one whose worst triangle is best is returned. Returns nullopt if no choice keeps all triangles within 80 degrees
+/// of the normal.
 [[nodiscard]] std::optional<std::vector<std::array<std::uint32_t, 3>>> fill_strip(const StripOutline& outline);
 
-/// Returns true if the middles of triangles of fill_strip() and of their sides are inside. Sides on the line are not
-/// tested, because it is the border.
+/// Returns true if the centroids of triangles of fill_strip(), and the midpoints of their sides, are inside. Sides
+/// along the line are not tested, because the line may lie on the surface of the solid.
 [[nodiscard]] bool is_strip_inside(const StripOutline& outline, std::span<const std::array<std::uint32_t, 3>> triangles,
                                    FunctionRef<bool(const Vec3d&)> is_inside);
 
-/// Edge of one triangle.
+/// Rim edge: an edge that exactly one triangle has.
 struct RimEdge {
   std::uint32_t triangle = 0;
-  std::array<std::uint32_t, 2> vertices{};  ///< In the order of the triangle.
-  std::array<std::uint32_t, 2> corners{};   ///< Numbers in Rims::corners, at the vertices.
+  std::array<std::uint32_t, 2> vertices{};  ///< Ends, in the order of the triangle.
+  std::array<std::uint32_t, 2> corners{};   ///< Indices in Rims::corners of the corners at both ends.
   Vec3d normal;                             ///< Unit normal of the triangle; 0 if it has no area.
-  Vec3d outwards;                           ///< Unit vector in its plane, away from it; 0 if it has no area.
+  Vec3d outwards;                           ///< Unit vector in the triangle's plane, away from it; 0 if it has no area.
   double length = 0;
 };
 
-/// Vertex of rims, once for each group of triangles around it that are connected through edges.
+/// A vertex of rims and one group of triangles at it. Edges at the vertex connect the triangles of a group. A vertex
+/// has one corner for each group with rim edges.
 struct RimCorner {
   std::uint32_t vertex = 0;
   Vec3d outwards;               ///< Unit vector in the tangent plane, away from the triangles; 0 if unknown.
   std::optional<Vec3d> normal;  ///< Unit normal of the tangent plane; none if a seam ends here or no triangle has area.
-  bool is_on_sheet = false;     ///< True if the vertex lies in the middle of other triangles.
+  bool is_on_sheet = false;     ///< True if another group of triangles at the vertex has no rim edge there.
 };
 
 struct Rims {
-  std::vector<RimEdge> edges;      ///< by ascending (smaller vertex, larger vertex)
-  std::vector<RimCorner> corners;  ///< by ascending vertex
+  std::vector<RimEdge> edges;      ///< ordered by smaller vertex, then larger vertex
+  std::vector<RimCorner> corners;  ///< ordered by vertex
 };
 
 /// Returns the rims of an axis.
-/// @param axis  with radii; it has no problem (problem_of_medial). @throws Cancelled.
+/// @param axis  has radii, and problem_of_medial() finds no problem in it.
+/// @throws Cancelled.
 [[nodiscard]] Rims find_rims(const Complex& axis, const Context& context);
 
 }  // namespace blum::detail

@@ -16,10 +16,10 @@ namespace {
 constexpr double least_cosine = 0.25;
 constexpr std::size_t most_ring = 64;
 
-/// Point seen along the normal of a fan, from its centre.
+/// Point relative to the centre of a fan: x and y in the plane across the fan's normal, and height along the normal.
 struct Seen {
   double x = 0, y = 0;
-  double height = 0, radius = 0;  ///< radius: less that of the centre
+  double height = 0, radius = 0;  ///< `radius`: difference from the radius at the centre
 };
 
 double cross(const Seen& a, const Seen& b) {
@@ -37,7 +37,7 @@ struct Difference {
   }
 };
 
-/// Ring as seen along a normal.
+/// Ring of a fan as projected along a normal.
 class View {
  public:
   View(const AxisPoint& centre, std::span<const AxisPoint> ring, const Vec3d& normal) {
@@ -51,14 +51,14 @@ class View {
     }
   }
 
-  /// Returns true if the fan lies above the plane once, before the centre is removed.
+  /// Returns true if the projection of the fan does not overlap itself before the centre is removed.
   [[nodiscard]] bool is_above_plane(bool is_closed) const {
     for (std::size_t k = 0; k + 1 < seen_.size() + (is_closed ? 1 : 0); ++k) {
       if (!(cross(seen_[k], seen_[(k + 1) % seen_.size()]) > 0)) return false;
     }
     return true;
   }
-  /// Returns true if the fan lies above the plane once afterwards.
+  /// Returns true if the projection of the triangles that replace the fan does not overlap itself.
   [[nodiscard]] bool is_unfolded() const {
     for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
       if (!(cross(seen_[0], seen_[k], seen_[k + 1]) > 0)) return false;
@@ -66,10 +66,10 @@ class View {
     return true;
   }
 
-  /// Returns true if the centre of an open fan lies beyond the line between the ends of its ring.
+  /// Returns true if the centre of an open fan lies outside the new triangles, beyond the line between the ring's ends.
   [[nodiscard]] bool is_tip() const { return cross(seen_[0], seen_[seen_.size() - 1]) > 0; }
 
-  /// Includes the difference at the centre, if the fan covers it afterwards.
+  /// Includes the difference at the centre, if the new triangles cover it.
   void include_centre(Difference& difference) const {
     for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
       const double a = cross(seen_[k], seen_[k + 1]);
@@ -83,7 +83,8 @@ class View {
     }
   }
 
-  /// Includes the differences where edges from the centre cross those afterwards. Between these places both are linear.
+  /// Includes the differences where edges from the centre cross new edges. Between these points both surfaces are
+  /// linear.
   void include_crossings(Difference& difference) const {
     for (std::size_t j = 2; j < seen_.size(); ++j) {
       const Seen& from = seen_[0];
@@ -94,7 +95,7 @@ class View {
         if (i == j) continue;
         const Seen& spoke = seen_[i];
         const double turn = cross(spoke, along);
-        // Signs mostly show without division that no crossing exists.
+        // Mostly, the signs alone show that the edges do not cross, so no division is needed.
         if (turn == 0 || (turn > 0 ? !(start > 0 && start <= turn) : !(start < 0 && start >= turn))) continue;
         const double s = start / turn;
         const double t = cross(from, spoke) / turn;
@@ -109,21 +110,23 @@ class View {
   InlineList<Seen, most_ring> seen_;
 };
 
-/// Returns true if a triangle roughly faces where a normal does.
+/// Returns true if a triangle's normal is within 75 degrees of the given normal.
 bool faces(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& normal) {
   const Vec3d own = blum::cross(b - a, c - a);
   return dot(own, normal) > least_cosine * length(own);
 }
 
 constexpr std::size_t most_in_batch = 256;
-/// At each step sheets may reach beyond where they were by this part of the least radius nearby. By `nothing` of the
-/// tolerance they always may: flat ones do so by rounding, and they reach out to where the radius is 0.
+/// Each removal may move sheets beyond their previous extent by at most this fraction of the least radius nearby. A
+/// distance of `nothing` times the tolerance is always allowed. Rounding causes such distances in flat sheets, also
+/// where the radius is 0.
 constexpr double part_of_radius = 0.5;
 constexpr double nothing = 1e-6;
-/// Rims, seams and curves may move by this part of the limit of sheets, because few vertices of them show most.
+/// Rims, seams and curves may move by this fraction of the limit for sheets. It is small because a coarse border is
+/// more visible than a coarse sheet.
 constexpr double part_of_borders = 0.4;
 
-/// Returns true if any vertex of the fans, or any other end of a border, is of a kind.
+/// Returns true if `is` holds for any ring vertex of the fans, or for the other end of any border edge in the chain.
 template <class Is>
 bool is_any_of(std::span<const Fan> fans, std::span<const std::pair<std::uint32_t, std::uint32_t>> chain,
                const Is& is) {
@@ -156,7 +159,7 @@ std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const Axis
   }
   const View view(centre, ring, normal);
   if (!view.is_unfolded()) return std::nullopt;
-  // Each point of a triangle moves with its corner, and so no further than the corner.
+  // Points of a triangle move at most as far as the corner that moves.
   const double moved = length(ring[0].position - centre.position);
   const Deviation bound{std::max(moved, std::abs(ring[0].radius - centre.radius)), moved};
   if (!view.is_above_plane(is_closed)) return bound;
@@ -191,10 +194,11 @@ void SheetDecimator::run(std::span<const double> levels) {
   }
 }
 
-/// Removes vertices that are not next to one removed before, in one pass over all. All threads examine the vertices of
-/// a batch before any of them is removed. If something next to a vertex was removed, it is examined again. The order,
-/// and so the result, does not depend on the threads. Vertices of a batch are far apart in memory, and next to those of
-/// the batch before.
+/// Visits all waiting vertices once, and removes those that may be removed and whose neighbourhood did not change
+/// during this sweep. The vertices are visited in batches. Threads examine all vertices of a batch before any of them
+/// is removed. A vertex is examined again if a removal in the batch changed the neighbourhood of a neighbour. The order
+/// of removals, and so the result, does not depend on the number of threads. Vertices of one batch are far apart in
+/// memory; each follows a vertex of the previous batch.
 /// @return  number of removed vertices.
 std::size_t SheetDecimator::sweep(double limit) {
   const std::vector<std::uint32_t> waiting = waiting_vertices();
@@ -229,7 +233,7 @@ void SheetDecimator::take_batch(double limit) {
     if (is_touched(v)) continue;
     Look& look = looks_[k];
     is_waiting_[v] = 0;
-    // A removal on the other side of a neighbour may forbid this one.
+    // A removal next to a neighbour may have made this one invalid.
     if (look.candidate && is_any_of(std::span(look.fans).first(look.fan_count), look.chain, is_touched))
       look_at(v, limit, look);
     if (look.candidate) take(v, look);
@@ -239,7 +243,7 @@ void SheetDecimator::look_at(std::uint32_t v, double limit, Look& look) const {
   look.candidate = gather(v, look) ? best(v, limit, look) : std::nullopt;
 }
 
-/// Finds the fans of a vertex and its neighbours along a chain, if it has two of these or none.
+/// Finds the border edges at a vertex, which must be none or two, and the fans of triangles around it.
 /// @return  true if the vertex may be removed at all.
 bool SheetDecimator::gather(std::uint32_t v, Look& look) const {
   auto& chain = look.chain;
@@ -259,7 +263,8 @@ bool SheetDecimator::gather(std::uint32_t v, Look& look) const {
   }
   return true;
 }
-/// Follows triangles from a ring vertex to another one, or around to the same. They are removed from `sides`.
+/// Adds the fan of triangles from ring vertex `from` to ring vertex `to`, or around to `from` if `to` is none. The
+/// triangles are removed from `sides`.
 bool SheetDecimator::add_fan(Look& look, std::uint32_t from, std::uint32_t to) {
   auto& sides = look.sides;
   if (look.fan_count == look.fans.size()) look.fans.emplace_back();
@@ -283,7 +288,7 @@ bool SheetDecimator::add_fan(Look& look, std::uint32_t from, std::uint32_t to) {
   return !fan.is_closed || fan.ring.size() > 2;
 }
 
-/// Returns the neighbour to which a vertex is best contracted.
+/// Returns the contraction of a vertex to its preferred valid neighbour; nullopt if none is valid.
 std::optional<SheetDecimator::Candidate> SheetDecimator::best(std::uint32_t v, double limit, Look& look) const {
   auto& targets = look.targets;
   targets.clear();
@@ -308,7 +313,8 @@ std::optional<SheetDecimator::Candidate> SheetDecimator::best(std::uint32_t v, d
   return std::nullopt;
 }
 
-/// Returns how far all cells around a vertex would be from their original places; nullopt if that is too far.
+/// Returns bounds on how far the cells around a vertex would be from the original axis after its contraction; nullopt
+/// if that is too far.
 std::optional<SheetDecimator::Candidate> SheetDecimator::moved_to(std::uint32_t v, std::uint32_t to, double limit,
                                                                   Look& look) const {
   double along = 0;
@@ -381,7 +387,7 @@ void SheetDecimator::touch(std::uint32_t v) {
   is_waiting_[v] = may_wait(v) ? 1 : 0;
 }
 
-/// Passes the angle of a removed triangle on to the triangle beside it. So the largest angle of a sheet stays.
+/// Passes the angle of each removed triangle on to its neighbour. So the largest angle of a sheet is preserved.
 void SheetDecimator::pass_angle_on(const Fan& fan) {
   const std::size_t count = fan.triangles.size();
   const auto pass = [&](std::uint32_t from, std::uint32_t to) {

@@ -15,7 +15,8 @@
 namespace blum::detail {
 namespace {
 
-/// A prism of twelve sides, whose edges bend by 30 degrees up to rounding, is thus one patch at 30.
+/// Allowance for rounding. So the sides of a twelve-sided prism, whose edges bend by 30 degrees, form one patch at the
+/// angle 30.
 constexpr double rounding = 1e-6;  // degrees
 
 /// Returns true if a triangle runs along an edge from its smaller vertex to the larger one.
@@ -115,15 +116,15 @@ void SurfacePatches::add_up() {
   for (AxisPatch& patch : patches_) {
     patch.centroid = patch.centroid / patch.area;
     const double size = length(patch.normal);
-    // For a closed surface the sum is rounding.
+    // For a closed surface the sum is 0 up to rounding.
     patch.normal = size > 1e-9 * patch.area ? patch.normal / size : Vec3d{};
   }
 }
 
 std::vector<std::uint32_t> SurfacePatches::at(SiteId site) const {
   if (site.value >= sites_.size()) {
-    throw InvalidOption("the axis names site " + std::to_string(site.value) +
-                        ", but the number of sites of the mesh is " + std::to_string(sites_.size()) +
+    throw InvalidOption("the axis uses site " + std::to_string(site.value) +
+                        " (counted from 0), but the number of sites of the mesh is " + std::to_string(sites_.size()) +
                         ": the axis belongs to another mesh, or to the same mesh welded differently");
   }
   const Site on = sites_.site(site);

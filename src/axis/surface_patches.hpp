@@ -12,24 +12,27 @@
 
 namespace blum::detail {
 
-/// Patches of a mesh (see AxisPatch), numbered by their first face.
+/// Patches of a mesh (see AxisPatch), numbered in the order of their first faces.
 class SurfacePatches {
  public:
-  /// @param angle  degrees. @throws InvalidMesh, Cancelled. Cost: near-linear. The mesh must outlive this object.
+  /// The mesh must outlive this object.
+  /// @param angle  largest bend at an edge inside a patch, in degrees.
+  /// @throws InvalidMesh, Cancelled. Cost: near-linear.
   SurfacePatches(const MeshView& mesh, double angle, const Context& context);
-  /// The same with the sites of the mesh, which must pass validate().
+  /// Does the same with the given sites of the mesh. The mesh must pass validate().
   SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context);
 
   static constexpr std::uint32_t none = 0xffffffffU;
 
   [[nodiscard]] const std::vector<AxisPatch>& patches() const { return patches_; }
-  /// Returns the patch of a face; none for a face without area.
+  /// Returns the patch number of a face; none for a face without area.
   [[nodiscard]] std::uint32_t of_face(std::uint32_t face) const { return patch_of_[face]; }
-  /// Returns the patches that a site lies on, ascending. @throws InvalidOption for a site that the mesh does not have.
+  /// Returns the indices of the patches to which a site belongs, in ascending order.
+  /// @throws InvalidOption for a site that the mesh does not have.
   [[nodiscard]] std::vector<std::uint32_t> at(SiteId site) const;
 
  private:
-  /// Triangles of each edge or vertex, one after the other.
+  /// Triangles of all edges, or of all vertices, row after row.
   struct Rows {
     std::vector<std::size_t> first;
     std::vector<std::uint32_t> triangles;
@@ -42,9 +45,9 @@ class SurfacePatches {
 
   const MeshView mesh_;
   SiteTable sites_;
-  std::vector<Vec3d> normals_;  ///< length: twice the area
+  std::vector<Vec3d> normals_;  ///< normals of the triangles; their length is twice the area
   Rows at_edges_, at_vertices_;
-  std::vector<std::uint32_t> patch_of_;  ///< of each face
+  std::vector<std::uint32_t> patch_of_;  ///< for each face
   std::vector<AxisPatch> patches_;
 };
 

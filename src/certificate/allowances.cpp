@@ -8,9 +8,9 @@
 namespace blum::verifier {
 namespace {
 
-constexpr double noise_of_meshes = 10;  ///< degrees from which two walls count as two
-constexpr double noise_of_images = 20;  ///< the same between steps of voxels
-constexpr double least_voxels = 8;      ///< at least so many along the longest side of a solid
+constexpr double noise_of_meshes = 10;  ///< degrees: walls at a smaller angle count as one
+constexpr double noise_of_images = 20;  ///< degrees: the same for solids of voxels
+constexpr double least_voxels = 8;      ///< least number of voxels along the longest side of a solid
 
 double longest_side(const KnownSolid& solid) {
   Box3 all;

@@ -21,7 +21,7 @@ using verifier::KnownSolid;
 using verifier::NoPolyhedron;
 using verifier::ScaledMesh;
 
-/// The solid of a mesh, and the meshes that it refers to.
+/// The solid that a mesh bounds, and the meshes to which it refers.
 struct BoundedSolid {
   ScaledMesh given;
   std::optional<verifier::BoundingMesh> bounding;
@@ -30,7 +30,7 @@ struct BoundedSolid {
   MeshSolidRule rule;
 
   BoundedSolid(const MeshView& mesh, double factor, const Context& context) : given(mesh, factor) {
-    // Nearly all meshes can be used as they are, and are then read once.
+    // Nearly all meshes bound a polyhedron without changes. They are then analysed only once.
     if (find_self_intersections(mesh, 0, context).complete) {
       try {
         solid = verifier::solid_of_mesh(given.view, given.view, context);
@@ -50,7 +50,7 @@ struct BoundedSolid {
   }
 };
 
-/// Returns the options without checks that depend on a check that is off.
+/// Turns off checks that depend on a check that is off.
 CertificateOptions consistent(CertificateOptions options) {
   options.radii = options.radii && options.positions;
   options.footprints = options.footprints && options.radii;
@@ -72,7 +72,7 @@ constexpr CertificateOptions only_places{.positions = true,
                                          .balls = false,
                                          .medial = false};
 
-/// Returns the cells of a complex with medial columns, which are not checked.
+/// Returns the cells of a complex with the columns of a medial axis. The columns are placeholders that are not checked.
 Complex with_medial_columns(const Complex& complex) {
   Complex out;
   out.positions = complex.positions;
@@ -84,7 +84,7 @@ Complex with_medial_columns(const Complex& complex) {
 
 }  // namespace
 
-/// A solid that is read when it is first needed.
+/// A solid that is analysed when it is first needed.
 class AxisVerifier::Reading {
  public:
   explicit Reading(double factor) : factor_(factor) {}
@@ -92,7 +92,7 @@ class AxisVerifier::Reading {
   Reading& operator=(const Reading&) = delete;
   virtual ~Reading() = default;
 
-  /// Returns how many times larger the solid is than the caller's.
+  /// Returns the factor by which the solid was scaled: its lengths are this many times the caller's.
   [[nodiscard]] double factor() const { return factor_; }
   [[nodiscard]] virtual MeshSolidRule rule(const Context& context) const = 0;
   /// @throws InvalidMesh, InvalidGrid, Cancelled.
@@ -164,7 +164,8 @@ AxisVerifier::AxisVerifier(const MeshView& mesh) {
 
 AxisVerifier::AxisVerifier(VoxelSet voxels, const GridSpec& grid, const MeshView* surface) {
   validate(grid);
-  if (grid.size != voxels.size()) throw InvalidOption("the grid and the voxels of a certificate differ in size");
+  if (grid.size != voxels.size())
+    throw InvalidOption("the grid and the set of voxels have different sizes; they must be equal");
   if (voxels.count() == 0)
     throw InvalidOption("the set of voxels is empty, so there is no solid to check an axis against");
   if (surface != nullptr) validate(*surface);

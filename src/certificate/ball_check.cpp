@@ -23,14 +23,15 @@ struct OwnedBall {
 
 constexpr double parts_of_diagonal = 256;
 
-/// Returns the largest distance between samples of the axis. Finer axes have enough vertices.
+/// Returns the largest distance between neighbouring samples of the axis. For an axis with finer cells, its vertices
+/// suffice.
 double step_of_balls(const MedialView& axis, double diagonal) {
   constexpr double most_balls = 50'000;
   constexpr double parts = 200;
   return std::max(diagonal / parts, std::sqrt(area_of(axis) / most_balls));
 }
 
-/// Returns the length of the median edge, or 1/256 of the diagonal if that is less.
+/// Returns the median length of the edges, or 1/256 of the diagonal if that is less.
 double default_step(const MedialView& axis, double diagonal) {
   std::vector<double> squares;
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
@@ -88,12 +89,12 @@ std::array<Vec3d, directions_per_ball> directions() {
   return result;
 }
 
-/// Returns the largest distance to the surface, over points of balls that lie in no other ball.
+/// Returns the largest distance to the surface, over points on the spheres of balls that lie in no other ball.
 double balls_to_surface(const std::vector<OwnedBall>& owned, const BallUnion& balls, const SolidOracle& solid,
                         const Context& context) {
   constexpr std::size_t grain = 64;
   const double margin = rounding_of_diagonal * solid.diagonal();
-  // If there are very many balls, only every n-th is sampled, because neighbours are alike.
+  // If there are very many balls, only every n-th one is sampled, because neighbouring balls are similar.
   const std::size_t every = owned.size() * directions_per_ball / most_directions + 1;
   const std::size_t count = (owned.size() + every - 1) / every;
   const auto ways = directions();

@@ -58,20 +58,21 @@ Vec3d BallUnion::slope_of(const BoxHierarchy::Places& places) const {
     for (std::size_t a = 0; a < 3; ++a) spread.columns[a] += apart * apart[a];
     rise += apart * ((balls_[k].radius - mean_radius) / size_);
   }
-  // Across a sheet the slope is unknown. A little more spread keeps it along the sheet.
+  // The centres of a sheet do not determine the slope across the sheet. A little extra spread keeps the slope along the
+  // sheet.
   const double more = 1e-3 * (spread.columns[0].x + spread.columns[1].y + spread.columns[2].z);
   for (std::size_t a = 0; a < 3; ++a) spread.columns[a][a] += more;
   const auto& [x, y, z] = spread.columns;
   const double volume = dot(x, cross(y, z));
   if (!(volume > 0)) return {};
   const Vec3d slope = Vec3d{dot(rise, cross(y, z)), dot(x, cross(rise, z)), dot(x, cross(y, rise))} / volume;
-  constexpr double steepest = 2;  // true axes have at most 1
+  constexpr double steepest = 2;  // slopes of true axes are at most 1
   return squared_length(slope) <= steepest * steepest ? slope : Vec3d{};
 }
 
 void BallUnion::set_child(Node& node, std::size_t k, const Box3& box, const BoxHierarchy::Places& places,
                           double largest) const {
-  constexpr std::uint32_t most_balls = 4096;  // the radii of more follow no plane
+  constexpr std::uint32_t most_balls = 4096;  // the radii of more balls do not follow a plane
   const Vec3d slope = places.second - places.first <= most_balls ? slope_of(places) : Vec3d{};
   Vec3d middle;
   Vec3d rounded_slope;
@@ -100,7 +101,7 @@ std::uint32_t BallUnion::add_node(const BoxHierarchy& tree, const std::vector<Bo
   const auto is_leaf = [&](std::uint32_t n) { return places[n].second - places[n].first <= width; };
   InlineList<std::uint32_t, width> children;
   children.push_back(index);
-  // Splits the child with the most balls while there is room.
+  // Splits the child with the most balls into its two children, while there is room.
   while (!children.is_full()) {
     std::uint32_t* const most =
         std::max_element(children.begin(), children.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -128,8 +129,9 @@ std::uint32_t BallUnion::add_node(const BoxHierarchy& tree, const std::vector<Bo
 }
 
 BallUnion::Four BallUnion::bounds_of(const Node& node, const std::array<float, 3>& at) {
-  // The distance of a centre c minus its largest possible radius, |p - c| - radius - slope * (c - middle), is convex in
-  // c. So its tangent at the middle is a lower bound in the whole box.
+  // The distance of a centre c in the box, minus its largest possible radius, is
+  // |p - c| - radius - slope * (c - middle). This is convex in c, so its tangent at the middle is a lower bound in the
+  // whole box.
   std::array<Four, 3> apart{};
   Four squared{};
   Four squared_outside{};
@@ -156,7 +158,7 @@ BallUnion::Four BallUnion::bounds_of(const Node& node, const std::array<float, 3
   }
   for (std::size_t k = 0; k < width; ++k) {
     const float of_box = std::sqrt(squared_outside[k]) - node.largest[k];
-    // Close to the middle, rounding spoils the direction to it.
+    // Close to the middle, rounding errors make the direction to the middle useless.
     bounds[k] = squared[k] < node.squared_reach[k] || bounds[k] < of_box ? of_box : bounds[k];
   }
   return bounds;
@@ -177,7 +179,7 @@ void BallUnion::search(const Vec3d& p, double least, const Visit& visit) const {
   }
   const std::array<float, 3> at{static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z)};
   const double slack = slack_ + rounding * 20 * reach;
-  InlineList<Item, 128> stack;  // three more per level, and each level has a quarter of the balls
+  InlineList<Item, 128> stack;  // three more items per level; each level has a quarter of the balls
   stack.push_back({-HUGE_VAL, 0, 0});
   while (!stack.empty()) {
     const Item item = stack.pop_back();
@@ -210,7 +212,7 @@ double BallUnion::gap(const Vec3d& p, std::uint32_t& first) const {
       best = own;
       first = place;
     }
-    return best <= 0 ? -HUGE_VAL : best;  // in the union: the search ends
+    return best <= 0 ? -HUGE_VAL : best;  // p lies in the union: ends the search
   });
   return best;
 }

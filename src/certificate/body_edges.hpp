@@ -16,11 +16,11 @@
 namespace blum::verifier {
 
 inline constexpr double corner_of_diagonal = 1.0 / 64;
-/// Limits of the cost of pushing an edge inside. Edges along a hole of no width would take for ever if little is
-/// allowed.
+/// Limits of the cost of pushing an edge inside. Without limits, edges along a hole of no width would take for ever if
+/// the tolerance is small.
 struct PushBudget {
-  int moves = 64;                                               ///< points that may be moved
-  std::size_t looks = std::numeric_limits<std::size_t>::max();  ///< points whose depth may be computed
+  int moves = 64;                                               ///< number of points that may be moved
+  std::size_t looks = std::numeric_limits<std::size_t>::max();  ///< number of points whose depth may be computed
 };
 
 /// A point and its depth in a body.
@@ -39,23 +39,23 @@ class BodyEdges {
         corner_(std::max(corner_of_diagonal * solid.diagonal(body), solid.grain() / 2)) {}
 
   [[nodiscard]] double allowed() const { return allowed_; }
-  /// Returns how far out an edge may be to be pushed inside.
+  /// Returns the largest distance by which an edge may leave the body and still be pushed inside.
   [[nodiscard]] double corner() const { return corner_; }
 
-  /// Returns true if a segment is known to lie inside, without meeting the boundary.
+  /// Returns true if a segment is known to lie inside the body without touching its boundary.
   [[nodiscard]] bool is_inside(const Stop& a, const Stop& b) const {
     if (!(a.depth > 0 && b.depth > 0)) return false;
     return a.depth + b.depth >= length(b.at - a.at) || solid_.is_clear(a.at, b.at, body_);
   }
 
-  /// Returns the point of a segment that is furthest out, to within a quarter. If no point is out by more than
-  /// `allowed`, any point may be returned. Around each point, a ball with the point's depth as radius lies in the body.
-  /// So only the parts between such balls are searched. In a thin wall these are many, so the segment is first tested
-  /// against the boundary.
-  /// @param looks  how many more points may be searched. Returns nullopt if they do not suffice.
+  /// Returns a point of a segment that is furthest outside the body, up to a factor of 1.25. If no point is outside by
+  /// more than `allowed`, any point may be returned. A ball around a point inside, with the point's depth as radius,
+  /// lies in the body. So only the parts between such balls are searched. In a thin wall these parts are many, so the
+  /// segment is first tested against the boundary.
+  /// @param looks  number of points that may still be examined; it is reduced. Returns nullopt if they do not suffice.
   [[nodiscard]] std::optional<Stop> furthest_out(const Stop& a, const Stop& b, double allowed,
                                                  std::size_t& looks) const {
-    constexpr double nearly = 1.25;  // points are searched only if they may be worse by this factor
+    constexpr double nearly = 1.25;  // only points that may be further out by this factor are searched
     Stop worst = a.depth < b.depth ? a : b;
     if (is_inside(a, b)) return worst;
     std::vector<std::pair<Stop, Stop>> stack{{a, b}};
@@ -63,7 +63,7 @@ class BodyEdges {
       const auto [p, q] = stack.back();
       stack.pop_back();
       const double gap = length(q.at - p.at);
-      // The left side is twice the least depth that is possible in between.
+      // The left side is twice the least depth that a point between p and q can have.
       if (p.depth + q.depth - gap >= 2 * std::min(-allowed, nearly * worst.depth)) continue;
       const double begin = std::max(p.depth, 0.0);
       const double end = gap - std::max(q.depth, 0.0);
@@ -79,17 +79,17 @@ class BodyEdges {
     }
     return worst;
   }
-  /// Returns the same, with any number of points.
+  /// Does the same without a limit on the number of points.
   [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
     std::size_t looks = PushBudget().looks;
     return *furthest_out(a, b, allowed, looks);
   }
 
-  /// Returns true if a segment that leaves the body can be pushed into it. The point furthest out is moved through the
-  /// closest point of the surface, and both parts are tested again. Past an edge of the solid that soon succeeds.
+  /// Returns true if a segment that leaves the body can be pushed into it. The point furthest out is moved to the other
+  /// side of the closest surface point, and both halves are tested again. At an edge of the solid this soon succeeds.
   /// Across a gap it never does.
-  /// @param budget  reduced to what is left.
-  /// @param way     receives the moved points, from a to b.
+  /// @param budget  is reduced by the moves and looks used.
+  /// @param way     the moved points are appended, in order from a to b.
   [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, PushBudget& budget, std::vector<Vec3d>& way) const {
     const std::optional<Stop> worst = furthest_out(a, b, allowed_, budget.looks);
     if (!worst) return false;
@@ -102,7 +102,8 @@ class BodyEdges {
   }
 
  private:
-  /// Returns a point as deep inside as `out` is outside, or a quarter as deep in thin parts, else the surface point.
+  /// Returns a point as deep inside as `out` is outside, or, in thin parts, a quarter as deep. If both fail, it returns
+  /// the closest surface point.
   [[nodiscard]] Stop pushed_in(const Stop& out) const {
     const Vec3d foot = solid_.closest_point(out.at, body_);
     for (const double far : {1.0, 0.25}) {

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t most_pairs = 100000;
 
-/// Returns the places where a mesh touches itself.
-/// @throws NoPolyhedron if it crosses itself, or touches itself in too many places.
+/// Returns the pairs of triangles at which a mesh touches itself.
+/// @throws NoPolyhedron if the mesh crosses itself, or touches itself in too many places.
 SelfIntersections without_crossings(const MeshView& mesh, const Context& context) {
   SelfIntersections found = find_self_intersections(mesh, most_pairs, context);
   if (found.crossing > 0) throw NoPolyhedron("the mesh crosses itself");
@@ -41,12 +41,12 @@ void check_polyhedron(const MeshView& mesh, const Context& context) {
   }
 }
 
-/// Winding numbers of a mesh around points, from the crossings of lines.
+/// Computes winding numbers of a mesh around points from the crossings of lines with the mesh.
 class Windings {
  public:
   Windings(const MeshView& mesh, const Context& context) : mesh_(mesh), search_(mesh, {}, context) {}
 
-  /// Returns nullopt if the winding number is undecided, for example on the surface.
+  /// Returns the winding number around p; nullopt if it is undecided, for example on the surface.
   std::optional<int> around(const Vec3d& p) {
     constexpr std::uint32_t most_lines = 24;
     for (std::uint32_t attempt = 0; attempt < most_lines; ++attempt) {
@@ -74,7 +74,7 @@ class Windings {
   std::vector<Crossing> crossings_;
 };
 
-/// Returns random points in the box of a mesh, and points on both sides of triangles.
+/// Returns random points in the box of a mesh, and points just off both sides of triangles.
 std::vector<Vec3d> probes(const MeshView& mesh) {
   constexpr std::size_t in_box = 1000;
   constexpr std::size_t at_triangles = 4000;
@@ -99,8 +99,8 @@ std::vector<Vec3d> probes(const MeshView& mesh) {
   return out;
 }
 
-/// @throws NoPolyhedron unless, at every point tried, `resolved` winds once if `mesh` winds once or more, else not at
-/// all.
+/// @throws NoPolyhedron if the insides differ at a tested point: `resolved` must wind once where `mesh` winds once or
+/// more, and not at all elsewhere.
 void check_same_inside(const MeshView& mesh, const MeshView& resolved, const Context& context) {
   const double factor = factor_for(bounds(mesh).diagonal());
   const ScaledMesh given(mesh, factor);
@@ -114,7 +114,7 @@ void check_same_inside(const MeshView& mesh, const MeshView& resolved, const Con
     const std::optional<int> before = around_given.around(p);
     const std::optional<int> after = around_own.around(p);
     if (before && after && *after != (*before >= 1 ? 1 : 0)) {
-      throw NoPolyhedron("the mesh has another interior once its crossings are resolved");
+      throw NoPolyhedron("resolving the crossings of the mesh would change its interior");
     }
   }
 }
@@ -131,12 +131,13 @@ BoundingMesh::BoundingMesh(const MeshView& mesh, const Context& context) : mesh_
     why = error.reason();
   }
   resolved_ = resolve_crossings(mesh, {}, context);
-  if (!resolved_->is_resolved()) throw NoPolyhedron(why + ", which is not resolved: " + resolved_->obstacle);
+  if (!resolved_->is_resolved())
+    throw NoPolyhedron(why + ", and the crossings cannot be resolved: " + resolved_->obstacle);
   try {
     check_polyhedron(resolved_->mesh, context);
     check_same_inside(mesh, resolved_->mesh, context);
   } catch (const NoPolyhedron& error) {
-    throw NoPolyhedron(why + "; once its crossings are resolved: " + error.reason());
+    throw NoPolyhedron(why + "; after its crossings are resolved, it still bounds no polyhedron: " + error.reason());
   }
 }
 
@@ -145,7 +146,7 @@ BoundingMesh::BoundingMesh(const MeshView& mesh, const Context& context) : mesh_
 namespace blum {
 
 MeshSolidRule verifier::rule_of_polyhedron(bool is_resolved) {
-  return {SolidRule::polyhedron, is_resolved ? "the mesh is closed, and manifold once its crossings are resolved"
+  return {SolidRule::polyhedron, is_resolved ? "the mesh is closed, and manifold after its crossings are resolved"
                                              : "the mesh is closed, manifold and does not cross itself"};
 }
 

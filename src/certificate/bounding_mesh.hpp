@@ -12,9 +12,9 @@ namespace blum::verifier {
 
 /// A mesh that bounds a polyhedron.
 ///
-/// It is the given mesh if that bounds one, else the result of resolve_crossings(). The verifier checks by its own
-/// reading that this result bounds a polyhedron. It also checks at thousands of points that the inside is that of the
-/// given mesh.
+/// It is the given mesh if that bounds a polyhedron, and otherwise the result of resolve_crossings(). The verifier
+/// checks with its own code that the result bounds a polyhedron. It also compares the insides of both meshes at
+/// thousands of points.
 class BoundingMesh {
  public:
   /// @param mesh  must outlive this object.

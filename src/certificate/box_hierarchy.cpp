@@ -9,7 +9,7 @@ namespace blum::verifier {
 namespace {
 
 constexpr std::uint32_t most_per_leaf = 2;
-/// The nodes of a level are split into at most this many ranges.
+/// Largest number of ranges into which the nodes of a level are divided.
 constexpr std::size_t most_ranges = 64;
 
 }  // namespace
@@ -48,7 +48,7 @@ BoxHierarchy::BoxHierarchy(const std::vector<Box3>& boxes, const Context& contex
   for (std::uint32_t n = 1; n < nodes_.size(); ++n) pairs_[pair_of(n)].set(place_in_pair(n), nodes_[n].box);
 }
 
-/// Moves the items of the lower half along the longest side of a node to the front.
+/// Moves the lower half of a node's items, along its longest side, to the front.
 void BoxHierarchy::sort_halves(const Node& node, std::vector<Thing>& things) {
   if (node.count <= most_per_leaf) return;
   const auto begin = things.begin() + node.first;

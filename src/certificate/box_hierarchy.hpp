@@ -54,13 +54,13 @@ struct TwoBoxes {
   return squared_distances({{{p.x, p.x}, {p.y, p.y}, {p.z, p.z}}}, boxes);
 }
 
-/// A binary tree over the boxes of items. Nodes are halved at the median until few items are left. The tree knows only
-/// boxes.
+/// A binary tree over the boxes of items. Nodes are halved at the median until few items are left. The tree stores only
+/// boxes and indices of the items.
 class BoxHierarchy {
  public:
   struct Node {
     Box3 box;
-    std::uint32_t first = 0;  ///< place in order() of its first item, or its first child, which the second one follows
+    std::uint32_t first = 0;  ///< index of its first item in order(), or of its first child; the second follows
     std::uint32_t count = 0;  ///< number of its items; 0 if it has children
   };
 
@@ -68,27 +68,27 @@ class BoxHierarchy {
   /// @throws Cancelled. Cost: O(n log n).
   explicit BoxHierarchy(const std::vector<Box3>& boxes, const Context& context = {});
 
-  /// Returns the items, those of one leaf next to each other.
+  /// Returns the indices of the items, leaf by leaf.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes_.size()); }
   [[nodiscard]] const Node& node(std::uint32_t index) const { return nodes_[index]; }
-  /// Returns the number of the pair of siblings that a node belongs to, from 0. The root has no pair.
+  /// Returns the index of the pair of siblings that contains a node. The root belongs to no pair.
   [[nodiscard]] static constexpr std::size_t pair_of(std::size_t node) { return (node - 1) / 2; }
-  /// Returns the place of a node in its pair: 0 or 1.
+  /// Returns which node of its pair a node is: 0 or 1.
   [[nodiscard]] static constexpr std::size_t place_in_pair(std::size_t node) { return (node - 1) % 2; }
   /// Returns the boxes of a first child and its sibling.
   [[nodiscard]] const TwoBoxes& two_boxes(std::uint32_t first_child) const { return pairs_[pair_of(first_child)]; }
 
-  /// For each node, the places in order() of all items below it: the first one, and one past the last.
+  /// For each node: the range of all items below it in order(), from the first to one past the last.
   using Places = std::pair<std::uint32_t, std::uint32_t>;
   [[nodiscard]] std::vector<Places> places() const;
 
-  /// Returns for each node the largest value of its items. `values` has the order of order().
+  /// Returns for each node the largest value of the items below it. `values` are in the order of order().
   [[nodiscard]] std::vector<double> node_maxima(std::span<const double> values) const;
 
-  /// Searches the nodes whose bound is below the best value so far, the lower one first. Calls best = visit(place in
-  /// order()) for their items. bounds(first child) returns the bounds of that child and of its sibling. The root is
-  /// always searched.
+  /// Searches the nodes whose bound is below the best value so far, nodes of lower bound first. For each item at index
+  /// k in order(), it calls best = visit(k). bounds(first child) returns the bounds of that child and its sibling. The
+  /// root is always searched.
   template <class Bounds, class Visit>
   void search(double best, const Bounds& bounds, const Visit& visit) const {
     if (nodes_.empty()) return;
@@ -96,7 +96,7 @@ class BoxHierarchy {
       double least;
       std::uint32_t node;
     };
-    InlineList<Item, 64> stack;  // one more per level, and each level halves the items
+    InlineList<Item, 64> stack;  // one more item per level; each level halves the items
     stack.push_back({-HUGE_VAL, 0});
     while (!stack.empty()) {
       const auto [least, index] = stack.pop_back();
@@ -113,8 +113,8 @@ class BoxHierarchy {
     }
   }
 
-  /// Calls visit(place in order()) for the items of all nodes whose box may_meet(box) accepts, until visit() returns
-  /// false. The root is always searched.
+  /// Calls visit(k) for the items, by index in order(), of all nodes for whose boxes may_meet(box) returns true. It
+  /// stops when visit() returns false. The root is always searched.
   template <class MayMeet, class Visit>
   void visit_where(const MayMeet& may_meet, const Visit& visit) const {
     const auto distance_to = [&](std::uint32_t n) { return may_meet(nodes_[n].box) ? 0.0 : 2.0; };
@@ -132,7 +132,7 @@ class BoxHierarchy {
 
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
-  std::vector<TwoBoxes> pairs_;  ///< of siblings
+  std::vector<TwoBoxes> pairs_;  ///< for each pair of siblings
 };
 
 }  // namespace blum::verifier

@@ -17,15 +17,15 @@
 namespace blum::verifier {
 namespace {
 
-constexpr double noise = 10;               ///< degrees from which two footprints count as two walls
-constexpr double nearly = 10;              ///< degrees by which an angle may be below those of all its corners
-constexpr double about = 20;               ///< degrees by which it may exceed the angle seen around it
+constexpr double noise = 10;               ///< degrees: footprints at a smaller angle count as one
+constexpr double nearly = 10;              ///< degrees by which an angle may be below the angles of all corners
+constexpr double about = 20;               ///< degrees by which an angle may exceed the largest angle found nearby
 constexpr double same = 1e-3;              ///< degrees: rounding of float32
-constexpr double most_below = 0.8;         ///< share of the area: see docs/theory/medial-axis.md
-constexpr double most_above = 0.2;         ///< share of samples
-constexpr double most_curves_above = 0.6;  ///< share of samples of curves: those of true axes wind within a voxel
-constexpr double most_low_rims = 0.25;     ///< share of the length of rims and curves
-constexpr std::size_t few = 64;            ///< fewest cells or samples from which shares are judged
+constexpr double most_below = 0.8;         ///< largest share of the area below: see docs/theory/medial-axis.md
+constexpr double most_above = 0.2;         ///< largest share of samples above
+constexpr double most_curves_above = 0.6;  ///< the same for curves: true curves wind within a voxel
+constexpr double most_low_rims = 0.25;     ///< largest share of the length of rims and curves
+constexpr std::size_t few = 64;            ///< shares of fewer cells or samples are not checked
 constexpr std::size_t most_samples = 1'024;
 constexpr std::size_t grain = 32;
 
@@ -33,9 +33,9 @@ std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";
 }
 
-/// A cell to sample by its size.
+/// A cell to be sampled in proportion to its size.
 struct Sized {
-  double end = 0;  ///< sum of the sizes up to this cell
+  double end = 0;  ///< sum of the sizes of all cells up to this one
   std::uint32_t cell = 0;
 };
 
@@ -49,7 +49,8 @@ double area(const MedialView& axis, const std::array<std::uint32_t, 3>& corners)
   return 0.5 * length(cross(axis.positions[corners[1]] - p, axis.positions[corners[2]] - p));
 }
 
-/// Returns the largest angle at which a point sees two surface points that are closest to places around it.
+/// Returns the largest angle at p between closest surface points: those of p and of 14 points about `reach` away from
+/// p.
 double seen_around(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, double reach) {
   std::array<Vec3d, 15> towards;
   std::size_t count = 0;
@@ -76,7 +77,7 @@ class Angles {
          const std::vector<std::uint32_t>& body_of, double reach)
       : axis_(axis), incidence_(incidence), solid_(*solid.solid), body_of_(body_of), reach_(reach) {}
 
-  /// Measures the area of triangles whose angle is below those of all their corners.
+  /// Measures the area of triangles whose angle is more than `nearly` below the angles of all their corners.
   void compare_with_corners(AngleCheck& check) const {
     double all = 0;
     double below = 0;
@@ -92,8 +93,8 @@ class Angles {
     if (all > 0) check.below_share = below / all;
   }
 
-  /// Compares rims and seams with their triangles. Their angle is the largest of the triangles, or less after vertices
-  /// were removed.
+  /// Compares the angles of rim and seam edges with those of their triangles. An edge must have the largest angle of
+  /// its triangles, or less if vertices were removed.
   void compare_with_triangles(AngleCheck& check) const {
     for (std::size_t n = 0; n < axis_.edges.size(); ++n) {
       const auto triangles = incidence_.triangles_of_edge()[incidence_.edge_of_listed()[n]];
@@ -106,8 +107,8 @@ class Angles {
     }
   }
 
-  /// Measures the rims of sheets whose angles are all at most theta. A correct axis has no such rims: a sheet that only
-  /// homotopy keeps is closed, or ends at seams.
+  /// Measures the length of rims on sheets whose angles are all at most theta. A correct axis has no such rims: a sheet
+  /// that exists only for homotopy is closed, or ends at seams.
   void look_for_low_rims(double theta, AngleCheck& check) const {
     std::vector<float> of_sheet;
     for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -131,7 +132,7 @@ class Angles {
     if (all > 0) check.low_rims_share = low / all;
   }
 
-  /// Samples triangles and curves with an angle above 0, and compares that with the angle seen around them.
+  /// Samples triangles and curves with angles above 0, and compares their angles with those found nearby.
   void compare_with_surface(AngleCheck& check, const Context& context) const {
     std::vector<Sized> triangles;
     for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
@@ -193,34 +194,35 @@ class Angles {
   double reach_;
 };
 
-/// @param by_voxels  true if the solid is made of voxels, or voxels define the inside of a mesh. Many faces are then
-/// equally close, and a mesh may have walls that bound nothing. So the shares that depend on places are reported, not
-/// judged.
+/// @param by_voxels  true if the solid consists of voxels, or if voxels define the inside of a mesh. Then many faces
+///                   are equally close, and a mesh may have walls that bound nothing. So shares that depend on
+///                   positions are reported but cause no mismatches.
 void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<std::string>& mismatches) {
   if (!by_voxels && check.triangles >= few && check.below_share > most_below) {
-    mismatches.push_back("of the triangles whose corners see two walls, " + percent(check.below_share) +
-                         " have a separation angle below those of all their corners");
+    mismatches.push_back("of the triangles whose corners have two footprints, " + percent(check.below_share) +
+                         " have a smaller separation angle than each of their corners");
   }
   if (!by_voxels && check.samples >= few && check.above_share > most_above) {
     mismatches.push_back("of the sampled triangles, " + percent(check.above_share) +
-                         " have a separation angle above all angles found around them");
+                         " have a larger separation angle than any point examined near them");
   }
   if (!by_voxels && check.curve_samples >= few && check.curves_above_share > most_curves_above) {
     mismatches.push_back("of the sampled edges of curves, " + percent(check.curves_above_share) +
-                         " have a separation angle above all angles found around them");
+                         " have a larger separation angle than any point examined near them");
   }
   if (check.borders_above > 0) {
     mismatches.push_back(count_text(check.borders_above) +
-                         " rims and seams have a separation angle above those of all their triangles");
+                         " edges of rims and seams have a larger separation angle than each of their triangles");
   }
   if (check.borders >= few && 2 * check.borders_below > check.borders) {
-    mismatches.push_back("of the " + count_text(check.borders) + " rims and seams, " + count_text(check.borders_below) +
-                         " have a separation angle below that of their triangles");
+    mismatches.push_back("of the " + count_text(check.borders) + " edges of rims and seams, " +
+                         count_text(check.borders_below) +
+                         " have a separation angle more than 20 degrees below the largest of their triangles");
   }
   if (check.rims >= few && check.low_rims_share > most_low_rims) {
-    mismatches.push_back("of the rims and curves, " + percent(check.low_rims_share) +
-                         " are rims of sheets without any angle above " + rounded_text(theta) +
-                         " degrees; the axis at this theta has no such sheets");
+    mismatches.push_back("of the length of rims and curves, " + percent(check.low_rims_share) +
+                         " lies on rims of sheets without an angle above " + rounded_text(theta) +
+                         " degrees; an axis at this theta has no such sheets");
   }
 }
 

@@ -22,7 +22,7 @@ namespace {
 using Edge = std::array<std::uint32_t, 2>;
 using Face = std::array<std::uint32_t, 3>;
 
-/// Cells sorted by body, with corners numbered within the body, and the first cell of each body.
+/// Cells sorted by body, with vertices renumbered within each body, and the index of each body's first cell.
 template <class Corners>
 struct Sorted {
   std::vector<Corners> cells;
@@ -47,13 +47,13 @@ Sorted<Corners> sorted_by_body(std::span<const Corners> cells, const std::vector
   return sorted;
 }
 
-/// Sorts the parts of an axis into bodies.
+/// Assigns each component of an axis to a body, and computes Betti numbers body by body.
 /// @throws as homology().
 AxisParts parts_in_bodies(const ComplexView& axis, const std::vector<Location>& locations, std::uint32_t body_count,
                           const Context& context) {
   throw_if_cancelled(context);
   AxisParts parts;
-  // Where bodies touch, a vertex may lie on both. So the deepest vertex of a connected part decides.
+  // Where bodies touch, a vertex may lie in several. So the deepest vertex of a component decides its body.
   std::vector<std::uint32_t> deepest = components(axis);
   const std::vector<std::uint32_t> component = deepest;
   for (std::uint32_t v = 0; v < component.size(); ++v) {
@@ -76,8 +76,8 @@ AxisParts parts_in_bodies(const ComplexView& axis, const std::vector<Location>& 
   return parts;
 }
 
-/// Reports and removes impossible claims of an axis: theta, lambda, spacing, deviation.
-/// @param diagonal  of the solid, in the caller's units.
+/// Reports and resets impossible claims of an axis: theta, lambda, spacing, deviation.
+/// @param diagonal  diagonal of the solid, in the caller's units.
 void check_claims(CertificateOptions& options, double diagonal, std::vector<std::string>& mismatches) {
   const auto check = [&](std::optional<double>& value, const char* what, double least, double most, const char* must) {
     if (!value || (*value >= least && *value <= most)) return;
@@ -119,8 +119,8 @@ std::string counted(std::int64_t count, const char* thing) {
   return count_text(static_cast<std::uint64_t>(count)) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// Compares Betti numbers body by body.
-/// @param name  returns the name of a body, by its number.
+/// Compares the Betti numbers of axis and solid, body by body.
+/// @param name  returns the name of a body, given its index.
 template <class Name>
 void compare_topology(Certificate& certificate, const Name& name) {
   constexpr std::array<const char*, 3> things{"component", "tunnel", "void"};
@@ -133,13 +133,14 @@ void compare_topology(Certificate& certificate, const Name& name) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (body.solid[k] == body.axis[k]) continue;
       certificate.mismatches.push_back(name(b) + " has " + counted(body.solid[k], things[k]) + ", the axis " +
-                                       (certificate.bodies.size() > 1 ? "in it " : "") +
+                                       (certificate.bodies.size() > 1 ? "in it " : "") + "has " +
                                        count_text(static_cast<std::uint64_t>(body.axis[k])));
     }
   }
   certificate.topology_holds = wrong == 0;
   if (wrong > most_named) {
-    certificate.mismatches.push_back("the axis is wrong in " + std::to_string(wrong - most_named) + " more bodies");
+    certificate.mismatches.push_back("the axis has other components, tunnels or voids than the solid in " +
+                                     std::to_string(wrong - most_named) + " more bodies");
   }
 }
 

@@ -27,14 +27,14 @@ namespace blum::verifier {
   return rounded_text(at.x) + " " + rounded_text(at.y) + " " + rounded_text(at.z);
 }
 
-/// Tolerance of edges, as a multiple of that of vertices. An edge along the surface costs its length divided by this
-/// tolerance.
+/// Tolerance of edges, as a multiple of the tolerance of vertices. The cost of checking an edge along the surface is
+/// its length divided by this tolerance.
 inline constexpr double more_for_edges = 10;
 
-/// Returns the tolerance of positions in each body.
+/// Returns the tolerance of positions for each body.
 [[nodiscard]] std::vector<double> tolerances(const KnownSolid& solid);
 
-/// The worst error of its kind, relative to what is allowed for it.
+/// The largest error of a kind, relative to the allowed error.
 struct Worst {
   double error = 0;
   double allowed = 1;
@@ -46,31 +46,31 @@ struct Worst {
   [[nodiscard]] bool is_too_much() const { return error > allowed; }
 };
 
-/// The parts of an axis, by body.
+/// Assignment of an axis to bodies.
 struct AxisParts {
-  std::vector<std::uint32_t> body_of;  ///< for each vertex, the body of the deepest vertex connected to it
-  std::vector<BettiNumbers> betti;     ///< of the parts in each body
+  std::vector<std::uint32_t> body_of;  ///< for each vertex: the body of the deepest vertex in its component
+  std::vector<BettiNumbers> betti;     ///< for each body: Betti numbers of the axis in it
 };
 
-/// Returns the location of each vertex; a default one if it is not finite.
+/// Returns the location of each vertex; for vertices that are not finite, a default one.
 [[nodiscard]] std::vector<Location> locate_vertices(const MedialView& axis, const SolidOracle& solid,
                                                     const Context& context);
 
 /// Checks every vertex, and adds mismatches.
-/// @param factor  lengths are this many times the caller's.
+/// @param factor  lengths of axis and solid are this many times the caller's.
 [[nodiscard]] GeometryCheck check_vertices(const MedialView& axis, const KnownSolid& solid,
                                            const std::vector<Location>& locations, const CertificateOptions& options,
                                            double factor, std::vector<std::string>& mismatches, const Context& context);
 
-/// Edges that are not simply inside, in rising order.
+/// Edges that are not certainly inside their body, in ascending order.
 struct EdgeWays {
-  std::vector<PushedEdge> pushed;      ///< pushed into the solid
-  std::vector<std::uint32_t> grazing;  ///< leave it by no more than the tolerance
+  std::vector<PushedEdge> pushed;      ///< edges that were pushed into the solid
+  std::vector<std::uint32_t> grazing;  ///< edges that leave the solid by at most the tolerance
 };
 
 /// Checks edges between their ends, and adds mismatches.
-/// @param incidence  of the axis.
-/// @param ways       is filled.
+/// @param incidence  incidence of the axis.
+/// @param ways       receives the edges that are not certainly inside.
 [[nodiscard]] EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                                     const std::vector<Location>& locations, const AxisParts& parts, double factor,
                                     EdgeWays& ways, std::vector<std::string>& mismatches, const Context& context);
@@ -86,14 +86,14 @@ struct EdgeWays {
                                       std::vector<std::string>& mismatches, const Context& context);
 
 /// Checks the separation angles of triangles and edges, and adds mismatches.
-/// @param body_of  of each vertex: see AxisParts.
+/// @param body_of  for each vertex: see AxisParts.
 [[nodiscard]] AngleCheck check_angles(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                                       const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
                                       double factor, std::vector<std::string>& mismatches, const Context& context);
 
 /// Checks points of sheets and curves, searches for missing parts, and adds mismatches.
-/// @param body_of  of each vertex: see AxisParts.
-/// @param factor   lengths are this many times the caller's. Lengths of the options are the caller's.
+/// @param body_of  for each vertex: see AxisParts.
+/// @param factor   lengths of axis and solid are this many times the caller's. Lengths of the options are the caller's.
 [[nodiscard]] MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid,
                                        const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
                                        double factor, std::vector<std::string>& mismatches, const Context& context);
@@ -104,7 +104,7 @@ struct EdgeWays {
                                          const std::vector<Location>& locations, const Context& context);
 
 /// Runs all checks.
-/// @param complex  with the columns of a medial axis. Like the solid, it is `factor` times as large as the caller's.
+/// @param complex  has the columns of a medial axis. Like the solid, it is `factor` times as large as the caller's.
 /// @throws InvalidOption, Cancelled.
 [[nodiscard]] Certificate certify_against(const Complex& complex, const KnownSolid& solid, double factor,
                                           const CertificateOptions& options, const Context& context);

@@ -20,7 +20,7 @@ std::size_t points_of_each(std::uint32_t body_count) {
   return std::clamp(most_points_of_bodies / body_count, least_points_of_body, most_points_of_body);
 }
 
-/// Returns the bodies, weighted by the volumes of their boxes.
+/// Returns all bodies, to be sampled in proportion to the volumes of their boxes.
 Spread boxes_of(const SolidOracle& solid, std::uint32_t body_count) {
   Spread boxes;
   for (std::uint32_t b = 0; b < body_count; ++b) {
@@ -39,7 +39,7 @@ ShrinkingBall::ShrinkingBall(const SolidOracle& solid, std::uint32_t body, const
   has_ended_ = !(depth > nothing_);
   if (has_ended_) return;
   along_ = (p - first) / depth;
-  // Grows the ball until it reaches beyond the surface.
+  // Grows the ball until the surface reaches into it.
   const double furthest = 2 * solid.diagonal(body);
   bool reaches_over = false;
   radius_ = more > 0 ? depth + more : 2 * depth;

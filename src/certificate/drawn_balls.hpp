@@ -21,13 +21,14 @@ namespace blum::verifier {
 struct TouchingBall {
   Vec3d centre;
   double radius = 0;
-  Vec3d first, second;    ///< touching points
-  double angle = 0;       ///< between these, seen from the centre, degrees
-  bool is_whole = false;  ///< true if the surface does not reach into it
+  Vec3d first, second;    ///< the two touching points
+  double angle = 0;       ///< separation angle of these points at the centre, degrees
+  bool is_whole = false;  ///< true if the surface does not reach into the ball
 };
 
-/// Balls through a point of the surface, with centres on one line from there. They shrink from a large ball to the one
-/// that nothing reaches into. Each touches a point that reaches into the previous one.
+/// A sequence of balls that touch the surface at the same point, with centres on the same line. It starts with a large
+/// ball, and ends with a ball into which the surface does not reach. Each ball touches a second point, which reaches
+/// into the previous ball.
 ///
 /// Method: shrinking balls, from outside inwards, with exact closest points. Source: Ma, Bae, Choi, "3D medial axis
 /// point approximation using nearest neighbors and the normal field", The Visual Computer 28(1), 2012.
@@ -37,8 +38,8 @@ class ShrinkingBall {
   /// @param more   see grown_ball().
   ShrinkingBall(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first, double more);
 
-  /// Computes the next ball. Returns false and changes nothing if none exists, or if its centre sees the two points at
-  /// less than `floor` degrees. In the latter case a call with a lower floor may succeed.
+  /// Computes the next ball. Returns false and changes nothing if there is none, or if the separation angle of its two
+  /// points is below `floor` degrees. In the latter case, a call with a lower floor may succeed.
   [[nodiscard]] bool shrink(const SolidOracle& solid, double floor, TouchingBall& ball);
 
  private:
@@ -51,37 +52,37 @@ class ShrinkingBall {
 };
 
 /// Grows the ball that touches the wall next to p until it touches another wall. It touches the first wall at the
-/// closest point, and its centre lies on the line from there through p. Touching points that the centre sees at less
-/// than `floor` from the first one count as the same wall. Examples are shallow edges between facets.
-/// @param p       in the body, and not on its surface.
-/// @param first   the closest point of the surface.
+/// surface point closest to p, and its centre lies on the line from this point through p. A second touching point at a
+/// separation angle below `floor` counts as the same wall, for example behind a shallow edge between facets.
+/// @param p       lies in the body, and not on its surface.
+/// @param first   the surface point closest to p.
 /// @param floor   degrees, above 0.
-/// @param more    by how much the radius of the first ball tried exceeds the distance of p; 0: twice that distance. The
-/// first walls that a small ball finds may be the same wall, where a larger ball finds another.
-/// @return        radius 0 if nothing is touched at that angle, or p lies on the surface.
+/// @param more    by how much the first ball's radius exceeds the distance of p from the surface; 0: the radius is
+///                twice that distance. A small first ball may find only the same wall where a larger one finds another.
+/// @return        a ball of radius 0 if nothing is touched at that angle, or if p lies on the surface.
 [[nodiscard]] TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, const Vec3d& first,
                                       double floor, double more = 0);
 
 /// Returns the approximate distance of a point from the middle between the two walls that a ball touches.
 [[nodiscard]] double distance_to_middle(const Vec3d& p, const TouchingBall& ball);
 
-/// Balls that shrink from random points until they touch two walls. The points, and so the balls, are the same for
-/// every axis. Balls computed for one axis are kept for the next one. Thread-safe.
+/// Balls from random points, shrunk until they touch two walls. The points, and so the balls, are the same for every
+/// axis. Balls computed for one axis are kept for the next axis. Thread-safe.
 class BallDraws {
  public:
   struct Start {
     Vec3d point;
     std::uint32_t body = 0;
   };
-  /// @param draw  returns the k-th point, the same each time; nullopt if it lies in no body.
+  /// @param draw  returns the k-th point, the same in every call; nullopt if it lies in no body.
   BallDraws(const SolidOracle& solid, std::size_t count, std::function<std::optional<Start>(std::size_t)> draw);
 
   [[nodiscard]] std::size_t size() const { return list_.size(); }
 
-  /// Returns the ball from the k-th point whose two walls are seen at `floor` degrees or more, as grown_ball() defines
-  /// it. Returns radius 0 if no ball counts.
+  /// Returns the ball from the k-th point that touches two walls at a separation angle of at least `floor` degrees, as
+  /// grown_ball() defines it. Returns a ball of radius 0 if that ball does not count.
   /// @param counts    returns true if a ball counts.
-  /// @param reach_in  returns how far the surface may reach into a ball of that radius.
+  /// @param reach_in  returns how far the surface may reach into a ball of the given radius.
   template <class Counts, class ReachIn>
   [[nodiscard]] TouchingBall grown(std::size_t k, double floor, const Counts& counts, const ReachIn& reach_in) const;
 
@@ -91,7 +92,7 @@ class BallDraws {
   /// A ball, and the results computed for its centre so far.
   struct Known {
     TouchingBall ball;
-    std::optional<double> distance;  ///< from the surface of its body
+    std::optional<double> distance;  ///< distance of the centre from the surface of its body
     std::optional<bool> is_inside;
   };
   struct Shrinking {
@@ -101,7 +102,7 @@ class BallDraws {
     std::vector<Known> balls;  ///< largest first
   };
 
-  /// Returns the last ball before the first one that is seen at less than `floor`; nullptr if none exists.
+  /// Returns the last ball before the first one with a separation angle below `floor`; nullptr if there is none.
   [[nodiscard]] Known* shrunk(std::size_t k, double floor) const;
   [[nodiscard]] double distance(const Shrinking& from, Known& known) const;
   [[nodiscard]] bool is_inside(const Shrinking& from, Known& known) const;
@@ -119,11 +120,11 @@ class DrawnBalls {
   DrawnBalls(const DrawnBalls&) = delete;
   DrawnBalls& operator=(const DrawnBalls&) = delete;
 
-  /// Returns balls from random points of the boxes of the bodies; none if these have no volume.
+  /// Returns balls from random points in the boxes of the bodies; none if the boxes have no volume.
   [[nodiscard]] const BallDraws& in_solid() const { return in_solid_; }
-  /// Returns n: every n-th body, from body 0, has draws of its own.
+  /// Returns n: every n-th body, starting with body 0, has balls of its own.
   [[nodiscard]] std::uint32_t every() const { return every_; }
-  /// Returns balls from random points beside the surface of a body if that has triangles, else from its box.
+  /// Returns balls from random points just inside the surface of a body, or in its box if the surface has no triangles.
   [[nodiscard]] const BallDraws& in_body(std::uint32_t body) const { return in_bodies_[body / every_]; }
 
  private:

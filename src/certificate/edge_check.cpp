@@ -16,7 +16,7 @@ namespace {
 /// Findings about some of the edges.
 struct Findings {
   EdgeCheck check;
-  double allowed = 0;  ///< for the worst edge
+  double allowed = 0;  ///< tolerance at the worst edge
   EdgeWays ways;
 
   void add(const Findings& other) {
@@ -72,11 +72,12 @@ class EdgeLook {
   }
 
  private:
-  static constexpr double grazes = 1e-4;  ///< share of what is allowed; more than rounding
+  static constexpr double grazes = 1e-4;  ///< fraction of the tolerance that is more than rounding
 
-  /// Searches for gaps. A way that is out by no more than the tolerance may cross a gap as narrow.
+  /// Searches for gaps of the solid. A way that leaves the solid by at most the tolerance may still cross a gap that is
+  /// this narrow.
   void look_for_gaps(const std::vector<Stop>& way, Findings& found) const {
-    constexpr double beside = 2;  // in the middle of a gap, both walls are half its width away
+    constexpr double beside = 2;  // the middle of a gap is half its width from both walls
     for (std::size_t k = 0; k + 1 < way.size(); ++k) {
       if (edges_.is_inside(way[k], way[k + 1])) continue;
       const auto is_across = solid_.crosses_gap(way[k].at, way[k + 1].at, body_, beside * edges_.allowed());

@@ -16,13 +16,13 @@ namespace {
 constexpr std::uint32_t no_sheet = 0xffffffffU;
 constexpr std::uint32_t many_sheets = 0xfffffffeU;
 
-/// Edges and sheets at a vertex.
+/// Numbers of edges at a vertex, and the sheet around it.
 struct Around {
   std::uint32_t rims = 0, seams = 0, curves = 0;
   std::uint32_t sheet = no_sheet;
 };
 
-/// Returns the role of an edge by the number of its triangles; MedialRole::sheet if it is not to be listed.
+/// Returns the role of an edge with this number of triangles; MedialRole::sheet for an edge that must not be listed.
 MedialRole role_of_edge(std::size_t triangles) {
   switch (triangles) {
     case 0:
@@ -48,7 +48,7 @@ MedialRole role_of_vertex(const Around& at) {
   return at.rims > 0 ? MedialRole::rim : MedialRole::sheet;
 }
 
-/// Returns how many cells have the same vertices as another one.
+/// Returns the number of cells that repeat the vertices of an earlier cell.
 template <class Cell>
 std::size_t doubled(std::span<const Cell> cells) {
   std::vector<Cell> sorted(cells.begin(), cells.end());
@@ -62,7 +62,7 @@ class Labels {
  public:
   Labels(const MedialView& axis, const Incidence& incidence) : axis_(axis), incidence_(incidence) {}
 
-  /// Checks which edges are listed, and their roles.
+  /// Checks that the right edges are listed, with the right roles.
   void check_edges(LabelCheck& check) {
     const std::size_t count = incidence_.edges().size();
     std::vector<bool> is_listed(count, false);
@@ -129,7 +129,7 @@ class Labels {
   }
 
   void count_torn(detail::UnionFind& joined, LabelCheck& check) const {
-    std::vector<std::array<std::uint32_t, 2>> parts;  // sheet, and a triangle that represents a part of it
+    std::vector<std::array<std::uint32_t, 2>> parts;  // sheet, and the first triangle of a connected part of it
     for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
       if (joined.find(t) == t) parts.push_back({static_cast<std::uint32_t>(axis_.sheet[t]), t});
     }
@@ -153,9 +153,9 @@ void explain(const LabelCheck& check, std::vector<std::string>& mismatches) {
   };
   add(check.doubled, "cells are listed twice");
   add(check.inner_listed, "listed edges lie inside sheets");
-  add(check.unlisted, "rims and seams are not listed");
-  add(check.edge_roles, "edges have a role that their triangles do not give them");
-  add(check.vertex_roles, "vertices have a role that their edges and sheets do not give them");
+  add(check.unlisted, "edges of rims and seams are not listed");
+  add(check.edge_roles, "edges have a role that does not fit their triangles");
+  add(check.vertex_roles, "vertices have a role that does not fit their edges and sheets");
   add(check.gaps, "sheet numbers below the largest are not used");
   add(check.torn, "sheets are not connected through edges of two triangles");
   add(check.parted, "edges that are not seams separate two sheets");

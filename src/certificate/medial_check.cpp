@@ -25,10 +25,10 @@
 namespace blum::verifier {
 namespace {
 
-/// Distances from an axis of balls that touch two walls at a large enough angle.
+/// Distances of balls from an axis. The balls touch two walls at a large enough angle.
 struct FoundBalls {
-  Offsets all;                  ///< from random points of the whole solid
-  std::vector<Offsets> bodies;  ///< from random points of each body, beside its surface if that has triangles
+  Offsets all;                  ///< balls from random points of the whole solid
+  std::vector<Offsets> bodies;  ///< for each body: balls from points in it, near its surface if that has triangles
 };
 
 /// Returns a search tree over the cells of an axis.
@@ -58,7 +58,7 @@ class BallJudge {
   BallJudge(const Allowances& allowed, double theta, double sought)
       : allowed_(allowed), sought_(sought), above_theta_(sought - theta) {}
 
-  /// Returns the k-th ball; radius 0 if it does not count.
+  /// Returns the k-th ball; a ball of radius 0 if it does not count.
   [[nodiscard]] TouchingBall ball(const BallDraws& draws, std::size_t k) const {
     return draws.grown(
         k, sought_,
@@ -67,10 +67,10 @@ class BallJudge {
   }
 
  private:
-  /// Returns how far the surface may reach into a ball. It may do so a little, because all facets of a round part are
-  /// about equally close. Let a plane reach by d into a ball of radius r. Then the closest point is up to acos(1 - d/r)
-  /// aside of the assumed touching point, and the angle is smaller by as much. So d is limited by the step from theta
-  /// to the sought angle. In a wedge of 164 degrees, 0.1 voxel alone would show 175.
+  /// Returns how far the surface may reach into a ball. A little is allowed, because all facets of a round part are
+  /// about equally close. If a plane reaches by d into a ball of radius r, the separation angle may be smaller by up to
+  /// acos(1 - d/r). So d is limited by the difference between theta and the sought angle. In a wedge of 164 degrees,
+  /// 0.1 voxel alone would appear as 175 degrees.
   [[nodiscard]] double reach_in(double radius) const {
     constexpr double nearly_whole = 0.1;  // voxels: all facets of round parts are about equally close
     return std::min(nearly_whole * allowed_.voxel, radius * (1 - std::cos(above_theta_ / degrees_per_radian)));
@@ -80,23 +80,23 @@ class BallJudge {
   double sought_, above_theta_;
 };
 
-/// Measures the distances of the axis from the balls.
+/// Measures how far the centres of the balls are from the axis.
 Offsets offsets_of_balls(const BallDraws& draws, const BallJudge& judge, const TriangleSearch& search,
                          const Allowances& allowed, const Context& context) {
   const auto add = [&](Offsets& offsets, std::size_t k) {
     const TouchingBall ball = judge.ball(draws, k);
     if (!(ball.radius > 0)) return;
     const double near = allowed.missing_at(ball.radius);
-    // Distances below both the allowance and the largest so far need not be exact.
+    // Distances below both the allowance and the largest distance so far need not be exact.
     const double enough = std::min(near, offsets.furthest);
     offsets.add(search.distance_above(ball.centre, enough, no_group), near, near, near, ball.centre);
   };
   return gathered_offsets(draws.size(), "looking for what is missing", add, context);
 }
 
-/// Grows balls from random points, the same in every run.
+/// Computes balls from random points, the same in every run, and their distances from the axis.
 /// @param theta   degrees.
-/// @param sought  the least angle, degrees.
+/// @param sought  least separation angle of the balls that count, degrees.
 /// @throws Cancelled.
 FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const Allowances& allowed, double theta,
                       double sought, const Context& context) {
@@ -108,7 +108,7 @@ FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const All
   const TriangleSearch search = search_of(axis, context);
   const BallJudge judge(allowed, theta, sought);
   found.all = offsets_of_balls(drawn.in_solid(), judge, search, allowed, context);
-  // In a small body, a coarse grid is certain to show only steep angles.
+  // In a small body, a coarse grid shows only steep angles reliably.
   const BallJudge steep_judge(allowed, theta, std::max(sought, Allowances::steep));
   for (std::uint32_t b = 0; b < body_count; b += drawn.every()) {
     found.bodies[b] = offsets_of_balls(drawn.in_body(b), steep_judge, search, allowed, context);
@@ -116,30 +116,30 @@ FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const All
   return found;
 }
 
-constexpr double least_share = 0.95;       ///< share of samples that must be in the middle: true axes have 0.99
-constexpr double least_near_share = 0.9;   ///< share of samples that must be near it, by the wall: true axes have 0.94
-constexpr double least_close_share = 0.5;  ///< share of samples that must be close to the middle: true axes have 0.8
-constexpr double most_missed = 0.05;       ///< share of balls that may be far from the axis: true axes have 0.01
-constexpr double most_vertices_off = 0.1;  ///< share of vertices that may see one wall away from the middle
+constexpr double least_share = 0.95;       ///< least share of samples in the middle: true axes have 0.99
+constexpr double least_near_share = 0.9;   ///< the same near the middle, by distance to the wall: true axes have 0.94
+constexpr double least_close_share = 0.5;  ///< least share of samples close to the middle: true axes have 0.8
+constexpr double most_missed = 0.05;       ///< largest share of balls far from the axis: true axes have 0.01
+constexpr double most_vertices_off = 0.1;  ///< largest share of vertices with one footprint away from the middle
 constexpr double most_deep_of_one_wall =
-    0.6;                              ///< share of deep vertices: true axes have 0.4 with one footprint (a rod at 0)
-constexpr double enough_sheet = 256;  ///< square voxels of sheets from which that is checked
+    0.6;                              ///< share of deep vertices with one footprint: true axes have 0.4 (a rod at 0)
+constexpr double enough_sheet = 256;  ///< least area of sheets, in square voxels, for that check
 constexpr double far_off = 1.5;       ///< multiple of missing_at() by which such vertices may be off the middle
-constexpr double few_vertices = 16;   ///< vertices that may be off in any case
+constexpr double few_vertices = 16;   ///< number of vertices that may be off in any case
 constexpr double thin_part = 1;       ///< voxels: smallest radius of parts that are not thin
-constexpr double one_footprint = 5;   ///< degrees below which two footprints count as one
-constexpr double well_above = 30;     ///< degrees above theta from which the axis must be complete
-constexpr double most_missed_of_surface = 0.1;  ///< share of balls beside surfaces: true axes have 0.06
-constexpr double most_missed_of_body = 0.5;     ///< the same in one of several bodies: a coarse grid may miss a sheet
-constexpr double most_missed_of_voxels = 0.1;   ///< the same if only voxels define the inside
-constexpr double few_missed = 3;                ///< balls that may be missed in any case
-constexpr std::size_t few_balls = 20;           ///< fewest balls that are judged
+constexpr double one_footprint = 5;   ///< degrees: footprints at a smaller angle count as one
+constexpr double well_above = 30;     ///< degrees: at angles this far above theta, the axis must be complete
+constexpr double most_missed_of_surface = 0.1;  ///< largest share of missed balls near surfaces: true axes have 0.06
+constexpr double most_missed_of_body = 0.5;     ///< the same in one body of several: a coarse grid may miss a sheet
+constexpr double most_missed_of_voxels = 0.1;   ///< most_missed if only voxels define the inside
+constexpr double few_missed = 3;                ///< number of balls that may be missed in any case
+constexpr std::size_t few_balls = 20;           ///< with fewer balls, nothing is concluded
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
 constexpr std::size_t most_samples_of_vertices = 4'096;
-constexpr std::size_t enough_samples = 12;  ///< fewest samples of a sheet that is judged by itself
-constexpr double most_off_of_sheet = 0.5;   ///< share of these that may be off the middle: true axes have 0.25
-constexpr double small_sheet = 4;           ///< square voxels from which a sheet is judged
+constexpr std::size_t enough_samples = 12;  ///< least number of samples of a sheet that is checked by itself
+constexpr double most_off_of_sheet = 0.5;   ///< largest share of these off the middle: true axes have 0.25
+constexpr double small_sheet = 4;           ///< square voxels: smaller sheets are not checked by themselves
 constexpr std::size_t most_samples_of_small = 4'096;
 constexpr std::size_t grain = 64;
 
@@ -147,11 +147,11 @@ constexpr std::size_t grain = 64;
 struct AxisPoint {
   Vec3d at;
   std::uint32_t body = 0;
-  double size = 0;   ///< longest side of its cell
+  double size = 0;   ///< length of the longest side of its cell
   double depth = 0;  ///< largest radius at the corners of that cell
 };
 
-/// Returns 16 samples per unit, at least 64 and at most `most`; 0 unless `units` is above 0.
+/// Returns the number of samples: 16 per unit, at least 64 and at most `most`; 0 unless `units` is above 0.
 std::size_t sample_count(double units, std::size_t most) {
   constexpr double per_unit = 16;
   constexpr std::size_t least = 64;
@@ -166,7 +166,7 @@ class Middle {
 
   /// Approximate distance of a point from the middle between two walls, and the radius of the ball between them.
   struct Found {
-    double off = HUGE_VAL;  ///< unchanged if no second wall exists
+    double off = HUGE_VAL;  ///< HUGE_VAL if there is no second wall
     double radius = 0;
   };
   [[nodiscard]] Found find(const AxisPoint& point) const {
@@ -174,14 +174,14 @@ class Middle {
     const double depth = length(point.at - foot);
     const double nothing = 1e-9 * solid_.diagonal(point.body);
     if (!(depth > nothing)) return {is_thin(point) ? 0 : HUGE_VAL, 0};
-    // In most cases another wall is close.
+    // In most cases another wall is close by.
     TouchingBall ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise, allowed_.middle);
     if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, foot, allowed_.noise);
     return ball.radius > 0 ? Found{distance_to_middle(point.at, ball), ball.radius} : Found{};
   }
 
  private:
-  /// Returns true if the other side of the solid is close to a surface point in all directions.
+  /// Returns true if the solid is thin around a surface point: the other side is close in all directions.
   [[nodiscard]] bool is_thin(const AxisPoint& point) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const double sign : {-1.0, 1.0}) {
@@ -198,7 +198,7 @@ class Middle {
 };
 
 /// @param point  returns the k-th point.
-/// @param note   receives k, and true if that point is off the middle.
+/// @param note   is called with k, and true if that point is off the middle.
 template <class Point, class Note>
 Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& allowed, const Point& point,
                    const Note& note, const Context& context) {
@@ -206,7 +206,8 @@ Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& al
     const AxisPoint p = point(k);
     const Middle::Found found = middle.find(p);
     note(k, !(found.off <= allowed.middle));
-    // Between the mouth of a thin part and the middle of a thick one, only the edges of the mouth are close.
+    // Where a thin part opens into a thick part, only the edges of the opening are close to the axis. So the radii at
+    // the cell's corners count, too.
     const double radius = std::max(found.radius, p.depth);
     offsets.add(found.off, allowed.close_at(radius, p.size), allowed.middle_at(radius, p.size), allowed.middle, p.at);
   };
@@ -231,17 +232,17 @@ double area(const MedialView& axis, std::size_t t) {
   return 0.5 * length(cross(axis.positions[b] - axis.positions[a], axis.positions[c] - axis.positions[a]));
 }
 
-/// Returns the angle between a vertex's footprints, degrees.
+/// Returns the separation angle of a vertex's footprints in degrees.
 double angle_at(const MedialView& axis, std::uint32_t v) {
   const Vec3d& p = axis.positions[v];
   return degrees_between(axis.footprint(v, 0) - p, axis.footprint(v, 1) - p);
 }
 
-/// The parts of an axis that two walls should see at more than theta, by the axis's own angles.
+/// The parts of an axis that, by the axis's own angles, should lie between two walls at more than theta.
 class Claimed {
  public:
-  /// @param noise           degrees up to which two walls are one rough wall.
-  /// @param has_footprints  true if footprints are known. Without them no vertex sees anything.
+  /// @param noise           degrees up to which two walls count as one rough wall.
+  /// @param has_footprints  true if footprints are known. Otherwise all angles of vertices are 0.
   Claimed(const MedialView& axis, double theta, double noise, bool has_footprints)
       : angles_(axis.positions.size(), 0),
         is_claimed_(axis.positions.size(), false),
@@ -266,13 +267,14 @@ class Claimed {
   [[nodiscard]] const Spread& sheets() const { return sheets_; }
   [[nodiscard]] const Spread& curves() const { return curves_; }
   [[nodiscard]] bool contains(std::size_t vertex) const { return is_claimed_[vertex]; }
-  /// Returns true if a vertex should see two walls, by the angle of one of its cells and by that cell's other corners.
+  /// Returns true if a vertex should lie between two walls, judged by the angle of one of its cells and by that cell's
+  /// other corners.
   [[nodiscard]] bool is_between_walls(std::size_t vertex) const { return is_between_walls_[vertex]; }
-  /// Returns the angle between a vertex's footprints, degrees.
+  /// Returns the separation angle of a vertex's footprints in degrees.
   [[nodiscard]] double angle(std::size_t vertex) const { return angles_[vertex]; }
-  /// Returns the smallest radius in the cells at a vertex.
+  /// Returns the smallest radius at the corners of all cells at a vertex.
   [[nodiscard]] double least_radius_around(std::size_t vertex) const { return least_radius_[vertex]; }
-  /// Returns the share of the area of all triangles that only homotopy keeps.
+  /// Returns the share of the area of all triangles that exist only for homotopy.
   [[nodiscard]] double rest_of_area() const { return all_ > 0 ? std::max(0.0, 1 - sheets_.total() / all_) : 0; }
 
  private:
@@ -293,12 +295,13 @@ class Claimed {
   std::vector<double> angles_;
   std::vector<bool> is_claimed_, is_between_walls_;
   std::vector<double> least_radius_;
-  double two_walls_ = 0;  ///< degrees from which two walls are seen, not one rough wall
+  double two_walls_ = 0;  ///< degrees: above this angle, two walls are not one rough wall
   Spread sheets_, curves_;
   double all_ = 0;
 };
 
-/// Checks the vertices with one footprint among those that should see two walls: a sample of them if they are many.
+/// Checks the vertices that should lie between two walls but have one footprint. If they are many, it checks a sample
+/// of them.
 void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Middle& middle, const Allowances& allowed,
                       const std::vector<std::uint32_t>& body_of, MedialCheck& check, const Context& context) {
   std::vector<std::uint32_t> single;
@@ -321,7 +324,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   });
   for (std::size_t k = 0; k < found.size(); ++k) {
     const std::uint32_t v = single[k * every];
-    // Between the mouth of a thin part and the middle of a thick one, only the edges of the mouth are close.
+    // Where a thin part opens into a thick part, only the edges of the opening are close to the axis.
     const auto& [off, radius] = found[k];
     if (!(off > allowed.middle_at(radius)) || claimed.least_radius_around(v) < thin_part * allowed.voxel) continue;
     ++check.one_wall_off;
@@ -330,7 +333,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   }
 }
 
-/// Random points of the sheets that two walls should see.
+/// Random points of the sheets that should lie between two walls.
 class SheetPoints {
  public:
   SheetPoints(const MedialView& axis, const Spread& triangles, const std::vector<std::uint32_t>& body_of,
@@ -360,7 +363,7 @@ class SheetPoints {
   std::size_t count_;
 };
 
-/// Judges sheets one by one, so that a wrong one cannot hide among others.
+/// Counts samples off the middle for each sheet, so that a wrong sheet cannot hide among others.
 class SheetJudge {
  public:
   void add(std::int32_t sheet, bool is_off, const Vec3d& at) {
@@ -389,7 +392,7 @@ class SheetJudge {
   std::map<std::int32_t, Sheet> sheets_;
 };
 
-/// Checks sheets with too few samples to be judged, the largest first.
+/// Takes more samples of sheets that have too few, the largest sheets first.
 void look_at_small_sheets(const MedialView& axis, const Claimed& claimed, const Middle& middle,
                           const Allowances& allowed, const std::vector<std::uint32_t>& body_of, SheetJudge& judge,
                           const Context& context) {
@@ -422,20 +425,20 @@ std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";
 }
 
-/// @param by_voxels  true if only voxels define the inside. Walls in the solid that bound nothing are then as close as
-/// others. So shares in the middle are reported, not judged.
+/// @param by_voxels  true if only voxels define the inside. Then walls inside the solid that bound nothing are as close
+///                   as other walls. So shares in the middle are reported but cause no mismatches.
 void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>& mismatches) {
   const double most_missed_here = by_voxels ? most_missed_of_voxels : most_missed;
   const std::string allowed = " (allowed: " + rounded_text(check.allowance) + ")";
   if (!by_voxels && check.medial_share < least_share) {
     mismatches.push_back("of the sheets and curves that should lie between two walls, only " +
-                         percent(check.medial_share) + " lie midway, the worst " + rounded_text(check.off_by) +
-                         " off at " + place_text(check.off_at) + allowed);
+                         percent(check.medial_share) + " lie midway; the largest distance from the middle is " +
+                         rounded_text(check.off_by) + ", at " + place_text(check.off_at) + allowed);
   }
   if (!by_voxels && check.near_share < least_near_share) {
     mismatches.push_back("of the sheets and curves that should lie between two walls, only " +
                          percent(check.near_share) +
-                         " lie within a quarter of the distance to the walls from the middle");
+                         " are closer to the middle than a quarter of their distance to the walls");
   }
   if (!by_voxels && check.close_share < least_close_share) {
     mismatches.push_back("of the sheets and curves that should lie between two walls, only " +
@@ -446,22 +449,23 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
   if (static_cast<double>(check.one_wall_off) > std::max(vertices_off, few_vertices)) {
     mismatches.push_back("of the " + count_text(check.claimed_vertices) +
                          " vertices that should lie between two walls, " + count_text(check.one_wall_off) +
-                         " see only one and are not near the middle" + allowed);
+                         " have only one footprint and are not near the middle" + allowed);
   }
   if (!by_voxels && check.one_wall_far > 0) {
-    mismatches.push_back(
-        count_text(check.one_wall_far) + " vertices that should lie between two walls see only one and are more than " +
-        rounded_text(far_off * check.missing_allowance) + " off the middle, the first at " + place_text(check.far_at));
+    mismatches.push_back(count_text(check.one_wall_far) +
+                         " vertices that should lie between two walls have only one footprint and are more than " +
+                         rounded_text(far_off * check.missing_allowance) + " away from the middle, the first one at " +
+                         place_text(check.far_at));
   }
   if (!by_voxels && check.sheets_off > 0) {
     mismatches.push_back("of the " + count_text(check.sheets_judged) + " sheets that should lie between two walls, " +
-                         count_text(check.sheets_off) + " are mostly off the middle, the first at " +
+                         count_text(check.sheets_off) + " lie mostly off the middle, the first one at " +
                          place_text(check.sheet_off_at) + allowed);
   }
   const auto balls = static_cast<double>(check.balls);
   if (check.balls >= few_balls && check.missed_share * balls > std::max(most_missed_here * balls, few_missed + 0.5)) {
     mismatches.push_back("the axis misses " + percent(check.missed_share) +
-                         " of the medial balls that random points of the solid show with angles above " +
+                         " of the medial balls from random points of the solid with angles above " +
                          rounded_text(check.sought_angle) + " degrees, by up to " + rounded_text(check.missed_by) +
                          " at " + place_text(check.missed_at) + " (allowed: " + rounded_text(check.missing_allowance) +
                          ")");
@@ -469,7 +473,7 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
   if (check.bodies_missed > 0) {
     mismatches.push_back("in " + count_text(check.bodies_missed) + " of the bodies the axis misses up to " +
                          percent(check.missed_share_of_body) +
-                         " of the medial balls that points near the surface show with angles above " +
+                         " of the medial balls from points near the surface with angles above " +
                          rounded_text(check.sought_angle) + " degrees, by up to " +
                          rounded_text(check.missed_in_body_by) + " at " + place_text(check.missed_in_body_at));
   }
@@ -526,8 +530,8 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
                          const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
                          const Context& context) {
   const Allowances allowed = allowances(solid, options, factor);
-  // Steps of voxels see each other at up to this angle everywhere. So cells that only a smaller theta keeps are not
-  // judged.
+  // Steps between voxels have separation angles of up to this everywhere. So cells that only a smaller theta keeps are
+  // not checked.
   const double least = allowed.of_voxels ? 2 * allowed.noise : 0;
   const Claimed claimed(axis, options.angles ? std::max(options.theta.value_or(0), least) : HUGE_VAL, allowed.noise,
                         options.footprints);

@@ -17,7 +17,7 @@ double area(const Corners& t) {
 }
 
 /// Halves a triangle across its longest side until no side is longer than `step`, or doubles cannot distinguish the
-/// halves. Calls use(piece) for each piece, and ends when that returns false.
+/// halves. Calls use(piece) for each piece, and stops when use() returns false.
 template <class Use>
 void cut(const Corners& whole, double step, const Use& use) {
   std::vector<Corners> stack{whole};
@@ -53,7 +53,7 @@ class SampledTriangles {
   SampledTriangles(std::vector<Corners> triangles, const Context& context)
       : triangles_(std::move(triangles)), context_(context) {}
 
-  /// Returns `step`, or about the smallest larger one that needs few enough samples.
+  /// Returns `step` if it needs few enough samples, otherwise about the smallest larger step that does.
   [[nodiscard]] double affordable(double step) const {
     double total = 0;
     for (const Corners& t : triangles_) total += area(t);
@@ -110,7 +110,7 @@ Samples samples_of_triangles(const MeshView& mesh, std::span<const std::uint32_t
   const SampledTriangles sampled(std::move(triangles), context);
   step = sampled.affordable(step);
   Samples result{sampled.samples(step), step};
-  // Corners are the last places that balls fill.
+  // Balls reach corners last, so corners are samples, too.
   for (std::size_t v = 0; v < is_named.size(); ++v) {
     if (is_named[v]) result.list.push_back({mesh.vertices[v], 0});
   }

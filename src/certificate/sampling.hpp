@@ -19,8 +19,8 @@
 
 namespace blum::verifier {
 
-/// Returns points of triangles and all their corners, as SolidOracle::samples() does.
-/// @param groups  of each triangle. Triangles of no_group are left out. Empty: all triangles are sampled.
+/// Returns samples of triangles and all their corners, as for SolidOracle::samples().
+/// @param groups  for each triangle; triangles of no_group are left out. If empty, all triangles are sampled.
 /// @throws Cancelled.
 [[nodiscard]] Samples samples_of_triangles(const MeshView& mesh, std::span<const std::uint32_t> groups, double step,
                                            const Context& context);
@@ -36,7 +36,7 @@ class Spread {
   }
   [[nodiscard]] double total() const { return total_; }
   [[nodiscard]] const std::vector<std::uint32_t>& cells() const { return cells_; }
-  /// Returns the cell at a share of the total size, 0 to 1.
+  /// Returns the cell at a given fraction, 0 to 1, of the total size.
   [[nodiscard]] std::uint32_t at(double share) const {
     const auto end = std::upper_bound(ends_.begin(), ends_.end(), share * total_);
     return cells_[std::min(static_cast<std::size_t>(end - ends_.begin()), cells_.size() - 1)];
@@ -59,14 +59,14 @@ class Spread {
   return corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
 }
 
-/// Statistics of the offsets of samples.
+/// Statistics of the distances (offsets) of samples.
 struct Offsets {
   std::size_t count = 0, close = 0, not_near = 0, off = 0;
   double furthest = 0;
   Vec3d where;
 
-  /// @param allowed  the offset that the claims of the file allow.
-  /// @param near     the offset that the solid allows there, at most `allowed`.
+  /// @param allowed  largest offset that the claims of the file allow.
+  /// @param near     largest offset that the solid allows at the sample; at most `allowed`.
   void add(double offset, double close_enough, double near, double allowed, const Vec3d& at) {
     ++count;
     if (offset <= close_enough) ++close;
@@ -87,8 +87,8 @@ struct Offsets {
   }
 };
 
-/// Returns the sum of what add(offsets, k) adds for each k below `count`.
-/// @param phase  as parallel_for() takes it.
+/// Returns the sum of the statistics that add(offsets, k) adds, for all k below `count`.
+/// @param phase  as for parallel_for().
 /// @throws Cancelled.
 template <class Add>
 [[nodiscard]] Offsets gathered_offsets(std::size_t count, std::string_view phase, const Add& add,

@@ -13,8 +13,8 @@
 
 namespace blum::verifier {
 
-/// Returns the factor that scales a solid of extreme size to about 1, so that fourth powers of lengths stay finite. It
-/// is a power of two, which changes no digit, and 1 unless the size is extreme.
+/// Returns the factor that scales a solid of extreme size to about 1, so that fourth powers of lengths stay finite. For
+/// other solids it is 1. The factor is a power of two, so scaling is exact.
 inline double factor_for(double size) {
   constexpr int extreme = 100;
   const int exponent = size > 0 && std::isfinite(size) ? std::ilogb(size) : 0;

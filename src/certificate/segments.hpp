@@ -11,7 +11,7 @@ struct Segment3 {
   Vec3d a, b;
 
   [[nodiscard]] Vec3d at(double along) const { return a + (b - a) * along; }
-  /// Returns the parameter of the point that is closest to p: 0 to 1.
+  /// Returns the parameter, 0 to 1, of the segment's point closest to p.
   [[nodiscard]] double closest(const Vec3d& p) const {
     const double squared = squared_length(b - a);
     return squared > 0 ? std::clamp(dot(p - a, b - a) / squared, 0.0, 1.0) : 0.0;
@@ -19,8 +19,8 @@ struct Segment3 {
   [[nodiscard]] Vec3d closest_point(const Vec3d& p) const { return at(closest(p)); }
 };
 
-/// Returns the parameter of the point of a segment that is closest to another segment: 0 to 1. If they run along each
-/// other, that is the middle of the common part.
+/// Returns the parameter, 0 to 1, of the point of a segment closest to another segment. If the segments are parallel,
+/// it is that of the middle of the common part.
 [[nodiscard]] inline double closest_along(const Segment3& segment, const Segment3& other) {
   constexpr double parallel = 1e-12;  // squared sine of the angle between them
   const Vec3d along = segment.b - segment.a;

@@ -41,7 +41,7 @@ bool names_a_vertex_twice(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// Returns all sides, those of an edge next to each other.
+/// Returns the sides of all triangles, with the sides of each edge next to each other.
 std::vector<Side> sorted_sides(const MeshView& mesh, const Context& context) {
   std::vector<std::size_t> begin(mesh.vertices.size() + 1, 0);
   const auto for_each_side = [&](const auto& use) {
@@ -73,7 +73,7 @@ std::string named(const Side& side) {
   return "the edge between vertices " + std::to_string(side.low) + " and " + std::to_string(side.high);
 }
 
-/// Calls use(side, side) for the two sides of each edge.
+/// Calls use(side, side) for the two sides at each edge.
 template <class Use>
 void for_each_edge(const std::vector<Side>& sides, const Use& use) {
   for (std::size_t begin = 0; begin < sides.size();) {
@@ -93,13 +93,13 @@ std::uint32_t after(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
 
-/// The triangle on the other side of a side.
+/// The neighbour of a triangle across one of its sides.
 struct Neighbour {
   std::uint32_t triangle = 0;
-  std::int8_t agrees = 0;  ///< 1 if both face the same way, else -1
+  std::int8_t agrees = 0;  ///< 1 if both face the same way, otherwise -1
 };
 
-/// Returns the neighbour at each side, at 3 * triangle + k.
+/// Returns the neighbour across each side; side k of triangle t has index 3 * t + k.
 std::vector<Neighbour> neighbours(const MeshView& mesh, const std::vector<Side>& sides) {
   std::vector<Neighbour> beside(3 * mesh.triangles.size());
   for_each_edge(sides, [&](const Side& a, const Side& b) {
@@ -110,9 +110,9 @@ std::vector<Neighbour> neighbours(const MeshView& mesh, const std::vector<Side>&
   return beside;
 }
 
-/// Returns 1 or -1 for each triangle, so that all face the same way if those with -1 are reversed. The first triangle
-/// of each shell has 1.
-/// @throws NoPolyhedron if a surface has only one side.
+/// Returns 1 or -1 for each triangle: all face the same way if those with -1 are reversed. The first triangle of each
+/// shell has 1.
+/// @throws NoPolyhedron if a shell is one-sided.
 std::vector<std::int8_t> facings(const MeshView& mesh, const std::vector<Neighbour>& beside, const Context& context) {
   throw_if_cancelled(context);
   std::vector<std::int8_t> facing(mesh.triangles.size(), 0);
@@ -149,7 +149,7 @@ void check_fans(const MeshView& mesh, Sets& corners) {
       const std::uint32_t own = corners.find(3 * t + k);
       if (fan[v] == no_group) fan[v] = own;
       if (fan[v] != own) {
-        throw NoPolyhedron("the mesh is not manifold: parts of it meet in vertex " + std::to_string(v) + " alone");
+        throw NoPolyhedron("the mesh is not manifold: parts of it meet only in vertex " + std::to_string(v));
       }
     }
   }
@@ -170,7 +170,8 @@ struct Measured {
   std::int8_t faces_outwards = 0;
 };
 
-/// Measures a shell: its genus from its homology, its volume from the tetrahedra over one of its points.
+/// Measures a shell: its genus from its homology, its volume from the tetrahedra between its triangles and one of its
+/// vertices.
 Measured measured(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
                   const std::vector<std::int8_t>& facing, std::vector<std::uint32_t>& number, const Context& context) {
   std::vector<Triangle> own;
@@ -178,7 +179,7 @@ Measured measured(const MeshView& mesh, const std::vector<std::uint32_t>& triang
   std::vector<std::uint32_t> vertices;
   const Vec3d origin = mesh.vertices[mesh.triangles[triangles.front()][0]];
   double volume = 0;
-  double sum = 0;  // of absolute volumes
+  double sum = 0;  // sum of the absolute volumes
   for (const std::uint32_t t : triangles) {
     Triangle& corners = own.emplace_back(mesh.triangles[t]);
     std::array<Vec3d, 3> at;
@@ -201,13 +202,13 @@ Measured measured(const MeshView& mesh, const std::vector<std::uint32_t>& triang
   return {{betti[1] / 2, std::abs(volume), 0, 0}, static_cast<std::int8_t>(!is_certain ? 0 : volume > 0 ? 1 : -1)};
 }
 
-/// A part of a line between two crossings that lies in a shell.
+/// A part of a line between two consecutive crossings.
 struct Stretch {
   double length = 0;
-  std::vector<std::uint32_t> around;  ///< the shells that it lies in, in rising order
+  std::vector<std::uint32_t> around;  ///< the shells that contain it, in ascending order
 };
 
-/// Returns the longest stretch of a line in a shell; nullopt if the crossings are inconsistent.
+/// Returns the longest stretch of a line inside a shell; nullopt if the crossings are inconsistent.
 std::optional<Stretch> longest_inside(const std::vector<Crossing>& crossings,
                                       const std::vector<std::uint32_t>& of_triangle, std::uint32_t shell) {
   Stretch longest;
@@ -227,7 +228,7 @@ std::optional<Stretch> longest_inside(const std::vector<Crossing>& crossings,
   return around.empty() ? std::optional(longest) : std::nullopt;
 }
 
-/// Sends lines through random points of a shell, and returns the longest stretch in it.
+/// Tries lines through random points of a shell, and returns the longest stretch of a line inside it.
 class Prober {
  public:
   Prober(const MeshView& mesh, const ClosedShells& shells, const TriangleSearch& search)
@@ -265,7 +266,8 @@ class Prober {
   std::vector<Crossing> crossings_;
 };
 
-/// Returns true if `outer` is around `inner`. The shells contain a common point and do not cross, so the larger one is.
+/// Returns true if `outer` contains `inner`. Both contain a common point and do not cross, so the larger one contains
+/// the other.
 bool encloses(const ClosedShell& outer, const ClosedShell& inner) {
   if (std::abs(outer.volume - inner.volume) <= 1e-12 * inner.volume) {
     throw NoPolyhedron(

@@ -16,16 +16,16 @@ namespace blum::verifier {
 /// A closed, connected part of the surface.
 struct ClosedShell {
   std::int64_t genus = 0;
-  double volume = 0;        ///< enclosed, > 0, whichever way the shell faces
+  double volume = 0;        ///< enclosed volume, > 0 for either orientation
   std::uint32_t depth = 0;  ///< number of shells around it: at even depth it bounds a body, at odd depth a void
-  std::uint32_t body = 0;   ///< numbers the shells at even depth; a void has the number of the body around it
+  std::uint32_t body = 0;   ///< index of the body; a void has that of the body around it
 };
 
 struct ClosedShells {
   std::vector<ClosedShell> shells;
-  std::vector<std::uint32_t> of_triangle;  ///< no_group for triangles that name a vertex twice: they bound nothing
+  std::vector<std::uint32_t> of_triangle;  ///< shell of each triangle; no_group for a triangle with a vertex twice
   std::vector<std::int8_t> outwards;       ///< 1 if a triangle's normal points out of its shell, -1 if in, 0 if unknown
-  std::vector<std::uint32_t> beside;       ///< for each side, at 3 * triangle + k: the triangle on the other side of it
+  std::vector<std::uint32_t> beside;       ///< for each side (3 * triangle + k): the triangle on its other side
   std::uint32_t bodies = 0;
 };
 
@@ -40,14 +40,14 @@ class NoPolyhedron : public InvalidMesh {
   std::string reason_;
 };
 
-/// Cuts a mesh into its shells. Their nesting is not yet known.
-/// @throws NoPolyhedron unless every edge has two triangles, every vertex one fan of triangles, and the surface two
-/// sides; Cancelled.
+/// Splits a mesh into its shells. Their nesting is not yet known.
+/// @throws NoPolyhedron unless every edge has two triangles, the triangles at every vertex form one fan, and the
+/// surface is two-sided; Cancelled.
 [[nodiscard]] ClosedShells cut_into_shells(const MeshView& mesh, const Context& context);
 
 /// Computes depths and bodies from lines through each shell. Shells may touch, but not cross.
 /// @param search  the triangles, with their shells as groups.
-/// @throws NoPolyhedron if a shell encloses nothing, or exactly what another one does; Cancelled.
+/// @throws NoPolyhedron if a shell encloses nothing, or exactly what another shell encloses; Cancelled.
 void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& search, const Context& context);
 
 /// Returns the Betti numbers of each body of the solid that nested shells bound.

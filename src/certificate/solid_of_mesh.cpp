@@ -21,9 +21,9 @@
 namespace blum::verifier {
 namespace {
 
-/// Finds out if the places where a segment leaves a body and enters it again are joined by a way along its surface.
-/// Past an edge of the solid, or a hair beside it, such a way exists. Across a gap none does, however narrow the gap
-/// is.
+/// Decides if a way along the surface joins the points where a segment leaves a body and enters it again. If the
+/// segment only cuts an edge of the solid, however closely, such a way exists. If it crosses a gap, however narrow,
+/// there is none.
 class GapSearch {
  public:
   /// All arguments must outlive this object.
@@ -33,12 +33,12 @@ class GapSearch {
             std::span<const std::uint32_t> body_of, std::span<const std::uint32_t> beside)
       : solid_(solid), search_(search), mesh_(mesh), body_of_(body_of), beside_(beside) {}
 
-  /// Returns true if no way along the surface within `reach` can replace a part of a segment outside a body. Returns
-  /// nullopt if that is undecided.
+  /// Returns true if, for a part of the segment outside the body, no way along the surface within `reach` joins its
+  /// ends. Returns nullopt if that is undecided.
   [[nodiscard]] std::optional<bool> crosses(const Vec3d& a, const Vec3d& b, std::uint32_t body, double reach) const;
 
  private:
-  /// A place where a segment meets the surface, or an end of it that is not inside.
+  /// A point where a segment meets the surface, or an end of the segment that is not inside.
   struct Meeting {
     Vec3d at;
     std::uint32_t triangle = 0;
@@ -85,7 +85,7 @@ std::optional<std::vector<GapSearch::Meeting>> GapSearch::meetings(const Vec3d& 
   Random random(0x9a9U);
   std::vector<Crossing> crossings;
   bool is_certain = search_.crossings(line_between(a, b), crossings, whole);
-  // A segment through edges of the mesh is undecided. Segments next to it can be decided.
+  // A segment that passes through edges of the mesh is undecided. Segments next to it may be decided.
   double aside = 0;
   for (std::uint32_t k = 0; k < most_attempts && !is_certain; ++k) {
     const Vec3d from = a + random.in_ball() * aside;
@@ -232,8 +232,8 @@ class ShellOracle : public SolidOracle {
     });
   }
 
-  /// If the boundary passes through a triangle, it crosses a side of the triangle, or one of its own edges pierces the
-  /// triangle.
+  /// If the boundary passes through a triangle, it meets one of the triangle's sides, or an edge of the boundary
+  /// pierces the triangle.
   [[nodiscard]] bool is_clear(const std::array<Vec3d, 3>& triangle, std::uint32_t body) const override {
     const auto& [a, b, c] = triangle;
     return is_clear(a, b, body) && is_clear(b, c, body) && is_clear(c, a, body) && search_.is_unpierced(triangle, body);
@@ -253,7 +253,7 @@ class ShellOracle : public SolidOracle {
   }
 
   [[nodiscard]] std::unique_ptr<Complement> make_complement(const Context& context) const override {
-    std::vector<std::vector<std::uint32_t>> walls(shells_.shells.size());  // triangles of each void
+    std::vector<std::vector<std::uint32_t>> walls(shells_.shells.size());  // for each void: its triangles
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       const std::uint32_t shell = shells_.of_triangle[t];
       if (shell != no_group && shells_.shells[shell].depth % 2 == 1) walls[shell].push_back(t);
@@ -269,12 +269,12 @@ class ShellOracle : public SolidOracle {
  private:
   enum class Side { inside, outside, unknown };
 
-  /// Returns on which side of its closest triangle a point lies, as seen from the solid. No boundary is in between. If
-  /// the closest point belongs to no other triangle, the height above the triangle decides. If it lies on the edge to
-  /// exactly one other triangle, the sum of both heights decides (Baerentzen and Aanaes 2005).
+  /// Returns on which side of the boundary a point lies, judged by its closest triangle. No other part of the boundary
+  /// lies between them. If the closest point belongs to no other triangle, the height above the triangle decides. If it
+  /// lies on the edge to exactly one other triangle, the sum of both heights decides (Baerentzen and Aanaes 2005).
   [[nodiscard]] Side side_of(const Vec3d& p, const TriangleSearch::Nearest& closest) const {
     constexpr double nearly = 1 - 1e-6;
-    constexpr double clearly = 0.1;  // of the distance: leaves out edges as sharp as a knife
+    constexpr double clearly = 0.1;  // of the distance: excludes edges as sharp as a knife
     constexpr double next_to =
         1e-7;  // of the diagonal: for closer points, rounding may miss other triangles at a corner
     if (!closest.others || *closest.others > 1) return Side::unknown;
@@ -293,8 +293,8 @@ class ShellOracle : public SolidOracle {
     const bool is_void = shells_.shells[shells_.of_triangle[closest.triangle]].depth % 2 == 1;
     return (height < 0) != is_void ? Side::inside : Side::outside;
   }
-  /// Returns the height of a point above the plane of a triangle, positive out of its shell. Returns nullopt if
-  /// rounding makes it too inexact, compared with the point's distance from the triangle. Rounding turns the normals of
+  /// Returns the height of a point above the plane of a triangle, positive outside its shell. Returns nullopt if
+  /// rounding makes it too inexact relative to the point's distance from the triangle. Rounding turns the normals of
   /// thin triangles.
   [[nodiscard]] std::optional<double> height_above(std::uint32_t triangle, const Vec3d& p, double distance) const {
     const auto [a, b, c] = corners_of(mesh_, triangle);
@@ -313,9 +313,9 @@ class ShellOracle : public SolidOracle {
     return std::find(first, first + 3, other) != first + 3;
   }
 
-  /// Returns points deep in a void. The first is the deepest of the middles of some chords. Others lie on both sides of
-  /// it, halfway to the wall, and at the middles of other chords that are at least half as deep. Flat triangles of an
-  /// axis in a bent wall reach out of the wall. So a point near the wall may be on either side of them.
+  /// Returns points deep in a void. The first is the deepest of the middles of some chords. Others lie on opposite
+  /// sides of it, halfway to the wall, and at middles of other chords that are at least half as deep. Flat triangles of
+  /// an axis in a curved wall may stick out of the wall. So a point near the wall may be on either side of them.
   [[nodiscard]] std::vector<Vec3d> points_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
     constexpr std::size_t pairs = 4;
     constexpr std::size_t most_middles = 16;
@@ -344,7 +344,7 @@ class ShellOracle : public SolidOracle {
     double depth = 0;  ///< distance from the wall of a void, above 0
   };
 
-  /// Returns the middles of chords of a void from some of its triangles.
+  /// Returns the middles of chords of a void that start at some of its triangles.
   [[nodiscard]] std::vector<DeepPoint> middles_of_chords(std::uint32_t shell,
                                                          const std::vector<std::uint32_t>& walls) const {
     constexpr std::size_t most_chords = 32;
@@ -361,7 +361,7 @@ class ShellOracle : public SolidOracle {
     return middles;
   }
 
-  /// Returns the point halfway from the centre of a triangle to the first triangle that its normal meets. Returns
+  /// Returns the point halfway between the centre of a triangle and the first triangle that its normal meets. Returns
   /// nullopt if the normal meets nothing, or if that is undecided.
   [[nodiscard]] std::optional<Vec3d> middle_of_chord(std::uint32_t triangle, double side) const {
     const std::array<Vec3d, 3> corners = corners_of(mesh_, triangle);
@@ -380,7 +380,7 @@ class ShellOracle : public SolidOracle {
     return start + (end - start) * (0.5 * first / reach);
   }
 
-  /// Returns the innermost shell around a point; nullopt if none exists, or the point lies on the surface.
+  /// Returns the innermost shell around a point; nullopt if there is none, or if the point lies on the surface.
   [[nodiscard]] std::optional<std::uint32_t> innermost_around(const Vec3d& p) const {
     constexpr std::uint32_t most_lines = 24;
     const double nothing = 1e-13 * diagonal();
@@ -423,12 +423,12 @@ class ShellOracle : public SolidOracle {
   }
 
   MeshView mesh_;
-  MeshView named_;  ///< mesh whose sites distances refer to
+  MeshView named_;  ///< mesh whose sites distance_from_site() uses
   ClosedShells shells_;
-  std::vector<std::uint32_t> body_of_;  ///< of each triangle
-  std::vector<Box3> boxes_;             ///< of each body
-  std::vector<Spread> surfaces_;        ///< triangles of each body
-  SiteTable sites_;                     ///< of `named_`
+  std::vector<std::uint32_t> body_of_;  ///< for each triangle
+  std::vector<Box3> boxes_;             ///< for each body
+  std::vector<Spread> surfaces_;        ///< for each body: its triangles
+  SiteTable sites_;                     ///< sites of `named_`
   TriangleSearch search_;               ///< with bodies as groups
 };
 

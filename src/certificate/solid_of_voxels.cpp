@@ -16,7 +16,7 @@
 namespace blum::verifier {
 namespace {
 
-/// The voxels of an image. Their faces are the surface.
+/// A solid of voxels, such as those of an image. Their outer faces are the surface.
 class VoxelOracle : public SolidOracle {
  public:
   VoxelOracle(const VoxelSet& voxels, const GridSpec& grid, VoxelBodies bodies, const Context& context)
@@ -63,7 +63,7 @@ class VoxelOracle : public SolidOracle {
     return voxel && body_of(*voxel) == body ? faces_.distance(p) : -faces_.distance(p);
   }
 
-  /// Bodies have no corner in common, so a segment in the voxels lies in one body.
+  /// Bodies share no corners, so a segment inside the voxels lies in one body.
   [[nodiscard]] bool holds(const Vec3d& a, const Vec3d& b, std::uint32_t body) const override {
     const auto voxel = faces_.held(a, b);
     return voxel && body_of(*voxel) == body;
@@ -130,7 +130,7 @@ class VoxelOracle : public SolidOracle {
     return size[(axis + 1) % 3] * size[(axis + 2) % 3];
   }
 
-  /// Returns parts x parts points of each face.
+  /// Returns parts * parts samples of each face.
   [[nodiscard]] std::vector<Sample> samples_of_faces(int parts, const Context& context) const {
     std::vector<Sample> list;
     for (std::size_t b = 0; b < faces_.brick_count(); ++b) {
@@ -150,7 +150,8 @@ class VoxelOracle : public SolidOracle {
     return list;
   }
 
-  /// Returns one sample per brick and axis: the centre of a face, with the area of all faces there.
+  /// Returns one sample for each brick and axis. It is the centre of one face across the axis, with the area of all
+  /// such faces in the brick.
   [[nodiscard]] std::vector<Sample> samples_of_bricks(const Context& context) const {
     std::vector<Sample> list;
     for (std::size_t b = 0; b < faces_.brick_count(); ++b) {
@@ -171,7 +172,8 @@ class VoxelOracle : public SolidOracle {
   VoxelBodies bodies_;
 };
 
-/// Voxels that represent the inside of a mesh. Distances are to the mesh, and a voxel more or less does not matter.
+/// Voxels that represent the inside of a mesh. Distances are to the mesh. A point up to a voxel's diagonal outside the
+/// voxels counts as inside.
 class WindingOracle : public VoxelOracle {
  public:
   WindingOracle(const VoxelSet& voxels, const GridSpec& grid, VoxelBodies bodies, const MeshView& surface,

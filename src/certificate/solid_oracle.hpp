@@ -21,8 +21,8 @@
 
 namespace blum::verifier {
 
-/// A value that is computed when it is first needed, and then kept. If many threads need it at once, one computes it
-/// and the others wait. If computing it throws, the next request tries again.
+/// A value that is computed when it is first needed, and then kept. If several threads need it at once, one computes it
+/// and the others wait. If the computation throws, the next request tries again.
 template <class T>
 class Lazy {
  public:
@@ -41,10 +41,10 @@ class Lazy {
 
 /// The location of a point.
 struct Location {
-  std::uint32_t body = 0;  ///< around the point, or the closest one if it is outside of all
-  double distance = 0;     ///< from the surface of that body
+  std::uint32_t body = 0;  ///< the body around the point; the closest one if it is outside all
+  double distance = 0;     ///< distance from the surface of that body
   double outside_by = 0;   ///< distance from the solid; 0 inside
-  double depth = 0;        ///< distance from the boundary of that body; below 0 outside
+  double depth = 0;        ///< distance from the boundary of that body; negative outside
 };
 
 /// A point of the surface, and the area that it represents.
@@ -66,38 +66,39 @@ class SolidOracle {
   SolidOracle& operator=(const SolidOracle&) = delete;
   virtual ~SolidOracle() = default;
 
-  [[nodiscard]] virtual double diagonal() const = 0;  ///< of the solid's box
+  [[nodiscard]] virtual double diagonal() const = 0;  ///< diagonal of the solid's box
   [[nodiscard]] virtual Box3 box(std::uint32_t body) const = 0;
   /// Returns the diagonal of the box of a body, which may be rotated.
   [[nodiscard]] virtual double diagonal(std::uint32_t body) const { return box(body).diagonal(); }
   [[nodiscard]] virtual Location locate(const Vec3d& p) const = 0;
   /// Returns the exact distance of a point from the surface of a body.
   [[nodiscard]] virtual double distance(const Vec3d& p, std::uint32_t body) const = 0;
-  /// Returns the same distance, exact if it is at least `enough`. Otherwise it may be too large, but stays below
-  /// `enough`. This costs less.
+  /// Returns the exact distance if it is at least `enough`. Otherwise returns a value below `enough`, which may be
+  /// larger than the distance. This costs less.
   [[nodiscard]] virtual double distance_above(const Vec3d& p, double /*enough*/, std::uint32_t body) const {
     return distance(p, body);
   }
-  /// Returns the depth of a point in a body; below 0 outside. The depths of two points differ by at most their
+  /// Returns the depth of a point in a body; negative outside. The depths of two points differ by at most their
   /// distance.
   [[nodiscard]] virtual double depth(const Vec3d& p, std::uint32_t body) const = 0;
-  /// Returns the same depth, but a value below 0 if the boundary is closer than `near`. If the absolute value of
-  /// `other_depth` is above `near`, the depth of the nearby point `other` is used, which costs less.
+  /// Returns the depth of a point near the point `other`, whose depth is known. Returns a negative value if the
+  /// boundary is closer than `near`. If the absolute value of `other_depth` is above `near`, that depth is used, which
+  /// costs less.
   [[nodiscard]] virtual double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& /*other*/,
                                             double /*other_depth*/, double /*near*/) const {
     return depth(p, body);
   }
-  /// Returns true if the segment between two points is known to lie in a body, boundary included. Returns false also if
-  /// this solid cannot decide.
+  /// Returns true if the segment between two points is known to lie in a body, boundary included. Returns false, too,
+  /// if this solid cannot decide.
   [[nodiscard]] virtual bool holds(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// Returns true if the segment between two points is known not to meet the boundary of a body. Returns false also if
+  /// Returns true if the segment between two points is known not to meet the boundary of a body. Returns false, too, if
   /// rounding leaves doubt, or this solid cannot decide.
   [[nodiscard]] virtual bool is_clear(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
     return false;
   }
-  /// Returns the same for a triangle, sides included.
+  /// Does the same for a triangle, sides included.
   [[nodiscard]] virtual bool is_clear(const std::array<Vec3d, 3>& /*triangle*/, std::uint32_t /*body*/) const {
     return false;
   }
@@ -109,28 +110,29 @@ class SolidOracle {
   }
   /// Returns the closest point of the surface of a body.
   [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
-  /// Returns the same, and maybe faster, if some point of the surface is known to be within a distance.
+  /// Does the same, possibly faster, if a point of the surface is known to be within the distance `within`.
   [[nodiscard]] virtual Vec3d closest_point_within(const Vec3d& p, double /*within*/, std::uint32_t body) const {
     return closest_point(p, body);
   }
-  /// Returns a random point of a body beside its surface, with uniform density. Returns nullopt if none exists, or the
-  /// surface has no triangles.
+  /// Returns a random point just inside the surface of a body, with uniform density. Returns nullopt if there is none,
+  /// or if the surface has no triangles.
   [[nodiscard]] virtual std::optional<Vec3d> beside_surface(std::uint32_t /*body*/, Random& /*random*/) const {
     return std::nullopt;
   }
   /// Returns true if the surface is that of the bodies, and has triangles.
   [[nodiscard]] virtual bool has_triangles() const { return false; }
-  /// Returns the diagonal of a voxel if the solid is made of voxels, else 0.
+  /// Returns the diagonal of a voxel if the solid consists of voxels, otherwise 0.
   [[nodiscard]] virtual double grain() const { return 0; }
-  /// Returns how far outside of the solid a point still counts as inside: 0, unless only voxels define the inside.
+  /// Returns how far outside the voxels a point still counts as inside: 0, unless only voxels define the inside of a
+  /// mesh.
   [[nodiscard]] virtual double slack() const { return 0; }
   /// Returns the distance of a point from a site; HUGE_VAL if the site does not exist.
   [[nodiscard]] virtual double distance_from_site(const Vec3d& p, SiteId site) const = 0;
-  /// Returns the paths and points for linking and winding numbers; nullptr if these are unknown. Computed once.
+  /// Returns the paths and points for linking and winding numbers; nullptr if they are unknown. They are computed once.
   /// @throws Cancelled.
   [[nodiscard]] const Complement* complement(const Context& context) const;
-  /// Returns points of the surface, close enough together for `step` unless they would be too many. Those of the last
-  /// step are kept.
+  /// Returns samples of the surface, close enough together for `step` unless they would be too many. The samples of the
+  /// last step are kept.
   /// @throws Cancelled.
   [[nodiscard]] std::shared_ptr<const Samples> samples(double step, const Context& context) const;
 
@@ -142,12 +144,12 @@ class SolidOracle {
 
   Lazy<std::unique_ptr<Complement>> complement_;
   mutable std::mutex samples_mutex_;
-  mutable std::shared_ptr<const Samples> samples_;  ///< of the last step
+  mutable std::shared_ptr<const Samples> samples_;  ///< samples of the last step
   mutable double step_of_samples_ = 0;
 };
 
-/// Largest number of samples of a mesh, unless it has more triangles. Each sample is searched for among all balls, and
-/// the result is reported, not judged. Five times as many would cost more than all checks that are judged.
+/// Largest number of samples of a mesh, unless it has more triangles. For each sample all balls are searched, and the
+/// result is only reported. Five times as many samples would cost more than all checks that can fail.
 inline constexpr std::size_t most_samples = 50'000;
 
 class DrawnBalls;
@@ -162,7 +164,7 @@ struct KnownSolid {
   KnownSolid& operator=(KnownSolid&&) noexcept;
   ~KnownSolid();
 
-  /// Returns the drawn balls. Computed once.
+  /// Returns the balls drawn from random points. They are computed once.
   [[nodiscard]] const DrawnBalls& drawn_balls() const;
 
  private:
@@ -171,12 +173,12 @@ struct KnownSolid {
 };
 
 /// Returns the solid that closed shells bound. The meshes must outlive it.
-/// @param named  the input mesh, whose sites distances refer to.
+/// @param named  the input mesh, to whose sites distance_from_site() refers.
 /// @throws InvalidMesh, Cancelled.
 [[nodiscard]] KnownSolid solid_of_mesh(const MeshView& mesh, const MeshView& named, const Context& context);
 
 /// Returns the solid of closed voxels. The voxels and the mesh must outlive it.
-/// @param surface  distances are to its triangles; nullptr: to the voxels' faces.
+/// @param surface  the mesh to which distances are measured; nullptr: they are measured to the voxels' faces.
 /// @throws InvalidMesh if the surface has no triangles, InvalidGrid if the grid does not cover it, Cancelled.
 [[nodiscard]] KnownSolid solid_of_voxels(const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
                                          const Context& context);

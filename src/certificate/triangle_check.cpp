@@ -17,8 +17,8 @@ namespace {
 
 using Piece = std::array<Stop, 3>;
 
-/// Most points of one triangle that are tested. In extremely thin walls they would never suffice. After a few points,
-/// an estimate decides if the others would.
+/// Largest number of points tested in one triangle. In extremely thin walls, no number would suffice. So after
+/// `few_points`, an estimate decides if the others would.
 constexpr std::size_t most_points = 512;
 constexpr std::size_t few_points = 64;
 
@@ -36,9 +36,9 @@ struct Findings {
   }
 };
 
-/// Returns true if balls around the corners, with their depths as radii, cover a piece up to `allowed`. The balls of
-/// both ends of each side must meet on it, and all three must contain one more point, here the centre. Balls are
-/// convex, so they then contain the six parts that have the centre as a corner.
+/// Returns true if the balls around the corners, with the corners' depths as radii, cover a piece up to `allowed`. The
+/// balls of both ends of each side must meet, and all three must contain the centre. Balls are convex, so they then
+/// contain the six parts of the piece that have the centre as a corner.
 bool covers(const Piece& piece, double allowed) {
   const Vec3d centre = (piece[0].at + piece[1].at + piece[2].at) / 3.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -61,19 +61,19 @@ class TriangleInBody {
   TriangleInBody(const SolidOracle& solid, std::uint32_t body, double allowed)
       : solid_(solid), body_(body), allowed_(allowed) {}
 
-  /// Returns approximately the point that is furthest out. Sets is_undecided if too many points would be needed.
+  /// Returns the approximate point that is furthest outside. Sets `is_undecided` if too many points would be needed.
   [[nodiscard]] Stop furthest_out(const Piece& triangle, bool& is_undecided) const {
-    constexpr double nearly = 1.25;  // points are searched only if they may be worse by this factor
+    constexpr double nearly = 1.25;  // only points that may be further out by this factor are searched
     Stop worst = *std::min_element(triangle.begin(), triangle.end(),
                                    [](const Stop& a, const Stop& b) { return a.depth < b.depth; });
-    // A sliver lies where its sides are, and these are checked as edges.
+    // A sliver coincides with its sides, which are checked as edges.
     if (is_sliver(triangle)) return worst;
-    // In thin walls balls are many, so the triangle is first tested against the boundary.
+    // In thin walls many balls would be needed, so the triangle is first tested against the boundary.
     if (worst.depth > 0 && solid_.is_clear({triangle[0].at, triangle[1].at, triangle[2].at}, body_)) return worst;
     const std::size_t most = points_for(triangle);
     std::vector<Piece> stack{triangle};
     std::size_t points = 0;
-    double covered = 0;  // area
+    double covered = 0;  // covered area
     while (!stack.empty()) {
       const Piece piece = stack.back();
       stack.pop_back();
@@ -110,16 +110,16 @@ class TriangleInBody {
     return 2 * area(triangle) <= thin * allowed_ * longest;
   }
 
-  /// Returns true if balls at all the points would cover less than a quarter of a triangle, judged by the area covered
-  /// so far.
-  /// @param covered  share of the area.
+  /// Returns true if balls at all `most_points` points would cover less than a quarter of a triangle, judged by the
+  /// area covered so far.
+  /// @param covered  covered share of the triangle's area.
   [[nodiscard]] static bool is_too_slow(double covered, std::size_t points) {
     return 4 * covered * static_cast<double>(most_points) < static_cast<double>(points);
   }
 
-  /// Returns few points if balls as large as those of the corners are far too many to cover a triangle. Few points only
-  /// find what lies well outside. Each part that is not halved any more is at most as large as the square of a ball's
-  /// radius.
+  /// Returns `few_points` if far too many balls as large as those of the corners would be needed to cover a triangle.
+  /// Few points still find parts that lie well outside. A part that is not halved further has at most the area of a
+  /// ball's radius squared.
   [[nodiscard]] std::size_t points_for(const Piece& triangle) const {
     const double deepest = std::max({triangle[0].depth, triangle[1].depth, triangle[2].depth}) + allowed_;
     const bool is_hopeless = area(triangle) > 0.5 * static_cast<double>(most_points) * deepest * deepest;
@@ -151,7 +151,7 @@ class TriangleInBody {
 };
 
 /// Checks one triangle.
-/// @param most  how far out it may be.
+/// @param most  largest distance by which the triangle may leave the solid.
 Findings look_at(const Piece& corners, const TriangleInBody& body, double allowed, double most) {
   Findings found;
   bool is_undecided = false;

@@ -33,7 +33,7 @@ Meeting meet(const ProbeLine& line, const std::array<Vec3d, 3>& corners, double&
            (c[0] < -error[0] && c[1] < -error[1] && c[2] < -error[2]);
   };
   if (is_beside(x) || is_beside(y)) return Meeting::none;
-  std::array<double, 3> weight{};  // of the corner opposite to each edge
+  std::array<double, 3> weight{};  // weight of the corner opposite to each edge
   bool is_left = false;
   bool is_right = false;
   bool is_doubtful = false;
@@ -55,7 +55,7 @@ Meeting meet(const ProbeLine& line, const std::array<Vec3d, 3>& corners, double&
   return Meeting::crossing;
 }
 
-/// Returns true if a stretch of a line may meet a box, with room for rounding.
+/// Returns true if the part of a line from `begin` to `end` may meet a box, with room for rounding.
 bool may_meet(const ProbeLine& line, const Box3& box, double begin, double end, double slack) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double low = box.lower[axis] - line.point[axis];
@@ -73,11 +73,11 @@ bool may_meet(const ProbeLine& line, const Box3& box, double begin, double end, 
   return begin <= end + slack;
 }
 
-/// A triangle that segments may pierce. If rounding leaves doubt, they may.
+/// Tests if segments may pierce a triangle. If rounding leaves doubt, the answer is that they may.
 class PiercedTriangle {
  public:
-  /// @param normal  of length 1.
-  /// @param slack   largest effect of rounding.
+  /// @param normal  unit normal.
+  /// @param slack   bound on the effects of rounding.
   PiercedTriangle(const std::array<Vec3d, 3>& corners, const Vec3d& normal, double slack)
       : corners_(corners), normal_(normal), slack_(slack) {
     for (const Vec3d& corner : corners) box_.extend(corner);
@@ -136,8 +136,8 @@ Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
   const Vec3d ab = b - a;
   const Vec3d ac = c - a;
   const Vec3d normal = cross(ab, ac);
-  // Weights of the corners at the foot on the plane, times `squared`. The edge is tested, too, if the foot is next to
-  // it, or if rounding leaves doubt about its side.
+  // Barycentric weights of the foot on the plane, times `squared`. An edge is tested, too, if the foot is beyond it, or
+  // if rounding leaves doubt about that.
   const double squared = squared_length(normal);
   const double to_b = dot(cross(to_p, ac), normal);
   const double to_c = dot(cross(ab, to_p), normal);
@@ -155,7 +155,7 @@ Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
   if (!(squared - to_b - to_c > doubt)) look_at(Segment3{b, c}.closest_point(p));
   if (!(to_b > doubt)) look_at(Segment3{c, a}.closest_point(p));
   if (!(to_c > doubt)) look_at(Segment3{a, b}.closest_point(p));
-  // A mean of the corners is a point of the triangle, whatever the rounding.
+  // A weighted mean of the corners is a point of the triangle, whatever the rounding.
   if (!(squared > 0)) return best;
   const double share_b = to_b / squared;
   const double share_c = to_c / squared;
@@ -191,9 +191,9 @@ double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Ve
 
 namespace {
 
-constexpr double as_close = 1 + 1e-8;  ///< ratio of squared distances that count as equal
+constexpr double as_close = 1 + 1e-8;  ///< up to this ratio, squared distances count as equal
 
-/// The points of triangles that are about as close to a point as the closest one.
+/// The closest points of triangles that are about as close to a point as the closest triangle.
 class ClosePoints {
  public:
   /// @param best  the least squared distance so far, including this one.
@@ -205,7 +205,7 @@ class ClosePoints {
     is_full_ = is_full_ || found_.is_full();
     if (!is_full_) found_.push_back({point, squared, triangle});
   }
-  /// Counts in `nearest` the triangles whose closest points are at the place of the best one.
+  /// Counts in `nearest` the other triangles whose closest points coincide with the best one.
   void count(double best, TriangleSearch::Nearest& nearest) const {
     constexpr double as_near = 1e-12;  // squared, relative to the squared distance
     if (is_full_ || found_.empty()) return;
@@ -352,7 +352,7 @@ Vec3d TriangleSearch::closest_point_within(const Vec3d& p, double within, std::u
       best = squared;
       point = closest;
     }
-    return best * as_close;  // of equally close ones, finds the same as nearest_within()
+    return best * as_close;  // among equally close points, finds the same one as nearest_within()
   });
   return best == unknown && within < HUGE_VAL ? closest_point_within(p, HUGE_VAL, group) : point;
 }
@@ -363,7 +363,7 @@ double TriangleSearch::distance_above(const Vec3d& p, double enough, std::uint32
   double best = HUGE_VAL;
   search(p, best, group, [&](std::uint32_t /*place*/, const Vec3d& /*closest*/, double squared) {
     best = std::min(best, squared);
-    return best < enough_squared ? -HUGE_VAL : best;  // nothing is below: the search ends
+    return best < enough_squared ? -HUGE_VAL : best;  // ends the search
   });
   return std::sqrt(best);
 }

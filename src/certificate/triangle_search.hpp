@@ -17,8 +17,9 @@
 
 namespace blum::verifier {
 
-/// Returns how often the segment from p to q crosses the triangle a, b, c. It is 1 or -1 by the side that the segment
-/// comes from, or 0. Returns nullopt if the segment meets the border of the triangle, runs in its plane, or ends in it.
+/// Returns how often the segment from p to q crosses the triangle a, b, c. It is 1 or -1, depending on the side from
+/// which the segment comes, or 0. Returns nullopt if the segment meets the border of the triangle, lies in its plane,
+/// or ends in it.
 [[nodiscard]] inline std::optional<int> exact_crossing(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& p,
                                                        const Vec3d& q) {
   using detail::orient3d;
@@ -34,67 +35,68 @@ namespace blum::verifier {
   return to;
 }
 
-/// Marks triangles that belong to no group. In queries: all groups.
+/// Group of triangles that belong to no group. In queries, it stands for all groups.
 inline constexpr std::uint32_t no_group = 0xffffffffU;
 
-/// A line, and two directions across it. All directions are unit vectors at right angles.
+/// A line, and two directions across it. All three directions are unit vectors at right angles to each other.
 struct ProbeLine {
   Vec3d point;
   Vec3d along, across, up;
 };
-/// Returns a line with one of a fixed sequence of directions. None of these is nearly parallel to a plane of two axes.
+/// Returns a line through a point, with direction number `attempt` of a fixed sequence. No direction is nearly parallel
+/// to a plane of two coordinate axes.
 [[nodiscard]] ProbeLine line_through(const Vec3d& point, std::uint32_t attempt);
-/// Returns the line from one point to another one.
+/// Returns the infinite line through two points, directed from `from` to `to`.
 [[nodiscard]] ProbeLine line_between(const Vec3d& from, const Vec3d& to);
 
-/// A place where a line meets a triangle.
+/// A point where a line meets a triangle.
 struct Crossing {
   double at = 0;  ///< position along the line from its point, mesh units
   std::uint32_t triangle = 0;
 };
 
-/// Triangles in a tree of boxes. The triangles of a mesh may belong to groups. A query is about one group, or about
-/// all.
+/// Triangles in a tree of boxes. The triangles may belong to groups. A query is about one group, or about all
+/// triangles.
 class TriangleSearch {
  public:
   struct Nearest {
     double distance = 0;
     std::uint32_t triangle = 0;
-    /// Number of other triangles of the query whose closest points are at the same place, up to rounding; nullopt if
-    /// too many to count.
+    /// Number of other triangles of the query whose closest points coincide with this one, up to rounding; nullopt if
+    /// they are too many to count.
     std::optional<std::size_t> others;
-    std::uint32_t other = 0;  ///< one of them, if any exist
+    std::uint32_t other = 0;  ///< one of these triangles, if any
   };
 
   TriangleSearch() = default;
-  /// @param groups  of each triangle. Triangles of no_group are left out. Empty: all triangles are in group 0.
+  /// @param groups  for each triangle; triangles of no_group are left out. If empty, all triangles are in group 0.
   /// @throws Cancelled.
   TriangleSearch(const MeshView& mesh, std::span<const std::uint32_t> groups, const Context& context);
 
   /// Returns the closest triangle of a group, or of all triangles for no_group. Exact up to rounding. The distance is
   /// HUGE_VAL if there are no triangles.
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::uint32_t group = no_group) const;
-  /// Returns the same, and faster, if a triangle is known to be within a distance.
+  /// Does the same, faster, if a triangle of the group is known to be within the distance `within`.
   [[nodiscard]] Nearest nearest_within(const Vec3d& p, double within, std::uint32_t group) const;
 
-  /// Returns the closest point of the triangles of a group, if one is known to be within a distance. Costs less than
-  /// nearest_within().
+  /// Returns the closest point of the triangles of a group, if one of them is known to be within the distance `within`.
+  /// Costs less than nearest_within().
   [[nodiscard]] Vec3d closest_point_within(const Vec3d& p, double within, std::uint32_t group) const;
-  /// Returns the distance of the closest triangle of a group, exact if it is at least `enough`. Otherwise it may be too
-  /// large, but stays below `enough`.
+  /// Returns the distance of the closest triangle of a group if it is at least `enough`. Otherwise returns a value
+  /// below `enough`, which may be larger than the distance.
   [[nodiscard]] double distance_above(const Vec3d& p, double enough, std::uint32_t group) const;
 
-  /// Finds all crossings of a line, at least those with triangles near its first `reach`. Returns false if the line is
-  /// too close to an edge to decide.
+  /// Finds the crossings of a line with all triangles; if `reach` is finite, at least with those near the line's first
+  /// `reach`. Returns false if the line is too close to an edge to decide.
   [[nodiscard]] bool crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach = HUGE_VAL) const;
 
-  /// Finds the crossings of a segment with the triangles of a group, without rounding except in their positions. The
-  /// segment may run beside edges, closer than rounding. Returns false if exact_crossing() is undecided for a triangle.
+  /// Finds the crossings of a segment with the triangles of a group. Only their positions are rounded, so the segment
+  /// may pass edges at any distance. Returns false if exact_crossing() is undecided for a triangle.
   [[nodiscard]] bool exact_crossings(const Vec3d& from, const Vec3d& to, std::uint32_t group,
                                      std::vector<Crossing>& found) const;
 
-  /// Returns true if no side of the triangles of a group pierces a triangle. Returns false also if rounding leaves
-  /// doubt.
+  /// Returns true if no side of a triangle of the group pierces the given triangle. Returns false, too, if rounding
+  /// leaves doubt.
   [[nodiscard]] bool is_unpierced(const std::array<Vec3d, 3>& triangle, std::uint32_t group) const;
 
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
@@ -102,13 +104,14 @@ class TriangleSearch {
  private:
   using Corners = std::array<Vec3d, 3>;
 
-  /// A box along the mean normal of some triangles. It is flat if they are, so that far queries reach few of them.
+  /// A box along the mean normal of some triangles. It is flat if the triangles are, so that queries from far away
+  /// visit few triangles.
   struct FlatBox {
     Vec3d origin;
     Mat3 axes;
-    Box3 box;  ///< from the origin, along the axes
+    Box3 box;  ///< extent along `axes`, relative to `origin`
   };
-  /// The flat boxes of two siblings. A sibling with too many triangles has its plain box instead.
+  /// The flat boxes of two siblings in the tree. A sibling with too many triangles has its axis-parallel box instead.
   struct TwoFlatBoxes {
     std::array<Two, 3> origin{};
     std::array<std::array<Two, 3>, 3> axes{};
@@ -116,17 +119,17 @@ class TriangleSearch {
 
     void set(std::size_t k, const FlatBox& flat);
   };
-  /// Calls best = visit(place, closest point, its squared distance) for the triangles of a group that may be closer
-  /// than the best.
+  /// Calls best = visit(place, closest point, squared distance) for the triangles of a group that may be closer than
+  /// the best so far.
   template <class Visit>
   void search(const Vec3d& p, double best, std::uint32_t group, const Visit& visit) const;
   void make_flat_boxes(const Context& context);
   [[nodiscard]] static FlatBox flat_box(std::span<const Corners> triangles);
   [[nodiscard]] Two squared_bounds(const Vec3d& p, std::uint32_t first_child) const;
   BoxHierarchy tree_;
-  std::vector<TwoFlatBoxes> flat_boxes_;  ///< of siblings in the tree
+  std::vector<TwoFlatBoxes> flat_boxes_;  ///< for each pair of siblings in the tree
   std::vector<Corners> corners_;          ///< in the tree's order
-  std::vector<std::uint32_t> triangles_;  ///< of the mesh, in the tree's order
+  std::vector<std::uint32_t> triangles_;  ///< indices in the mesh, in the tree's order
   std::vector<std::uint32_t> groups_;     ///< in the tree's order
   Box3 bounds_;
 };

@@ -58,7 +58,7 @@ void look_at_footprints(const MedialView& axis, std::size_t v, const Location& l
   if (!options.angles) return;
   const Vec3d a = axis.footprint(v, 0) - axis.positions[v];
   const Vec3d b = axis.footprint(v, 1) - axis.positions[v];
-  // Errors of positions turn the directions of footprints.
+  // Errors of positions change the directions to footprints by up to this angle, in degrees.
   const double turned = 2 * allowed / std::max(std::min(length(a), length(b)), allowed) * degrees_per_radian;
   note(found.check.angle_error, found.angle, std::abs(axis.separation_angle[v] - degrees_between(a, b)),
        tolerance_of_angles + turned);
@@ -96,9 +96,9 @@ void explain(const Findings& found, double factor, std::vector<std::string>& mis
   add(found.off_surface, "a footprint lies off the surface by ");
   add(found.footprint, "the distance to a footprint differs from the radius by ");
   if (std::isinf(found.site.error)) {
-    mismatches.emplace_back("a footprint names a site that the solid does not have");
+    mismatches.emplace_back("a footprint has a site that the solid does not have");
   } else {
-    add(found.site, "a footprint lies off the site that it names by ");
+    add(found.site, "a footprint lies off its site by ");
   }
   if (found.angle.is_too_much()) {
     mismatches.push_back("a separation angle differs from the angle between the footprints by " +

@@ -11,7 +11,7 @@
 namespace blum::verifier {
 namespace {
 
-/// Returns the first bit of a row from i on that equals `wanted`; `end` if none does.
+/// Returns the index of the first bit of a row, at or after i, that equals `wanted`; `end` if there is none.
 std::int64_t next_in(std::span<const std::uint64_t> row, std::int64_t i, std::int64_t end, bool wanted = true) {
   for (auto w = static_cast<std::size_t>(i / 64); w < row.size(); ++w) {
     std::uint64_t bits = wanted ? row[w] : ~row[w];
@@ -21,17 +21,17 @@ std::int64_t next_in(std::span<const std::uint64_t> row, std::int64_t i, std::in
   return end;
 }
 
-/// Voxels begin to end - 1 of a row.
+/// Voxels `begin` to `end` - 1 of row (j, k).
 struct Stretch {
   std::int64_t j = 0, k = 0, begin = 0, end = 0;
 };
 
-/// The rest of a set, from which stretches are removed.
+/// The remaining voxels of a set, from which stretches are removed.
 class Flood {
  public:
   Flood(VoxelSet voxels, const Context& context) : rest_(std::move(voxels)), context_(context) {}
 
-  /// Removes all voxels, and calls found(i, j, k) for the first voxel of each part that is connected over faces.
+  /// Removes all voxels. Calls found(i, j, k) for the first voxel of each part that is connected through faces.
   template <class Found>
   void take_all(const Found& found) {
     for (std::int64_t k = 0; k < rest_.size()[2]; ++k) {
@@ -57,7 +57,7 @@ class Flood {
     }
   }
 
-  /// Removes the stretches of a row that reach into a range.
+  /// Removes all stretches of a row that overlap a range, and adds them to `stack`.
   void take_row(std::int64_t j, std::int64_t k, std::int64_t begin, std::int64_t end, std::vector<Stretch>& stack) {
     if (j < 0 || k < 0 || j >= rest_.size()[1] || k >= rest_.size()[2]) return;
     for (std::int64_t i = next(j, k, begin); i < end; i = next(j, k, i)) stack.push_back(taken_at(i, j, k));
@@ -71,7 +71,7 @@ class Flood {
     return all;
   }
 
-  /// Returns the first voxel of a row from i on; the end of the row if none exists.
+  /// Returns the first voxel of a row at or after i; the end of the row if there is none.
   [[nodiscard]] std::int64_t next(std::int64_t j, std::int64_t k, std::int64_t i) const {
     return next_in(std::as_const(rest_).row(j, k), i, rest_.size()[0]);
   }
@@ -81,13 +81,13 @@ class Flood {
   std::size_t steps_ = 0;
 };
 
-/// Returns 64 voxels of a row; none if the row does not exist.
+/// Returns word w, of 64 voxels, of a row; 0 if the row does not exist.
 std::uint64_t word_of(const VoxelSet& voxels, std::int64_t j, std::int64_t k, std::size_t w) {
   if (j < 0 || k < 0 || j >= voxels.size()[1] || k >= voxels.size()[2]) return 0;
   return voxels.row(j, k)[w];
 }
 
-/// Returns all voxels that are not in a set, in its box and one voxel around it.
+/// Returns all voxels outside a set, in the box of the set enlarged by one voxel on each side.
 VoxelSet surroundings(const VoxelSet& voxels, const Context& context) {
   const auto& size = voxels.size();
   VoxelSet rest({size[0] + 2, size[1] + 2, size[2] + 2});
@@ -107,8 +107,9 @@ VoxelSet surroundings(const VoxelSet& voxels, const Context& context) {
   return rest;
 }
 
-/// Returns the contribution of a lattice vertex to the Euler number, times eight, for each set of voxels around it.
-/// Bits 0, 1 and 2 of a voxel's place are its sides along x, y and z. Each cell is shared equally among its vertices.
+/// Returns eight times the contribution of a lattice vertex to the Euler number, for each set of the eight voxels
+/// around it. Bits 0, 1 and 2 of a voxel's number are its sides along x, y and z. Each cell's contribution is shared
+/// equally among its vertices.
 std::array<std::int8_t, 256> shares_of_vertices() {
   std::array<std::int8_t, 256> shares{};
   for (unsigned around = 1; around < 256; ++around) {
@@ -129,12 +130,12 @@ std::array<std::int8_t, 256> shares_of_vertices() {
   return shares;
 }
 
-/// The voxels around the vertices of a lattice row, from four rows and their copies shifted by one voxel.
+/// Finds the voxels around the vertices of a lattice row from four rows of voxels, each also shifted by one voxel.
 class VertexRow {
  public:
   VertexRow(const VoxelSet& voxels, std::int64_t j, std::int64_t k) : voxels_(voxels), j_(j), k_(k) {}
 
-  /// Calls use(i, around) for the vertices between voxels in the set and others.
+  /// Calls use(i, around) for the vertices whose eight voxels are neither all in the set nor all outside it.
   template <class Use>
   void for_each(const Use& use) {
     std::array<std::uint64_t, 4> carry{};
@@ -165,7 +166,7 @@ class VertexRow {
   std::int64_t j_, k_;
 };
 
-/// Returns the Euler numbers of the bodies. All voxels around a vertex belong to one body.
+/// Returns the Euler number of each body. All voxels of the set around a vertex belong to the same body.
 std::vector<std::int64_t> euler_numbers(const VoxelSet& voxels, const VoxelBodies& bodies, const Context& context) {
   const std::array<std::int8_t, 256> shares = shares_of_vertices();
   std::vector<std::int64_t> eighths(bodies.count(), 0);

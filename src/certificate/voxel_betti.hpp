@@ -19,7 +19,7 @@ class VoxelBodies {
   /// @throws Cancelled.
   VoxelBodies(const VoxelSet& voxels, const Context& context);
 
-  /// The range of voxels that a body lies in, `lower` and `upper` included.
+  /// The range of voxels that contains a body; `lower` and `upper` are included.
   struct Extent {
     std::array<std::int64_t, 3> lower, upper;
   };
@@ -30,7 +30,7 @@ class VoxelBodies {
   [[nodiscard]] std::uint32_t of(std::int64_t i, std::int64_t j, std::int64_t k) const;
 
  private:
-  /// Voxels begin to end - 1 of a row.
+  /// Voxels `begin` to `end` - 1 of a row.
   struct Run {
     std::int32_t begin = 0, end = 0;
     std::uint32_t body = 0;
@@ -42,14 +42,14 @@ class VoxelBodies {
   }
 
   std::array<std::int64_t, 3> size_{};
-  std::vector<std::size_t> first_;  ///< first run of each row, and the end
+  std::vector<std::size_t> first_;  ///< for each row: index of its first run; then the number of runs
   std::vector<Run> runs_;
   std::vector<Extent> extents_;
 };
 
-/// Returns the Betti numbers of each body. Tunnels follow from the number of cells. A void, found by flooding over
-/// faces, belongs to the body around it.
-/// @throws Cancelled. Memory: two more sets.
+/// Returns the Betti numbers of each body. The number of tunnels follows from the Euler number. A void is found by
+/// flooding through faces, and belongs to the body around it.
+/// @throws Cancelled. Memory: two more voxel sets.
 [[nodiscard]] std::vector<BettiNumbers> voxel_betti_numbers(const VoxelSet& voxels, const VoxelBodies& bodies,
                                                             const Context& context);
 /// Returns the Betti numbers of all bodies together.

@@ -74,7 +74,8 @@ void VoxelFaces::find_bricks(std::int32_t layer, std::vector<Brick>& found) cons
   for (std::int32_t j = 0; j <= voxels_.size()[1] / 4; ++j) {
     for (std::int32_t i = 0; i <= voxels_.size()[0] / 4; ++i) {
       const Window bits = window({i, j, layer});
-      // Windows with all voxels or none have no faces. Others may have none either, if only voxels before them differ.
+      // Windows with all voxels or none have no faces. Other windows may have no faces either, if they differ only in
+      // voxels before the brick.
       const bool is_even = bits[0] == (bits[0] & 1U ? 31U : 0U) &&
                            std::all_of(bits.begin(), bits.end(), [&](std::uint8_t b) { return b == bits[0]; });
       if (!is_even) found.push_back({i, j, layer});
@@ -93,14 +94,14 @@ Box3 VoxelFaces::rectangle(const Face& face) const {
 
 struct VoxelFaces::Apart {
   std::array<std::array<double, 4>, 3> planes;  ///< to the lower plane of each of four voxels
-  std::array<std::array<double, 4>, 3> slabs;   ///< to the slab between its lower and its upper plane
+  std::array<std::array<double, 4>, 3> slabs;   ///< to the slab between the lower and upper plane of each
 };
 
 VoxelFaces::Apart VoxelFaces::apart(const Vec3d& q, const Brick& brick) const {
   Apart all;
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t k = 0; k < 4; ++k) {
-      // The same numbers as in rectangle(), so that distances agree exactly.
+      // Computed exactly as in rectangle(), so that distances agree.
       const auto voxel = static_cast<double>(4 * std::int64_t{brick[a]} + static_cast<std::int64_t>(k));
       const double lower = (voxel - 0.5) * grid_.spacing[a];
       const double upper = (voxel + 0.5) * grid_.spacing[a];
@@ -168,12 +169,12 @@ std::optional<VoxelFaces::Voxel> VoxelFaces::held(const Vec3d& from, const Vec3d
   if (const auto around = voxel_around(begin, end)) return around;
   Voxel voxel{};
   Voxel step{};
-  Vec3d next;   // share of the segment at which the next plane is met
-  Vec3d every;  // share between two planes
+  Vec3d next;   // fraction of the segment at which the next plane is met
+  Vec3d every;  // fraction between two planes
   for (std::size_t k = 0; k < 3; ++k) {
     const double way = end[k] - begin[k];
     step[k] = way > 0 ? 1 : way < 0 ? -1 : 0;
-    // On a plane between two voxels the one ahead counts.
+    // On a plane between two voxels, the voxel ahead counts.
     const double at = way < 0 ? std::ceil(begin[k]) - 1 : std::floor(begin[k]);
     if (!(std::abs(at) < 1e9)) return std::nullopt;
     voxel[k] = static_cast<std::int64_t>(at);

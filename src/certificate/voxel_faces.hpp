@@ -33,7 +33,7 @@ class VoxelFaces {
     double distance = HUGE_VAL;
     Face face;
   };
-  /// Returns the closest face to a point of the world, and the exact distance; HUGE_VAL if no face exists.
+  /// Returns the face closest to a point in world coordinates, and the exact distance; HUGE_VAL if there is no face.
   [[nodiscard]] Nearest nearest(const Vec3d& p) const;
   [[nodiscard]] double distance(const Vec3d& p) const { return nearest(p).distance; }
   /// Returns the voxel of the set that contains a point, or one of them where voxels meet; nullopt outside.
@@ -46,8 +46,8 @@ class VoxelFaces {
   template <class Use>
   void for_each_face(std::size_t brick, const Use& use) const;
 
-  /// Returns one of the voxels of the set that contain a segment, boundaries included. Returns nullopt if the segment
-  /// leaves the set, or rounding leaves doubt.
+  /// Checks that a segment lies in the voxels of the set, boundaries included, and returns one of the voxels that it
+  /// meets. Returns nullopt if the segment leaves the set, or if rounding leaves doubt.
   [[nodiscard]] std::optional<Voxel> held(const Vec3d& from, const Vec3d& to) const;
 
   /// Returns the rectangle of a face, along the axes of the grid and relative to its first node.
@@ -58,12 +58,13 @@ class VoxelFaces {
   [[nodiscard]] const Box3& box() const { return box_; }
 
  private:
-  using Brick = std::array<std::int32_t, 3>;  ///< in bricks
-  /// Voxels of a brick and those just before it: bit x of [y + 5 z] is voxel x - 1, y - 1, z - 1.
+  using Brick = std::array<std::int32_t, 3>;  ///< indices of a brick along x, y, z
+  /// The voxels of a brick and those just before it along each axis. Bit x of entry y + 5 * z is voxel
+  /// (x - 1, y - 1, z - 1) of the brick.
   using Window = std::array<std::uint8_t, 25>;
 
   [[nodiscard]] Window window(const Brick& brick) const;
-  /// Calls use(x, y, z, axis) for the faces in a window. Voxels are counted from the first one of the brick.
+  /// Calls use(x, y, z, axis) for the faces in a window. Voxels are counted from the brick's first voxel.
   template <class Use>
   static void for_each_face(const Window& in, const Use& use);
   /// Squared distances of a point from the planes and the slabs of a brick's voxels, along each axis.
@@ -71,10 +72,10 @@ class VoxelFaces {
   [[nodiscard]] Apart apart(const Vec3d& q, const Brick& brick) const;
   [[nodiscard]] std::uint8_t five_bits(std::int64_t i, std::int64_t j, std::int64_t k) const;
   void find_bricks(std::int32_t layer, std::vector<Brick>& found) const;
-  /// Returns one of the voxels of the set that contain both points.
-  /// @param a  in units of voxels, which reach from one whole number to the next.
+  /// Returns a voxel of the set that contains both points; nullopt if none does.
+  /// @param a  like b, in units of voxels; a voxel extends from one integer to the next.
   [[nodiscard]] std::optional<Voxel> voxel_around(const Vec3d& a, const Vec3d& b) const;
-  /// Returns a point in units of voxels, with their centres at whole numbers.
+  /// Returns a point in units of voxels, with the centres of voxels at integers.
   [[nodiscard]] Vec3d in_voxels(const Vec3d& p) const {
     const Vec3d q = local(p);
     return {q.x / grid_.spacing.x, q.y / grid_.spacing.y, q.z / grid_.spacing.z};
@@ -84,8 +85,8 @@ class VoxelFaces {
   const VoxelSet& voxels_;
   GridSpec grid_;
   std::vector<Brick> bricks_;    ///< in the tree's order
-  std::vector<Window> windows_;  ///< of each brick
-  std::vector<Box3> boxes_;      ///< around the faces of each brick
+  std::vector<Window> windows_;  ///< for each brick
+  std::vector<Box3> boxes_;      ///< for each brick: box of its faces
   BoxHierarchy tree_;
   Box3 box_;
 };

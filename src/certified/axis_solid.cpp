@@ -5,13 +5,13 @@
 namespace blum {
 namespace {
 
-/// @param value  empty if the name needs none.
+/// @param value  empty for an option without a value.
 std::string option_text(OptionStyle style, const std::string& name, const std::string& value) {
   if (style == OptionStyle::python) return name + "=" + value;
   return "--" + name + (value.empty() ? "" : " ") + value;
 }
 
-/// Returns the option that a selection sets for this input; empty if it leaves all to defaults.
+/// Returns the text of the option that the selection sets and that applies to this kind of input; empty if none is set.
 std::string selection_text(const SolidSelection& selection, bool is_image, OptionStyle style) {
   if (is_image && selection.label) return option_text(style, "label", std::to_string(*selection.label));
   if (is_image && selection.threshold) return option_text(style, "threshold", rounded_text(*selection.threshold));

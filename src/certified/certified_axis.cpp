@@ -15,15 +15,17 @@
 namespace blum {
 namespace {
 
-/// A way to derive the axis of one angle from that of all angles.
+/// A way to derive the axis of one angle theta from the axes of all angles.
 struct AxisForm {
-  bool is_fitted = false;           ///< by MedialAxis::lean(), not simplify()
-  std::optional<double> tolerance;  ///< vertices are removed within it; unset: all stay
-  std::string_view without;         ///< start of a sentence that explains why the next form is used
+  bool is_fitted = false;           ///< true: by MedialAxis::lean(); false: by simplify()
+  std::optional<double> tolerance;  ///< largest deviation when vertices are removed; unset: no vertex is removed
+  std::string_view without;         ///< start of the warning if this form is not certified
 };
 
-constexpr std::string_view without_borders = "borders of sheets stay at the cells of the grid, because otherwise ";
-constexpr std::string_view without_few_vertices = "the axis keeps all vertices, because with fewer ";
+constexpr std::string_view without_borders =
+    "borders of sheets stay at the cells of the grid; with moved borders, the axis is not certified: ";
+constexpr std::string_view without_few_vertices =
+    "the axis keeps all vertices; with fewer vertices, it is not certified: ";
 
 double checked_tolerance(double tolerance) {
   if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
@@ -32,8 +34,8 @@ double checked_tolerance(double tolerance) {
   return tolerance;
 }
 
-/// Returns the forms to try, in order.
-/// @param is_given  true if sheets were pruned. The axis is then a complex that can no longer be fitted.
+/// Returns the forms to try, in the order of preference.
+/// @param is_given  true if sheets were pruned. Then the axis exists only as a complex, which lean() cannot fit.
 std::vector<AxisForm> forms_of(const MedialAxisReport& report, std::optional<double> tolerance, bool is_given) {
   const double most = checked_tolerance(tolerance.value_or(0.25 * least_spacing(report)));
   std::vector<AxisForm> forms;
@@ -57,7 +59,7 @@ std::string theta_text(const MedialMetadata& metadata) {
   return metadata.theta ? "at theta " + rounded_text(*metadata.theta) : "of the axis";
 }
 
-/// How axes are certified, and where the time is recorded.
+/// The function that certifies axes, its arguments, and the list to which the time is added.
 struct Certifying {
   CertifyAxis certify;
   const MedialAxis* whole = nullptr;
@@ -65,7 +67,7 @@ struct Certifying {
   std::vector<PhaseTime>& phases;
 };
 
-/// Returns the first of the forms that is certified, or the last one.
+/// Returns the axis in the first form that is certified. If no form is certified, returns the axis in the last form.
 CertifiedAxis first_certified(const std::vector<AxisForm>& forms, const MedialMetadata& metadata,
                               FunctionRef<DecimatedAxis(const AxisForm&)> make, const Certifying& by) {
   CertifiedAxis out;
@@ -84,7 +86,7 @@ CertifiedAxis first_certified(const std::vector<AxisForm>& forms, const MedialMe
   return out;
 }
 
-/// Makes and certifies all axes on one grid.
+/// Computes and certifies the axes of all requested angles on one grid.
 CertifiedAxes axes_on(const AxisGrids& grids, double shift, CertifyAxis certify, const CertifiedAxisOptions& options,
                       const Context& context) {
   CertifiedAxes out;
@@ -114,7 +116,7 @@ CertifiedAxes axes_on(const AxisGrids& grids, double shift, CertifyAxis certify,
   return out;
 }
 
-/// Returns shifts of the grid to try, in voxels, as far as it may be moved.
+/// Returns up to three further shifts of the grid to try, in voxels. The total shift stays within 1 voxel.
 std::vector<double> steps_from(double grid_shift) {
   constexpr std::size_t most = 3;
   std::vector<double> out;
@@ -124,25 +126,26 @@ std::vector<double> steps_from(double grid_shift) {
   return out;
 }
 
-/// Returns the options of the axis of all angles that certified_axes() needs.
+/// Returns `medial` with the range of angles that certified_axes() needs.
 MedialAxisOptions with_angles(MedialAxisOptions medial, const CertifiedAxisOptions& options) {
   const auto [least, most] = std::minmax_element(options.thetas.begin(), options.thetas.end());
-  // Sheets are pruned as a whole, so they must be whole first.
+  // Sheets are pruned as a whole, so the axis must contain whole sheets, which theta 0 ensures.
   medial.least_theta = options.prunes_sheets ? 0 : *least;
   medial.greatest_theta = options.prunes_sheets ? MedialAxisOptions{}.greatest_theta : *most;
   return medial;
 }
 
 void check(const CertifiedAxisOptions& options) {
-  if (options.thetas.empty()) throw InvalidOption("thetas is empty: an axis needs an angle");
+  if (options.thetas.empty()) throw InvalidOption("thetas is empty: give at least one angle");
   for (auto theta = options.thetas.begin(); theta != options.thetas.end(); ++theta) {
     if (std::find(options.thetas.begin(), theta, *theta) != theta) {
-      throw InvalidOption("thetas contain " + rounded_text(*theta) + " twice: each angle has one axis");
+      throw InvalidOption("thetas contain " + rounded_text(*theta) + " twice: give each angle once");
     }
   }
   if (options.tolerance) static_cast<void>(checked_tolerance(*options.tolerance));
   if (options.prunes_sheets && !std::is_sorted(options.thetas.begin(), options.thetas.end())) {
-    throw InvalidOption("thetas must increase if sheets are pruned, because each axis is pruned from the one before");
+    throw InvalidOption(
+        "thetas must increase if sheets are pruned, because each axis is pruned from that of the angle before it");
   }
 }
 
@@ -156,7 +159,7 @@ CertifiedAxis the_only(CertifiedAxes axes) {
   return out;
 }
 
-/// Certifies an axis in memory, and records the time.
+/// Certifies an axis in memory, and adds the time to the candidate's phases.
 Certificate timed(const AxisCandidate& candidate, FunctionRef<Certificate(const MedialClaims&)> verify) {
   PhaseTimer timer(candidate.phases);
   Certificate out = verify({candidate.metadata});
@@ -164,7 +167,7 @@ Certificate timed(const AxisCandidate& candidate, FunctionRef<Certificate(const 
   return out;
 }
 
-/// Certifies axes of a mesh in memory.
+/// Returns a function that certifies axes of a mesh in memory.
 /// @param verifier, context  must outlive the returned function.
 auto certified_by(const MeshAxisVerifier& verifier, const Context& context) {
   return [&verifier, &context](const AxisCandidate& candidate) {
@@ -211,7 +214,7 @@ CertifiedAxes certified_axes(const AxisGrids& grids, CertifyAxis certify, const 
                              "the grid was moved by " + rounded_text(step) + " voxels; before the move: " + reason});
     const bool is_better = next.report.topology_matches && next.mismatches.size() < best.mismatches.size();
     if (is_better) std::swap(best, next);
-    // Grids that were tried in vain took time, too.
+    // The time of grids that were tried in vain counts, too.
     best.phases.insert(best.phases.end(), next.phases.begin(), next.phases.end());
   }
   return best;
@@ -253,7 +256,7 @@ CertifiedAxis certified_axis(const MeshView& mesh, double theta, const MedialAxi
 CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, double theta,
                              std::optional<double> tolerance, const Context& context) {
   const MeshAxisVerifier verifier(mesh);
-  std::shared_ptr<const MedialAxis> same(std::shared_ptr<const MedialAxis>(), &axis);  // owns nothing
+  std::shared_ptr<const MedialAxis> same(std::shared_ptr<const MedialAxis>(), &axis);  // does not own the axis
   const auto certify = certified_by(verifier, context);
   return the_only(certified_axes({0, false, [&](double) { return same; }}, certify,
                                  {.thetas = {theta}, .tolerance = tolerance}, context));
@@ -286,7 +289,7 @@ std::vector<std::string> model_problems(const MedialAxisReport& report, OptionSt
         has_needle ? "fill the narrow holes, or rotate the part so that they run along a coordinate axis"
                    : "raise " + finer + ", or repair the mesh there";
     out.push_back("the model of " + (report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : "the solid") +
-                  " at voxels of side " + rounded_text(body.spacing) + " fails in " +
+                  " with voxels of side " + rounded_text(body.spacing) + " fails in " +
                   plural(failures.size(), "place", "places") + ", the first one at " + place_text(at) + " (" +
                   std::string(to_string(failures.front().obstacle)) + "): " + advice);
   }

@@ -16,7 +16,8 @@
 namespace blum {
 namespace {
 
-/// Returns the checks that the contents of a file allow.
+/// Returns the requested checks, without those for which the file lacks data. Claims of the file fill in options that
+/// are not set.
 CertificateOptions checkable(const MedialClaims& claims, SiteIds sites, CertificateOptions options) {
   options.radii = options.radii && claims.has_radii;
   options.balls = options.balls && claims.has_radii;
@@ -53,7 +54,7 @@ std::string sides_text(const GridSpec& grid) {
   return rounded_text(grid.spacing.x) + " " + rounded_text(grid.spacing.y) + " " + rounded_text(grid.spacing.z);
 }
 
-/// Reports vertices without both sites. In a file that Blum wrote, all vertices have both.
+/// Reports the vertices that lack a site of a footprint. In a file that Blum wrote, every vertex has both sites.
 std::vector<std::string> missing_sites(const MedialView& axis, const MedialClaims& claims) {
   std::size_t count = 0;
   for (std::size_t v = 0; v < axis.positions.size(); ++v) {
@@ -64,8 +65,8 @@ std::vector<std::string> missing_sites(const MedialView& axis, const MedialClaim
           plural(count, "vertex has", "vertices have") + " a footprint without a site"};
 }
 
-/// @throws InvalidGrid if fewer voxels lie along the longest side of a mesh than in the coarsest grid. Such a grid
-/// would have other tunnels, or parts of the mesh without a voxel.
+/// @throws InvalidGrid if the longest side of a mesh has fewer than 8 voxels, the number in Blum's coarsest grid.
+/// Voxels of such a grid may have other tunnels than the mesh, or miss parts of it.
 void check_fine_enough(const GridSpec& grid, const MeshView& mesh) {
   constexpr double least = 8;
   constexpr double rounding = 1e-9;
@@ -73,8 +74,8 @@ void check_fine_enough(const GridSpec& grid, const MeshView& mesh) {
   const double longest = std::max({size.x, size.y, size.z});
   const double step = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   if (step * least <= longest * (1 + rounding)) return;
-  throw InvalidGrid("the grid that the axis names has a spacing of " + sides_text(grid) +
-                    ": fewer than 8 steps along the mesh, " + "whose longest side is " + rounded_text(longest));
+  throw InvalidGrid("the grid that the file states has a spacing of " + sides_text(grid) +
+                    ", which is fewer than 8 steps along the longest side of the mesh, " + rounded_text(longest));
 }
 
 bool selects_same(const LabelSelection& a, const LabelSelection& b) {
@@ -114,14 +115,15 @@ std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule foun
     out.push_back("the file says that its spacing is " + rounded_text(*metadata.spacing) +
                   ", but its grid has a spacing of " + sides_text(*metadata.grid));
   }
-  if (metadata.version.empty()) return out;  // of another program, which need not write all of it
+  if (metadata.version.empty()) return out;  // the file is by another program, which need not write all data
   const SiteIds sites = found == SolidRule::voxels ? SiteIds::voxels : SiteIds::features;
   for (const auto& [is_there, what] :
        {std::pair{claims.has_radii, "radii"}, std::pair{claims.has_footprints, "footprints"},
         std::pair{claims.has_angles, "separation angles"}, std::pair{claims.has_sites, "sites"},
         std::pair{claims.has_labels, "roles and sheets"},
         std::pair{!claims.has_sites || metadata.site_ids == sites, "sites of this kind of solid"}}) {
-    if (!is_there) out.push_back("the file says that Blum " + metadata.version + " wrote it, but holds no " + what);
+    if (!is_there)
+      out.push_back("the file says that Blum " + metadata.version + " wrote it, but it contains no " + what);
   }
   return out;
 }
@@ -149,23 +151,24 @@ std::shared_ptr<const MeshAxisVerifier::Voxels> MeshAxisVerifier::voxels_on(cons
   if (voxels_ != nullptr && voxels_->grid == grid) return voxels_;
   validate(grid);
   check_fine_enough(grid, mesh_);
-  // Distances, winding numbers, and the memory of the fields beside them.
+  // Bytes per node for distances, winding numbers and other fields.
   const double bytes = 16.0 * static_cast<double>(grid.node_count());
   if (bytes > available_memory) {
-    throw OutOfMemory("the grid that the axis names, of " + count_text(grid.node_count()) + " nodes, needs " +
-                      rounded_text(bytes / 1e9) + " GB of memory, more than is free; Blum would not " +
-                      "choose such a grid on this machine");
+    throw OutOfMemory("the grid that the file states, of " + count_text(grid.node_count()) + " nodes, needs " +
+                      rounded_text(bytes / 1e9) +
+                      " GB of memory, which is more than is free; Blum would not choose such a grid on this machine");
   }
   VoxelSet voxels = voxels_inside(mesh_, grid, context);
   if (voxels.count() == 0) {
-    throw InvalidMesh("the mesh bounds no polyhedron (" + reason +
-                      "), and no voxel of the grid that the axis names lies inside it, so there is no solid");
+    throw InvalidMesh(
+        "the mesh bounds no polyhedron (" + reason +
+        "), and no voxel of the grid that the file states has its centre inside the mesh, so there is no solid");
   }
   voxels_ = std::make_shared<const Voxels>(Voxels{grid, AxisVerifier(std::move(voxels), grid, &mesh_)});
   return voxels_;
 }
 
-/// A solid of an image: its voxels, or their smooth surface.
+/// The solid of an image: the selected voxels, or a smooth surface of them.
 struct ImageAxisVerifier::Selected {
   LabelSelection selection;
   std::optional<int> smooth;

@@ -34,8 +34,9 @@ Column& Columns::add(Column column) {
   if (column.components == 0) throw InvalidOption("column " + quoted(column.name) + " has no components");
   const std::size_t count = number_count(column);
   if (count % column.components != 0 || count / column.components != rows_) {
-    throw InvalidOption("column " + quoted(column.name) + " has " + std::to_string(count) + " numbers; " +
-                        std::to_string(rows_) + " rows of " + std::to_string(column.components) + " are needed");
+    throw InvalidOption("column " + quoted(column.name) + " has " + std::to_string(count) + " numbers, but " +
+                        std::to_string(rows_) + " rows of " + std::to_string(column.components) +
+                        " numbers are needed");
   }
   return columns_.emplace_back(std::move(column));
 }
@@ -55,10 +56,11 @@ std::size_t Columns::place_of(std::string_view name, std::size_t components, std
   if (column == nullptr) {
     std::string known;
     for (const Column& other : columns_) known += (known.empty() ? "" : ", ") + other.name;
-    throw InvalidOption("there is no column " + quoted(name) + "; there are: " + (known.empty() ? "none" : known));
+    throw InvalidOption("there is no column " + quoted(name) +
+                        "; the columns are: " + (known.empty() ? "none" : known));
   }
   if (column->values.index() != type || column->components != components) {
-    throw InvalidOption("column " + quoted(name) + " holds " + std::to_string(column->components) + " " +
+    throw InvalidOption("column " + quoted(name) + " contains " + std::to_string(column->components) + " " +
                         std::string(column->type_name()) + " per row, but " + std::to_string(components) + " " +
                         std::string(type_names[type]) + " are requested");
   }
@@ -108,7 +110,7 @@ void Columns::append(const Columns& other) {
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     std::visit(
         [&]<class T>(std::vector<T>& values) {
-          // A copy, because `other` may be this object.
+          // This copy is needed because `other` may be this object.
           const std::vector<T> more = std::get<std::vector<T>>(other.columns_[c].values);
           values.insert(values.end(), more.begin(), more.end());
         },

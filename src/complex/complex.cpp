@@ -13,10 +13,10 @@ std::string problem_of_cells(std::string_view kind, std::span<const std::array<s
     std::array<std::uint32_t, n> corners = cells[i];
     std::sort(corners.begin(), corners.end());
     const auto problem = [&](std::uint32_t vertex, const std::string& what) {
-      return std::string(kind) + " " + std::to_string(i) + " names vertex " + std::to_string(vertex) + what;
+      return std::string(kind) + " " + std::to_string(i) + " uses vertex " + std::to_string(vertex) + what;
     };
     if (corners.back() >= vertex_count) {
-      return problem(corners.back(), ", but there are " + std::to_string(vertex_count));
+      return problem(corners.back(), ", but there are only " + std::to_string(vertex_count) + " vertices");
     }
     if (const auto twice = std::adjacent_find(corners.begin(), corners.end()); twice != corners.end()) {
       return problem(*twice, " twice");
@@ -27,7 +27,7 @@ std::string problem_of_cells(std::string_view kind, std::span<const std::array<s
 
 std::string problem_of_columns(std::string_view kind, const Columns& columns, std::size_t rows) {
   if (columns.empty() || columns.rows() == rows) return {};
-  return "the columns of " + std::string(kind) + " have " + std::to_string(columns.rows()) + " rows; " +
+  return "the columns of " + std::string(kind) + " have " + std::to_string(columns.rows()) + " rows, but " +
          std::to_string(rows) + " are needed";
 }
 

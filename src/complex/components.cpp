@@ -17,7 +17,7 @@ void append_cells(std::vector<std::array<std::uint32_t, n>>& cells, std::span<co
   }
 }
 
-/// @param count       number of cells so far.
+/// @param count       number of cells that `columns` belongs to.
 /// @param more_count  number of cells that `more` belongs to.
 void append_columns(Columns& columns, std::size_t count, const Columns& more, std::size_t more_count) {
   if (more_count == 0) return;

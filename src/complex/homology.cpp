@@ -19,8 +19,8 @@ namespace {
 
 using Face = std::array<std::uint32_t, 3>;
 
-/// Returns each triangle once, with rising corners and in rising order. They are sorted by their first corner in one
-/// pass, then part by part, so that cancelling need not wait for all.
+/// Returns each triangle once, in ascending order and with ascending corners. One pass sorts the triangles by their
+/// first corner. Then those of each first corner are sorted separately, with checks for cancellation in between.
 std::vector<Face> distinct_triangles(const ComplexView& complex, const Context& context) {
   std::vector<std::size_t> first(complex.vertex_count + 1, 0);
   const auto rising = [](Face face) {
@@ -44,7 +44,7 @@ std::vector<Face> distinct_triangles(const ComplexView& complex, const Context& 
   return out;
 }
 
-/// The cells of a complex, each once.
+/// The cells of a complex without duplicates.
 struct Cells {
   std::vector<Face> triangles;
   Incidence incidence;
@@ -58,7 +58,7 @@ struct Cells {
   }
 };
 
-/// Returns the rank of the map from edges to vertices: the number of vertices minus that of components.
+/// Returns the rank of the boundary map from edges to vertices: the number of vertices minus the number of components.
 std::size_t vertex_rank(std::size_t vertex_count, const Incidence& incidence) {
   detail::UnionFind joined(vertex_count);
   std::size_t joins = 0;
@@ -66,8 +66,8 @@ std::size_t vertex_rank(std::size_t vertex_count, const Incidence& incidence) {
   return joins;
 }
 
-/// Columns that are removed one by one, and the rows that only one remaining column has.
-/// @tparam Columns  size(), and [k]: the rows of column k, none twice.
+/// Removes columns of a matrix one by one, and finds rows that only one remaining column contains.
+/// @tparam Columns  has size(), and [k]: the rows of column k, each once.
 template <class Columns>
 class Peeling {
  public:
@@ -85,9 +85,9 @@ class Peeling {
 
   struct Free {
     std::uint32_t row = 0;
-    std::uint32_t column = 0;  ///< the only one that has it
+    std::uint32_t column = 0;  ///< the only remaining column that contains the row
   };
-  /// Returns a row that only one column has; nullopt if none exists.
+  /// Returns a row that only one remaining column contains; nullopt if no such row exists.
   std::optional<Free> next() {
     while (!free_.empty()) {
       const std::uint32_t row = free_.back();
@@ -102,25 +102,26 @@ class Peeling {
       if (--count_[row] == 1) free_.push_back(row);
     }
   }
-  /// Returns how many of the remaining columns have a row.
+  /// Returns the number of remaining columns that contain a row.
   [[nodiscard]] std::uint32_t count(std::uint32_t row) const { return count_[row]; }
 
  private:
   const Columns& columns_;
   std::vector<std::uint32_t> count_;
-  std::vector<std::uint64_t> sum_;  ///< sum of the columns that have a row: equals the last one
+  std::vector<std::uint64_t> sum_;  ///< for each row: sum of the indices of its columns; if one is left, its index
   std::vector<std::uint32_t> free_;
 };
 
-/// A sparse matrix over Z/2 and its rank, for example of the boundaries of surfaces with seams as rows.
+/// A sparse matrix over Z/2 that computes its rank. For example, its columns are sheets, and its rows are the seams at
+/// which they end.
 ///
-/// A column with a row that no other column has is paired with that row and removed, over and over. If none has one
-/// (the surface is closed), a column is set aside, and pairing goes on. A paired row is in no column that is removed
-/// later. So paired columns are independent, and only those set aside need elimination. Elimination starts with the
-/// rows that were paired first.
+/// If a row is in only one remaining column, that column is paired with the row and removed. This repeats until no such
+/// row exists (the surface is closed). Then one column is removed without a row, as unpaired, and pairing continues. No
+/// column that is removed later contains a paired row. So the paired columns are independent, and only the unpaired
+/// columns need elimination. Elimination clears the rows in the order in which they were paired.
 class SparseMatrix {
  public:
-  /// @param columns  the rows of each column, none twice.
+  /// @param columns  the rows of each column, each once.
   SparseMatrix(const IndexRows& columns, std::size_t row_count, const Context& context)
       : context_(context), columns_(columns), key_(row_count, none) {}
 
@@ -133,7 +134,7 @@ class SparseMatrix {
  private:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  /// Fills paired_ and key_. Returns the columns set aside.
+  /// Fills paired_ and key_. Returns the unpaired columns.
   std::vector<std::uint32_t> pair_up() {
     Peeling peeling(columns_, key_.size());
     std::vector<bool> is_gone(columns_.size(), false);
@@ -157,9 +158,9 @@ class SparseMatrix {
     return set_aside;
   }
 
-  /// Frees a column that was set aside of all paired rows. Returns the rows that remain, in rising order.
+  /// Eliminates all paired rows from an unpaired column. Returns the remaining rows in ascending order.
   std::vector<std::uint32_t> rest_of(std::uint32_t set_aside) {
-    using Entry = std::pair<std::uint32_t, std::uint32_t>;  // when the row was paired, and the row
+    using Entry = std::pair<std::uint32_t, std::uint32_t>;  // index in paired_ or none, then the row
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> column;
     const auto add = [&](std::uint32_t f) {
       for (const std::uint32_t e : columns_[f]) column.emplace(key_[e], e);
@@ -171,7 +172,7 @@ class SparseMatrix {
       const auto [key, row] = column.top();
       column.pop();
       if (!column.empty() && column.top().second == row) {
-        column.pop();  // twice is 0 modulo 2
+        column.pop();  // a row that occurs twice is 0 modulo 2
       } else if (key == none) {
         rest.push_back(row);
       } else {
@@ -182,7 +183,7 @@ class SparseMatrix {
     return rest;
   }
 
-  /// Reduces a column by those before it, and keeps it unless nothing is left.
+  /// Reduces a column by the columns in rests_. Adds the result to rests_ unless it is empty.
   void add_rest(std::vector<std::uint32_t> column) {
     std::vector<std::uint32_t> sum;
     while (!column.empty()) {
@@ -206,17 +207,18 @@ class SparseMatrix {
   const Context& context_;
   std::size_t steps_ = 0;
   const IndexRows& columns_;
-  std::vector<std::uint32_t> key_;                                       ///< for each row: its place in paired_
-  std::vector<std::uint32_t> paired_;                                    ///< columns, in order of removal
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> rests_;  ///< by their first row
+  std::vector<std::uint32_t> key_;                                       ///< for each row: index in paired_, or none
+  std::vector<std::uint32_t> paired_;                                    ///< paired columns, in order of removal
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> rests_;  ///< reduced columns, by their first row
 };
 
-/// The dimension of the cycles of triangles over Z/2.
+/// Computes the dimension of the space of cycles of triangles over Z/2.
 ///
-/// At an edge of two triangles, a cycle contains both or none. So it consists of whole sheets: triangles that are
-/// joined across edges of two triangles. A triangle with an edge of its own is in no cycle. When none has one, the rest
-/// are sheets that end at seams. A cycle contains an even number of them at each edge of a seam. Seams where the same
-/// sheets end give the same condition.
+/// If an edge has exactly two triangles, a cycle contains both of them or neither. So a cycle consists of whole sheets:
+/// triangles that are connected through edges of two triangles. A triangle with a free edge (no other triangle has it)
+/// is in no cycle. After all such triangles are removed, the remaining sheets end only at seams. At each edge of a
+/// seam, a cycle contains an even number of the sheets that end there. Edges at which the same sheets end give the same
+/// condition.
 class CyclesOfSheets {
  public:
   CyclesOfSheets(const Incidence& incidence, const Context& context)
@@ -236,7 +238,7 @@ class CyclesOfSheets {
  private:
   static constexpr std::uint32_t no_sheet = 0xffffffffU;
 
-  /// Removes triangles with an edge of their own, until none has one.
+  /// Removes triangles with a free edge until no triangle has one.
   void remove_open() {
     sheet_.assign(sides_.size(), 0);
     std::size_t steps = 0;
@@ -247,10 +249,10 @@ class CyclesOfSheets {
     }
   }
 
-  /// Numbers the sheets, and returns how many there are.
+  /// Numbers the sheets, and returns their number.
   std::size_t join_sheets() {
     detail::UnionFind joined(static_cast<std::uint32_t>(sides_.size()));
-    std::vector<std::uint32_t> first(edge_count_, no_sheet);  // triangle at each edge
+    std::vector<std::uint32_t> first(edge_count_, no_sheet);  // first triangle at each edge
     for (std::uint32_t t = 0; t < sides_.size(); ++t) {
       if (sheet_[t] == no_sheet) continue;
       for (const std::uint32_t e : sides_[t]) {
@@ -274,7 +276,8 @@ class CyclesOfSheets {
     return sheets;
   }
 
-  /// Returns for each seam the sheets that end at it an odd number of times, in rising order; each list once.
+  /// Returns for each edge of a seam the ascending list of sheets that end at it an odd number of times. Equal lists
+  /// occur once.
   IndexRows distinct_seams() {
     std::vector<std::array<std::uint32_t, 2>> ends;  // edge, sheet
     for (std::uint32_t t = 0; t < sides_.size(); ++t) {
@@ -321,10 +324,10 @@ class CyclesOfSheets {
   }
 
   using Sides = std::span<const std::array<std::uint32_t, 3>>;
-  const Sides sides_;  ///< edges of each triangle
+  const Sides sides_;  ///< for each triangle: its edges
   const std::size_t edge_count_;
   Peeling<Sides> left_;               ///< triangles as columns, edges as rows
-  std::vector<std::uint32_t> sheet_;  ///< of each triangle
+  std::vector<std::uint32_t> sheet_;  ///< for each triangle: its sheet, or no_sheet if it was removed
   const Context& context_;
 };
 

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t vertices_per_range = 4096;
 
-/// Calls use(a, b, number) for the listed edges and then the sides of triangles, numbered consecutively; a < b.
+/// Calls use(a, b, number) with the ends a < b of each listed edge, and then of each side of a triangle. The calls are
+/// numbered consecutively.
 template <class Use>
 void for_each_pair(const ComplexView& complex, const Use& use) {
   std::uint32_t number = 0;
@@ -28,11 +29,11 @@ void for_each_pair(const ComplexView& complex, const Use& use) {
   }
 }
 
-/// The pairs of vertices that listed edges and sides of triangles join, grouped by the smaller vertex.
+/// Pairs of vertices, grouped by the smaller vertex. Each is a listed edge or a side of a triangle.
 struct VertexPairs {
-  std::vector<std::size_t> first;    ///< of each vertex, and the end
-  std::vector<std::uint64_t> pairs;  ///< sort keys: the larger vertex in the upper half, then the number
-  std::uint32_t listed = 0;          ///< numbers below this are of listed edges
+  std::vector<std::size_t> first;    ///< for each vertex: index of its first pair; then the number of pairs
+  std::vector<std::uint64_t> pairs;  ///< sort keys: the larger vertex in the upper 32 bits, the number in the lower
+  std::uint32_t listed = 0;          ///< lower numbers belong to listed edges, the others to sides
 
   VertexPairs(const ComplexView& complex, const Context& context)
       : first(complex.vertex_count + 1, 0), listed(static_cast<std::uint32_t>(complex.edges.size())) {
@@ -45,8 +46,8 @@ struct VertexPairs {
     });
   }
 
-  /// Does the same as for_each_pair(), on several threads. Each goes over all pairs, and uses those of its range of
-  /// smaller vertices. Reading all pairs in order costs less than writing all over the lists.
+  /// Does the same as for_each_pair(), on several threads. Each thread reads all pairs, and uses those whose smaller
+  /// vertex is in its range. Reading all pairs in order costs less than writing at random positions of the lists.
   template <class Use>
   static void for_each_of_own(const ComplexView& complex, const Context& context, const Use& use) {
     constexpr std::size_t most_ranges = 8;
@@ -65,14 +66,14 @@ struct VertexPairs {
   }
   [[nodiscard]] std::uint32_t larger(std::size_t k) const { return static_cast<std::uint32_t>(pairs[k] >> 32U); }
   [[nodiscard]] std::uint32_t number(std::size_t k) const { return static_cast<std::uint32_t>(pairs[k]); }
-  /// Returns true if a pair is the first one of its two vertices. Pairs must be sorted.
-  /// @param a  the smaller vertex.
+  /// Returns true if pair k is the first of several equal pairs. Pairs must be sorted.
+  /// @param a  the smaller vertex of the pair.
   [[nodiscard]] bool is_new_edge(std::size_t k, std::size_t a) const {
     return k == first[a] || larger(k) != larger(k - 1);
   }
 };
 
-/// Returns true if cells name existing vertices, none twice.
+/// Returns true if all vertex indices of the cells exist, and no cell has the same vertex twice.
 template <std::size_t n>
 bool are_good(std::span<const std::array<std::uint32_t, n>> cells, std::size_t vertex_count, const Context& context) {
   constexpr std::size_t cells_per_range = 65536;
@@ -109,7 +110,8 @@ Incidence::Incidence(const ComplexView& complex, const Context& context) {
   });
 }
 
-/// Ranges of vertices sort and count their pairs. Then each range writes its edges after those of the ranges before it.
+/// Each range of vertices sorts and counts its pairs. Then each range writes its edges after the edges of all earlier
+/// ranges.
 void Incidence::find_edges(const ComplexView& complex, const Context& context) {
   VertexPairs pairs(complex, context);
   const std::size_t ranges = (complex.vertex_count + vertices_per_range - 1) / vertices_per_range;

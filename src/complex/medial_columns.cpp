@@ -9,8 +9,8 @@ namespace {
 
 namespace names = medial_columns;
 
-/// @param count  number of cells that the columns belong to.
-/// @param kind   name of these cells.
+/// @param count  number of vertices, edges or triangles that the columns belong to.
+/// @param kind   "vertices", "edges" or "triangles".
 template <ColumnNumber T>
 std::span<const T> column(const Columns& columns, std::size_t count, const char* kind, std::string_view name,
                           std::size_t components = 1) {
@@ -36,7 +36,7 @@ bool is_role_of_edges(std::int32_t number) {
          number != static_cast<std::int32_t>(MedialRole::junction);
 }
 
-/// Returns the problem of one vertex; null if it has none.
+/// Returns a description of one vertex's problem; null if it has none.
 const char* vertex_problem(const MedialView& axis, std::size_t v, std::int32_t role) {
   if (!std::isfinite(axis.radius[v]) || axis.radius[v] < 0) return "has a radius that is negative or not finite";
   if (!is_finite(axis.footprint(v, 0)) || !is_finite(axis.footprint(v, 1))) return "has a footprint that is not finite";
@@ -45,10 +45,10 @@ const char* vertex_problem(const MedialView& axis, std::size_t v, std::int32_t r
     const SiteId site = axis.site(v, k);
     if (site.has_value() && site.value > max_id_count) return "has a site that is neither an index nor -1";
   }
-  return is_role(role) ? nullptr : "has a role that is not known";
+  return is_role(role) ? nullptr : "has an unknown role";
 }
 
-/// Returns the problem of the first wrong number; empty if none is wrong.
+/// Returns a message about the first wrong number; empty if no number is wrong.
 /// @param is_wrong  returns true for a wrong number.
 template <class T, class Test>
 std::string problem_of_numbers(std::span<const T> numbers, const char* what, const char* problem,
@@ -58,11 +58,11 @@ std::string problem_of_numbers(std::span<const T> numbers, const char* what, con
   return place(what, static_cast<std::size_t>(at - numbers.begin())) + " " + problem;
 }
 
-/// Allows at most as many sheets as triangles, so that a file cannot make anyone count further.
+/// Allows at most one sheet per triangle, so that sheet numbers in a file cannot cause huge allocations.
 std::string problem_of_sheets(std::span<const std::int32_t> sheets) {
   std::int64_t count = 0;
   for (std::size_t t = 0; t < sheets.size(); ++t) {
-    if (sheets[t] < 0) return place("triangle", t) + " is on a sheet below 0";
+    if (sheets[t] < 0) return place("triangle", t) + " has a negative sheet number";
     count = std::max(count, std::int64_t{sheets[t]} + 1);
   }
   if (static_cast<std::size_t>(count) <= sheets.size()) return {};
@@ -90,7 +90,7 @@ std::string problem_of_values(const Complex& axis) {
   for (std::string problem :
        {problem_of_numbers(view.edge_angle, "edge", "has an angle that is not finite", is_not_finite),
         problem_of_numbers(axis.edge_columns.get<std::int32_t>(names::role), "edge",
-                           "is neither curve nor rim nor seam",
+                           "has a role other than curve, rim and seam",
                            [](std::int32_t role) { return !is_role_of_edges(role); }),
         problem_of_numbers(view.triangle_angle, "triangle", "has an angle that is not finite", is_not_finite),
         problem_of_sheets(view.sheet)}) {
@@ -99,7 +99,7 @@ std::string problem_of_values(const Complex& axis) {
   return {};
 }
 
-/// Returns the result of a check, or the message if a column is missing or of another type.
+/// Returns the result of a check. If a column is missing or has another type, returns the message of that error.
 template <class Check>
 std::string problem_in(const Check& check) {
   try {

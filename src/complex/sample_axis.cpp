@@ -11,7 +11,7 @@
 namespace blum {
 namespace {
 
-/// Returns how many parts a length is cut into; 1 if the length is not a number.
+/// Returns the number of equal parts into which a length is divided, from 1 to 4096; 1 if the length is not a number.
 std::size_t parts_of(double length, double step) {
   constexpr double most = 4096;
   return length > step ? static_cast<std::size_t>(std::ceil(std::min(length / step, most))) : 1;
@@ -32,8 +32,9 @@ class Sampler {
     }
   }
 
-  /// Cuts a triangle that is longer than a step into rows along its longest side, and these into columns. Then no point
-  /// of a part is further than a step from the sample in the middle of its column: sqrt(0.5^2 + 0.86^2) < 1.
+  /// Divides a triangle whose longest side exceeds the step into rows along that side, and each row into columns. Each
+  /// column gets a sample in its middle. No point of a column is further than a step from its sample: sqrt(0.5^2 +
+  /// 0.86^2) < 1.
   void add_triangle(std::array<std::uint32_t, 3> corners) {
     const auto side = [&](std::size_t k) { return length(corners[k], corners[(k + 1) % 3]); };
     const std::size_t first = side(0) >= side(1) && side(0) >= side(2) ? 0 : side(1) >= side(2) ? 1 : 2;
@@ -42,7 +43,7 @@ class Sampler {
     if (!(longest > step_)) return;
     const Vec3d along = axis_.positions[corners[1]] - axis_.positions[corners[0]];
     const Vec3d up = axis_.positions[corners[2]] - axis_.positions[corners[0]];
-    // Share of the longest side before the foot of the height. The angles beside that side are acute.
+    // Position of the height's foot on the longest side, from 0 to 1. Both angles at that side are acute.
     const double foot = std::clamp(dot(along, up) / (longest * longest), 0.0, 1.0);
     const double height = blum::length(cross(along, up)) / longest;
     const std::size_t rows = parts_of(height, 0.86 * step_);
@@ -56,12 +57,12 @@ class Sampler {
     return blum::length(axis_.positions[a] - axis_.positions[b]);
   }
   void add(std::uint32_t v) { samples_.push_back({axis_.positions[v], axis_.radius[v], v}); }
-  /// @param foot  share of the longest side, between the first two corners, before the foot of the height.
+  /// @param foot  position of the height's foot on the longest side, from 0 at the first corner to 1 at the second.
   void add_row(const std::array<std::uint32_t, 3>& corners, double longest, double foot, std::size_t row,
                std::size_t rows) {
-    const double low = static_cast<double>(row) / static_cast<double>(rows);  // of the height
+    const double low = static_cast<double>(row) / static_cast<double>(rows);  // fraction of the height
     const double high = static_cast<double>(row + 1) / static_cast<double>(rows);
-    const double begin = foot * low;  // of the longest side
+    const double begin = foot * low;  // fraction of the longest side
     const double end = 1 - (1 - foot) * low;
     const std::size_t columns = parts_of((end - begin) * longest, step_);
     for (std::size_t column = 0; column < columns; ++column) {

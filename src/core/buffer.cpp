@@ -30,8 +30,7 @@ void* allocate_aligned(std::size_t bytes) {
                       " bytes; use a coarser grid or a machine with more memory");
   }
 #if defined(__linux__)
-  if (alignment == huge_page)
-    madvise(memory, bytes, MADV_HUGEPAGE);  // best effort: without it, page faults only cost more
+  if (alignment == huge_page) madvise(memory, bytes, MADV_HUGEPAGE);  // may fail: then page faults only cost more
 #endif
   return memory;
 }

@@ -13,7 +13,7 @@
 namespace blum {
 namespace {
 
-/// Returns the number of cores that this process may use: a container's or taskset's share, not the machine's.
+/// Returns the number of cores that this process may use. A container or taskset may allow fewer than the machine has.
 int usable_cores() {
 #if defined(__linux__)
   cpu_set_t set;

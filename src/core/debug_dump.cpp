@@ -12,10 +12,11 @@
 namespace blum {
 namespace {
 
-/// The arrays of a file. Each is a tag, and its numbers at the end of the file after the count of their bytes.
+/// The arrays of a VTK file. Each has a tag in the text of the file. Its numbers follow at the end of the file, after a
+/// count of their bytes.
 class Arrays {
  public:
-  /// @param attributes  type and name.
+  /// @param attributes  type and name of the array, as XML attributes.
   template <class T>
   [[nodiscard]] std::string add(std::string_view attributes, const std::vector<T>& numbers) {
     const std::string offset = std::to_string(bytes_.size());
@@ -35,7 +36,7 @@ class Arrays {
   std::string bytes_;
 };
 
-/// Cells of one kind: the corners of all of them, one cell after the other.
+/// Cells of one kind, stored as the corners of the first cell, of the second, and so on.
 struct Cells {
   std::string_view kind;
   std::size_t corners_each = 1;
@@ -53,14 +54,14 @@ struct Cells {
   }
 };
 
-/// The points that cells may name, and which of them no cell names.
+/// The points of a file, and a record of those that no cell uses.
 class Points {
  public:
   explicit Points(std::span<const Vec3d> points) : points_(points), is_alone_(points.size()) {
     std::transform(points.begin(), points.end(), is_alone_.begin(), [](const Vec3d& p) { return is_finite(p); });
   }
 
-  /// Returns the cells that can be drawn: their points exist and are finite.
+  /// Returns the cells whose points all exist and are finite, and records their points as used.
   template <std::size_t corners>
   [[nodiscard]] Cells drawn(std::string_view kind, std::span<const std::array<std::uint32_t, corners>> cells) {
     Cells out{kind, corners, {}};

@@ -17,7 +17,8 @@ Device parse_device(std::string_view text) {
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
     if (error == std::errc{} && end == number.data() + number.size() && index >= 0) return Device::cuda(index);
   }
-  throw InvalidOption("device is \"" + std::string(text) + "\", but must be cpu, auto, cuda or cuda:K");
+  throw InvalidOption("device is \"" + std::string(text) +
+                      "\", but must be cpu, auto, cuda, or cuda:K for device number K");
 }
 
 std::string to_string(const Device& device) {

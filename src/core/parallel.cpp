@@ -25,8 +25,8 @@ namespace blum {
 namespace {
 
 #if defined(BLUM_THREADS_TBB)
-/// Unused arenas, by their number of slots. They are used again, because oneTBB keeps memory of each destroyed arena (7
-/// KB in 2021.8). Over the calls of every frame that would add up.
+/// Unused arenas, by number of slots. Arenas are reused, because oneTBB does not free all memory of a destroyed arena
+/// (it keeps 7 KB in 2021.8). With several calls per frame, the loss would add up.
 class ArenaPool {
  public:
   /// An arena for the lifetime of the lease.
@@ -44,7 +44,7 @@ class ArenaPool {
     std::unique_ptr<tbb::task_arena> arena_;
   };
 
-  /// Never destroyed, because oneTBB may be gone before static objects are.
+  /// The pool is never destroyed, because oneTBB may be unloaded before static objects are destroyed.
   static ArenaPool& instance() {
     static ArenaPool& pool = *new ArenaPool;
     return pool;
@@ -60,7 +60,7 @@ class ArenaPool {
     const std::scoped_lock lock(mutex_);
     Arenas& arenas = arenas_[slots];
     if (arenas.free.empty()) {
-      arenas.free.reserve(++arenas.made);  // giving it back then needs no memory
+      arenas.free.reserve(++arenas.made);  // so give_back() allocates no memory
       return std::make_unique<tbb::task_arena>(slots);
     }
     std::unique_ptr<tbb::task_arena> arena = std::move(arenas.free.back());
@@ -77,10 +77,11 @@ class ArenaPool {
 };
 #endif
 
-/// Calls run(0) to run(workers - 1), as concurrently as the back end can, and waits for all of them.
+/// Calls run(0) to run(workers - 1), concurrently if the back end can, and waits until all calls have returned.
 void run_workers(int workers, const std::function<void(int)>& run) {
 #if defined(BLUM_THREADS_TBB)
-  // More slots than TBB has threads would only cause a warning. Other workers take the shares of idle ones.
+  // An arena with more slots than TBB has threads would cause a warning. Fewer slots suffice, because a thread runs
+  // several workers one after the other.
   ArenaPool::Lease lease(ArenaPool::instance(), std::min(workers, tbb::info::default_concurrency()));
   lease.arena().execute(
       [&] { tbb::parallel_for(0, workers, [&](int worker) { run(worker); }, tbb::simple_partitioner()); });
@@ -94,7 +95,8 @@ void run_workers(int workers, const std::function<void(int)>& run) {
 #endif
 }
 
-/// Reports progress at most every 30 ms, and never from two threads at once.
+/// Reports the start, the end, and at most every 30 ms the progress in between. It never reports from two threads at
+/// once.
 class ProgressReporter {
  public:
   ProgressReporter(const Context& context, std::string_view phase, std::size_t total)

@@ -145,7 +145,7 @@ ExactInteger operator*(const ExactInteger& a, const ExactInteger& b) {
 
 double ExactInteger::rounded_ratio(const ExactInteger& numerator, const ExactInteger& denominator, int exponent) {
   if (numerator.limbs_.empty()) return 0;
-  // A quotient of 55 or 56 bits, and one bit below that is 1 if a rest remains.
+  // The quotient has 55 or 56 bits. One more bit below them is 1 if the division leaves a remainder.
   constexpr int quotient_bits = 56;
   const int shift = quotient_bits - 1 - (static_cast<int>(numerator.bits()) - static_cast<int>(denominator.bits()));
   ExactInteger rest = numerator;

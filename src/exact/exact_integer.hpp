@@ -17,11 +17,11 @@ class ExactInteger {
   [[nodiscard]] int sign() const { return limbs_.empty() ? 0 : negative_ ? -1 : 1; }
   /// Returns the number of bits of the magnitude; 0 for 0.
   [[nodiscard]] std::size_t bits() const;
-  /// Returns how many times 2 divides the number; 0 for 0.
+  /// Returns the largest k for which 2^k divides the number; 0 for 0.
   [[nodiscard]] std::size_t twos() const;
 
   [[nodiscard]] ExactInteger operator-() const;
-  /// Multiplies or divides by a power of two. Bits that are shifted out are lost.
+  /// Multiplies or divides by 2^count. Division drops the bits that are shifted out, and so rounds towards 0.
   [[nodiscard]] ExactInteger operator<<(std::size_t count) const;
   [[nodiscard]] ExactInteger operator>>(std::size_t count) const;
 
@@ -45,13 +45,13 @@ class ExactInteger {
   static ExactInteger sum(const ExactInteger& a, const ExactInteger& b, bool b_negative);
   static int compare_magnitudes(const ExactInteger& a, const ExactInteger& b);
   static void add_magnitude(std::vector<Limb>& to, const std::vector<Limb>& what);
-  /// @param to  at least as large as `what`.
+  /// @param to  its value is at least that of `what`.
   static void take_magnitude(std::vector<Limb>& to, const std::vector<Limb>& what);
   void trim();
   void halve();
 
-  std::vector<Limb> limbs_;  ///< lowest first; the last one is not 0
-  bool negative_ = false;    ///< false for 0
+  std::vector<Limb> limbs_;  ///< lowest limb first; the last limb is not 0
+  bool negative_ = false;    ///< false if the number is 0
 };
 
 }  // namespace blum::detail

@@ -7,7 +7,7 @@
 
 namespace blum::detail {
 
-/// An integer of any size. Up to 1024 bits, enough for most coordinates, it allocates no memory.
+/// An integer of any size. Integers of up to 1024 bits allocate no memory; that is enough for most coordinates.
 using Integer = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<1024, 0, boost::multiprecision::signed_magnitude,
                                            boost::multiprecision::unchecked, std::allocator<unsigned long long>>,

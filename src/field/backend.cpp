@@ -8,8 +8,8 @@
 namespace blum {
 namespace {
 
-/// Returns make_cuda(index) for a CUDA device. For `automatic`, tries CUDA device 0 first. If that fails, `reason` gets
-/// the error and make_cpu() is returned. For the CPU, returns make_cpu().
+/// Returns make_cuda(index) for a CUDA device and make_cpu() for the CPU. For `automatic`, tries CUDA device 0 first.
+/// If that fails, writes the error to `reason` and returns make_cpu().
 template <class MakeCuda, class MakeCpu>
 auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& make_cpu, std::string& reason) {
   if (device.kind == DeviceKind::cuda) return make_cuda(device.index);
@@ -18,7 +18,7 @@ auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& mak
       return make_cuda(0);
     } catch (const DeviceError& error) {
       reason = error.what();
-    } catch (const OutOfMemory& error) {  // device memory, which other processes may fill
+    } catch (const OutOfMemory& error) {  // device memory may be short because other processes fill it
       reason = error.what();
     }
   }

@@ -18,10 +18,10 @@
 namespace blum {
 
 struct FieldResult {
-  /// Nodes left to exact queries, ascending: those that no site claimed in float32, and those whose side float32 cannot
-  /// decide.
+  /// Linear indices, ascending, of the nodes that the caller must settle by exact queries. In float32, no site claimed
+  /// them, or their side is undecided.
   std::vector<std::size_t> unsettled;
-  /// True if the nodes have the requested signs; otherwise the caller finds them.
+  /// True if the distances have the signs that the request asks for. If false, the caller must find the signs.
   bool is_signed = false;
 };
 
@@ -35,19 +35,20 @@ class FieldBackend {
 
   [[nodiscard]] virtual Device device() const = 0;
 
-  /// Makes `mesh` the current mesh. Data that depend only on connectivity are kept while the connectivity stays the
-  /// same. The mesh must stay alive until compute() returns.
+  /// Makes `mesh` the current mesh. If the connectivity is that of the mesh before, data that depend only on it are
+  /// kept. The mesh must stay alive until compute() returns.
   virtual void set_mesh(const MeshView& mesh, const Context& context) = 0;
   [[nodiscard]] virtual const SiteTable& sites() const = 0;
 
-  /// Returns true if the caller finds the signs of a method, from the sites of the field.
+  /// Returns true if, for this method of signs, the caller must find the signs from the closest sites of the field.
   [[nodiscard]] virtual bool needs_sites_for(sign::Method method) const = 0;
 
-  /// Fills the host memory of a request, and appends phase times.
+  /// Writes the field to the request's host memory. Appends the durations of the phases to `phases`.
   [[nodiscard]] virtual FieldResult compute(const FieldRequest& request, const Context& context,
                                             std::vector<PhaseTime>& phases) = 0;
 
-  /// Fills the second order of the field that compute() made. Returns the nodes left to exact queries, ascending.
+  /// Writes the second order (second-closest sites and their distances) of the field that compute() made. Returns the
+  /// linear indices, ascending, of the nodes that the caller must settle by exact queries.
   [[nodiscard]] virtual std::vector<std::size_t> compute_second(const SecondRequest& /*request*/,
                                                                 const Context& /*context*/) {
     return {};
@@ -63,20 +64,20 @@ class ImageBackend {
   virtual ~ImageBackend() = default;
 
   [[nodiscard]] virtual Device device() const = 0;
-  /// Makes a valid image the current one. The image must stay alive. Later requests for it may differ in selection and
-  /// memory.
+  /// Makes a valid image the current one. The image must stay alive while it is used. Later requests for this image may
+  /// differ from `request` only in selection and result memory.
   virtual void set_image(const VoxelImageView& image, const detail::ImageRequest& request) = 0;
   /// Returns the number of voxels that a request selects.
   [[nodiscard]] virtual std::size_t select(const detail::ImageRequest& request) = 0;
-  /// Fills the host memory of the request that was selected last.
+  /// Writes the field of the request that was last passed to select() to the request's host memory.
   virtual void transform(const detail::ImageRequest& request) = 0;
 };
 
-/// Returns the back end of context.device for fields of an order.
-/// @param reason  gets the reason if `automatic` falls back to the CPU.
+/// Returns the back end of context.device for fields of order 1 or 2.
+/// @param reason  receives the reason if the device is `automatic` and the CPU is used.
 /// @throws DeviceError; InvalidOption if the order is 2 and a CUDA device is asked for.
 [[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context, int order, std::string& reason);
-/// Returns the image back end of context.device; null for the CPU. `reason` is as above.
+/// Returns the image back end of context.device; null for the CPU. `reason` is as for make_field_backend().
 /// @throws DeviceError.
 [[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(const Context& context, std::string& reason);
 

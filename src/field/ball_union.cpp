@@ -18,15 +18,15 @@ namespace {
 
 /// Blocks of at most this many nodes are not split further.
 constexpr std::int64_t leaf_nodes = 8;
-/// One worker fills a block of at most this many nodes.
+/// A block of at most this many nodes is one worker's task.
 constexpr std::int64_t local_nodes = std::int64_t{1} << 18;
-/// Largest coordinate and radius whose distances float32 can hold.
+/// Limit of coordinates and radii: up to it, float32 can represent all distances.
 constexpr double largest_length = 1e37;
 
 void check(std::span<const Ball> balls) {
   if (balls.empty()) throw InvalidOption("there are no balls: a union of balls needs at least one");
   if (balls.size() > max_id_count) {
-    throw InvalidOption("there are " + std::to_string(balls.size()) + " balls; at most " +
+    throw InvalidOption("there are " + std::to_string(balls.size()) + " balls, but the limit is " +
                         std::to_string(max_id_count));
   }
   for (std::size_t i = 0; i < balls.size(); ++i) {
@@ -40,7 +40,7 @@ void check(std::span<const Ball> balls) {
   }
 }
 
-/// Nodes from `begin` to before `end` along each axis.
+/// Block of nodes. Along each axis its node indices are at least `begin` and below `end`.
 struct Block {
   std::array<std::int64_t, 3> begin{};
   std::array<std::int64_t, 3> end{};
@@ -49,7 +49,7 @@ struct Block {
   [[nodiscard]] std::int64_t node_count() const { return side(0) * side(1) * side(2); }
 };
 
-/// Ball around the nodes of a block.
+/// Ball that contains all nodes of a block.
 struct Reach {
   Vec3d centre;
   double radius = 0;
@@ -61,11 +61,11 @@ Reach reach_of(const GridSpec& grid, const Block& block) {
   const Vec3d sides{static_cast<double>(block.side(0) - 1) * grid.spacing.x,
                     static_cast<double>(block.side(1) - 1) * grid.spacing.y,
                     static_cast<double>(block.side(2) - 1) * grid.spacing.z};
-  // Slack, because a direction may deviate from orthonormal by 1e-6.
+  // The factor leaves room for error: direction vectors may deviate from orthonormal by 1e-6.
   return {(first + last) * 0.5, 0.5 * length(sides) * (1 + 1e-5)};
 }
 
-/// Halves the longest sides of a block, so that its parts are about as long as wide. Calls visit(part) for each part.
+/// Halves a block along each axis on which it is longer than 60 % of its longest side. Calls visit(part) for each part.
 template <class Visit>
 void for_each_part(const GridSpec& grid, const Block& block, const Visit& visit) {
   const auto extent = [&](std::size_t axis) { return static_cast<double>(block.side(axis) - 1) * grid.spacing[axis]; };
@@ -101,11 +101,12 @@ struct BallRows {
   [[nodiscard]] Ball operator[](std::size_t k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 };
 
-/// Removes balls that are nowhere in a block closer than the ball that is closest to the block's centre.
+/// Removes balls that cannot be the closest one anywhere in a block. Compares each with the ball closest to the block's
+/// centre.
 class Filter {
  public:
-  /// Calls keep(ball), in order, for the balls of a range that may be the closest somewhere in a block. The range goes
-  /// from `begin` to before `end`. keep may add balls to the rows.
+  /// Calls keep(ball), in order, for each ball in [begin, end) that may be closest somewhere in a block. keep may
+  /// append balls to `balls`.
   template <class Keep>
   void run(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end, const Keep& keep) {
     measure(reach, balls, begin, end);
@@ -118,7 +119,8 @@ class Filter {
   }
 
  private:
-  /// Measures the distance from the block's centre to each ball's centre, and to each ball.
+  /// Measures the distance from the block's centre to each ball's centre (`to_centre_`), and to each ball (`value_`,
+  /// negative inside the ball).
   void measure(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     if (to_centre_.size() < count) {
@@ -139,8 +141,8 @@ class Filter {
     }
   }
 
-  /// Returns the index of the first smallest value. std::min_element would wait for each comparison before the next
-  /// one.
+  /// Returns the index of the first smallest value. It is faster than std::min_element, in which each comparison
+  /// depends on the one before.
   [[nodiscard]] std::size_t smallest_value(std::size_t count) const {
     constexpr std::size_t lanes = 8;
     std::array<double, lanes> least{};
@@ -156,12 +158,13 @@ class Filter {
     return static_cast<std::size_t>(std::find(value_.begin(), value_.end(), smallest) - value_.begin());
   }
 
-  /// Sets `lead_`: negative if a ball, further from the block's centre than the best one, may be closer somewhere in
-  /// the block.
+  /// Sets `lead_` for each ball. It is negative if the ball may be closer than the best one somewhere in the block. The
+  /// best one is the closest ball at the block's centre.
   ///
-  /// The difference of the two distances changes by at most |u - v| per unit of length. Here u and v are the directions
-  /// from the two centres. The length |u - v| is at most 2, and at most 2 apart / (|x - one| + |x - other|) (Dunkl,
-  /// Williams 1964). Here `apart` is the distance between the centres.
+  /// For two balls, the difference of their distances changes along a path by at most |u - v| per unit of length. Let
+  /// `one` and `other` be the two centres. Then u and v are the unit directions from them to the point x. The length |u
+  /// - v| is at most 2, and at most 2 apart / (|x - one| + |x - other|) (Dunkl, Williams 1964). Here `apart` is the
+  /// distance between the centres.
   void compare(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end, std::size_t best) {
     const Ball closest = balls[begin + best];
     const double best_value = value_[best];
@@ -184,7 +187,7 @@ class Filter {
       const double catching_up = sum > 0 ? behind * behind * sum * sum - four * squared_apart : -1;
       const double near = behind - 2 * reach.radius;
       const double deeper = closest.radius > radius[k] ? closest.radius - radius[k] : 0;
-      const double inside = deeper * deeper - squared_apart;  // at least 0 if the ball lies in the closest one
+      const double inside = deeper * deeper - squared_apart;  // at least 0 if the ball lies inside the closest ball
       const double lead_or_near = catching_up > near ? catching_up : near;
       lead[k] = inside > lead_or_near ? inside : lead_or_near;
     }
@@ -192,7 +195,7 @@ class Filter {
 
   std::vector<double> to_centre_;
   std::vector<double> value_;
-  std::vector<double> lead_;  ///< negative if a ball may be the closest one somewhere
+  std::vector<double> lead_;  ///< per ball: negative if it may be the closest one somewhere in the block
 };
 
 /// A block, and the balls that may be closest in it.
@@ -201,7 +204,8 @@ struct Task {
   BallRows balls;
 };
 
-/// Splits the grid, level by level, into blocks for one worker each. Each block gets its own subset of the balls.
+/// Splits the grid, level by level, into blocks, one per task. Each task lists only the balls that may be closest in
+/// its block.
 std::vector<Task> cut_grid(std::span<const Ball> balls, const GridSpec& grid, const Context& context) {
   std::vector<Task> tasks(1);
   tasks[0].block.end = grid.size;
@@ -226,7 +230,8 @@ std::vector<Task> cut_grid(std::span<const Ball> balls, const GridSpec& grid, co
   return tasks;
 }
 
-/// Fills blocks, octant by octant. A stack holds the balls of the blocks around the current one.
+/// Fills blocks, octant by octant. A stack contains the candidate balls of the current block and of all blocks that
+/// contain it.
 class BlockFiller {
  public:
   BlockFiller(const GridSpec& grid, const Context& context, std::span<float> values)
@@ -240,7 +245,7 @@ class BlockFiller {
  private:
   using Coordinates = std::array<double, leaf_nodes>;
 
-  /// Fills a block from the balls of the stack from index `begin` on.
+  /// Fills a block. Its candidates are the balls of the stack with indices from `begin` to the end.
   void fill(const Block& block, std::size_t begin) {
     if (context_.cancel.stop_requested()) return;
     const std::size_t end = stack_.size();

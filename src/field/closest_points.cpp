@@ -25,7 +25,7 @@ namespace blum {
 namespace {
 
 constexpr std::size_t queries_per_range = sign::most_shared;
-/// Generous bound on the rounding error of the sum of two distances, relative to the lengths involved.
+/// Upper bound on the rounding error of a sum of two distances, relative to the lengths involved.
 constexpr double rounding = 1e-12;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
@@ -36,10 +36,10 @@ double checked_limit(const ClosestPointOptions& options) {
   return options.max_distance.value_or(no_limit);
 }
 
-/// At most this many queries keep their order.
+/// If there are at most this many queries, they are answered in the given order.
 constexpr std::size_t few_queries = 64;
 
-/// Returns an order of queries in which neighbours follow each other.
+/// Returns an order of the queries along a Morton curve, so that consecutive queries lie close together.
 std::vector<std::uint32_t> order_along_curve(std::span<const Vec3d> queries) {
   std::vector<std::uint32_t> order(queries.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -58,21 +58,22 @@ std::vector<std::uint32_t> order_along_curve(std::span<const Vec3d> queries) {
   return order;
 }
 
-/// Prefetches a result, because answers come in another order than queries.
+/// Prefetches a result for writing, because results are written in a different order than they are stored.
 void prefetch_to_write([[maybe_unused]] const ClosestPoint* point) {
 #if defined(__GNUC__)
   __builtin_prefetch(point, 1);
 #endif
 }
 
-/// Returns the weight of b at a point p on the line through a and b, clamped to 0 to 1.
+/// Returns the weight of b for a point p on the line through a and b. The weight is clamped to [0, 1].
 double part_between(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
   const double squared = squared_length(b - a);
   return squared > 0 ? std::clamp(dot(p - a, b - a) / squared, 0.0, 1.0) : 0.0;
 }
 
-/// Returns the weights of three corners at p. The first two corners are the furthest apart. p lies in the triangle,
-/// except for rounding. The weighted mean of the corners is p, however narrow the triangle is.
+/// Returns the barycentric weights of three corners for a point p. The side between the first two corners must be the
+/// longest. Apart from rounding, p must lie in the triangle. The weighted mean of the corners is p, even if the
+/// triangle is very narrow.
 std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
   const Vec3d& a = corners[0];
   const Vec3d along = corners[1] - a;
@@ -80,15 +81,15 @@ std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3
   if (!(squared > 0)) return {1, 0, 0};
   double foot = dot(corners[2] - a, along) / squared;
   Vec3d height = corners[2] - a - along * foot;
-  // In a narrow triangle, rounding leaves a part of the height along the side; remove it.
+  // In a narrow triangle, rounding leaves `height` with a component along the side; remove it.
   const double left = dot(height, along) / squared;
   foot += left;
   height -= along * left;
   const double squared_height = squared_length(height);
   const double third = squared_height > 0 ? std::min(dot(p - a, height) / squared_height, 1.0) : 0.0;
   const double second = dot(p - a, along) / squared - third * foot;
-  // Rounding, which the height of a narrow triangle magnifies, can put p beyond a side. Such a point counts as on the
-  // side.
+  // In a narrow triangle, the division by the small height magnifies rounding and can put p beyond a side. Such a point
+  // is treated as one on the side.
   if (!(third > 0)) {
     const double part = part_between(a, corners[1], p);
     return {1 - part, part, 0};
@@ -109,7 +110,7 @@ std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3
 using Use = FunctionRef<void(std::span<const FoundPoint>)>;
 
 struct ClosestPointQuery::Data {
-  TriangleMesh mesh;  ///< `search_` is built from it
+  TriangleMesh mesh;  ///< copy of the mesh; `search_` is built from it
   SignMode mode;
   SiteTable sites;
   Bvh bvh;
@@ -118,7 +119,7 @@ struct ClosestPointQuery::Data {
   sign::Sides sides;
   double max_distance;
   double longest = 0;           ///< longest side of the mesh's box
-  double coordinate_limit = 0;  ///< largest coordinate of a query, mesh units
+  double coordinate_limit = 0;  ///< largest absolute coordinate allowed in a query, mesh units
 
   Data(const MeshView& given, const ClosestPointOptions& options, const Context& context)
       : mesh(copy_of(given)),
@@ -135,7 +136,8 @@ struct ClosestPointQuery::Data {
   void refit(std::span<const Vec3d> vertices, const Context& context) {
     if (vertices.size() != mesh.vertices.size()) {
       throw InvalidMesh("a query for a mesh with " + std::to_string(mesh.vertices.size()) +
-                        " vertices cannot be refitted to " + std::to_string(vertices.size()) + "; create a new one");
+                        " vertices cannot be refitted to " + std::to_string(vertices.size()) +
+                        " vertices; create a new query");
     }
     MeshView moved = mesh;
     moved.vertices = vertices;
@@ -158,13 +160,14 @@ struct ClosestPointQuery::Data {
 
   [[nodiscard]] ClosestPoint finished(const Vec3d& query, const std::optional<NearestSite>& nearest) const {
     if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
-    // A point on the surface is not inside.
+    // A point on the surface does not count as inside.
     const bool is_negative = nearest->distance > 0 && sides.is_inside(query, *nearest);
     const double distance = is_negative ? -nearest->distance : nearest->distance;
     return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
   }
 
-  /// Finishes queries that lie close together. Queries that need winding numbers share them if possible.
+  /// Finds the signs of queries that lie close together, and reports their results. If several of them need winding
+  /// numbers, they share the evaluation if possible.
   void finish(std::span<const Vec3d> queries, std::span<const PointSearch::Answer> group, Use use) const {
     static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
     InlineList<FoundPoint, sign::most_shared> found;
@@ -194,8 +197,8 @@ struct ClosestPointQuery::Data {
     use({&found[0], found.size()});
   }
 
-  /// Answers queries in an order in which neighbours follow each other. The last closest point bounds the next
-  /// distance.
+  /// Answers queries in an order in which consecutive queries lie close together. The closest point of each query
+  /// bounds the distance of the next one.
   void find(std::span<const Vec3d> queries, std::span<const std::uint32_t> order, Use use) const {
     InlineList<PointSearch::Answer, sign::most_shared> group;
     std::optional<NearestSite> last;
@@ -208,13 +211,13 @@ struct ClosestPointQuery::Data {
     finish(queries, group.span(), use);
   }
 
-  /// Returns a bound, widened by more than rounding can have reduced it.
+  /// Returns the bound, increased by more than rounding can have reduced it.
   [[nodiscard]] double with_slack(double bound, const Vec3d& q) const {
     return bound * (1 + 1e-9) + 1e-12 * (longest + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
   }
 
-  /// Returns the search for this many queries, or null if a search does not pay. The first call for which it pays
-  /// builds it.
+  /// Returns the batch search for this many queries, or null if they are too few for it to save time. The first call
+  /// that returns a search builds it.
   [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
     const std::scoped_lock lock(search_mutex_);
     if (is_prepared_) return queries >= PointSearch::fewest ? search_.get() : nullptr;
@@ -234,8 +237,9 @@ struct ClosestPointQuery::Data {
     for (std::size_t i = 0; i < queries.size(); ++i) {
       if (is_in_range(queries[i])) continue;
       throw InvalidOption("query " + std::to_string(i) +
-                          (is_finite(queries[i]) ? " lies too far from the mesh (1e140 times its longest side)"
-                                                 : " has a coordinate that is not finite"));
+                          (is_finite(queries[i])
+                               ? " lies too far from the mesh (more than 1e140 times its longest side)"
+                               : " has a coordinate that is not finite"));
     }
   }
 
@@ -246,7 +250,8 @@ struct ClosestPointQuery::Data {
  private:
   mutable std::mutex search_mutex_;
   mutable std::unique_ptr<const PointSearch> search_;
-  bool is_prepared_ = false;  ///< if true, `search_` exists for any number of queries from PointSearch::fewest on
+  /// If true, search_for() uses `search_` for all calls with at least PointSearch::fewest queries.
+  bool is_prepared_ = false;
 };
 
 ClosestPointQuery::ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options, const Context& context) {
@@ -311,8 +316,8 @@ std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> quer
 
 namespace {
 
-/// Answers many queries that find several primitives each.
-/// @param find  returns the primitives of one query.
+/// Answers many queries, each of which finds any number of primitives.
+/// @param find  callable: query -> list of the primitives found for it.
 template <class Find>
 NearPrimitives gathered(std::span<const Vec3d> queries, const Context& context, const Find& find) {
   NearPrimitives out;
@@ -362,11 +367,12 @@ std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const V
 std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found) {
   const double rounding = 1e-13 * (length(query) + length(found.point));
   if (!(std::abs(found.distance) > rounding) || !std::isfinite(found.distance)) return std::nullopt;
-  // Divide by its own length: next to the surface, rounding affects the point more than the distance.
+  // The vector is normalised by its own length, not by the distance. Next to the surface, rounding changes the point
+  // more than the distance.
   const Vec3d away = (query - found.point) / std::abs(found.distance);
   const double size = length(away);
   if (!(size > 0)) return std::nullopt;
-  return away / std::copysign(size, found.distance) + Vec3d{};  // no -0
+  return away / std::copysign(size, found.distance) + Vec3d{};  // + Vec3d{} turns -0 into 0
 }
 
 std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const ClosestPoint& found) {
@@ -378,7 +384,7 @@ std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const Clo
     out[k] = 1;
     return out;
   }
-  // Scaled to a length of about 1, so that nothing overflows.
+  // The triangle is scaled to a size of about 1, so that nothing overflows.
   const Vec3d& origin = mesh.vertices[triangle[0]];
   double size = 0;
   for (const std::uint32_t v : triangle) {

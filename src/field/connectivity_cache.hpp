@@ -1,4 +1,4 @@
-// Blum: detects meshes with the connectivity of the one before. SPDX-License-Identifier: Apache-2.0
+// Blum: detects meshes with the connectivity of the previous mesh. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace blum {
 
-/// Copy of a mesh's indices, to compare later meshes with.
+/// Copy of a mesh's indices, with which later meshes are compared.
 class ConnectivityCache {
  public:
   [[nodiscard]] bool holds(const MeshView& mesh) const;

@@ -17,14 +17,15 @@ struct DeviceDistanceTransform::State {
 
   GridSpec grid;
   DistanceTransformOptions options;
-  detail::ImageRequest request;  ///< without result memory
+  detail::ImageRequest request;  ///< its result memory is not set
   cuda::DeviceQueue queue;
 };
 
 DeviceDistanceTransform::DeviceDistanceTransform(const GridSpec& grid, const DistanceTransformOptions& options,
                                                  const Context& context) {
   validate(grid);
-  if (grid.node_count() > max_id_count) throw InvalidImage("the image has more voxels than there are ids for");
+  if (grid.node_count() > max_id_count)
+    throw InvalidImage("the image has more than 2^31 - 1 voxels, the limit for ids");
   if (options.selection.rule == LabelSelection::Rule::threshold && std::isnan(options.selection.threshold)) {
     throw InvalidOption("the threshold is NaN, but must be a number");
   }

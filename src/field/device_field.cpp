@@ -35,15 +35,15 @@ void check_mesh(const DeviceMeshView& mesh, const FieldOptions& options) {
   if (mesh.triangles.rows + mesh.segments.rows + mesh.points.rows == 0) {
     throw InvalidMesh("the mesh has no triangles, segments or points, so no node has a closest site");
   }
-  // Each triangle may have three edges of its own, so it may add four sites.
+  // Each triangle may have three edges of its own. So it may add four sites: itself and the edges.
   const std::size_t limit = max_id_count;
   for (const std::size_t rows : {mesh.vertices.rows, mesh.triangles.rows, mesh.segments.rows, mesh.points.rows}) {
-    if (rows > limit) throw InvalidMesh("the mesh has more sites than there are ids for");
+    if (rows > limit) throw InvalidMesh("the mesh has more than 2^31 - 1 sites, the limit for ids");
   }
   if (mesh.vertices.rows + 4 * mesh.triangles.rows + mesh.segments.rows > limit) {
     throw InvalidMesh(
-        "the mesh may have more sites than there are ids for: vertices, segments and four times the triangles "
-        "must stay below 2^31 on a device");
+        "the mesh may have more than 2^31 - 1 sites, the limit for ids: on a device, vertices + segments + 4 * "
+        "triangles must be below 2^31");
   }
   check_site_ids(options, mesh.segments.rows + mesh.points.rows > 0);
 }
@@ -57,7 +57,7 @@ struct DeviceFieldSolver::State {
   GridSpec grid;
   FieldOptions options;
   cuda::DeviceQueue queue;
-  std::optional<sign::Plan> plan;  ///< empty until set_connectivity()
+  std::optional<sign::Plan> plan;  ///< no value until set_connectivity()
 };
 
 DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context) {
@@ -65,7 +65,7 @@ DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& o
   check_options(options);
   if (options.order != 1)
     throw InvalidOption("fields in device memory have order 1; order 2 is computed on the CPU only");
-  // No mesh on a device supports normals, so they are rejected before a mesh is known.
+  // Normals are not supported for any mesh in device memory, so they are rejected before a mesh is known.
   if (options.sign == SignMode::normals) (void)sign::plan_unseen_signs(options.sign, 0);
   state_ = std::make_unique<State>(grid, options, context.device);
 }

@@ -1,4 +1,5 @@
-// Computes fields of meshes: plans the signs, runs the back end, settles the nodes that it leaves open.
+// Computes fields of meshes: plans the signs, runs the back end, and settles the nodes that the back end left
+// unsettled.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,9 +43,10 @@ void invert_signs(const Context& context, Field& field) {
   });
 }
 
-/// Negates the distances of nodes inside. The result has the same bytes for any number of threads.
-/// @param plan   plan of this mesh, with Method::crossings or Method::sums.
-/// @param field  unsigned distances of this mesh, off by at most 1e-6 of the diagonal of the box around mesh and grid.
+/// Negates the distances of nodes inside. The results are identical for any number of threads.
+/// @param plan   sign plan of this mesh; its method must be Method::crossings or Method::sums.
+/// @param field  unsigned distances of this mesh. Their error is at most 1e-6 of the diagonal of the box around mesh
+/// and grid.
 void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& sites, const Context& context,
                    Field& field) {
   if (plan.method == Method::crossings) {
@@ -57,13 +59,14 @@ void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& site
     (void)apply_winding_sign(field, mesh, sites, context);
     return;
   }
-  // The reversed mesh has negated winding numbers. A number above -1 is not above 1/2 there, so the signs are inverted.
+  // The reversed mesh has negated winding numbers. Its numbers below 1/2 are those above -1/2 here, so the signs are
+  // inverted.
   const std::vector<Triangle> turned = reversed_triangles(mesh.triangles);
   (void)apply_winding_sign(field, {mesh.vertices, turned, {}, {}}, sites, context);
   invert_signs(context, field);
 }
 
-/// Negates the distances of nodes whose closest site, as stored in the field, faces away from them.
+/// Negates the distance of each node whose closest site faces away from it. The sites must be stored in the field.
 /// @return  nodes without a site, ascending.
 std::vector<std::size_t> apply_pseudonormals(const MeshView& mesh, const SiteTable& sites, const Context& context,
                                              Field& field) {
@@ -82,7 +85,7 @@ std::vector<std::size_t> apply_pseudonormals(const MeshView& mesh, const SiteTab
         }
         const auto at = static_cast<std::int64_t>(k);
         const Vec3d query = grid.position(at % grid.size[0], at / grid.size[0], static_cast<std::int64_t>(slice));
-        // A site's normal is perpendicular to the site, so any of its points serves.
+        // A site's normal is perpendicular to the site, so any point of the site can be used.
         const auto corner = static_cast<std::size_t>(sites.vertices(site)[0]);
         if (normals.is_inside(query, mesh.vertices[corner], site)) field.distance[node] = -field.distance[node];
       }
@@ -104,15 +107,15 @@ struct SecondSite {
   SiteId site = SiteId::none();
 };
 
-/// Finds second sites in double precision, point by point, in growing balls. It serves the few nodes that the kernels
-/// leave open. The mesh, sites and labels must outlive it.
+/// Finds second sites in double precision, one query at a time, in balls of growing radius. It is meant for the few
+/// nodes that the kernels leave unsettled. The mesh, sites and labels must outlive it.
 class SecondSearch {
  public:
   SecondSearch(const MeshView& mesh, const SiteTable& sites, const SecondLabels& labels, const Context& context);
 
-  /// Returns the closest site that shares no label with `first`; none beyond `limit`. Among equally close sites it
-  /// returns the one of the smallest id.
-  /// @param first_distance  approximate distance of the first site, from which the first radius follows.
+  /// Returns the closest site that shares no label with `first`, or none if it is further than `limit`. Among equally
+  /// close sites it returns the one with the smallest id.
+  /// @param first_distance  approximate distance of the first site. It determines the first radius.
   [[nodiscard]] SecondSite find(const Vec3d& query, SiteId first, double first_distance, double limit) const;
 
  private:
@@ -129,7 +132,7 @@ void offer_site(double distance, SiteId site, SecondSite& best) {
   if (distance < best.distance || (distance == best.distance && site.value < best.site.value)) best = {distance, site};
 }
 
-/// Offers the closest of an edge's two ends and the edge itself.
+/// Offers the closest of three sites: an edge and its two ends.
 void offer_edge(const MeshView& mesh, const SiteTable& sites, const Segment& ends, const Vec3d& query,
                 SecondSite& best) {
   const Vec3d& a = mesh.vertices[ends[0]];
@@ -139,7 +142,7 @@ void offer_edge(const MeshView& mesh, const SiteTable& sites, const Segment& end
   const double from_b = dot(b - query, along);
   if (from_a <= 0) return offer_site(length(query - a), SiteId(ends[0]), best);
   if (from_b <= 0) return offer_site(length(query - b), SiteId(ends[1]), best);
-  // Measured from the nearer end, so that rounding does not grow with the edge's length.
+  // Measured from the nearer end, so that the rounding error does not grow with the edge's length.
   const double squared = from_a + from_b;
   const Vec3d point = from_a < from_b ? a + along * (from_a / squared) : b - along * (from_b / squared);
   const auto found = std::lower_bound(sites.edges().begin(), sites.edges().end(), ends);
@@ -164,7 +167,7 @@ SecondSearch::SecondSearch(const MeshView& mesh, const SiteTable& sites, const S
 
 void SecondSearch::offer(const NearestPrimitive& found, const Vec3d& query, const SecondLabels::OfSite& first,
                          SecondSite& best) const {
-  // The primitive without its excluded corners: all of it, an edge, a corner or nothing.
+  // Corners of the primitive that are not excluded. They form the whole primitive, an edge, a vertex or nothing.
   std::array<std::uint32_t, 3> left{};
   std::size_t count = 0;
   bool is_whole = true;
@@ -196,13 +199,14 @@ SecondSite SecondSearch::find(const Vec3d& query, SiteId first, double first_dis
       return true;
     });
     if (best.distance <= radius || radius >= end) break;
-    // The next ball contains the best site found outside of this one; no site beyond it is closer.
+    // The next ball contains the best site found so far, which may lie outside of this ball. No site beyond the next
+    // ball is closer.
     radius = std::min({end, best.distance, 2 * radius});
   }
   return best.distance <= limit ? best : SecondSite{};
 }
 
-/// Computes the exact second distance and site of nodes that float32 left open.
+/// Computes the exact second distance and site of nodes that the kernels left unsettled.
 void settle_second(const std::vector<std::size_t>& nodes, const MeshView& mesh, const SiteTable& sites,
                    const SecondRequest& request, const Context& context) {
   if (nodes.empty()) return;
@@ -227,7 +231,8 @@ void settle_second(const std::vector<std::size_t>& nodes, const MeshView& mesh, 
 
 constexpr std::size_t nodes_per_range = std::size_t{1} << 18;
 
-/// Computes the exact distance and site of nodes that float32 left open, and the side by the site's pseudonormal.
+/// Computes the exact distance and site of nodes that the kernels left unsettled. With sides, also decides the sign by
+/// the site's pseudonormal.
 void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, const SiteTable& sites, bool with_sides,
                   const Context& context, Field& field) {
   if (nodes.empty()) return;
@@ -261,8 +266,8 @@ void show_triangles(const SiteTable& sites, const Context& context, Buffer<SiteI
 
 void check_object_count(const std::vector<std::uint32_t>& objects, const MeshView& mesh) {
   if (objects.empty() || objects.size() == mesh.vertices.size()) return;
-  throw InvalidOption("there are " + std::to_string(objects.size()) + " objects for " +
-                      std::to_string(mesh.vertices.size()) + " vertices; each vertex needs one");
+  throw InvalidOption("objects has " + std::to_string(objects.size()) + " entries, but the mesh has " +
+                      std::to_string(mesh.vertices.size()) + " vertices; give one entry for each vertex");
 }
 
 }  // namespace
@@ -273,21 +278,22 @@ struct FieldSolver::State {
   std::unique_ptr<FieldBackend> engine;
   std::string device_reason;
   sign::Planner planner;
-  std::vector<std::uint32_t> objects;  ///< one per vertex; empty: the connected parts
+  std::vector<std::uint32_t> objects;  ///< one per vertex; if empty, the objects are the connected parts of the mesh
   Field field;
 
   void compute(const MeshView& mesh, const Context& frame_context);
 
  private:
-  /// Allocates the memory of field and request. Memory of the right size is kept.
+  /// Allocates the memory of field and request. Existing memory of the right size is kept.
   void allocate(bool with_sites, FieldRequest& request);
-  /// Adds the second order to a field that is complete except for the kind of its site ids.
+  /// Adds the second order to a field. Everything else of the field must be complete, except the conversion of site ids
+  /// to their requested kind.
   void compute_second(const MeshView& mesh, const Context& frame_context);
 };
 
 void FieldSolver::State::allocate(bool with_sites, FieldRequest& request) {
   const std::size_t nodes = field.grid.node_count();
-  // One by one: if memory runs out between the two, the next frame finds the first one allocated.
+  // The buffers are allocated one by one. If memory runs out after the first, the next frame reuses it.
   if (field.distance.size() != nodes) field.distance = Buffer<float>(nodes);
   request.distance = field.distance.data();
   if (!with_sites) return;

@@ -15,7 +15,7 @@ void check_options(const FieldOptions& options) {
     throw InvalidOption("voxel ids are for fields of images; for a mesh, choose features or triangles");
   }
   if (options.order != 1 && options.order != 2) {
-    throw InvalidOption("the order of a field is 1 or 2, not " + std::to_string(options.order));
+    throw InvalidOption("the order of a field must be 1 or 2, not " + std::to_string(options.order));
   }
 }
 
@@ -26,7 +26,7 @@ void check_objects(const FieldOptions& options) {
 
 void check_site_ids(const FieldOptions& options, bool has_free_parts) {
   if (options.site_ids == SiteIds::triangles && has_free_parts) {
-    throw InvalidOption("triangle ids cannot name the segments or points of this mesh: choose features");
+    throw InvalidOption("triangle ids do not exist for segments or points, which this mesh has: choose features");
   }
 }
 

@@ -12,16 +12,16 @@ namespace blum {
 /// @throws InvalidOption if a value is out of range.
 void check_options(const FieldOptions& options);
 
-/// Checks that a field with these options uses objects.
-/// @throws InvalidOption unless the order is 2 and the second site is of another object.
+/// Checks that objects may be given for a field with these options.
+/// @throws InvalidOption unless the order is 2 and the rule for the second site is "other object".
 void check_objects(const FieldOptions& options);
 
-/// Checks the kind of site ids.
+/// Checks the kind of site ids that the options request.
 /// @param has_free_parts  true if the mesh has segments or points, which lie on no triangle.
-/// @throws InvalidOption if triangle ids are asked for and the mesh has free parts.
+/// @throws InvalidOption if triangle ids are requested and has_free_parts is true.
 void check_site_ids(const FieldOptions& options, bool has_free_parts);
 
-/// Returns the request for a mesh whose signs are planned, without memory yet.
+/// Returns the request for a mesh whose signs are planned. Its result memory is not set yet.
 [[nodiscard]] FieldRequest make_field_request(const GridSpec& grid, const FieldOptions& options,
                                               const sign::Plan& plan);
 

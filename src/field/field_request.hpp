@@ -10,22 +10,25 @@
 
 namespace blum {
 
-/// Request for a field, and the memory of its result. make_field_request() makes it once. It is passed on unchanged to
-/// the tiles of the CPU, and across the border of the CUDA module to its kernels. The module has no other description
-/// of a field. Only the memory changes on the way, when a slab of the grid goes to memory of its own.
+/// Request for a field, and the memory of its result. make_field_request() creates it once. It is passed unchanged to
+/// the tiles of the CPU, or to the CUDA module and its kernels. The module has no other description of a field. Only
+/// the memory is replaced when the CUDA module computes the field in slabs.
 ///
-/// A new option of fields needs a member here. The struct is plain memory; cuda::module_version counts its layouts.
+/// A new option of fields needs a member here. The struct must be plain data; cuda::module_version must change with its
+/// layout.
 struct FieldRequest {
   GridSpec grid;
-  /// Half-width of the band, mesh units, finite; 0: the full grid.
+  /// Half-width of the band, mesh units, finite. 0: no band; the field is computed on the full grid.
   double band = 0;
-  /// One distance per node, x fastest, mesh units; +-band beyond the band.
+  /// One distance per node, x fastest, mesh units. Nodes beyond the band get +-band.
   float* distance = nullptr;
-  /// Closest sites, one per node; 0xffffffff beyond the band. Null if not wanted.
+  /// Closest sites, one per node; 0xffffffff beyond the band. Null if sites are not requested.
   std::uint32_t* site = nullptr;
-  /// Method of the signs; sign::Plan explains it and `level`. A back end may leave signs to others: see FieldResult.
+  /// Method of the signs. sign::Plan explains it and `level`. A back end may leave the signs to its caller; see
+  /// FieldResult.
   sign::Method sign = sign::Method::none;
-  /// Kind of site ids in a device's memory. In the host's memory they are features until the signs are found.
+  /// Kind of the final site ids. With host memory, back ends write feature ids, which are converted after the signs are
+  /// found.
   SiteIds site_ids = SiteIds::features;
   std::int32_t level = 0;
 

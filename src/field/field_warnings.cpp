@@ -14,19 +14,20 @@ std::vector<Warning> facing_warnings(SignRule rule, const MeshView& mesh, const 
   if (facts.inconsistent_edges > 0) {
     return {{WarningCode::facing, plural(facts.inconsistent_edges, "edge lies", "edges lie") +
                                       " between triangles that face different ways, so signs near them may not be "
-                                      "those of a solid; orient the mesh first"}};
+                                      "those of a solid; orient the mesh first, with oriented_mesh() or `blum clean`"}};
   }
   if (!facts.closed || !facts.oriented || facts.outward) return {};
   if (facts.signed_volume < 0) {
     return {{WarningCode::facing,
              "the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"}};
   }
-  // Crossing shells have no depth that defines which way they must face; winding numbers join them.
+  // If shells cross, their nesting depth is undefined, and so is the direction in which they must face. Winding numbers
+  // form their union.
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
   if (rule != SignRule::normals && SelfIntersectionSearch().finds_any(mesh, quiet)) return {};
   return {{WarningCode::facing,
-           "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; its "
-           "topology lists the shells"}};
+           "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; topology() "
+           "lists the shells"}};
 }
 
 }  // namespace
@@ -37,10 +38,10 @@ std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, co
   const auto is_inside = [](float distance) { return distance < 0; };
   const bool has_inside = std::any_of(field.distance.begin(), field.distance.end(), is_inside);
   if (!has_inside && facts.inconsistent_edges > 0) {
-    return {
-        {WarningCode::nothing_inside,
-         "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
-             " between triangles that face different ways, so their winding numbers cancel; orient the mesh first"}};
+    return {{WarningCode::nothing_inside,
+             "no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
+                 " between triangles that face different ways, so their winding numbers cancel; orient the mesh first, "
+                 "with oriented_mesh() or `blum clean`"}};
   }
   std::vector<Warning> facing = facing_warnings(field.sign_rule, mesh, facts, context);
   if (has_inside || !facing.empty()) return facing;

@@ -13,7 +13,7 @@ namespace {
 std::string describe(const LabelSelection& selection) {
   switch (selection.rule) {
     case LabelSelection::Rule::nonzero:
-      return "is not zero";
+      return "differs from zero";
     case LabelSelection::Rule::label:
       return "equals label " + std::to_string(selection.label);
     case LabelSelection::Rule::threshold:
@@ -29,7 +29,7 @@ void check_selected(std::size_t selected, const VoxelImageView& image, const Ima
   if (request.is_signed && selected == request.voxel_count()) {
     throw InvalidImage(
         "every voxel of the image " + describe(request.selection) +
-        ", so a signed field has no boundary to measure to; request an unsigned one or another selection");
+        ", so a signed field has no boundary to measure to; request an unsigned field or another selection");
   }
 }
 
@@ -39,7 +39,7 @@ void begin_field(const VoxelImageView& image, const DistanceTransformOptions& op
   field.distance = Buffer<float>(image.grid.node_count());
   field.site = Buffer<SiteId>(image.grid.node_count());
   request.distance = field.distance.data();
-  // SiteId holds only its 32-bit value.
+  // A SiteId consists of its 32-bit value only, so result memory may be cast to integers.
   static_assert(sizeof(SiteId) == sizeof(std::uint32_t));
   request.site = &field.site.data()->value;
   field.site_ids = SiteIds::voxels;

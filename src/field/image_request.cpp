@@ -13,14 +13,15 @@
 namespace blum::detail {
 namespace {
 
-/// Spacings as whole multiples of a common unit.
+/// Spacings as integer multiples of a common unit.
 struct CommonUnit {
   std::uint64_t multiple[3] = {1, 1, 1};
   double unit = 1;
 };
 
 /// Finds the common unit of spacings: a power of two times the greatest common divisor of their mantissas. It exists
-/// for any three doubles whose exponents do not differ too much. Returns false if the multiples do not fit.
+/// for any three doubles whose exponents differ little enough. Returns false if the multiples do not fit in their
+/// integer type.
 bool find_common_unit(const double (&spacing)[3], int used, CommonUnit& common) {
   int lowest_exponent = std::numeric_limits<int>::max();
   int exponents[3] = {};
@@ -59,14 +60,14 @@ bool is_power_of_two(double value) {
   return std::frexp(value, &exponent) == 0.5;
 }
 
-/// Chooses integer arithmetic if the spacings allow it.
+/// Chooses integer arithmetic for squared distances if the spacings allow it.
 void choose_arithmetic(ImageRequest& request, const double (&spacing)[3], int used) {
   constexpr double integer_limit = 1 << 30;
   constexpr double float_limit = 1 << 24;
   CommonUnit common;
   if (find_common_unit(spacing, used, common)) {
-    // Only a unit that is a power of two keeps the scaled root correctly rounded. Another whole unit is multiplied into
-    // the weights, which leaves the unit 1.
+    // The scaled root is correctly rounded only if the unit is a power of two. For another integer unit, the unit is
+    // multiplied into the weights and set to 1.
     const double whole = std::round(common.unit);
     const bool undivided = whole == common.unit && whole > 1 && whole < 1024 && !is_power_of_two(whole);
     for (const double factor : {undivided ? whole : 1.0, 1.0}) {
@@ -85,20 +86,20 @@ void choose_arithmetic(ImageRequest& request, const double (&spacing)[3], int us
   request.integer = false;
   request.exact_in_float = false;
   request.unit = 1;
-  // Divided by the largest spacing, so that squares neither overflow nor vanish.
+  // Spacings are divided by the largest one, so that squares neither overflow nor vanish.
   const double scale = *std::max_element(spacing, spacing + used);
   for (int axis = 0; axis < used; ++axis) request.weight[axis] = (spacing[axis] / scale) * (spacing[axis] / scale);
   request.unit = scale;
 }
 
-/// Rejects extents for which float32 distances would be infinite, or all zero.
+/// Rejects grids whose extent makes float32 distances infinite or all zero.
 void check_extent(const GridSpec& grid) {
   double longest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (grid.size[axis] == 1) continue;
     longest = std::max(longest, grid.spacing[axis] * static_cast<double>(grid.size[axis]));
   }
-  if (longest == 0) return;  // a single voxel
+  if (longest == 0) return;  // the image has a single voxel
   if (longest >= 1e-36 && longest < 1e37) return;
   throw InvalidImage("the image spans " + exact_text(longest) +
                      " units, but 32-bit distances hold 1e-36 to 1e37: give its spacing in other units");
@@ -125,7 +126,8 @@ ImageRequest make_image_request(const GridSpec& grid, const DistanceTransformOpt
     if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + exact_text(band));
     request.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
     if (request.has_band) {
-      request.band = static_cast<float>(band);  // rounded like distances: one equal to the band stays within
+      // Rounded to float like distances, so that a distance equal to the band is within it.
+      request.band = static_cast<float>(band);
     }
   }
   return request;

@@ -11,32 +11,33 @@
 
 namespace blum::detail {
 
-/// Request for a transform, and the memory of its result. It is made once and passed on unchanged to the CPU's passes,
-/// and across the border of the CUDA module to its kernels. Axes of length one are dropped, so that the others come
-/// first. The struct is plain memory; cuda::module_version counts its layouts.
+/// Request for a transform, and the memory of its result. It is created once, and passed unchanged to the CPU's passes,
+/// or to the CUDA module and its kernels. Axes of length one are removed; the others move forward. The struct must be
+/// plain data; cuda::module_version must change with its layout.
 struct ImageRequest {
   std::size_t size[3] = {1, 1, 1};
   bool is_signed = true;
 
-  /// Squared distances are sums of weight * (coordinate difference)^2, in units of unit^2.
-  bool integer = true;          ///< Weights are whole numbers, and every sum is below 2^30.
-  bool exact_in_float = false;  ///< Sums are below 2^24, the unit is a power of two: float roots are correctly rounded.
+  /// A squared distance is the sum of weight * (coordinate difference)^2 over the axes, in units of unit^2.
+  bool integer = true;  ///< True if the weights are integers and every sum is below 2^30.
+  /// True if sums are below 2^24 and the unit is a power of two. Then float roots are correctly rounded.
+  bool exact_in_float = false;
   double weight[3] = {1, 1, 1};
   double unit = 1;
 
   bool has_band = false;
-  float band = 0;  ///< half-width, rounded to float; the distance of voxels beyond it
+  float band = 0;  ///< half-width, rounded to float; also the distance written for voxels beyond it
 
   LabelSelection selection = {};
-  float* distance = nullptr;      ///< one per voxel, x fastest, in units of the spacing
-  std::uint32_t* site = nullptr;  ///< one per voxel: linear index of the closest one; 0xffffffff beyond the band
+  float* distance = nullptr;      ///< one per voxel, x fastest, in the unit of the spacing
+  std::uint32_t* site = nullptr;  ///< one per voxel: linear index of the closest site voxel; 0xffffffff beyond the band
 
   [[nodiscard]] std::size_t voxel_count() const { return size[0] * size[1] * size[2]; }
 };
 static_assert(std::is_standard_layout_v<ImageRequest> && std::is_trivially_copyable_v<ImageRequest>);
 
-/// Returns the request for an image's grid and options, without memory yet.
-/// @throws InvalidImage if the grid spans too much or too little for 32-bit distances; InvalidOption if the band is not
+/// Returns the request for an image's grid and options. Its result memory is not set yet.
+/// @throws InvalidImage if the grid is too large or too small for 32-bit distances; InvalidOption if the band is not
 /// positive.
 [[nodiscard]] ImageRequest make_image_request(const GridSpec& grid, const DistanceTransformOptions& options);
 

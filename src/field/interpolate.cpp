@@ -15,18 +15,19 @@ namespace blum {
 namespace {
 
 constexpr std::size_t points_per_range = 4096;
-/// How far rounding may put a point of the border outside of the grid, relative to the number of layers, in grid steps.
+/// Largest distance beyond the grid's border at which a point still counts as on the border. It covers rounding. Unit:
+/// grid steps times the number of layers.
 constexpr double rounding = 1e-9;
 
-/// Layers before and after a coordinate, and its position between them, 0 to 1.
+/// The two layers around a coordinate, and its relative position between them, 0 to 1.
 struct Between {
   std::int64_t before = 0;
   std::int64_t after = 0;
   double part = 0;
 };
 
-/// Returns the layers around a position; nullopt outside of the grid.
-/// @param at    position in steps from the first layer.
+/// Returns the layers around a position; nullopt if the position is outside of the grid.
+/// @param at    position in steps, counted from the first layer.
 /// @param size  number of layers.
 std::optional<Between> between_layers(double at, std::int64_t size) {
   if (size == 1) return std::abs(at) <= 0.5 ? std::optional(Between{}) : std::nullopt;
@@ -37,13 +38,14 @@ std::optional<Between> between_layers(double at, std::int64_t size) {
   return Between{before, before + 1, std::fmin(std::fmax(at - static_cast<double>(before), 0.0), 1.0)};
 }
 
-/// Interpolates between two values. At each end it returns that end's value exactly, even if it is infinite.
+/// Interpolates linearly between two values. At each end it returns exactly that end's value, even if a value is
+/// infinite.
 double mix(double a, double b, double part) {
   if (part == 0) return a;
   return part == 1 ? b : a + (b - a) * part;
 }
 
-/// Returns the cell around a point; nullopt outside of the grid.
+/// Returns the cell (box between eight nodes) around a point; nullopt outside of the grid.
 std::optional<std::array<Between, 3>> cell_around(const GridSpec& grid, const Vec3d& point) {
   const Vec3d local = grid.direction.transposed_times(point - grid.origin);
   std::array<Between, 3> axes;
@@ -55,8 +57,8 @@ std::optional<std::array<Between, 3>> cell_around(const GridSpec& grid, const Ve
   return axes;
 }
 
-/// Returns the values at the corners of a cell. Bit a of a corner's number is 1 if the corner lies in the
-/// higher of the two layers along axis a.
+/// Returns the values at the corners of a cell. Bit a of a corner's index is 1 if the corner lies in the higher of the
+/// two layers along axis a.
 std::array<double, 8> corners_of(const GridSpec& grid, std::span<const float> values,
                                  const std::array<Between, 3>& cell) {
   std::array<double, 8> out;
@@ -67,7 +69,7 @@ std::array<double, 8> corners_of(const GridSpec& grid, std::span<const float> va
   return out;
 }
 
-/// Interpolates along x, then y, then z.
+/// Interpolates along x, then along y, then along z.
 double mixed(const std::array<double, 8>& v, const std::array<Between, 3>& cell) {
   const auto along_x = [&](std::size_t row) { return mix(v[row], v[row + 1], cell[0].part); };
   const auto along_y = [&](std::size_t slice) { return mix(along_x(slice), along_x(slice + 2), cell[1].part); };
@@ -92,12 +94,12 @@ Vec3d gradient_of(const GridSpec& grid, const std::array<double, 8>& corners, co
 void check(const Field& field) {
   validate(field.grid);
   if (field.distance.size() != field.grid.node_count()) {
-    throw InvalidGrid("the field has " + std::to_string(field.distance.size()) + " distances for " +
+    throw InvalidGrid("the field has " + std::to_string(field.distance.size()) + " distances, but its grid has " +
                       std::to_string(field.grid.node_count()) + " nodes");
   }
 }
 
-/// Calls take(point, cell, values of its corners) for the points inside the grid.
+/// Calls take(point, cell, values at the cell's corners) for each point inside the grid.
 template <class Take>
 void for_each_cell(const Field& field, std::span<const Vec3d> points, const Context& context, const Take& take) {
   check(field);

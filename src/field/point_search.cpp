@@ -8,7 +8,8 @@
 namespace blum {
 namespace {
 
-/// Larger batches take more memory (50 bytes per query) and no less time per query.
+/// Number of queries per batch. Larger batches need more memory (50 bytes per query) without reducing the time per
+/// query.
 constexpr std::size_t queries_per_batch = std::size_t{1} << 23;
 
 }  // namespace

@@ -15,40 +15,41 @@
 
 namespace blum {
 
-/// Answers many queries at once. The answers are those of Bvh::nearest(), bit for bit. Kernels in single precision find
-/// the closest site, and a second one if both are equally close within rounding. If the domains of these sites hold the
-/// query by a margin, their distances are computed in double precision. Otherwise a search of the hierarchy decides,
-/// which already has a bound on the distance.
+/// Answers many queries at once. The answers are bitwise those of Bvh::nearest(). Kernels in single precision find the
+/// closest site, and a second one if both are equally close within rounding. If the query lies in the domains of these
+/// sites by a margin, their distances are computed in double precision. Otherwise the Bvh is searched, with the bound
+/// on the distance that is already known.
 class PointSearch {
  public:
   PointSearch(const MeshView& mesh, const SiteTable& sites, const Context& context)
       : engine_(mesh, sites, context), projection_(mesh, sites, context) {}
 
-  /// Fewest queries at once that have enough in common.
+  /// Smallest number of queries for which answering them together saves time.
   static constexpr std::size_t fewest = 1024;
-  /// Returns true if this many queries justify building a search: at least 4096, and as many as the mesh has faces
-  /// (docs/performance.md).
+  /// Returns true if it pays to build a PointSearch for this many queries. There must be at least 4096, and at least as
+  /// many as the mesh has faces (docs/performance.md).
   [[nodiscard]] static bool is_worth_building(std::size_t queries, const SiteTable& sites);
-  /// Returns true if this many queries justify using a search that exists.
+  /// Returns true if it pays to use an existing PointSearch for this many queries.
   [[nodiscard]] static bool is_worth_using(std::size_t queries, const SiteTable& sites);
 
-  /// Closest site of one query.
+  /// Answer to one query.
   struct Answer {
     std::size_t query = 0;  ///< index of the query
-    NearestSite nearest;    ///< without a site if nothing lies within max_distance
+    NearestSite nearest;    ///< has no site if no site lies within max_distance
   };
 
   /// Calls `receive(answers)` for groups of queries, on many threads at once. Each query is in exactly one group.
   /// @param queries  finite points.
-  /// @param bvh      tree of the same mesh.
+  /// @param bvh      search tree of the same mesh.
   /// @throws Cancelled.
   void nearest(std::span<const Vec3d> queries, double max_distance, const Bvh& bvh, const Context& context,
                FunctionRef<void(std::span<const Answer>)> receive) const;
 
  private:
-  /// Computes the answer from the sites that the kernels found. Returns false if it is not certain.
+  /// Computes the answer in double precision from the sites that the kernels found. Returns false if the answer is
+  /// uncertain.
   [[nodiscard]] bool project(const Vec3d& query, const cpu::FoundSite& found, NearestSite& nearest) const;
-  /// Searches the hierarchy, with the kernels' bound on the distance.
+  /// Searches the Bvh. The kernels' distance limits the search.
   [[nodiscard]] std::optional<NearestSite> search(const Vec3d& query, const cpu::FoundSite& found, double max_distance,
                                                   const Bvh& bvh) const;
 

@@ -7,7 +7,7 @@
 namespace blum {
 namespace {
 
-/// Returns, for each vertex, the smallest vertex that edges connect it with.
+/// Returns, for each vertex, the smallest vertex of its connected part (connected through edges).
 std::vector<std::uint32_t> connected_parts(const MeshView& mesh, const SiteTable& sites) {
   detail::UnionFind parts(mesh.vertices.size());
   for (const Segment& edge : sites.edges()) parts.join(edge[0], edge[1]);
@@ -16,7 +16,7 @@ std::vector<std::uint32_t> connected_parts(const MeshView& mesh, const SiteTable
   return out;
 }
 
-/// Returns the same objects, numbered from 0 without gaps.
+/// Returns the objects renumbered: from 0, without gaps.
 std::vector<std::uint32_t> numbered(std::span<const std::uint32_t> objects) {
   std::vector<std::uint32_t> names(objects.begin(), objects.end());
   std::sort(names.begin(), names.end());
@@ -60,7 +60,8 @@ SecondLabels::OfSite SecondLabels::of_site(const SiteTable& sites, SiteId site) 
 }
 
 bool SecondLabels::has_second(const OfSite& labels) const {
-  // A vertex with another label is a site that may be second. It exists if the mesh has more labels than these.
+  // `own` is the number of different labels given. If the mesh has more labels, a vertex with another label exists, and
+  // it may be second.
   const std::size_t own =
       1 + (labels[1] != labels[0] ? 1U : 0U) + (labels[2] != labels[0] && labels[2] != labels[1] ? 1U : 0U);
   return count_ > own;

@@ -26,18 +26,21 @@
 namespace blum {
 namespace {
 
-/// Case of the eight voxels around a corner of the lattice. Voxel o lies at (o & 1, o >> 1 & 1, o >> 2 & 1), low or
-/// high along each axis. The surface has a patch for each 6-connected set of voxels that are not selected.
+/// Configuration of the eight voxels around a corner of the lattice (the corners of all voxels). Voxel o is at (o & 1,
+/// o >> 1 & 1, o >> 2 & 1): 0 is the low side of the corner along an axis, 1 the high side. The surface has one patch
+/// at the corner for each 6-connected set of unselected voxels.
 struct CornerCase {
   static constexpr std::uint8_t none = 255;
 
   std::uint8_t patches = 0;
-  std::array<std::uint8_t, 8> patch_of{};           ///< Per voxel; none if it is selected.
-  std::array<std::array<std::int8_t, 3>, 8> way{};  ///< Per patch: the sum of its voxels' (+-1, +-1, +-1).
-  /// Bit e stands for the edge from the corner up along axis e. It is set if exactly two voxels around the edge are
-  /// selected, diagonally opposite of each other. The surface passes such an edge twice.
+  std::array<std::uint8_t, 8> patch_of{};  ///< Per voxel: index of its patch; none if the voxel is selected.
+  /// Per patch: sum of its voxels' directions from the corner, (+-1, +-1, +-1) each.
+  std::array<std::array<std::int8_t, 3>, 8> way{};
+  /// Double edges: bit e stands for the edge from the corner in the positive direction of axis e. It is set if exactly
+  /// two voxels around the edge are selected, and they are diagonally opposite. The surface passes such an edge twice.
   std::uint8_t double_edges = 0;
-  /// True if exactly two voxels are selected, opposite across the corner: the patch is a ring around the corner.
+  /// True if exactly two voxels are selected, and they are opposite across the corner. The patch is then a ring around
+  /// the corner.
   bool is_ring = false;
 };
 
@@ -47,7 +50,7 @@ constexpr bool is_in(unsigned set, unsigned voxel) {
   return (set >> voxel & 1U) != 0;
 }
 
-/// Returns the voxels of a set that are connected to the first one.
+/// Returns the voxels of a set that are 6-connected to the voxel `first`.
 constexpr unsigned flood(unsigned set, unsigned first) {
   unsigned found = 1U << first;
   for (unsigned step = 0; step < 8; ++step) {
@@ -72,9 +75,9 @@ constexpr void add_patch(CornerCase& corner, unsigned voxels) {
   ++corner.patches;
 }
 
-/// Returns true if the surface passes an edge twice. `edge` is its axis.
+/// Returns true if the surface passes an edge twice. `edge` is the axis of the edge.
 constexpr bool is_double(unsigned selected, unsigned edge) {
-  const unsigned low = 1U << edge;  // the four voxels around the edge have this bit
+  const unsigned low = 1U << edge;  // all four voxels around the edge have this bit
   const unsigned a = 1U << (edge + 1) % 3;
   const unsigned b = 1U << (edge + 2) % 3;
   const bool first = is_in(selected, low);
@@ -105,49 +108,55 @@ constexpr std::array<CornerCase, 256> make_corner_cases() {
 
 }  // namespace detail
 
-/// Cases, indexed by the selected voxels: bit o is voxel o.
+/// Configurations, indexed by the set of selected voxels: bit o is voxel o.
 inline constexpr std::array<CornerCase, 256> corner_cases = detail::make_corner_cases();
 
-/// Box in which a vertex may lie, in voxels. It has no extent along an axis along which the vertex is fixed.
+/// Box in which a vertex may move, in voxels. If a vertex is fixed along an axis, its box has no extent along that
+/// axis.
 struct NetBox {
   Vec3d low, high;
 };
 
-/// Surface between a set of voxels and the rest: a closed, oriented manifold of quadrilaterals and triangles that face
-/// the rest. Coordinates are in voxels, with integers at the centres of voxels. Positions are those of the surface of
-/// the boxes. Boxes that touch only in an edge or a corner are joined there, and positions make a little room.
+/// Surface between a set of voxels and the other voxels: a closed, oriented manifold of quadrilaterals and triangles.
+/// They face the unselected voxels. Coordinates are in voxels; the centres of voxels are integers. The start positions
+/// are those of the voxels' faces. Where voxels touch only in an edge or a corner, the surface connects them, and start
+/// positions are moved apart a little.
 struct SurfaceNet {
   static constexpr std::uint32_t none = 0xffffffff;
 
   std::vector<Vec3d> positions;
-  std::vector<NetBox> boxes;                           ///< per vertex: contains its position
-  std::vector<std::array<std::uint32_t, 4>> polygons;  ///< a triangle ends with none
+  std::vector<NetBox> boxes;                           ///< per vertex: box that contains its position
+  std::vector<std::array<std::uint32_t, 4>> polygons;  ///< for a triangle, the last entry is `none`
 };
 
 constexpr std::size_t rows_per_range = 256;
-/// Largest distance, along an axis, of a vertex from the lattice corner that it stands for. Boxes of different corners
-/// are disjoint and contain no voxel centre.
+/// Largest distance, along an axis, of a vertex from its lattice corner. So boxes of different corners are disjoint and
+/// contain no voxel centre.
 constexpr double reach = 0.49;
-/// Least distance, along an axis, of a double edge's vertices from the edge, and of a ring's arm from its corner.
+/// Smallest distance, along an axis, of the vertices of a double edge from the edge, and of a ring's arm from its
+/// corner.
 constexpr double least_room = 0.02;
-/// Room at an edge or corner in which boxes touch, before smoothing. Any small number works.
+/// Distance by which start positions are moved apart at an edge or corner where voxels touch. Any small number works.
 constexpr double room = 0.1;
 constexpr double ring_room = 0.2;
-/// Largest sideways move of the vertex in the middle of a face.
+/// Largest distance that the vertex in the middle of a face may move within the face's plane.
 constexpr double middle_reach = 0.25;
 
 using Place = std::array<std::int64_t, 3>;
 
-/// Lattice corner that the surface passes.
+/// Lattice corner around which some voxels are selected and some are not.
 struct NetCorner {
   std::uint32_t x = 0;
-  std::uint8_t selected = 0;  ///< see CornerCase
-  std::uint8_t middles = 0;   ///< bit c: the face across axis c, up from the corner, has a vertex in its middle
+  std::uint8_t selected = 0;  ///< Bits of the selected voxels; see CornerCase.
+  /// Bit c is set if a face has a vertex in its middle. It is perpendicular to axis c, on the corner's positive side
+  /// along the other axes.
+  std::uint8_t middles = 0;
   std::uint32_t first_vertex = 0;
   std::uint32_t first_polygon = 0;
 
   [[nodiscard]] const CornerCase& shape() const { return corner_cases[selected]; }
-  // Order of its vertices: patches, or the six arms of a ring; double edges, two each; middles of faces.
+  // Order of a corner's vertices: one per patch, or the six arms of a ring; then two per double edge; then middles of
+  // faces.
   [[nodiscard]] std::uint32_t patch_vertices() const { return shape().is_ring ? 6U : shape().patches; }
   [[nodiscard]] std::uint32_t edge_vertex(unsigned edge, unsigned voxel) const {
     const unsigned before = shape().double_edges & ((1U << edge) - 1);
@@ -166,7 +175,7 @@ struct NetCorner {
   }
 };
 
-/// Vertices around a face, counter-clockwise as seen from the voxels that are not selected.
+/// Vertices around a face, counter-clockwise as seen from the unselected voxel.
 struct Outline {
   std::array<std::uint32_t, 12> vertices{};
   std::size_t size = 0;
@@ -178,7 +187,7 @@ constexpr unsigned with_bits(unsigned a, bool at_a, unsigned b, bool at_b, unsig
   return (at_a ? 1U << a : 0U) | (at_b ? 1U << b : 0U) | (at_c ? 1U << c : 0U);
 }
 
-/// Returns the number of a ring's arm along an axis.
+/// Returns the index of a ring's arm that points along an axis, in the positive direction if `is_up`.
 constexpr std::uint32_t arm(unsigned axis, bool is_up) {
   return 2U * axis + (is_up ? 1U : 0U);
 }
@@ -230,7 +239,7 @@ class NetBuilder {
     return voxels_.row(y, z);
   }
 
-  /// Calls visit(x, selected) for the corners of a row around which some voxels, but not all, are selected.
+  /// Calls visit(x, selected) for the corners of a row around which some voxels are selected and some are not.
   template <class Visit>
   void for_each_mixed(std::int64_t y, std::int64_t z, const Visit& visit) const {
     const std::array<std::span<const std::uint64_t>, 4> rows{words(y - 1, z - 1), words(y, z - 1), words(y - 1, z),
@@ -284,22 +293,22 @@ class NetBuilder {
                              [](const NetCorner& corner, std::int64_t x) { return std::int64_t{corner.x} < x; });
   }
 
-  /// Returns true if a face separates a selected voxel from one that is not. It lies across axis c, up from the corner
-  /// along both others.
+  /// Returns true if a face separates a selected voxel from an unselected one. The face is perpendicular to axis c. It
+  /// lies on the positive side of the corner along both other axes.
   static bool has_face(const NetCorner& corner, unsigned c) {
     const unsigned low = 7U ^ 1U << c;
     return (corner.selected >> low & 1U) != (corner.selected >> 7U & 1U);
   }
 
-  /// Returns the vertices around a face. Its corners are all in corners_, because one of its two voxels is selected and
-  /// one is not.
+  /// Returns the vertices around a face. One of the face's two voxels is selected and one is not, so corners_ contains
+  /// all four of its corners.
   [[nodiscard]] Outline outline(const NetCorner& corner, const Place& at, unsigned c) const {
     const unsigned a = (c + 1) % 3;
     const unsigned b = (c + 2) % 3;
     const bool faces_up = (corner.selected >> 7U & 1U) == 0;
     constexpr std::array<std::array<bool, 2>, 4> around{{{false, false}, {true, false}, {true, true}, {false, true}}};
     std::array<const NetCorner*, 4> corners{};
-    std::array<unsigned, 4> outer{};  // the voxel outside, as each corner numbers it
+    std::array<unsigned, 4> outer{};  // index of the unselected voxel, relative to each corner
     for (std::size_t k = 0; k < 4; ++k) {
       Place place = at;
       place[a] += around[k][0] ? 1 : 0;
@@ -320,7 +329,8 @@ class NetBuilder {
         line.add(here.first_vertex + here.shape().patch_of[outer[k]]);
       }
       const unsigned edge = is_even ? a : b;
-      const std::size_t low = k == 2 ? 3 : k == 3 ? 0 : k;  // the lower end of the edge to the next corner
+      // The lower end of the edge from corner k to the next corner.
+      const std::size_t low = k == 2 ? 3 : k == 3 ? 0 : k;
       if ((corners[low]->shape().double_edges >> edge & 1U) != 0) line.add(corners[low]->edge_vertex(edge, outer[low]));
     }
     if (!faces_up) std::reverse(line.vertices.begin(), line.vertices.begin() + static_cast<std::ptrdiff_t>(line.size));
@@ -340,7 +350,7 @@ class NetBuilder {
     });
   }
 
-  /// Turns the counts of corners into start indices.
+  /// Converts the numbers of vertices and polygons per corner into start indices.
   void number() {
     for (NetCorner& corner : corners_) {
       const std::uint32_t polygons = corner.first_polygon;
@@ -350,7 +360,7 @@ class NetBuilder {
       polygons_ += polygons;
       if (vertices_ > max_id_count || 2 * polygons_ > max_id_count) {
         throw InvalidOption("the surface has more than " + std::to_string(max_id_count) +
-                            " vertices or triangles, which cannot be numbered: cut the image into parts");
+                            " vertices or triangles, the limit for ids: cut the image into parts");
       }
     }
   }
@@ -387,7 +397,7 @@ class NetBuilder {
     }
   }
 
-  /// Returns a small offset from the corner into the voxels of a patch.
+  /// Returns a small offset that leads from the corner into the voxels of a patch.
   static Vec3d way_of(const CornerCase& shape, std::size_t patch) {
     Vec3d way{};
     double most = 1;
@@ -406,7 +416,8 @@ class NetBuilder {
     put(net, vertex, tip, box);
   }
 
-  /// Places the two vertices in the middle of a double edge. They stay in the plane across it, each on its own side.
+  /// Positions the two vertices at the middle of a double edge. They lie in the plane perpendicular to the edge, on
+  /// opposite sides of it.
   static void put_edge(SurfaceNet& net, const NetCorner& corner, const Vec3d& p, unsigned edge) {
     const unsigned a = (edge + 1) % 3;
     const unsigned b = (edge + 2) % 3;
@@ -456,7 +467,7 @@ class NetBuilder {
 
   const VoxelSet& voxels_;
   const Context& context_;
-  std::array<std::size_t, 3> size_{};  ///< corners along each axis
+  std::array<std::size_t, 3> size_{};  ///< number of corners along each axis
   std::size_t rows_ = 0;
   std::vector<NetCorner> corners_;
   std::vector<std::size_t> row_begin_;
@@ -464,27 +475,28 @@ class NetBuilder {
   std::size_t polygons_ = 0;
 };
 
-/// Makes the surface of a set of voxels.
-/// @throws InvalidOption for more than max_id_count vertices or triangles; Cancelled.
+/// Builds the surface of a set of voxels.
+/// @throws InvalidOption if it has more than max_id_count vertices or triangles; Cancelled.
 SurfaceNet make_surface_net(const VoxelSet& voxels, const Context& context) {
   return NetBuilder(voxels, context).run();
 }
 
 constexpr int most_iterations = 1000;
 constexpr std::size_t vertices_per_range = 4096;
-/// Steps of Taubin smoothing, in and out. A tube of radius 1.5 voxels keeps its radius over 60 rounds, and ripples of 5
-/// voxels vanish.
+/// Factors of the two steps of Taubin smoothing, inwards and outwards. With them, a tube of radius 1.5 voxels keeps its
+/// radius over 60 rounds, and ripples of 5 voxels vanish.
 constexpr double step_in = 0.5;
 constexpr double step_out = -0.51;
-/// Number of steps in which a vertex of crossing triangles is moved back to its start.
+/// Number of steps from a vertex's start position to its smoothed position. Vertices of crossing triangles are moved
+/// back step by step.
 constexpr std::uint8_t hold_steps = 4;
 
-/// Neighbours of the vertices of a net.
+/// Neighbours of each vertex of a net.
 struct Neighbours {
   std::vector<std::uint32_t> begin;
   std::vector<std::uint32_t> vertices;
 
-  /// A side runs one way in one polygon and the other way in another, so each vertex lists each neighbour once.
+  /// Each side is traversed once in each direction, by two polygons. So every neighbour of a vertex is listed once.
   explicit Neighbours(const SurfaceNet& net) : begin(net.positions.size() + 1, 0) {
     for_each_side(net, [this](std::uint32_t from, std::uint32_t) { ++begin[from + 1]; });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -536,7 +548,7 @@ bool is_mirrored(const Mat3& direction) {
   return dot(cross(direction.columns[0], direction.columns[1]), direction.columns[2]) < 0;
 }
 
-/// Surface on its way from its start positions to the smoothed ones.
+/// Surface whose vertices lie between their start positions and their smoothed positions.
 class Embedding {
  public:
   Embedding(const SurfaceNet& net, const std::vector<Vec3d>& smooth, const GridSpec& grid)
@@ -546,8 +558,8 @@ class Embedding {
     add_triangles();
   }
 
-  /// Moves vertices back until the surface does not cross itself. This ends, because the surface does not cross itself
-  /// at its start.
+  /// Moves vertices back towards their start until the surface does not cross itself. This ends, because the surface of
+  /// the start positions does not cross itself.
   void resolve(const Context& context) {
     constexpr std::size_t limit = 1000000;
     for (SelfIntersections found = find_self_intersections(mesh_, limit, context); !found.pairs.empty();
@@ -622,7 +634,7 @@ class Embedding {
   const SurfaceNet& net_;
   const std::vector<Vec3d>& smooth_;
   const GridSpec& grid_;
-  std::vector<std::uint8_t> steps_;  ///< per vertex: steps of hold_steps towards its smoothed position
+  std::vector<std::uint8_t> steps_;  ///< per vertex: number of steps towards its smoothed position, of hold_steps
   TriangleMesh mesh_;
 };
 

@@ -17,10 +17,10 @@ namespace blum {
 namespace {
 
 constexpr std::size_t points_per_range = 256;
-/// Generous bound on the rounding error of the sum of two distances, relative to the lengths involved.
+/// Upper bound on the rounding error of a sum of two distances, relative to the lengths involved.
 constexpr double rounding = 1e-12;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
-/// Points further away than this many diagonals of the mesh cannot share answers.
+/// Points whose distance is more than this many diagonals of the mesh do not share answers.
 constexpr double far_away = 1e6;
 
 void check(const MeshView& mesh, std::span<const Vec3d> points, double max_error) {
@@ -31,7 +31,7 @@ void check(const MeshView& mesh, std::span<const Vec3d> points, double max_error
   }
 }
 
-/// Lets neighbours share rough values, then refines them one by one.
+/// Finds winding numbers of a group: neighbours share rough values, which are then refined one by one.
 class NumbersTogether {
  public:
   NumbersTogether(const WindingNumber& winding, const Box3& bounds, double max_error)
@@ -46,7 +46,7 @@ class NumbersTogether {
     for (const PointSearch::Answer& answer : group) {
       const Vec3d& at = points[answer.query];
       const double distance = answer.nearest.site.has_value() ? answer.nearest.distance : 0;
-      // A point that shares nothing must not enlarge the box of those that do.
+      // A point that cannot share must not enlarge the box of the others.
       if (!(distance > 0) || !(distance < far_away * bounds_.diagonal())) {
         values[answer.query] = winding_.value(at, max_error_).value;
         continue;

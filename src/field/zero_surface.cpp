@@ -17,17 +17,17 @@
 namespace blum {
 namespace {
 
-/// Edge of one of the six tetrahedra around the diagonal of a cube. Corner c of a cube is at (c & 1, c >> 1 & 1, c >> 2
-/// & 1). An edge goes from corner `from` to corner `from | step`; `from` and `step` share no bits.
+/// Edge of the subdivision of a cube into six tetrahedra around its diagonal. Corner c of a cube is at (c & 1, c >> 1 &
+/// 1, c >> 2 & 1). An edge leads from corner `from` to corner `from | step`; `from` and `step` share no bits.
 struct CubeEdge {
   std::uint8_t from = 0;
   std::uint8_t step = 0;  ///< 1 to 7
 };
 
-/// Triangles that separate the corners inside from those outside. They face outside.
+/// Triangles that separate the corners inside from those outside. They face the corners outside.
 struct CubeCase {
   std::uint8_t triangle_count = 0;
-  std::array<std::array<CubeEdge, 3>, 12> triangles{};  ///< at most two in each tetrahedron
+  std::array<std::array<CubeEdge, 3>, 12> triangles{};  ///< at most two per tetrahedron
 };
 
 namespace detail {
@@ -36,7 +36,7 @@ struct Corner3 {
   int x, y, z;
 };
 
-/// Returns the middle of an edge between two corners, times two.
+/// Returns twice the midpoint of an edge between two corners.
 constexpr Corner3 doubled_middle(unsigned a, unsigned b) {
   return {static_cast<int>((a & 1U) + (b & 1U)), static_cast<int>((a >> 1 & 1U) + (b >> 1 & 1U)),
           static_cast<int>((a >> 2 & 1U) + (b >> 2 & 1U))};
@@ -46,21 +46,22 @@ constexpr Corner3 minus(const Corner3& a, const Corner3& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// Returns six times the signed volume of p, q, r and the origin.
+/// Returns six times the signed volume of the tetrahedron of p, q, r and the origin.
 constexpr int volume(const Corner3& p, const Corner3& q, const Corner3& r) {
   return p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x);
 }
 
-/// A corner inside and a corner outside.
+/// Pair of corners: one inside, one outside.
 using Pair = std::array<unsigned, 2>;
 
-/// Returns the edge between two corners of a tetrahedron. The smaller corner's bits are among the larger one's.
+/// Returns the edge between two corners of a tetrahedron. All bits of the smaller corner are also set in the larger
+/// one.
 constexpr CubeEdge edge_of(const Pair& pair) {
   const unsigned from = pair[0] & pair[1];
   return {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>((pair[0] | pair[1]) ^ from)};
 }
 
-/// Adds the triangle through the middles of three edges. It faces the outer end of the first edge.
+/// Adds the triangle through the midpoints of three edges. It faces the outside corner of the first edge.
 constexpr void add_triangle(CubeCase& cube, const Pair& a, const Pair& b, const Pair& c) {
   const Corner3 p = doubled_middle(a[0], a[1]);
   const Corner3 q = doubled_middle(b[0], b[1]);
@@ -84,8 +85,8 @@ constexpr void add_tetrahedron(CubeCase& cube, unsigned inside_corners, const st
   }
 }
 
-/// Cuts the cube into six tetrahedra. Each goes from corner 0 to corner 7 along the three axes in one of their six
-/// orders.
+/// Divides the cube into six tetrahedra. Each is the path from corner 0 to corner 7 along the three axes, in one of
+/// their six orders.
 constexpr CubeCase make_cube_case(unsigned inside_corners) {
   CubeCase cube;
   for (unsigned first = 0; first < 3; ++first) {
@@ -107,14 +108,15 @@ constexpr std::array<CubeCase, 256> make_cube_cases() {
 
 }  // namespace detail
 
-/// Cases, indexed by the corners that are inside: bit c is corner c.
+/// Configurations, indexed by the set of corners inside: bit c is corner c.
 inline constexpr std::array<CubeCase, 256> cube_cases = detail::make_cube_cases();
 
-/// Each range computes a slice that it shares with the next range, so ranges are not thin.
+/// Ranges of slices are made at least this large, because each range computes a slice that it shares with the next
+/// range.
 constexpr std::size_t nodes_per_range = std::size_t{1} << 20;
 constexpr std::size_t least_slices_per_range = 4;
-/// Least distance of a vertex from the ends of its edge, as a part of the edge. With it, triangles next to a node
-/// exactly at the level keep an area.
+/// Smallest distance of a vertex from the ends of its edge, as a fraction of the edge. It gives triangles next to a
+/// node exactly at the level an area.
 constexpr double least_part = 1e-3;
 
 void check(const Field& field, double level) {
@@ -132,8 +134,8 @@ void check(const Field& field, double level) {
   if (!std::isfinite(level)) throw InvalidOption("the level is " + exact_text(level) + ", but must be finite");
 }
 
-/// Corners inside of the cube at each node of a slice. Bit c stands for the node at the offset of corner c (see
-/// CubeEdge). Beyond the border of the grid, the nodes of the border repeat.
+/// For each node of a slice, the corners inside of the cube that starts at the node. Bit c stands for the node at the
+/// offset of corner c (see CubeEdge). Beyond the grid's border, the border nodes repeat.
 class Slice {
  public:
   Slice(const Field& field, double level)
@@ -145,7 +147,7 @@ class Slice {
         corners_(size_x_ * size_y_),
         row_(size_x_ + 1) {}
 
-  /// Reads slice z. Stops early, with an arbitrary result, if the caller has asked to stop.
+  /// Reads slice z. After a stop request it returns early, with an arbitrary result.
   void read(std::size_t z, const Context& context) {
     for (std::size_t y = size_y_; y-- > 0;) {
       if (context.cancel.stop_requested()) return;
@@ -155,7 +157,8 @@ class Slice {
 
   [[nodiscard]] unsigned corners(std::size_t node) const { return corners_[node]; }
 
-  /// Calls visit(x, y, node in slice), in the order of the nodes, where the corners are not all inside or all outside.
+  /// Calls visit(x, y, index in the slice), in the order of the nodes, for nodes whose cube has corners inside and
+  /// corners outside.
   template <class Visit>
   void for_each_mixed(const Visit& visit) const {
     for (std::size_t y = 0, node = 0; y < size_y_; ++y) {
@@ -166,7 +169,7 @@ class Slice {
   }
 
  private:
-  /// Bits 0, 1, 4 and 5 belong to this row. The others belong to the next row, which has been read before.
+  /// Bits 0, 1, 4 and 5 are from this row. The others are from the next row, which has already been read.
   void read_row(std::size_t y, std::size_t z) {
     const float* const here = field_.distance.data() + (z * size_y_ + y) * size_x_;
     const float* const above = z + 1 < size_z_ ? here + size_y_ * size_x_ : here;
@@ -191,7 +194,7 @@ class Slice {
   std::vector<std::uint8_t> row_;
 };
 
-/// Set of steps from a node, as bits 1 to 7, along edges that cross the level and stay in the grid.
+/// Set of edges from a node that cross the level and stay in the grid, as bits 1 to 7 for their `step`.
 class CrossedEdges {
  public:
   explicit CrossedEdges(const GridSpec& grid) : size_(grid.size) {}
@@ -203,7 +206,7 @@ class CrossedEdges {
     if (is_last(z, 2)) crossed &= without_z;
     return crossed;
   }
-  /// Returns true if a node is the first corner of a cube.
+  /// Returns true if a cube starts at the node (the node is not at the grid's upper border).
   [[nodiscard]] bool has_cube(std::size_t x, std::size_t y, std::size_t z) const {
     return !is_last(x, 0) && !is_last(y, 1) && !is_last(z, 2);
   }
@@ -218,8 +221,8 @@ class CrossedEdges {
   std::array<std::int64_t, 3> size_;
 };
 
-/// Part of the mesh that belongs to a slice: the vertices on edges from its nodes, and the triangles in the cubes
-/// above.
+/// Part of the mesh that belongs to a slice: vertices on edges that start at its nodes, and triangles in the cubes
+/// above it.
 struct SliceCounts {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
@@ -251,7 +254,7 @@ class Marching {
   }
 
  private:
-  /// Slice with the number of the first vertex of each node that has one.
+  /// Slice, and for each node the index of the first vertex on its edges.
   struct NumberedSlice {
     Slice slice;
     std::vector<std::uint32_t> first_vertex;
@@ -261,7 +264,7 @@ class Marching {
 
   [[nodiscard]] bool has_finite_distances(std::size_t z) const {
     const float* const begin = field_.distance.data() + z * nodes_per_slice_;
-    // Counts all of them: a loop that stops at the first does not vectorise.
+    // The loop counts all of them, because a loop that stops at the first one is not vectorised.
     std::uint32_t others = 0;
     for (std::size_t node = 0; node < nodes_per_slice_; ++node) {
       others |= std::abs(begin[node]) <= std::numeric_limits<float>::max() ? 0U : 1U;
@@ -287,7 +290,7 @@ class Marching {
     });
   }
 
-  /// Turns the counts of slices into start indices.
+  /// Converts the counts of slices into start indices.
   void add_up() {
     SliceCounts sum;
     for (std::size_t z = 0; z <= slices_; ++z) {
@@ -399,7 +402,7 @@ class Marching {
   std::size_t nodes_per_slice_;
   std::size_t grain_ = 1;
   bool is_mirrored_ = false;
-  /// Before add_up(): counts per slice. Afterwards: sums over all slices before it, with the totals at the end.
+  /// Before add_up(): counts per slice. Afterwards: sums over all earlier slices; the last entry is the total.
   std::vector<SliceCounts> counts_;
 };
 

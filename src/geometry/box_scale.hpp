@@ -10,14 +10,14 @@
 
 namespace blum {
 
-/// Returns a power of two that scales the box's longest side to about 1, so that products neither overflow nor
-/// underflow.
+/// Returns a power of two such that the box's longest side, multiplied by it, is about 1. Then products of lengths
+/// neither overflow nor underflow.
 [[nodiscard]] inline double unit_scale(const Box3& box) {
   const Vec3d size = box.size();
   return scale_to_one(std::max({size.x, size.y, size.z}));
 }
 
-/// Returns a power of two that scales the box's largest coordinate to about 1.
+/// Returns a power of two such that the box's largest coordinate, multiplied by it, is about 1.
 [[nodiscard]] inline double coordinate_scale(const Box3& box) {
   return scale_to_one(box.largest_coordinate());
 }

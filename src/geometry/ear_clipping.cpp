@@ -15,7 +15,7 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-/// Balanced tree of boxes over the corners that may block an ear. Corners can be removed.
+/// Balanced tree of boxes over the corners that may block an ear (lie inside it). Corners can be removed.
 class PointTree {
  public:
   PointTree() = default;
@@ -35,9 +35,9 @@ class PointTree {
     for (std::uint32_t node = leaf; node > 0; node /= 2) --nodes_[node].count;
   }
 
-  /// Returns true if a corner lies in the triangle or on its edges. Ignores corners at exactly the place of one of the
-  /// triangle's own, because the ends of bridges to holes coincide.
-  /// @param work_left  is lowered by the number of boxes and corners visited.
+  /// Returns true if a corner of the tree lies in the triangle or on its edges. Corners at exactly the position of one
+  /// of its own corners are ignored: the ends of bridges to holes coincide.
+  /// @param work_left  reduced by the number of boxes and corners visited.
   [[nodiscard]] bool any_inside(const std::array<Point, 3>& t, std::int64_t& work_left) {
     stack_.assign(1, 1);
     while (!stack_.empty()) {
@@ -63,8 +63,8 @@ class PointTree {
   static constexpr std::size_t leaf_size = 4;
   struct Node {
     Point lower{HUGE_VAL, HUGE_VAL}, upper{-HUGE_VAL, -HUGE_VAL};
-    std::uint32_t count = 0;           ///< members that were not removed
-    std::uint32_t begin = 0, end = 0;  ///< range of a leaf in members_
+    std::uint32_t count = 0;           ///< number of members not yet removed
+    std::uint32_t begin = 0, end = 0;  ///< for a leaf: its range in members_
   };
 
   void build(std::uint32_t index, std::size_t begin, std::size_t end) {
@@ -92,8 +92,9 @@ class PointTree {
     build(2 * index + 1, middle, end);
   }
 
-  /// Returns true if the box contains no point of the triangle. Either it lies beside the triangle's box, or its corner
-  /// farthest to the left of an edge is right of that edge.
+  /// Returns true if the box certainly contains no point of the triangle. This is so if it does not touch the
+  /// triangle's bounding box, or lies completely to the right of some edge. The latter is decided by the box's corner
+  /// furthest to the left.
   static bool is_apart(const Node& box, const std::array<Point, 3>& t) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (box.upper[axis] < std::min({t[0][axis], t[1][axis], t[2][axis]})) return true;
@@ -115,8 +116,8 @@ class PointTree {
 
   const Point* points_ = nullptr;
   std::vector<std::uint32_t> members_;
-  std::vector<std::uint32_t> leaf_of_;  ///< of every corner of the polygon; none if not in the tree
-  std::vector<Node> nodes_;             ///< the root is 1; the children of i are 2i and 2i + 1
+  std::vector<std::uint32_t> leaf_of_;  ///< for every corner of the polygon: its leaf; none if not in the tree
+  std::vector<Node> nodes_;             ///< the root has index 1, and the children of node i have indices 2i and 2i + 1
   std::vector<std::uint32_t> stack_;
   std::size_t leaves_ = 0;
 };
@@ -151,7 +152,7 @@ class EarClipper {
 
   static constexpr std::uint32_t gone = 0xffffffffU;
 
-  /// Links corners at one place to a ring.
+  /// Links all corners at the same position to a ring.
   void link_twins() {
     std::vector<std::uint32_t> sorted(points_.size());
     std::iota(sorted.begin(), sorted.end(), 0U);
@@ -169,7 +170,7 @@ class EarClipper {
     std::uint32_t corner = 0;
     bool flat_allowed = false;
     while (left > 3) {
-      // One pass over all remaining corners. Corners beside a new ear are queued at the end, not cut at once, which
+      // One pass over all remaining corners. Corners next to a new ear are queued at the end. Cutting them at once
       // would make a fan of needles.
       queue_.clear();
       for (std::size_t i = 0; i < left; ++i, corner = links_[corner].next) enter(corner);
@@ -193,7 +194,7 @@ class EarClipper {
       if (left < before) {
         flat_allowed = false;
       } else if (!std::exchange(flat_allowed, true)) {
-        continue;  // no corner turns left, so straight corners may be cut, too
+        continue;  // no ear was found at a convex corner, so straight corners may be cut, too
       } else {
         return false;
       }
@@ -242,8 +243,8 @@ class EarClipper {
     for (std::uint32_t twin = twin_[corner]; twin != corner; twin = twin_[twin]) {
       if (--work_left_ < 0) return false;
       if (links_[twin].next == gone) continue;
-      // The polygon passes through the ear's tip once more: beside the ear, through it, or along both of its edges. In
-      // the last case the tip alone does not show on which side of them the inside is.
+      // The polygon passes through the position of the ear's tip again: outside of the ear, through it, or along both
+      // of its edges. In the last case the tip alone does not determine on which side of them the inside is.
       const Side before = side_of(points_[links_[twin].previous], a, b, c);
       const Side after = side_of(points_[links_[twin].next], a, b, c);
       if (before == Side::between || after == Side::between) return false;
@@ -252,7 +253,7 @@ class EarClipper {
     return !blockers_.any_inside({a, b, c}, work_left_) && (!is_doubtful || is_wound_around(corner));
   }
 
-  /// Position of a neighbour of the tip b, relative to the ear a, b, c.
+  /// Position of a point next to the tip b, relative to the ear a, b, c.
   enum class Side : std::uint8_t { between, along, outside };
   static Side side_of(const Point& q, const Point& a, const Point& b, const Point& c) {
     const int left_of_first = orient2d(a, b, q);
@@ -261,12 +262,12 @@ class EarClipper {
     return left_of_first > 0 && left_of_second > 0 ? Side::between : Side::along;
   }
 
-  /// Returns true if the remaining polygon winds around the area between the edges of a corner, right at its tip. The
-  /// test point is tip + e (previous - tip) + e^2 (next - tip), for a sufficiently small e.
+  /// Returns true if the remaining polygon winds around the area right at a corner, between its two edges. The test
+  /// point is tip + e (previous - tip) + e^2 (next - tip), for a sufficiently small e > 0.
   [[nodiscard]] bool is_wound_around(std::uint32_t corner) {
     const Link link = links_[corner];
     const std::array<const Point*, 3> terms = {&points_[corner], &points_[link.previous], &points_[link.next]};
-    // Only the sign of a term counts, and only if the terms before it are 0.
+    // Terms are compared in order; the first one that differs decides, by its sign.
     const auto is_above = [&](const Point& p) {
       const auto term = std::find_if(terms.begin(), terms.end(), [&](const Point* q) { return (*q)[1] != p[1]; });
       return term != terms.end() && p[1] > (**term)[1];
@@ -276,7 +277,7 @@ class EarClipper {
       for (std::size_t k = 0; k < terms.size() && side == 0; ++k) side = orient2d(from, to, *terms[k]);
       return side;
     };
-    std::int64_t turns = 0;  // counted at the edges that a ray from the point to the right crosses
+    std::int64_t turns = 0;  // winding number, counted at the edges that a ray from the test point to the right crosses
     std::uint32_t at = corner;
     do {
       if (--work_left_ < 0) return false;
@@ -307,8 +308,8 @@ class EarClipper {
   std::span<const Point> points_;
   std::span<Triangle> triangles_;
   std::vector<Link> links_;
-  std::vector<std::uint32_t> twin_;  ///< for each corner: the next one at the same place
-  PointTree blockers_;               ///< remaining corners that did not turn left at the last check
+  std::vector<std::uint32_t> twin_;  ///< for each corner: the next corner at the same position
+  PointTree blockers_;               ///< remaining corners that did not turn left when last checked
   std::vector<char> is_queued_;
   std::vector<std::uint32_t> queue_;
   std::size_t emitted_ = 0;

@@ -5,7 +5,8 @@
 
 namespace blum {
 
-/// Width of the blocks of search trees: one cache line of doubles. Loops over blocks are in lane_kernels.cpp.
+/// Number of items per block in search trees; as doubles they fill one cache line. Loops over blocks are in
+/// lane_kernels.cpp.
 inline constexpr std::size_t lanes = 8;
 
 }  // namespace blum

@@ -17,16 +17,15 @@ bool is_usable(const Vec3d& p) {
 }
 
 [[noreturn]] void throw_unusable(const MeshView& mesh, std::uint32_t vertex, const char* what, std::size_t index) {
-  const std::string where = std::string(what) + " " + std::to_string(index) + " names vertex " + std::to_string(vertex);
+  const std::string where = std::string(what) + " " + std::to_string(index) + " uses vertex " + std::to_string(vertex);
   if (vertex >= mesh.vertices.size()) {
-    throw InvalidMesh(where + ", but there are " + std::to_string(mesh.vertices.size()) + " vertices");
+    throw InvalidMesh(where + ", but there are only " + std::to_string(mesh.vertices.size()) + " vertices");
   }
   if (!is_finite(mesh.vertices[vertex])) throw InvalidMesh(where + ", which has a coordinate that is not finite");
   throw InvalidMesh(where + ", which lies further than 1e150 from the origin");
 }
 
-/// Calls visit(vertex, kind of the element that names it, index of the element) for every reference to a vertex, in
-/// order.
+/// Calls visit(vertex, kind of element, index of element) for every use of a vertex by an element, in order.
 template <class Visit>
 void for_each_named(const MeshView& mesh, Visit visit) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -67,7 +66,8 @@ void validate(const MeshView& mesh) {
       mesh.segments.size() > max_id_count) {
     throw InvalidMesh("the mesh has more than 2^31 - 1 vertices, triangles or segments");
   }
-  // Vertices are named several times each. The element that names one matters only if a vertex is unusable.
+  // Vertices are used several times each. The first loop only looks for errors; the element that uses a vertex matters
+  // only if there is one.
   std::uint32_t largest = 0;
   for_each_named_vertex(mesh, [&](std::uint32_t v) { largest = std::max(largest, v); });
   if (largest < mesh.vertices.size() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_usable)) return;

@@ -10,7 +10,7 @@ CellLattice::CellLattice(const std::array<std::int64_t, 3>& cubes) {
   count_ = stride_[2] * static_cast<std::size_t>(size_[2]);
   if (count_ >= std::size_t{1} << 29U) {
     throw InvalidGrid("the solid spans " + std::to_string(cubes[0]) + " x " + std::to_string(cubes[1]) + " x " +
-                      std::to_string(cubes[2]) + " cells, more than can be numbered: use a coarser grid");
+                      std::to_string(cubes[2]) + " cells, but at most 2^29 can be numbered: use a coarser grid");
   }
 }
 

@@ -11,11 +11,11 @@ namespace blum {
 namespace {
 
 constexpr std::int64_t max_nodes = std::int64_t{1} << 40;
-/// A side that is a whole number of spacings, up to rounding, gets no extra layer.
+/// If a side is a whole number of spacings up to this relative tolerance, it gets no additional layer.
 constexpr double whole_steps_tolerance = 1e-9;
 
 void check_box(const Box3& box) {
-  if (box.is_empty()) throw InvalidGrid("there is nothing to put a grid around: the bounds are empty");
+  if (box.is_empty()) throw InvalidGrid("the bounds are empty, so there is no box for a grid");
   if (!is_finite(box.lower) || !is_finite(box.upper)) throw InvalidGrid("the bounds are not finite");
 }
 
@@ -39,7 +39,7 @@ Box3 padded(const Box3& box, double padding) {
   return {box.lower - Vec3d{pad, pad, pad}, box.upper + Vec3d{pad, pad, pad}};
 }
 
-/// Returns the smallest grid of this spacing that covers the box, centred on it.
+/// Returns the smallest grid with this spacing that covers the box. It is centred on the box.
 GridSpec cover(const Box3& box, double spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing)) throw InvalidGrid("the grid's spacing must be positive and finite");
   GridSpec grid;
@@ -48,7 +48,7 @@ GridSpec cover(const Box3& box, double spacing) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double steps = side[axis] / spacing;
     if (!(steps < static_cast<double>(max_nodes)))
-      throw InvalidGrid("the spacing is too small for the box: over 2^40 nodes");
+      throw InvalidGrid("the spacing is too small for the box: the grid would have more than 2^40 nodes");
     grid.size[axis] = static_cast<std::int64_t>(std::ceil(steps - whole_steps_tolerance * std::max(1.0, steps))) + 1;
     grid.origin[axis] = box.center()[axis] - 0.5 * spacing * static_cast<double>(grid.size[axis] - 1);
   }

@@ -18,7 +18,7 @@ Parameter count_parameter(std::string name, std::string description, int value, 
           true};
 }
 
-/// Returns the shape's own parameters, and those of the grid.
+/// Returns the given parameters of a shape, followed by those of the grid.
 std::vector<Parameter> with_spacing(std::vector<Parameter> parameters) {
   for (const char* axis : {"x", "y", "z"}) {
     parameters.push_back({std::string("spacing_") + axis,
@@ -57,7 +57,7 @@ ImageInfo tubes() {
                 {whole(p, "nodes"), whole(p, "pitch"), p.at("radius"), spacing(p), whole(p, "labelled") == 1});
           },
           [](const ParameterValues& p) -> Betti {
-            const std::int64_t n = whole(p, "nodes");  // a graph of n^3 nodes and 3 n^2 (n - 1) edges
+            const std::int64_t n = whole(p, "nodes");  // the shape is a graph of n^3 nodes and 3 n^2 (n - 1) edges
             return {{1, 3 * n * n * (n - 1) - n * n * n + 1, 0}};
           }};
 }

@@ -23,7 +23,7 @@ GridSpec make_grid(std::int64_t nx, std::int64_t ny, std::int64_t nz, const Vec3
   return {{}, spacing, {nx, ny, nz}, {}};
 }
 
-/// Returns an image filled with value(i, j, k).
+/// Returns an image whose voxel (i, j, k) has the value value(i, j, k).
 template <class T, class Value>
 VoxelImage fill(const GridSpec& grid, Value value) {
   std::vector<T> values(grid.node_count());
@@ -36,13 +36,13 @@ VoxelImage fill(const GridSpec& grid, Value value) {
   return {grid, std::move(values)};
 }
 
-/// Returns the distance from x to the nearest of the multiples 0, pitch, ..., (count - 1) * pitch.
+/// Returns the distance from x to the closest of the values 0, pitch, ..., (count - 1) * pitch.
 double distance_to_lattice(double x, double pitch, int count) {
   const double nearest = std::clamp(std::round(x / pitch), 0.0, static_cast<double>(count - 1));
   return std::abs(x - nearest * pitch);
 }
 
-/// Returns the distance from x to the interval from 0 to (count - 1) * pitch.
+/// Returns the distance from x to the interval [0, (count - 1) * pitch].
 double distance_to_range(double x, double pitch, int count) {
   return std::max({0.0, -x, x - pitch * (count - 1)});
 }

@@ -44,7 +44,8 @@ ImageValues counted(std::span<const T> values, const Context& context) {
     if (++runs % (std::size_t{1} << 20U) == 0) throw_if_cancelled(context);
     const T value = values[i];
     std::size_t end = i + 1;
-    while (end < values.size() && values[end] == value) ++end;  // runs are long in labelled images
+    // In labelled images, equal values usually follow each other.
+    while (end < values.size() && values[end] == value) ++end;
     const std::uint64_t run = end - i;
     i = end;
     const auto number = static_cast<double>(value);
@@ -112,8 +113,8 @@ std::string nothing_selected_text(const VoxelImageView& image, const LabelSelect
       values.labels.size() - (values.nonzero < image.grid.node_count() - values.not_numbers ? 1 : 0);
   const std::string more = there > labels.size() ? std::to_string(there - labels.size()) + " more" : std::string();
   if (!more.empty()) words.emplace_back(more);
-  return none + "has the label " + std::to_string(selection.label) + ": there are " +
-         (words.empty() ? "none but 0" : join_words(words));
+  return none + "has the label " + std::to_string(selection.label) + ": its labels are " +
+         (words.empty() ? "0 only" : join_words(words));
 }
 
 }  // namespace blum

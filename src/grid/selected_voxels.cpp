@@ -15,7 +15,7 @@ namespace blum {
 namespace detail {
 namespace {
 
-/// Packs 64 bytes of 0 or 1 into one word, byte i into bit i.
+/// Packs 64 bytes, each 0 or 1, into a 64-bit word: byte i becomes bit i.
 std::uint64_t pack(const std::uint8_t* flags) {
   std::uint64_t word = 0;
   for (unsigned byte = 0; byte < 8; ++byte) {
@@ -58,7 +58,8 @@ std::size_t select_voxels(const VoxelImageView& image, const LabelSelection& sel
   mask.words_per_row = (row_length + 63) / 64;
   if (mask.words.size() != rows * mask.words_per_row) mask.words = Buffer<std::uint64_t>(rows * mask.words_per_row);
 
-  // A task is a part of one row, or several whole rows: about 2^20 voxels, few enough to stop quickly.
+  // A task is a part of one row, or several whole rows. It has about 2^20 voxels, few enough to react quickly to a
+  // cancel.
   constexpr std::size_t task_voxels = std::size_t{1} << 20U;
   const std::size_t stretch = std::min(row_length, task_voxels);
   const std::size_t stretches = (row_length + stretch - 1) / stretch;

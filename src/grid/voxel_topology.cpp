@@ -10,16 +10,17 @@
 namespace blum {
 namespace {
 
-/// A maximal run of voxels of a row: [begin, end).
+/// Maximal interval of consecutive voxels in a row: [begin, end).
 struct Run {
   std::int32_t begin;
   std::int32_t end;
 };
 
-/// The runs of all rows, and their connected components.
+/// Runs of all rows, and their connected components.
 class RunComponents {
  public:
-  /// @param reach     how far apart runs of neighbouring rows may be and still touch: 0 by faces, 1 by corners, too.
+  /// @param reach     0: runs of neighbouring rows are connected if they share a face; 1: also if they share only an
+  /// edge or corner.
   RunComponents(const VoxelSet& voxels, bool of_background, std::int32_t reach, const Context& context)
       : size_(voxels.size()), reach_(reach) {
     first_.reserve(static_cast<std::size_t>(size_[1] * size_[2]) + 1);
@@ -39,7 +40,7 @@ class RunComponents {
     }
   }
 
-  /// Joins the runs that touch the border of the box with the outside.
+  /// Joins the runs that touch the border of the box with the outside, which is a component of its own.
   void join_border() {
     ++count_;
     const auto outside = static_cast<std::uint32_t>(runs_.size());
@@ -56,7 +57,7 @@ class RunComponents {
 
   [[nodiscard]] std::int64_t count() const { return count_; }
 
-  /// Adds the runs that are not joined with the outside to a set.
+  /// Adds the runs that are not connected with the outside to a set.
   void add_inner(VoxelSet& voxels) {
     const std::uint32_t outside = joined_.find(static_cast<std::uint32_t>(runs_.size()));
     for (std::int64_t k = 0; k < size_[2]; ++k) {
@@ -76,7 +77,8 @@ class RunComponents {
 
   void list_runs(std::span<const std::uint64_t> words, bool of_background) {
     std::int64_t at = 0;
-    // Returns the first place from `at` on that is in a run (if `is_member`) or in none, else the end of the row.
+    // Returns the first position, starting with `at`, that is in the set (if `is_member`) or not in it. Returns the end
+    // of the row if there is none.
     const auto next = [&](bool is_member) {
       const std::uint64_t flip = is_member == of_background ? ~std::uint64_t{0} : 0;
       while (at < size_[0]) {
@@ -129,7 +131,7 @@ class RunComponents {
   std::int64_t count_ = 0;
 };
 
-/// Rows of a set, with empty ones beyond its box.
+/// Access to the rows of a set. Rows outside of its box are empty.
 class Rows {
  public:
   explicit Rows(const VoxelSet& voxels) : voxels_(voxels), empty_(voxels.words_per_row(), 0) {}
@@ -144,7 +146,8 @@ class Rows {
   std::vector<std::uint64_t> empty_;
 };
 
-/// Returns the sum of V - E + F - C over the lattice lines j, k: cells that start there.
+/// Returns V - E + F - C for the cells of the lattice that start on the line (j, k) along x: vertices, edges, squares
+/// and cubes.
 std::int64_t euler_of_line(const Rows& rows, std::int64_t j, std::int64_t k) {
   const auto here = rows.at(j, k);
   const auto before_y = rows.at(j - 1, k);
@@ -161,15 +164,15 @@ std::int64_t euler_of_line(const Rows& rows, std::int64_t j, std::int64_t k) {
     const std::uint64_t y = here[w] | before_y[w];
     const std::uint64_t z = here[w] | before_z[w];
     const std::uint64_t yz = y | before_z[w] | before_yz[w];
-    sum += std::popcount(ends(yz, 0)) - std::popcount(yz);            // vertices, edges along x
-    sum -= std::popcount(ends(z, 1)) - std::popcount(z);              // edges along y, squares xy
-    sum -= std::popcount(ends(y, 2)) - std::popcount(y);              // edges along z, squares xz
-    sum += std::popcount(ends(here[w], 3)) - std::popcount(here[w]);  // squares yz, cubes
+    sum += std::popcount(ends(yz, 0)) - std::popcount(yz);            // + vertices, - edges along x
+    sum -= std::popcount(ends(z, 1)) - std::popcount(z);              // - edges along y, + squares xy
+    sum -= std::popcount(ends(y, 2)) - std::popcount(y);              // - edges along z, + squares xz
+    sum += std::popcount(ends(here[w], 3)) - std::popcount(here[w]);  // + squares yz, - cubes
   }
   return sum;
 }
 
-/// Returns for each voxel of a neighbourhood its neighbours there, without itself.
+/// For each voxel of a neighbourhood of 27 voxels, returns the set of its neighbours in it, without the voxel itself.
 template <bool by_faces>
 constexpr std::array<std::uint32_t, 27> make_neighbours() {
   std::array<std::uint32_t, 27> out{};
@@ -189,7 +192,7 @@ constexpr auto face_neighbours = make_neighbours<true>();
 constexpr auto all_neighbours = make_neighbours<false>();
 constexpr std::uint32_t middle = 1U << 13;
 
-/// Returns the component of `seed` (one bit) within `set`.
+/// Returns the connected component of `set` that contains `seed` (a single bit).
 std::uint32_t grow(std::uint32_t seed, std::uint32_t set, const std::array<std::uint32_t, 27>& neighbours) {
   std::uint32_t grown = seed;
   std::uint32_t fresh = seed;

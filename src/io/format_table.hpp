@@ -1,7 +1,7 @@
 // Blum: the rows of the table of formats, with their readers and writers. SPDX-License-Identifier: Apache-2.0
 //
-// A new format is a file of its own that defines the functions listed here, a row, and a test. No other code names
-// formats.
+// To add a format, write a file that defines the functions listed here, add a row to the table, and add a test. No
+// other code refers to single formats.
 #pragma once
 
 #include <array>
@@ -43,60 +43,64 @@ namespace blum::formats {
 namespace fs = std::filesystem;
 using volume_io::ByteSource;
 
-/// Tests that identify the content of a file by its bytes.
+/// Tests of the first bytes of a file.
 struct Sniffer {
-  /// Returns true if the first bytes of a file are those of this format; null if they do not identify it.
+  /// Returns true if the first bytes of a file show that it has this format. Null if bytes cannot identify the format.
   bool (*begins)(std::string_view head) = nullptr;
-  /// Returns true if a file with this format's extension and these first bytes holds this content; null: always.
+  /// Returns true if a file with this format's extension and these first bytes has this kind of content. Null if every
+  /// such file has.
   bool (*holds_this)(std::string_view head, const fs::path& path) = nullptr;
 };
 
 struct MeshCode {
-  /// Reads a mesh whose indices are all in range. @throws FormatError. Null if the format is not read.
+  /// Reads a mesh. All indices of the result are in range. @throws FormatError. Null if Blum does not read the format.
   MeshFile (*read)(std::string_view bytes, std::string_view name);
-  /// Writes a valid mesh of finite vertices.
+  /// Writes a mesh, which must be valid and have finite vertices.
   void (*write)(const fs::path& path, const MeshView& mesh);
   Sniffer sniffer = {};
 };
 
 struct ImageCode {
-  /// @param path  path of the source; empty for memory.
+  /// @param path  path of the source; empty if the bytes come from memory.
   VoxelImage (*read)(const ByteSource& source, const fs::path& path);
-  void (*write)(const fs::path& path, const VoxelImageView& image) = nullptr;  ///< null if not written
+  /// Null if Blum does not write the format.
+  void (*write)(const fs::path& path, const VoxelImageView& image) = nullptr;
   Sniffer sniffer = {};
-  /// Reads an image that is spread over several files. Returns nullopt if the path is of another kind. May be null.
+  /// Reads an image that consists of several files. Returns nullopt if the path is not one of these files. May be null.
   std::optional<VoxelImage> (*read_several)(const fs::path& path) = nullptr;
 };
 
 struct FieldCode {
-  /// @param path  path of the source, to find the files of the other arrays; if empty, they are not read.
+  /// @param path  path of the source. The files of the other arrays are next to it. If empty, they are not read.
   Field (*read)(const ByteSource& source, const fs::path& path);
   void (*write)(const fs::path& path, const Field& field, const FieldFileInfo& info, const Context& context);
   Sniffer sniffer = {};
 };
 
-/// Readers check only what they need to be safe; callers check problem_of() afterwards. Writers need complexes without
-/// problems, and names and metadata that files can hold. They refuse to lose content unless the options allow it.
+/// Readers check only what makes them safe; callers must call problem_of() afterwards. Writers require complexes
+/// without problems, and names and metadata that files can store. They throw if content would be lost, unless the
+/// options allow it.
 struct ComplexCode {
-  /// Reads part by part from a source; null if read_text reads everything. Both are null if the format is not read.
+  /// Reads from a source, one part at a time. Null if read_text is used instead. Both are null if Blum does not read
+  /// the format.
   ComplexFile (*read)(const ByteSource& source);
   ComplexFile (*read_text)(std::string_view bytes, std::string_view name);
   void (*write)(const fs::path& path, const Complex& complex, const FileMetadata& metadata,
                 const ComplexWriteOptions& options, const Context& context);
   Sniffer sniffer = {};
-  bool holds_further = false;  ///< true if a file can hold several complexes
-  bool holds_columns = true;   ///< true if files hold any columns
-  bool holds_radii = true;     ///< true if files hold the radii of medial axes
+  bool holds_further = false;  ///< true if a file can contain several complexes
+  bool holds_columns = true;   ///< true if files can contain columns
+  bool holds_radii = true;     ///< true if files can contain the radii of medial axes
 };
 
 struct PointCode {
-  std::vector<Vec3d> (*read)(const fs::path& path);  ///< numbers need not be finite
-  /// Writes vertices only, and metadata that name the content. Null if the format is not written.
+  std::vector<Vec3d> (*read)(const fs::path& path);  ///< may return numbers that are not finite
+  /// Writes vertices, and metadata that describe the content. Null if Blum does not write the format.
   void (*write)(const fs::path& path, const Complex& points, const FileMetadata& metadata, const Context& context);
-  bool is_cloud = false;  ///< true if files hold points and not a mesh
+  bool is_cloud = false;  ///< true if files contain points, not meshes
 };
 
-/// Rows of columns: pairs and collisions.
+/// Rows of named columns, for pairs and collisions.
 struct RowCode {
   void (*write)(const fs::path& path, const tables::RowFile& file, const Context& context);
 };
@@ -105,7 +109,7 @@ struct SurfaceMapCode {
   void (*write)(const surface_map_files::Request& request);
 };
 
-/// Both functions return the whole content of a file.
+/// Both functions return the content of a file.
 struct GraphCode {
   std::string (*text_of_axis)(const AxisGraph& graph, const MedialMetadata& metadata);
   std::string (*text_of_diagram)(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
@@ -131,7 +135,7 @@ extern const GraphCode graph_json, graph_graphml;
 extern const CentrelineCode centreline_json, centreline_csv, centreline_swc, centreline_as_complex;
 extern const ExtendedAxisCode extended_as_complex, extended_stl;
 
-/// Type of the code of a content's formats.
+/// Type that has the functions for formats of a kind of content.
 template <FileContent content>
 using CodeOf = std::tuple_element_t<static_cast<std::size_t>(content),
                                     std::tuple<MeshCode, ImageCode, FieldCode, ComplexCode, PointCode, RowCode, RowCode,
@@ -139,7 +143,7 @@ using CodeOf = std::tuple_element_t<static_cast<std::size_t>(content),
 
 struct Row {
   FileContent content = FileContent::mesh;
-  std::string_view name;  ///< these members as in FileFormat, lists as words between blanks
+  std::string_view name;  ///< these members are as in FileFormat; lists are words separated by blanks
   std::string_view extensions;
   std::string_view written;
   std::string_view holds;
@@ -169,8 +173,9 @@ inline constexpr auto table = [] {
       Row{image, "NPY", ".npy", ".npy", "scalars of any type, [z, y, x]; no spacing", "NumPy", &image_npy},
       Row{image, "Vol", ".vol", "", "bytes; no spacing", "DGtal", &image_vol},
 
-      Row{field, "NRRD", ".nrrd", ".nrrd", "distances; sites and values of order 2 in files beside it, NAME.site.nrrd",
-          "3D Slicer, ITK", &field_nrrd},
+      Row{field, "NRRD", ".nrrd", ".nrrd",
+          "distances; sites and values of order 2 in separate files (NAME.site.nrrd, ...)", "3D Slicer, ITK",
+          &field_nrrd},
       Row{field, "NPZ", ".npz", ".npz", "distances, sites, vertices of sites", "NumPy", &field_npz},
       Row{field, "VTI", ".vti", ".vti", "distances, sites", "ParaView, VTK", &field_vti},
 
@@ -201,19 +206,19 @@ inline constexpr auto table = [] {
       Row{collisions, "NPZ", "", ".npz", "all columns, metadata", "NumPy", &rows_npz},
       Row{collisions, "CSV", "", ".csv", "a row for each collision", "spreadsheets, pandas", &rows_csv},
       Row{collisions, "JSON", "", ".json", "all columns, metadata", "any program", &rows_json},
-      Row{collisions, "VTP", "", ".vtp", "the features where they meet, metadata", "ParaView, VTK", &rows_as_complex},
+      Row{collisions, "VTP", "", ".vtp", "the features at the time of impact, metadata", "ParaView, VTK",
+          &rows_as_complex},
 
       Row{surface_map, "NPZ", ".npz", ".npz", "mesh, texture of distances, vectors, sites, metadata", "NumPy",
           &surface_map_npz},
-      Row{surface_map, "PNG", "", ".png", "the texture in colours, with a bar of them", "any program",
-          &surface_map_png},
+      Row{surface_map, "PNG", "", ".png", "the texture in colours, with a colour bar", "any program", &surface_map_png},
       Row{surface_map, "GLB", "", ".glb", "the mesh with the texture in colours", "Blender, three.js, most viewers",
           &surface_map_glb},
       Row{surface_map, "PLY", "", ".ply", "the mesh with columns, metadata", "MeshLab, trimesh",
           &surface_map_as_complex},
       Row{surface_map, "VTP", "", ".vtp", "the mesh with columns, metadata", "ParaView, VTK", &surface_map_as_complex},
 
-      Row{graph, "JSON", "", ".json", "all of it, metadata", "any program", &graph_json},
+      Row{graph, "JSON", "", ".json", "the whole graph, metadata", "any program", &graph_json},
       Row{graph, "GraphML", "", ".graphml", "nodes and edges with attributes, metadata", "networkx, Gephi, igraph, yEd",
           &graph_graphml},
 
@@ -233,7 +238,7 @@ inline constexpr auto table = [] {
   };
 }();
 
-/// Returns the tests of a row. They are null if its code has none.
+/// Returns the tests of a row of the table. Both are null if the row's type has none.
 [[nodiscard]] inline Sniffer sniffer_of(std::size_t row) {
   return std::visit(
       []<class Code>(const Code* code) {

@@ -27,7 +27,7 @@ std::vector<std::string> words_of(std::string_view words) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-/// Returns the first row of a content that fits.
+/// Returns the first row with this content for which fits(row) is true.
 template <class Fits>
 std::optional<std::size_t> find(FileContent content, Fits fits) {
   const std::vector<FileFormat>& formats = file_formats();
@@ -61,8 +61,8 @@ std::size_t find_named(FileContent content, std::string_view name) {
   for (const FileFormat& format : file_formats()) {
     if (format.content == content) known += (known.empty() ? "" : ", ") + format.name;
   }
-  throw InvalidOption("there is no format '" + std::string(name) + "' of files of this content (" +
-                      std::string(to_string(content)) + "); the formats are " + known);
+  throw InvalidOption("there is no format '" + std::string(name) + "' for files with the content '" +
+                      std::string(to_string(content)) + "'; the formats are " + known);
 }
 
 std::optional<std::size_t> find_head(FileContent content, std::string_view head) {
@@ -70,7 +70,7 @@ std::optional<std::size_t> find_head(FileContent content, std::string_view head)
     const auto begins_as = formats::sniffer_of(row).begins;
     return begins_as != nullptr && begins_as(head);
   };
-  // OBJ comes last, because PLY and OFF files may contain lines that look like OBJ.
+  // OBJ is tested last, because PLY and OFF files may contain lines that look like OBJ.
   const auto found = find(content, [&](std::size_t row) { return file_formats()[row].name != "OBJ" && fits(row); });
   return found ? found : find(content, fits);
 }
@@ -195,7 +195,7 @@ std::optional<ImageFormat> image_format(const fs::path& path, std::string_view h
   return format ? format : ImageFormat::by_head(head);
 }
 
-/// Returns true if a format is given and the file holds its content. Some formats hold other contents, too.
+/// Returns true if there is a format and the file has its content. Some formats can have several kinds of content.
 template <class Format>
 bool holds(const std::optional<Format>& format, const fs::path& path, std::string_view head) {
   if (!format) return false;
@@ -237,7 +237,7 @@ bool may_hold_field(const fs::path& path) {
 MeshFile read_mesh_of_any_name(const fs::path& path, const MeshReadOptions& options) {
   if (MeshFormat::by_name(path)) return read_mesh_file(path, options);
   const auto format = MeshFormat::by_head(read_head(path));
-  if (!format) return read_mesh_file(path, options);  // for its error message
+  if (!format) return read_mesh_file(path, options);  // throws the appropriate error
   return read_mesh_file(read_whole_file(path).span(), *format, options, path.string());
 }
 

@@ -64,19 +64,19 @@ using detail::VoxelSurface;
 
 using Pair = std::array<std::uint32_t, 2>;
 
-/// Number of cells between two checks for cancellation: a few milliseconds.
+/// Number of cells that are handled between two checks for cancellation. They take a few milliseconds.
 constexpr std::size_t cells_between_looks = 65536;
 
 struct HashOfPlace {
   std::size_t operator()(const Vec3d& p) const {
     std::size_t hash = 0;
-    // Adding 0.0 makes 0 of -0, which is equal to it.
+    // Adding 0.0 turns -0 into 0. Both are equal, so they must have the same hash.
     for (const double x : {p.x, p.y, p.z}) hash = (hash ^ std::hash<double>()(x + 0.0)) * 0x9e3779b97f4a7c15U;
     return hash ^ hash >> 32U;
   }
 };
 
-/// Level until which something exists, and its importance.
+/// Level until which an edge exists, in degrees, and its importance.
 struct Stay {
   float until = 0;
   float angle = 0;
@@ -94,7 +94,8 @@ class Nest {
   void add(const AxisPiece& piece) {
     std::vector<std::uint32_t> vertex(piece.vertices.size(), 0);
     std::vector<bool> is_known(piece.vertices.size(), false);
-    // Vertices come before the cells that join them: a face stays as long as the cells that it is a face of.
+    // Vertices are added before edges, and edges before polygons. A face exists at least as long as the cells that it
+    // is a face of.
     for (int dimension = 0; dimension <= 2; ++dimension) {
       for (std::size_t c = 0; c < piece.cells.size(); ++c) {
         if (c % cells_between_looks == 0) throw_if_cancelled(context_);
@@ -148,7 +149,7 @@ class Nest {
     stays_.push_back({cell.level, cell.angle});
   }
 
-  /// Adds a triangle. One without extent is replaced by its sides.
+  /// Adds a triangle. If two of its corners are equal, it adds its sides instead.
   void add_triangle(const std::array<std::uint32_t, 3>& corners, const AxisCell& cell) {
     const auto& [a, b, c] = corners;
     if (a == b || b == c || c == a) {
@@ -161,14 +162,14 @@ class Nest {
     triangle_until_.push_back(cell.level);
   }
 
-  /// Adds each pair of vertices that anything joins, with its roles. It is a seam while it has three triangles, a rim
-  /// while it has one, and a curve when it has none.
+  /// Adds each pair of vertices that is an edge at some angle, once for each of its roles. The edge is a seam while it
+  /// has three or more triangles, a rim while it has one, and a curve while it has none.
   void add_edges() {
     const Incidence incidence({lists_.vertices.size(), threads_, lists_.triangles}, context_);
-    // Every side of a triangle is a thread, too, except diagonals.
+    // All sides of triangles are also in threads_, except diagonals of polygons.
     std::vector<Stay> threads(incidence.edges().size());
     for (std::size_t t = 0; t < threads_.size(); ++t) threads[incidence.edge_of_listed()[t]].extend(stays_[t]);
-    std::vector<float> untils;  // of the triangles at an edge, descending
+    std::vector<float> untils;  // levels of the triangles at an edge, descending
     for (std::size_t e = 0; e < threads.size(); ++e) {
       untils.clear();
       float angle = 0;
@@ -194,7 +195,7 @@ class Nest {
     edge_until_.push_back(until);
   }
 
-  /// Returns vertices and triangles with their sheets and roles at the least angle.
+  /// Returns the complex of the least angle, with sheets and roles.
   Complex labelled() {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       const bool is_curve = edge_roles_[e] == static_cast<std::int32_t>(MedialRole::curve);
@@ -206,7 +207,7 @@ class Nest {
     return complex;
   }
 
-  /// Replaces the edges of the least angle by those of all angles.
+  /// Replaces the edges at the least angle by the edges at all angles.
   void set_edges(Complex& nested) {
     nested.edges = std::move(edges_);
     nested.edge_columns = Columns(nested.edges.size());
@@ -223,15 +224,16 @@ class Nest {
   AxisLists lists_;  ///< vertices and triangles
   std::unordered_map<Vec3d, std::uint32_t, HashOfPlace> place_;
   std::vector<float> vertex_until_, triangle_until_;
-  std::vector<Pair> threads_;  ///< edges, and sides of triangles without extent
-  std::vector<Stay> stays_;    ///< of the threads
+  std::vector<Pair> threads_;  ///< edges of the pieces, and sides of triangles with two equal corners
+  std::vector<Stay> stays_;    ///< for each of threads_
   // Edges of the result.
   std::vector<Pair> edges_;
   std::vector<float> edge_angles_, edge_from_, edge_until_;
   std::vector<std::int32_t> edge_roles_;
 };
 
-/// Returns one complex of all results of append_at() and contract_points() at the angles from `least_theta` on.
+/// Returns one complex that contains the results of append_at() and contract_points() at all angles of at least
+/// `least_theta`.
 /// @throws Cancelled.
 Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta, const Context& context) {
   Nest nest(least_theta, context);
@@ -241,7 +243,8 @@ Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta, co
 
 constexpr int least_resolution = 8;
 constexpr int most_resolution = 800;
-/// A grid of voxels turns a smooth surface into steps. Without this floor, the axis would reach out for their edges.
+/// Noise floor of images. Voxels represent a smooth surface by steps. Without this floor, the axis would extend to the
+/// edges of the steps.
 constexpr NoiseFloor stairs{20, 120, 3, 3, 15, 0};
 
 void check(const MedialAxisOptions& options) {
@@ -277,9 +280,10 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
   for (std::size_t k = 0; k < 3; ++k) sum[k] += part[k];
 }
 
-/// Throws if rounding of coordinates leaves a solid too few different positions.
+/// Throws if a solid is so small relative to its coordinates that rounding leaves too few different positions.
 void check_place(const Box3& box) {
-  constexpr double least_size = 5e-7;  // of the largest coordinate; with less, roundings look like corners
+  // Relative to the largest coordinate. In smaller solids, rounding errors look like corners.
+  constexpr double least_size = 5e-7;
   const Vec3d furthest = max(max(box.lower, box.upper), max(-1.0 * box.lower, -1.0 * box.upper));
   const double coordinate = std::max({furthest.x, furthest.y, furthest.z});
   const double size = longest_side(box);
@@ -288,8 +292,8 @@ void check_place(const Box3& box) {
                     ", which leaves too few digits: move it towards the origin");
 }
 
-/// Returns true if a needle keeps the model from passing with smaller voxels, too.
-/// @param smaller  smallest side of a voxel that is allowed, as a part of the present one.
+/// Returns true if a failure of the model, for example at a needle, would also occur with smaller voxels.
+/// @param smaller  smallest allowed side of a voxel, as a fraction of the present one.
 bool stays_stuck(const BodyReport& report, double smaller) {
   return std::any_of(report.failures.begin(), report.failures.end(),
                      [&](const ModelFailure& failure) { return failure.cuts * smaller > ModelFailure::most_cuts; });
@@ -307,7 +311,7 @@ namespace {
 
 /// Surface of a body, to which the borders of its axis are fitted.
 struct BodySurface {
-  Solid solid;  ///< shares its data
+  Solid solid;  ///< shares its data with the solid of the axis
   const SolidBody* body;
   SiteTable sites;
   MeshSurface surface;
@@ -323,7 +327,7 @@ struct BodySurface {
 struct MedialAxis::Data {
   MedialAxisReport report;
   std::vector<AxisPiece> pieces;
-  std::vector<std::unique_ptr<BodySurface>> surfaces;  ///< of the pieces of a polyhedron
+  std::vector<std::unique_ptr<BodySurface>> surfaces;  ///< for each piece of a polyhedron; empty for other solids
   PatchNumbers patches;
   double least_theta = 0;
   double greatest_theta = 180;
@@ -333,7 +337,7 @@ struct MedialAxis::Data {
   struct Fitted {
     AxisLists lists;
     std::size_t vertices_before = 0;
-    double moved = 0;  ///< largest move of insides of sheets, mesh units
+    double moved = 0;  ///< mesh units: greatest distance that sheets were moved when vertices were removed
   };
   /// @param tolerance  FitTarget::tolerance
   [[nodiscard]] Fitted fitted(double theta, double tolerance, const Context& context) const {
@@ -358,7 +362,7 @@ struct MedialAxis::Data {
     return out;
   }
 
-  /// Returns the complex of lists, with sheets and roles.
+  /// Returns the complex of the given lists, with sheets and roles.
   [[nodiscard]] Complex labelled(AxisLists lists, const Context& context) const {
     Complex complex = complex_of(std::move(lists));
     Incidence incidence(complex.view(), context);
@@ -370,7 +374,7 @@ struct MedialAxis::Data {
   }
 };
 
-/// Makes the pieces of an axis: one for each body, or one for an image.
+/// Makes the pieces of an axis: one for each body of a mesh, or one for an image.
 class MedialAxisBuilder {
  public:
   MedialAxisBuilder(const MedialAxisOptions& options, const Context& context)
@@ -403,7 +407,7 @@ class MedialAxisBuilder {
     return finish();
   }
 
-  /// Returns the axis of the solid that make() returns. Making the solid counts as a phase.
+  /// Returns the axis of the solid that make() returns. The time of make() is reported as the phase `phase`.
   template <class Make>
   MedialAxis of(const Make& make, const char* phase) {
     PhaseTimer timer(report().phases);
@@ -415,7 +419,7 @@ class MedialAxisBuilder {
  private:
   MedialAxisReport& report() { return data_->report; }
 
-  /// Throws if an option is a length that the solid does not have. Nothing of its axis would be left.
+  /// Throws if an option is a length above the diagonal of the solid. No cell of the axis would be left.
   void check_lengths(const Box3& box) const {
     const double diagonal = box.diagonal();
     const auto check_length = [&](const char* name, double length) {
@@ -427,7 +431,8 @@ class MedialAxisBuilder {
     check_length("spacing", options_.spacing.value_or(0));
   }
 
-  /// Returns voxels fine enough for the topology of a body, if the options allow such; else the finest ones tried.
+  /// Returns a model of a body with voxels small enough for its topology. If the options do not allow such voxels, it
+  /// returns the model with the smallest voxels tried.
   [[nodiscard]] Voxelized voxelize(const SolidBody& body, double spacing, const Context& context) const {
     const bool is_polyhedron = data_->report.rule == SolidRule::polyhedron;
     const double finest = longest_side(bounds(body.mesh)) / options_.max_resolution;
@@ -463,7 +468,7 @@ class MedialAxisBuilder {
 
   /// Results for one body.
   struct BodyPart {
-    Voxelized voxelized;  ///< If it has no voxels, nothing else was made.
+    Voxelized voxelized;  ///< If it has no voxels and no extra cells, the other members are empty.
     std::unique_ptr<BodySurface> surface;
     AxisPiece piece;
     std::vector<PhaseTime> phases;
@@ -485,7 +490,7 @@ class MedialAxisBuilder {
     for (std::size_t b = 0; b < parts.size(); ++b) add_part(solid, bodies[b], std::move(parts[b]));
   }
 
-  /// Returns about how many voxels the box of a body contains.
+  /// Returns the approximate number of voxels in the box of a body.
   [[nodiscard]] static std::size_t voxels_around(const SolidBody& body, double spacing) {
     constexpr double most = 1e15;
     const Vec3d size = bounds(body.mesh).size() / spacing;
@@ -509,8 +514,8 @@ class MedialAxisBuilder {
     return part;
   }
 
-  /// Refines the model of a body where cells of its axis leave the solid, and makes the axis anew. In smaller boxes the
-  /// cells have less to run around.
+  /// Splits the model of a body in the boxes where cells of its axis leave the solid, and computes the axis again.
+  /// Cells in smaller boxes have fewer obstacles.
   void split_where_left(BodyPart& part, const SolidBody& body, const Context& context) const {
     constexpr int most_rounds = 6;
     if (!part.voxelized.report.topology_matches) return;
@@ -524,8 +529,8 @@ class MedialAxisBuilder {
     }
   }
 
-  /// Adds the phases of bodies. Bodies that were made side by side take more seconds together than went by, so these
-  /// are scaled.
+  /// Adds the phases of all bodies to the report. If bodies are computed in parallel, the sum of their times exceeds
+  /// the elapsed time `seconds`. All times are then scaled so that their sum is `seconds`.
   void add_phases(const std::vector<BodyPart>& parts, double seconds) {
     double all = 0;
     for (const BodyPart& part : parts) {

@@ -24,14 +24,15 @@ namespace blum::detail {
 namespace {
 
 constexpr std::size_t grain = 4096;
-constexpr double steepness = 8;       // of a neighbour's weight, as in Yuksel 2015
-constexpr double floor_share = 0.65;  // below this share of the expected distance, distances count less
+constexpr double steepness = 8;       // exponent of a neighbour's weight, as in Yuksel 2015
+constexpr double floor_share = 0.65;  // distances below this share of the expected distance count only partly
 constexpr double floor_power = 1.5;
-/// How much they still count. In Yuksel 2015 they count nothing. If the two sides of a thin plate are closer than
-/// points, all points have neighbours below the floor. Those at nearly no distance must be removed first.
+/// The share to which distances below the floor count. In Yuksel 2015 it is 0. If the two sides of a thin plate are
+/// closer together than neighbouring points, all points have neighbours below the floor. Neighbours at almost no
+/// distance must then be removed first.
 constexpr double below_floor = 0.3;
 
-/// Points in cells of a grid, as wide as the distance at which points are neighbours.
+/// Points, sorted into the cells of a grid. A cell is as wide as the distance within which points are neighbours.
 class Cells {
  public:
   Cells(std::span<const Vec3d> points, double width) : points_(points), width_(width) {
@@ -44,7 +45,7 @@ class Cells {
     for (std::size_t b = 0; b < buckets; ++b) first_[b + 1] += first_[b];
   }
 
-  /// Calls visit(other, squared distance) for the other points closer than the width.
+  /// Calls visit(other, squared distance) for the other points that are closer to a point than the width.
   template <class Visit>
   void for_each_near(std::uint32_t point, const Visit& visit) const {
     const Vec3d& p = points_[point];
@@ -53,7 +54,7 @@ class Cells {
     std::size_t count = 0;
     for (int n = 0; n < 27; ++n) {
       const std::uint32_t b = bucket({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1});
-      // Two cells may have the same bucket.
+      // Two cells may have the same bucket, which must be visited only once.
       if (std::find(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(count), b) !=
           seen.begin() + static_cast<std::ptrdiff_t>(count)) {
         continue;
@@ -93,7 +94,7 @@ class Cells {
   std::vector<std::uint32_t> first_;
 };
 
-/// The weight of a neighbour.
+/// The weight of a neighbour as a function of its squared distance.
 class Weight {
  public:
   Weight(double width, double share)
@@ -109,14 +110,15 @@ class Weight {
   double floor_;
 };
 
-/// Returns points at nearly equal distances, by weighted sample elimination (Yuksel 2015). The point with the most and
-/// closest neighbours is removed, over and over.
-/// @param area  of the surface that the points lie on.
+/// Selects points at nearly equal distances from each other, by weighted sample elimination (Yuksel 2015). Repeatedly,
+/// the point with the largest sum of weights is removed: the one with the most and closest neighbours.
+/// @param area  area of the surface that the points lie on.
 /// @return      indices of `count` points, in rising order.
 /// @throws Cancelled. Cost: 0.6 us per point, on one core.
 std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t count, double area,
                                      const Context& context) {
-  // Points in a lattice of triangles would be 2 r apart. Neighbours are closer than that.
+  // In a lattice of equilateral triangles, `count` points would be this far apart (2 r). Points closer together than
+  // this are neighbours.
   const double width = 2 * std::sqrt(area / (2 * std::numbers::sqrt3 * static_cast<double>(count)));
   const Cells cells(points, width);
   const Weight weight(width, static_cast<double>(count) / static_cast<double>(points.size()));
@@ -127,7 +129,8 @@ std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t 
                           [&](std::uint32_t, double squared) { sum[k] += weight(squared); });
     }
   });
-  // The heaviest is on top. Entries whose weight has changed are tested again when they come up.
+  // The point with the largest sum is on top. If its sum has changed since it was entered, it is entered again with the
+  // new sum.
   using Entry = std::tuple<double, std::uint32_t>;
   std::vector<Entry> entries;
   entries.reserve(points.size());
@@ -137,7 +140,7 @@ std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t 
   for (std::size_t left = points.size(); left > count;) {
     const auto [was, point] = heap.top();
     heap.pop();
-    if (was != sum[point]) {  // lighter by now
+    if (was != sum[point]) {  // its sum is smaller now
       heap.emplace(sum[point], point);
       continue;
     }
@@ -161,9 +164,10 @@ std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t 
 namespace blum {
 namespace {
 
-/// Points per block. Each block has its own random numbers, so that points do not depend on threads.
+/// Number of points in a block. Each block has its own random numbers, so that points do not depend on the number of
+/// threads.
 constexpr std::size_t block = 4096;
-/// Blue noise is chosen from this many times as many points.
+/// For each point of blue noise, this number of candidates is drawn.
 constexpr std::size_t candidates_per_point = 5;
 constexpr std::size_t most_points = std::size_t{1} << 31;
 
@@ -177,7 +181,7 @@ void check_count(std::size_t count) {
   throw OutOfMemory("more than 2^31 points are requested: request fewer, with several seeds");
 }
 
-/// Triangles, weighted by area.
+/// Table of the triangles of a mesh, to draw random points from its surface. Probabilities are proportional to area.
 class AreaTable {
  public:
   explicit AreaTable(const MeshView& mesh) : mesh_(mesh) {
@@ -241,7 +245,7 @@ SurfaceSamples sample(const AreaTable& table, std::size_t count, std::uint64_t s
   return out;
 }
 
-/// Returns two numbers of a normal distribution (Box and Muller 1958).
+/// Returns two random numbers from the standard normal distribution (Box and Muller 1958).
 std::array<double, 2> normal_pair(Random& random) {
   const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
   const double angle = 2 * std::numbers::pi * random.uniform();
@@ -287,7 +291,7 @@ NearSamples sample_near(const MeshView& mesh, std::size_t count, const NearSampl
   out.points = sample(table, count - in_box, options.seed, context).points;
   const Box3 box = bounds(mesh);
   const double sigma = options.sigma.value_or(0.01 * box.diagonal());
-  constexpr std::uint64_t of_offsets = 0x6f66667365747300u;  // random numbers other than those of the points
+  constexpr std::uint64_t of_offsets = 0x6f66667365747300u;  // selects random numbers other than those of the points
   parallel_for(context, out.points.size(), block, "offsets", [&](const WorkRange& range) {
     Random random = random_of(options.seed ^ of_offsets, range.begin / block);
     for (std::size_t k = range.begin; k < range.end; ++k) {

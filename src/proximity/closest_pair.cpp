@@ -9,25 +9,27 @@
 namespace blum::detail {
 namespace {
 
-/// Number of descents from the closest boxes to primitives before threads share the rest.
+/// One thread first makes this number of descents, each from the closest pair of boxes down to primitives. Then all
+/// other pairs of boxes are searched in parallel.
 constexpr std::size_t dives = 64;
 constexpr std::size_t parts_of_two = 64;
 constexpr std::size_t blocks_per_part = 16;
 constexpr std::size_t parts_of_first_round = 4;
 
-/// Searches for a pair that is closer than the best one so far.
+/// One part of a search: searches for a pair of primitives that is closer than the best pair so far.
 class PartSearch {
  public:
   PartSearch(const ObjectPair& objects, CandidateLimit& candidates, const Closest& start)
       : objects_(&objects), candidates_(&candidates), best_(start) {}
 
-  /// Returns the distance within which primitives still matter, as the hierarchies see it.
+  /// Returns the greatest distance at which primitives may still change the result, plus the error of positions in the
+  /// hierarchies.
   [[nodiscard]] double limit() const { return best_.limit + objects_->slack(); }
   [[nodiscard]] const Closest& best() const { return best_; }
   [[nodiscard]] const ProximityReport& report() const { return report_; }
 
   /// Compares two primitives.
-  /// @return  the limit from now on; negative if the search must stop.
+  /// @return  limit() after the comparison; negative if the search must stop.
   double look_at(std::uint32_t i, std::uint32_t j) {
     if (candidates_->stops(++report_.candidates)) return -1;
     if (objects_->is_self() && objects_->are_neighbours(i, j)) return limit();
@@ -101,9 +103,9 @@ class ClosestPairSearch {
     });
   }
 
-  /// Searches in rounds, each with twice as many parts as the one before. All parts of a round start from the results
-  /// of earlier rounds, so that not even counts of candidates depend on threads.
-  /// @param search_part  callable: index of a part, search to use for it.
+  /// Searches all parts in rounds. Each round has twice as many parts as the round before. All parts of a round start
+  /// from the results of earlier rounds, so that results and counts do not depend on the number of threads.
+  /// @param search_part  callable: (k, search) -> void, searches part k with the given PartSearch.
   template <class SearchPart>
   void search_in_rounds(std::size_t parts, const SearchPart& search_part) {
     std::size_t size = parts_of_first_round;

@@ -11,20 +11,20 @@
 namespace blum::detail {
 namespace {
 
-/// A point of each feature. Their rounding is small compared to the features. But they need not be the closest points
-/// if the features are thin.
+/// A point of each of two features, approximately the closest ones. Their rounding errors are small compared to the
+/// features. If features are thin, they need not be the closest points.
 struct ClosestPair {
   Vec3d first;
   Vec3d second;
 };
 
-/// Returns the point of a segment from the origin that is closest to another point.
+/// Returns the point of the segment from the origin to `end` that is closest to `to`.
 Vec3d on_segment(const Vec3d& end, const Vec3d& to) {
   const double square = squared_length(end);
   return square > 0 ? end * std::clamp(dot(end, to) / square, 0.0, 1.0) : Vec3d{};
 }
 
-/// Returns the closest points of a point and a triangle with a corner in the origin.
+/// Returns the closest points of a point and the triangle with corners at the origin, b and c.
 ClosestPair closest_of_point_and_triangle(const Vec3d& point, const Vec3d& b, const Vec3d& c) {
   const Vec3d normal = cross(b, c);
   const double square = squared_length(normal);
@@ -40,7 +40,8 @@ ClosestPair closest_of_point_and_triangle(const Vec3d& point, const Vec3d& b, co
   return best;
 }
 
-/// Returns the closest points of a segment that begins in the origin, and another one.
+/// Returns the closest points of two segments: from the origin to `end`, and from `other_start` to `other_start +
+/// other_along`.
 ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, const Vec3d& other_along) {
   const double a = squared_length(end);
   const double b = dot(end, other_along);
@@ -53,7 +54,7 @@ ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, cons
     const double r = (b * d - a * e) / determinant;
     if (s >= 0 && s <= 1 && r >= 0 && r <= 1) return {end * s, other_start + other_along * r};
   }
-  // Otherwise an end of one is closest.
+  // Otherwise one of the closest points is an end of a segment.
   const Vec3d other_end = other_start + other_along;
   ClosestPair best{on_segment(end, other_start), other_start};
   for (const ClosestPair& pair : {ClosestPair{on_segment(end, other_end), other_end},
@@ -66,12 +67,12 @@ ClosestPair closest_of_segments(const Vec3d& end, const Vec3d& other_start, cons
 
 constexpr double unit_roundoff = 0x1p-53;
 
-/// A polynomial by its Bernstein coefficients over [0, 1]. Its values there lie between the least and the largest of
-/// them.
+/// A polynomial, given by its Bernstein coefficients over [0, 1]. Its values in [0, 1] lie between the least and the
+/// largest coefficient.
 template <std::size_t size>
 using Bernstein = std::array<double, size>;
 
-/// Returns the coefficients over a part of [0, 1].
+/// Returns the Bernstein coefficients over the part [low, high] of [0, 1].
 Bernstein<3> part(const Bernstein<3>& c, double low, double high) {
   const auto mix = [](double a, double b, double t) { return (1 - t) * a + t * b; };
   const double low0 = mix(c[0], c[1], low);
@@ -106,7 +107,7 @@ double most(const Bernstein<size>& c) {
   return *std::max_element(c.begin(), c.end());
 }
 
-/// A vector that moves along a straight line.
+/// A vector that changes linearly from `start` to `end`.
 struct MovingVector {
   Vec3d start;
   Vec3d end;
@@ -133,8 +134,9 @@ Bernstein<3> along(const QuadraticVector& v, std::size_t axis) {
   return {v[0][axis], v[1][axis], v[2][axis]};
 }
 
-/// Two features as vectors between their points. They meet if a + s * u = b + r * v. With w = b - a and n = u x v, then
-/// s * n is w x v. Also r * n is w x u or, for a face, u x w.
+/// Two features, given by the vectors u, v and w between their points. Two edges meet if a + s * u = b + r * v; a
+/// vertex a + w and a face meet if w = s * u + r * v. For edges, w = b - a. With n = u x v, s * n is w x v. Also, r * n
+/// is w x u for edges and u x w for a face.
 class Filter {
  public:
   Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance)
@@ -164,7 +166,7 @@ class Filter {
     return first_by(most_looks_for_meeting, [&](const Interval& interval) { return look_at(interval); });
   }
 
-  /// Returns when they come as close as a distance, which must be positive.
+  /// Returns the time at which the features come as close as a distance. The distance must be positive.
   [[nodiscard]] FilteredImpact approach(double distance) {
     const auto is_small = [](double magnitude) { return magnitude < 1e90; };
     if (!is_small(u_most_) || !is_small(v_most_) || !is_small(w_most_) || !is_in_range(distance)) return {};
@@ -182,7 +184,7 @@ class Filter {
     double high;
   };
 
-  /// Combines answers for intervals into one for all times.
+  /// Combines the answers for intervals of time into one answer for all times. Undecided intervals are halved.
   template <class LookAt>
   [[nodiscard]] FilteredImpact first_by(int most_looks, const LookAt& look_at) {
     left_.push_back({0, 1});
@@ -200,16 +202,17 @@ class Filter {
     return {FilteredImpact::Answer::never, 0};
   }
 
-  // Bounds on rounding, with room; proven in docs/theory/proximity.md.
+  // Bounds on rounding errors, with a safety margin; proven in docs/theory/proximity.md.
   static constexpr double volume_rounding = 256 * unit_roundoff;
   static constexpr double area_rounding = 64 * unit_roundoff;
   static constexpr double height_rounding = 64 * unit_roundoff;
-  // Limits of the number of intervals examined. Beyond these, integers take about as long.
+  // Limits on the number of intervals examined. After that number, integer arithmetic takes about as long.
   static constexpr int most_looks_for_meeting = 96;
   static constexpr int most_looks_for_approach = 10000;
   static constexpr double least_width = 0x1p-44;
 
-  /// Returns true if products of three numbers neither overflow nor lose more to underflow than to rounding.
+  /// Returns true if products of three numbers of this magnitude do not overflow, and underflow causes no larger errors
+  /// than rounding.
   static bool is_in_range(double magnitude) { return magnitude > 1e-80 && magnitude < 1e90; }
 
   template <std::size_t size>
@@ -217,8 +220,8 @@ class Filter {
     return least(c) <= error && most(c) >= -error;
   }
 
-  /// Answers `meets` if the features certainly meet in an interval no longer than the tolerance. Answers `never` if
-  /// they certainly do not meet in it.
+  /// Returns `meets` if the features certainly meet in an interval and the interval is at most as long as the
+  /// tolerance. Returns `never` if they certainly do not meet in it.
   [[nodiscard]] FilteredImpact::Answer look_at(const Interval& interval) const {
     using Answer = FilteredImpact::Answer;
     const Bernstein<4> volume = part(volume_, interval.low, interval.high);
@@ -230,7 +233,7 @@ class Filter {
       if (may_be_zero(normal, normal_error_)) continue;
       const double sign = normal[0] > 0 ? 1 : -1;
       bool is_inside = true;
-      Bernstein<3> rest = normal;  // 1 - s (- r for a face), times the normal
+      Bernstein<3> rest = normal;  // for a face (1 - s - r), for edges (1 - s) or (1 - r), times the normal
       for (const QuadraticVector* weight : {&first_, &second_}) {
         const Bernstein<3> c = part(along(*weight, axis), interval.low, interval.high);
         if (sign * (sign > 0 ? most(c) : least(c)) < -weight_error_) return Answer::never;
@@ -243,15 +246,16 @@ class Filter {
       }
       if (is_inside && crosses && interval.high - interval.low <= tolerance_) return Answer::meets;
     }
-    // If signs do not decide, a gap may show along the direction in which the two are closest.
+    // If signs do not decide, there may be a gap between the features along the line through their closest points.
     constexpr double narrow = 0.25;
-    constexpr double too_narrow = 0.03;  // a gap that did not show before is too small
+    constexpr double too_narrow = 0.03;  // a gap that was not found in a longer interval is too small
     const double width = interval.high - interval.low;
     return width <= narrow && width >= too_narrow && are_apart_in(interval, 0) ? Answer::never : Answer::unknown;
   }
 
-  /// Returns true if the features are certainly further apart than a distance throughout an interval. Tests the
-  /// direction in which they are closest in its middle. Heights along it are linear in time.
+  /// Returns true if the features are certainly further apart than a distance throughout an interval. It tests the
+  /// direction between their closest points at the middle of the interval. Heights along this direction are linear in
+  /// time.
   [[nodiscard]] bool are_apart_in(const Interval& interval, double distance) const {
     const double middle = 0.5 * (interval.low + interval.high);
     const ClosestPair closest = closest_at(middle);
@@ -271,7 +275,7 @@ class Filter {
     return true;
   }
 
-  /// Returns true if they are certainly no further apart than a distance at a given time.
+  /// Returns true if the features are certainly at most a distance apart at a given time.
   [[nodiscard]] bool is_within(double distance, double t) const {
     const ClosestPair closest = closest_at(t);
     const double rounding = height_rounding * (u_most_ + v_most_ + w_most_);

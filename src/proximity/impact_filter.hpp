@@ -10,18 +10,20 @@ namespace blum::detail {
 
 enum class FeatureKinds : std::uint8_t { vertex_face, edge_edge };
 
-/// The answer of doubles for two features.
+/// The result for two features, as far as double arithmetic can decide it.
 struct FilteredImpact {
   enum class Answer : std::uint8_t { never, meets, unknown };
   Answer answer = Answer::unknown;
-  double time = 0;  ///< if they meet: as vertex_face_impact() returns it
+  double time = 0;  ///< if they meet: the time that vertex_face_impact() returns
 };
 
-/// Returns the time at which two moving features meet, if they do. Exact: uses doubles if these decide, else integers.
+/// Returns the time at which two moving features meet, if they do. Exact: uses double arithmetic if that decides, else
+/// integer arithmetic.
 [[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds,
                                            const ImpactOptions& options);
 
-/// Returns the time at which two moving features meet, if doubles decide it. Never returns a wrong answer.
+/// Returns the time at which two moving features meet, if double arithmetic can decide it, else `unknown`. It never
+/// returns a wrong answer.
 [[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds,
                                              const ImpactOptions& options);
 

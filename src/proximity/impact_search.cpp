@@ -35,11 +35,12 @@ void check(const MeshView& mesh, std::span<const Vec3d> end) {
   }
 }
 
-/// Returns for each named vertex the smallest named one that is in the same place at both ends. Empty if all are by
-/// themselves.
+/// Returns, for each vertex that the mesh uses, the smallest used vertex with the same positions at the start and the
+/// end. Returns an empty list if no two used vertices have the same position at the start.
 std::vector<std::uint32_t> places(const MeshView& mesh, std::span<const Vec3d> end) {
   const std::vector<std::uint32_t> first = weld_clusters(mesh.vertices);
-  std::vector<bool> is_shared(first.size(), false);  // set for the first vertex in a place at the start
+  // True for a vertex that is the first of several at its start position.
+  std::vector<bool> is_shared(first.size(), false);
   for (std::uint32_t v = 0; v < first.size(); ++v) {
     if (first[v] != v) is_shared[first[v]] = true;
   }
@@ -87,7 +88,7 @@ namespace {
 
 constexpr std::size_t direction_count = 10;
 
-/// Heights of a point along each direction: six diagonals of faces of a cube, then the cube's four own.
+/// Heights of a point along ten directions: the six diagonals of a cube's faces, then the cube's four space diagonals.
 using Heights = std::array<double, direction_count>;
 
 Heights heights_of(const Vec3d& p) {
@@ -95,14 +96,16 @@ Heights heights_of(const Vec3d& p) {
           p.y - p.z, p.x + p.y + p.z, p.x + p.y - p.z, p.x - p.y + p.z, p.x - p.y - p.z};
 }
 
-/// Returns a bound on the rounding of the difference of two heights. Each height is a sum of at most three numbers.
+/// Returns a bound on the rounding error of the difference of two heights. Each height is a sum of at most three
+/// numbers.
 double rounding_of(const std::array<Vec3d, 4>& points) {
   double most = 0;
   for (const Vec3d& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   return 0x1p-48 * most;
 }
 
-/// Along each direction, how far the first points are above the rest, and below them; negative if they are not.
+/// For each direction: the gap between the first points and the other points if the first are above, and if they are
+/// below. A negative gap means that they are not.
 struct Gaps {
   Heights above;
   Heights below;
@@ -130,9 +133,9 @@ Gaps gaps_of(const std::array<Vec3d, 4>& points, std::size_t first_count) {
   return gaps;
 }
 
-/// Returns true if one of ten directions certainly separates the first points from the rest. Along it, the first are on
-/// one side of the rest, by more than a distance, at both ends of the motion. So they are at all times. The three axes
-/// are not among the directions, because boxes were compared along them.
+/// Returns true if one of ten directions certainly separates the first points from the others. Along such a direction,
+/// the first points are more than `distance` above or below the others, both at the start and at the end. So the same
+/// holds at all times. The three axes are not among the directions, because boxes were already compared along them.
 /// @param first_count  1 for a vertex and a face, 2 for two edges.
 /// @param distance  mesh units, >= 0.
 bool are_apart(const FourMovingPoints& points, std::size_t first_count, double distance) {
@@ -156,9 +159,9 @@ namespace {
 using detail::FeatureKinds;
 
 constexpr std::size_t blocks_per_range = 32;
-constexpr std::size_t most_collisions = std::size_t{1} << 26;  ///< they take 1.6 GB
+constexpr std::size_t most_collisions = std::size_t{1} << 26;  ///< largest number of collisions: they take 1.6 GB
 
-/// Moves the sides of a box outwards, by no less than half the distance that counts as meeting.
+/// Moves the sides of a box outwards by at least half of `min_separation`.
 void grow(Box3& box, double min_separation) {
   if (!(min_separation > 0)) return;
   const double by = 0.5 * min_separation;
@@ -169,7 +172,7 @@ void grow(Box3& box, double min_separation) {
   }
 }
 
-/// Returns a hierarchy over the boxes of features, each around the feature's vertices.
+/// Returns a hierarchy over the boxes of features. Each box contains the vertices of a feature.
 template <class Features, class Vertices>
 MovingBoxBvh hierarchy(const MovingFeatures& moving, const Features& features, const Vertices& vertices_of,
                        double min_separation, const Context& context) {
@@ -189,7 +192,7 @@ std::span<const std::uint32_t> alone(const std::uint32_t& vertex) {
   return {&vertex, 1};
 }
 
-/// Returns the points of two features of one object or of two.
+/// Returns the points of two features, of one object or of two objects.
 FourMovingPoints points(const MovingFeatures& a, std::span<const std::uint32_t> first, const MovingFeatures& b,
                         std::span<const std::uint32_t> second) {
   FourMovingPoints out;
@@ -220,7 +223,7 @@ struct ImpactSearch::Found {
   std::vector<Collision> collisions;
   std::size_t box_pairs = 0;
   std::size_t exact_tests = 0;
-  bool is_stopped = false;  ///< because the caller asked for it, or because of too many collisions
+  bool is_stopped = false;  ///< true if the caller asked to stop, or if there are too many collisions
 };
 
 std::vector<VertexFaceCollision> ImpactSearch::vertices_and_faces(const MovingObject& of_vertices,
@@ -257,7 +260,7 @@ std::vector<EdgeEdgeCollision> ImpactSearch::edges_and_edges(const MovingObject&
   return out;
 }
 
-/// Returns the results of find(block, found) for all blocks, in no stated order.
+/// Returns the results of find(block, found) for all blocks, in unspecified order.
 template <class Collision, class Find>
 std::vector<Collision> ImpactSearch::gathered(std::size_t blocks, const char* phase, const Find& find) {
   std::vector<Found<Collision>> parts((blocks + blocks_per_range - 1) / blocks_per_range);
@@ -278,8 +281,8 @@ std::vector<Collision> ImpactSearch::gathered(std::size_t blocks, const char* ph
   return all;
 }
 
-/// Counts a pair.
-/// @return  true if it must be skipped, because the search has stopped.
+/// Counts a pair of boxes.
+/// @return  true if the pair must be skipped, because the search has stopped.
 template <class Collision>
 bool ImpactSearch::stops(Found<Collision>& found) const {
   constexpr std::size_t pairs_between_looks = 256;

@@ -15,19 +15,20 @@
 
 namespace blum {
 
-/// The features of a mesh between two frames. Vertices that are in one place at both ends count as one vertex. Among
-/// those that the mesh names, the smallest index stands for all.
+/// The features of a mesh between two frames. Vertices with equal positions in both frames count as one vertex,
+/// represented by the smallest of their indices. Only vertices that the mesh uses count.
 class MovingFeatures {
  public:
-  /// @param mesh  at the start; must outlive this, like `end`.
+  /// @param mesh  the mesh at the start. It must outlive this object.
+  /// @param end   positions of the vertices at the end. They must outlive this object.
   MovingFeatures(const MeshView& mesh, std::span<const Vec3d> end, const Context& context);
 
   [[nodiscard]] const std::vector<std::uint32_t>& vertices() const { return vertices_; }
-  /// Returns each edge once, between vertices that stand for others, the smaller one first.
+  /// Returns each edge once, as two representing vertices, the smaller one first.
   [[nodiscard]] const std::vector<Segment>& edges() const { return edges_; }
   [[nodiscard]] std::span<const Triangle> faces() const { return mesh_.triangles; }
 
-  /// Returns the vertex that stands for another one.
+  /// Returns the vertex that represents a vertex.
   [[nodiscard]] std::uint32_t place(std::uint32_t vertex) const { return place_.empty() ? vertex : place_[vertex]; }
 
   [[nodiscard]] const Vec3d& start(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
@@ -45,7 +46,8 @@ class MovingFeatures {
  private:
   MeshView mesh_;
   std::span<const Vec3d> end_;
-  std::vector<std::uint32_t> place_;  ///< empty if each vertex stands for itself
+  /// For each vertex: the vertex that represents it; empty if each represents itself.
+  std::vector<std::uint32_t> place_;
   std::vector<std::uint32_t> vertices_;
   std::vector<Segment> edges_;
 };
@@ -53,8 +55,9 @@ class MovingFeatures {
 /// A mesh between two frames, with hierarchies over the boxes of its features.
 class MovingObject {
  public:
-  /// @param mesh            at the start; must outlive this, like `end`.
-  /// @param min_separation  the distance that counts as meeting.
+  /// @param mesh            the mesh at the start. It must outlive this object.
+  /// @param end             positions of the vertices at the end. They must outlive this object.
+  /// @param min_separation  features at this distance or less count as meeting.
   MovingObject(const MeshView& mesh, std::span<const Vec3d> end, double min_separation, const Context& context);
 
   [[nodiscard]] const MovingFeatures& features() const { return features_; }
@@ -74,12 +77,13 @@ class ImpactSearch {
  public:
   ImpactSearch(const ImpactOptions& options, const Context& context) : options_(options), context_(context) {}
 
-  /// Returns colliding pairs of a vertex of one object and a face of another one, or of the same one; rising.
+  /// Returns the colliding pairs of a vertex of one object and a face of another object or of the same one, in rising
+  /// order.
   /// @throws OutOfMemory, Cancelled.
   [[nodiscard]] std::vector<VertexFaceCollision> vertices_and_faces(const MovingObject& of_vertices,
                                                                     const MovingObject& of_faces);
-  /// Returns colliding pairs of edges of two objects, the first one's first. For one object, the smaller edge is first.
-  /// Rising.
+  /// Returns the colliding pairs of edges, in rising order. For two objects, each pair begins with the edge of the
+  /// first object. For one object, it begins with the smaller edge.
   [[nodiscard]] std::vector<EdgeEdgeCollision> edges_and_edges(const MovingObject& a, const MovingObject& b);
 
   [[nodiscard]] std::size_t box_pairs() const { return box_pairs_; }

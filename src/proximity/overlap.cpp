@@ -13,7 +13,7 @@
 namespace blum::detail {
 namespace {
 
-/// Chains of edges with common ends.
+/// Joins edges with common ends to chains.
 class Chains {
  public:
   explicit Chains(const std::vector<Edge>& edges) {
@@ -25,7 +25,7 @@ class Chains {
   /// Returns all chains, as lists of vertices.
   std::vector<std::vector<std::uint32_t>> all() {
     std::vector<std::vector<std::uint32_t>> out;
-    // Chains with ends come first, then closed ones.
+    // Chains with two ends come first, then closed chains.
     for (const bool is_closed : {false, true}) {
       for (const auto& [v, others] : at_) {
         if (!is_closed && others.size() == 2) continue;

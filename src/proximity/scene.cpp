@@ -30,20 +30,21 @@ namespace {
 /// The motions of the objects of a scene.
 class SceneMotion {
  public:
-  /// @param objects  number of objects; all rest.
+  /// @param objects  number of objects. An object without a motion is at rest.
   explicit SceneMotion(std::size_t objects) : ends_(objects) {}
 
   /// @throws InvalidMesh
-  /// @throws InvalidOption if an object has a motion already.
+  /// @throws InvalidOption if the object already has a motion.
   void add(const SceneObject& object, const ObjectMotion& motion, const Context& context);
 
   /// See ProximityScene::continuous().
-  /// @param pairs  the pairs that are compared.
+  /// @param pairs  the compared pairs of objects.
   [[nodiscard]] SceneCollisions collisions(std::span<const TwoObjects> pairs, const ImpactOptions& options,
                                            const Context& context) const;
 
  private:
-  std::vector<std::optional<std::vector<Vec3d>>> ends_;  ///< vertices in the scene, of objects that move
+  /// For each object that moves: its vertices at the end, in scene coordinates.
+  std::vector<std::optional<std::vector<Vec3d>>> ends_;
 };
 
 /// An object between two frames, with copies of its data.
@@ -53,7 +54,7 @@ struct Moving {
   std::optional<MovingObject> object;
 };
 
-/// @throws InvalidMesh that names the object.
+/// @throws InvalidMesh if the vertices at the end are not valid. Its message contains the name of the object.
 void check_end(const SceneObject& object, const ObjectMotion& motion, const Context& context) {
   try {
     object.check_positions(motion.vertices, context);
@@ -73,7 +74,7 @@ Box3 box_around(std::span<const Vec3d> start, std::span<const Vec3d> end, const 
 
 void SceneMotion::add(const SceneObject& object, const ObjectMotion& motion, const Context& context) {
   std::optional<std::vector<Vec3d>>& end = ends_[motion.object.value];
-  if (end) throw InvalidOption(name_of(motion.object, object) + " is given two motions");
+  if (end) throw InvalidOption(name_of(motion.object, object) + " has two motions; give at most one");
   if (motion.place) check(*motion.place);
   if (!motion.vertices.empty()) check_end(object, motion, context);
   const std::span<const Vec3d> vertices = motion.vertices.empty() ? object.mesh().vertices : motion.vertices;
@@ -141,8 +142,8 @@ void check_distance(const char* what, double distance) {
   throw InvalidOption(std::string(what) + " is " + exact_text(distance) + ", but must be a number of at least 0");
 }
 
-/// Runs a change that may reject a mesh or vertices of an object. Messages then begin with the object's name, if it has
-/// one.
+/// Calls change(), which may reject a mesh or vertices of an object. Messages of its exceptions then begin with the
+/// object's name, if it has one.
 template <class Change>
 void change_named(const std::string& name, const Change& change) {
   if (name.empty()) return change();
@@ -185,7 +186,8 @@ void check(const SceneOptions& options) {
 struct ProximityScene::Data {
   SceneOptions options;
   std::vector<std::optional<SceneObject>> objects;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> excluded;  ///< the smaller one first
+  /// Pairs of objects that are not compared, the smaller object first.
+  std::set<std::pair<std::uint32_t, std::uint32_t>> excluded;
 
   [[nodiscard]] const SceneObject& at(ObjectId object) const {
     if (object.value >= objects.size() || !objects[object.value]) {
@@ -219,9 +221,10 @@ struct ProximityScene::Data {
     return detail::closest_pair_by_cells(pair, objects.size(), options.cell_size, max_distance, context, report);
   }
 
-  /// Returns the pairs of objects that are compared and whose boxes are no further apart than a distance.
+  /// Returns the pairs of objects that are compared and whose boxes are at most a distance apart.
   [[nodiscard]] std::vector<TwoObjects> compared(double distance, const Context& context) const {
-    static_cast<void>(thread_count(context));  // refused even with nothing to do
+    // Throws if the number of threads is invalid, even if there is nothing to do.
+    static_cast<void>(thread_count(context));
     throw_if_cancelled(context);
     std::vector<Box3> boxes(objects.size());
     for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -237,7 +240,7 @@ struct ProximityScene::Data {
     }
     return out;
   }
-  /// Returns the same pairs with all that comparing primitives needs.
+  /// Returns the pairs of compared(), with the data that a comparison of their primitives needs.
   /// @param report  receives the number of pairs and the time spent.
   [[nodiscard]] std::vector<ObjectPair> pairs(double distance, const Context& context, ProximityReport& report) const {
     PhaseTimer timer(report.phases);
@@ -383,7 +386,8 @@ ProximityPairs ProximityScene::collisions(const Context& context) const {
     timer.lap("primitives");
     return out;
   }
-  // Folded neighbours are not a question of distances. So objects with themselves are compared by boxes.
+  // Distances do not show if neighbouring triangles are folded. So for pairs of an object and itself, the hierarchies
+  // of boxes are used.
   std::vector<ObjectPair> others;
   std::vector<ObjectPair> selves;
   for (const ObjectPair& pair : pairs) (pair.is_self() ? selves : others).push_back(pair);

@@ -15,7 +15,7 @@
 namespace blum {
 namespace {
 
-/// Fourth powers of coordinates must stay finite.
+/// Greatest coordinate of an object, mesh units. Fourth powers of coordinates must stay finite.
 constexpr double largest_coordinate = 1e70;
 constexpr double smallest_coordinate = 1e-140;
 constexpr std::size_t vertices_per_range = 8192;
@@ -33,7 +33,7 @@ void check(const RigidTransform& place) {
     throw InvalidOption("the rotation of a transform holds numbers that are not finite");
   }
   if (const double error = place.rotation_error(); !(error <= tolerance)) {
-    constexpr double rounding = 1e-5;  // error of single precision, and of some products in it
+    constexpr double rounding = 1e-5;  // error of numbers in single precision, and of a few products of them
     throw InvalidOption(
         "a transform is not rigid: the columns of its rotation must be orthonormal to within 1e-9, but are so only to "
         "within " +
@@ -96,7 +96,7 @@ void SceneObject::check_positions(std::span<const Vec3d> vertices, const Context
     if (largest >= smallest_coordinate) is_any_large = true;
   });
   if (are_fine && is_any_large) return;
-  // Vertices that no primitive names may have any value.
+  // Vertices that no primitive uses may have any value.
   MeshView moved = mesh_;
   moved.vertices = vertices;
   check(moved);

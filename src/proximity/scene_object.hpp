@@ -17,7 +17,7 @@
 
 namespace blum::detail {
 
-/// A mesh, its place, and a hierarchy over it.
+/// An object of a scene: a mesh, its transform into the scene (its place), and a hierarchy of boxes over the mesh.
 class SceneObject {
  public:
   SceneObject(const MeshView& mesh, ObjectOptions options, const Context& context);
@@ -34,19 +34,19 @@ class SceneObject {
   [[nodiscard]] const RigidTransform& place() const { return place_; }
   [[nodiscard]] std::size_t primitives() const { return bvh_->size(); }
   [[nodiscard]] std::size_t triangles() const { return mesh_.triangles.size(); }
-  /// Returns a box around all of it in the scene.
+  /// Returns a box around the whole object, in scene coordinates.
   [[nodiscard]] Box3 bounds() const;
 
-  /// Returns the vertices of a primitive.
+  /// Returns the vertices of a primitive. Those of a segment or point are repeated.
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
-  /// Returns their positions in the scene.
+  /// Returns the positions of a primitive's vertices in the scene.
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   /// Returns the positions of all vertices in the scene.
   [[nodiscard]] std::vector<Vec3d> positions() const { return positions(mesh_.vertices, place_); }
-  /// Returns transformed positions.
+  /// Returns the vertices, transformed by `place`.
   [[nodiscard]] static std::vector<Vec3d> positions(std::span<const Vec3d> vertices, const RigidTransform& place);
-  /// Returns for each vertex the smallest one in the same place in the scene.
+  /// Returns for each vertex the smallest vertex with the same position in the scene.
   [[nodiscard]] std::vector<std::uint32_t> clusters() const;
 
  private:

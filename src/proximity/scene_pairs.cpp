@@ -20,14 +20,14 @@ namespace {
 
 constexpr std::size_t blocks_per_range = 16;
 
-/// Returns a bound on the coordinates in computations.
+/// Returns a bound on the coordinates that occur in computations with an object.
 double largest_coordinate(const SceneObject& object) {
   return object.bounds().largest_coordinate() + object.bvh().bounds().largest_coordinate() +
          length(object.place().translation);
 }
 
-/// Returns the largest difference between gaps of boxes, as the hierarchies see them, and distances between rounded
-/// positions. Either object is seen through the transforms of both.
+/// Gaps of boxes are computed in the hierarchies' coordinates, but distances from rounded positions in the scene.
+/// Returns a bound on the difference that rounding in the transforms of both objects causes.
 double position_slack(const SceneObject& a, const SceneObject& b) {
   constexpr double rounding = 1e-14;
   const double error = a.place().rotation_error() + b.place().rotation_error();
@@ -47,7 +47,7 @@ constexpr std::size_t pairs_among(std::size_t count) {
   return count < 2 ? 0 : count * (count - 1) / 2;
 }
 
-/// Returns the number of primitives with a vertex in each place.
+/// Returns, for each vertex that represents its position, the number of primitives with a vertex there.
 std::vector<std::uint32_t> primitives_at_vertices(const ObjectPair& objects) {
   const SceneObject& object = objects.a();
   std::vector<std::uint32_t> count(object.mesh().vertices.size(), 0);
@@ -96,7 +96,7 @@ void add(const ProximityReport& report, ProximityReport& to) {
 
 ObjectPair::ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, const SceneObject& b)
     : first_(first), second_(second), a_(&a), b_(&b) {
-  // Without transforms, positions are those that the hierarchies see.
+  // Without transforms, the positions in the scene are those in the hierarchies.
   const bool is_placed = !(a.place() == RigidTransform{} && b.place() == RigidTransform{});
   if (is_placed) slack_ = position_slack(a, b);
   if (is_self()) clusters_ = a.clusters();
@@ -143,13 +143,13 @@ void CandidateLimit::check() const {
 
 namespace {
 
-/// An object that another one is compared with.
+/// An object (the partner) with which another object is compared.
 struct Partner {
   const ObjectPair* pair;
-  bool is_second;  ///< true if the partner is the second of the pair
+  bool is_second;  ///< true if the partner is the second object of the pair
 };
 
-/// Search for the closest primitives of a block's primitives.
+/// Searches, for each primitive of a block, the closest primitive of other objects or of the same one.
 class BlockSearch {
  public:
   BlockSearch(const OrientedBvh& bvh, std::size_t block, double max_distance, CandidateLimit& candidates)
@@ -178,7 +178,7 @@ class BlockSearch {
     bvh_.for_each_near_pair(block_, other.bvh(), place, limit() + pair.slack(), visit);
   }
 
-  /// @param out  closest pair of each primitive of the object.
+  /// @param out  receives the closest pair of each primitive of the block, at the index of the primitive.
   void add_to(std::vector<std::optional<PrimitivePair>>& out) const {
     for (std::size_t k = 0; k < primitives_.size(); ++k) out[primitives_[k]] = best_[k].pair;
   }
@@ -196,8 +196,8 @@ class BlockSearch {
     return furthest;
   }
 
-  /// Returns the largest primitive of an object that may still be the closest one of a primitive here. If all have one
-  /// at distance zero, others must come before it.
+  /// Returns the largest primitive of object `other` that may still be the closest one of a primitive of this block. If
+  /// all primitives of the block have a partner at distance zero, only partners that precede it are better.
   [[nodiscard]] std::uint32_t last_of(ObjectId other) const {
     std::uint32_t last = 0;
     for (std::size_t k = 0; k < primitives_.size(); ++k) {
@@ -265,7 +265,7 @@ void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, dou
 
 namespace {
 
-/// Returns the order of pairs by their objects and primitives.
+/// Returns the indices of pairs, sorted by first object, first primitive, second object and second primitive.
 std::vector<KeyedIndex> sorted_order(const std::vector<const PrimitivePair*>& pairs) {
   std::vector<std::array<std::uint32_t, 4>> keys;
   keys.reserve(pairs.size());
@@ -277,8 +277,8 @@ std::vector<KeyedIndex> sorted_order(const std::vector<const PrimitivePair*>& pa
   std::vector<KeyedIndex> order(pairs.size());
   std::vector<KeyedIndex> scratch;
   for (std::uint32_t k = 0; k < order.size(); ++k) order[k].index = k;
-  // Stable sorts by one column after another, the last one first. Columns that do not vary are skipped, because most
-  // scenes have few objects.
+  // One stable sort for each column, the last column first. Columns with equal values are skipped; most scenes have few
+  // objects.
   for (std::size_t column = 4; column-- > 0;) {
     if (!varies[column]) continue;
     for (KeyedIndex& one : order) one.key = keys[one.index][column];
@@ -307,7 +307,7 @@ void add_sorted(std::vector<std::vector<PrimitivePair>> parts, const Context& co
 void check_count(std::size_t pairs) {
   if (pairs <= most_close_pairs) return;
   throw OutOfMemory("more than " + std::to_string(most_close_pairs) +
-                    " pairs are that close: use a smaller distance, or remove duplicates");
+                    " pairs lie within the distance: use a smaller distance, or remove duplicates");
 }
 
 namespace {
@@ -316,7 +316,7 @@ namespace {
 struct FoundPairs {
   std::vector<PrimitivePair> pairs;
   ProximityReport report;
-  bool is_stopped = false;  ///< because the caller asked for it, or because of too many pairs
+  bool is_stopped = false;  ///< true if the caller asked to stop, or if there are too many pairs
 };
 
 class NearSearch {
@@ -378,7 +378,8 @@ bool has_flat_primitives(const SceneObject& object) {
   return false;
 }
 
-/// Adds the collisions of an object with itself. For triangles with an area, a search exists that handles neighbours.
+/// Adds the collisions of an object with itself. All primitives must be triangles with an area.
+/// find_self_intersections() also tests neighbours.
 void add_self_intersections(const ObjectPair& objects, const Context& context, ProximityPairs& out) {
   const SceneObject& object = objects.a();
   const std::vector<Vec3d> positions = object.positions();
@@ -427,14 +428,14 @@ void check_neighbours(const ObjectPair& objects) {
   const std::vector<std::uint32_t> count = primitives_at_vertices(objects);
   const auto most = std::max_element(count.begin(), count.end());
   if (most == count.end() || pairs_among(*most) <= most_candidates) return;
-  throw InvalidMesh(name_of(objects.first(), objects.a()) + ": " + std::to_string(*most) +
-                    " primitives meet at vertex " + std::to_string(most - count.begin()) + ", which are more than " +
+  throw InvalidMesh(name_of(objects.first(), objects.a()) + ": " + std::to_string(*most) + " primitives share vertex " +
+                    std::to_string(most - count.begin()) + ", which makes more than " +
                     std::to_string(most_candidates) + " pairs: remove duplicates");
 }
 
 void check_equal_triangles(const ObjectPair& objects) {
   const std::vector<std::uint32_t> count = primitives_at_vertices(objects);
-  // Equal triangles in great number have many primitives at all three corners.
+  // If many triangles are equal, there are many primitives at all three of their corners.
   std::vector<std::array<std::uint32_t, 3>> crowded;
   for (std::uint32_t t = 0; t < objects.a().triangles(); ++t) {
     std::array<std::uint32_t, 3> places = objects.places(t);

@@ -17,28 +17,29 @@
 
 namespace blum::detail {
 
-/// The closest pair of one primitive so far.
+/// The closest pair found so far, of one primitive or of two objects.
 struct Closest {
   std::optional<PrimitivePair> pair;
   double limit = 0;  ///< pairs further away do not count
 
   void offer(const PrimitivePair& other);
-  /// Returns true if a partner comes after the closest one, however close it is.
+  /// Returns true if a partner cannot replace the closest one at any distance. This is so if the closest one is at
+  /// distance 0 and its (object, primitive) is smaller.
   [[nodiscard]] bool rules_out(ObjectId object, std::uint32_t primitive) const {
     return limit == 0 && pair && std::pair(object, primitive) > std::pair(pair->second_object, pair->second);
   }
 };
 
-/// Returns the distance of two boxes, or a little less because of rounding.
+/// Returns the distance of two boxes, reduced by a bound on rounding errors.
 [[nodiscard]] double box_gap(const Box3& a, const Box3& b);
 
 [[nodiscard]] PrimitivePair exchanged(const PrimitivePair& pair);
 
 /// Adds counts, but not times.
-/// @param to  receives the sums.
+/// @param to  the report to which the counts are added.
 void add(const ProximityReport& report, ProximityReport& to);
 
-/// Two objects, the smaller one first, or an object and itself.
+/// Two objects, the one with the smaller number first, or an object and itself.
 struct TwoObjects {
   ObjectId first;
   const SceneObject* a;
@@ -46,7 +47,7 @@ struct TwoObjects {
   const SceneObject* b;
 };
 
-/// Two objects, and all that comparing their primitives needs.
+/// Two objects, and the data that a comparison of their primitives needs.
 class ObjectPair {
  public:
   explicit ObjectPair(const TwoObjects& two) : ObjectPair(two.first, *two.a, two.second, *two.b) {}
@@ -57,23 +58,23 @@ class ObjectPair {
   [[nodiscard]] const SceneObject& a() const { return *a_; }
   [[nodiscard]] const SceneObject& b() const { return *b_; }
   [[nodiscard]] bool is_self() const { return first_ == second_; }
-  /// Returns the place of the second object as seen from the first.
+  /// Returns the transform from the coordinates of the second object to those of the first.
   [[nodiscard]] const RigidTransform& place() const { return place_; }
-  /// Returns the amount that searches in the first object's frame must add to distances in the scene, because positions
-  /// are rounded.
+  /// Returns the amount that must be added to distances in the scene for searches in the first object's coordinates,
+  /// because positions are rounded.
   [[nodiscard]] double slack() const { return slack_; }
 
-  /// For an object and itself: returns for each vertex the smallest one in the same place.
+  /// For an object and itself: returns for each vertex the smallest vertex with the same position.
   [[nodiscard]] std::span<const std::uint32_t> clusters() const { return clusters_; }
-  /// For an object and itself: returns for each vertex of a primitive the smallest vertex in its place.
+  /// For an object and itself: returns for each vertex of a primitive the smallest vertex with the same position.
   [[nodiscard]] std::array<std::uint32_t, 3> places(std::uint32_t primitive) const;
-  /// Returns true if two primitives of one object have a vertex in common.
+  /// Returns true if two primitives of one object have vertices with the same position.
   [[nodiscard]] bool are_neighbours(std::uint32_t i, std::uint32_t j) const;
   /// Returns true if two neighbouring primitives of one object have more points in common than their shared vertices
   /// and edges.
   [[nodiscard]] bool are_folded(std::uint32_t i, std::uint32_t j) const;
-  /// Returns the closest points of a primitive of the first object and one of the second. Within one object, the
-  /// smaller primitive is first.
+  /// Returns the closest points of primitive i of the first object and primitive j of the second. Within one object,
+  /// the smaller primitive is first in the result.
   [[nodiscard]] PrimitivePair compare(std::uint32_t i, std::uint32_t j) const;
 
  private:
@@ -82,60 +83,62 @@ class ObjectPair {
   const SceneObject* b_;
   RigidTransform place_;
   double slack_ = 0;
-  std::vector<std::uint32_t> clusters_;  ///< for an object and itself: the smallest vertex in the place of each
+  /// For an object and itself: for each vertex, the smallest vertex with the same position.
+  std::vector<std::uint32_t> clusters_;
 };
 
 /// Treatment of primitives of one object that share a vertex.
 enum class Neighbours : std::uint8_t {
   left_out,
-  folded  ///< listed if they have more in common than they share
+  folded  ///< returned if they have more points in common than their shared vertices and edges
 };
 
-/// Returns the closest pair within a distance.
+/// Returns the closest pair of primitives within a distance.
 /// @throws InvalidOption if the context has no threads.
 /// @throws Cancelled
-/// @throws InvalidMesh if more pairs than most_candidates lie on each other.
+/// @throws InvalidMesh if more than most_candidates pairs lie on each other.
 [[nodiscard]] std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance,
                                                         const Context& context, ProximityReport& report);
 
-/// The closest pair of each primitive, by object and primitive.
+/// The closest pair of each primitive: row o, item p is that of primitive p of object o. Rows of objects that are not
+/// compared are empty.
 using ClosestRows = std::vector<std::vector<std::optional<PrimitivePair>>>;
 
 /// Returns the closest pair of each primitive.
 /// @param objects  number of objects in the scene.
-/// @param is_wanted  selects primitives; others get none.
+/// @param is_wanted  callable: returns true for primitives whose pairs are needed. Others may have no pair.
 [[nodiscard]] ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                                        FunctionRef<bool(ObjectId, std::uint32_t)> is_wanted, const Context& context,
                                        ProximityReport& report);
 
-/// Appends the closest pairs of all primitives, in one list.
+/// Appends the closest pairs of all primitives to `out`, sorted by object and primitive.
 void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                      const Context& context, ProximityPairs& out);
 
-/// Adds the pairs of parts of a search to others, and sorts all by objects and primitives.
+/// Adds the pairs of all parts of a search to `pairs`, and sorts `pairs` by objects and primitives.
 /// @throws Cancelled.
 void add_sorted(std::vector<std::vector<PrimitivePair>> parts, const Context& context,
                 std::vector<PrimitivePair>& pairs);
 
-/// Largest number of candidates that one query examines. They take a minute or more, for example in a heap of equal
-/// triangles.
+/// Largest number of candidate pairs that one query examines. This number takes a minute or more; it is reached, for
+/// example, in a heap of equal triangles.
 inline constexpr std::size_t most_candidates = std::size_t{1} << 29;
 
-/// Counts the candidates of all parts of a loop.
+/// Counts the candidates of all parts of a parallel loop.
 class CandidateLimit {
  public:
   explicit CandidateLimit(const Context& context) : context_(&context) {}
 
   /// Must be called for every candidate of a part.
   /// @param count  number of candidates of that part so far.
-  /// @return true if the search must stop: the caller asked for it, or candidates are too many.
+  /// @return true if the search must stop, because the caller asked for it or because there are too many candidates.
   [[nodiscard]] bool stops(std::size_t count) {
     constexpr std::size_t between_looks = 1024;
     if (count % between_looks == 0) total_ += between_looks;
     return is_stopped_ || (count % between_looks == 0 && look());
   }
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
-  /// @throws Cancelled; InvalidMesh if candidates were too many.
+  /// @throws Cancelled; InvalidMesh if there were too many candidates.
   void check() const;
 
  private:
@@ -149,18 +152,18 @@ class CandidateLimit {
   std::atomic<bool> is_stopped_ = false;
 };
 
-/// Largest number of pairs in a result: they take 5 GB.
+/// Largest number of pairs in a result. This number of pairs takes 5 GB.
 inline constexpr std::size_t most_close_pairs = std::size_t{1} << 26;
 
-/// @throws OutOfMemory if there are more than most_close_pairs.
+/// @throws OutOfMemory if `pairs` is above most_close_pairs.
 void check_count(std::size_t pairs);
 
-/// Adds all pairs within a distance.
+/// Adds all pairs of primitives that are at most a distance apart.
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
                 ProximityPairs& out);
 
-/// Rejects at once an object on which a query would fail after a minute.
-/// @param objects  an object with itself.
+/// Rejects an object on which a query would otherwise fail after a minute.
+/// @param objects  a pair of an object and itself.
 /// @throws InvalidMesh if so many primitives share a vertex that they form more than most_candidates pairs.
 void check_neighbours(const ObjectPair& objects);
 

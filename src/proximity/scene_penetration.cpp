@@ -32,46 +32,48 @@
 namespace blum::detail {
 namespace {
 
-/// A part of a surface, and the other surface that it lies in.
+/// A part of a surface that lies inside another solid, and the surface of that solid.
 struct DeepPatch {
   std::vector<std::array<Vec3d, 3>> triangles;  ///< at least one
   TriangleMesh surface;                         ///< not empty
 };
 
-/// The deepest point of patches, and its depth.
+/// The deepest point of patches, its depth, and the closest point of the surface.
 struct DeepestPoint {
   double distance = 0;
   double bound = 0;  ///< no point of the patches is deeper than this, except by rounding
   Vec3d point;
-  Vec3d closest;             ///< of the surface
+  Vec3d closest;             ///< the closest point of the surface
   std::size_t patch = 0;     ///< the patch of the point
-  std::size_t triangle = 0;  ///< triangle of the patch
-  std::uint32_t other = 0;   ///< triangle of the surface
+  std::size_t triangle = 0;  ///< the triangle of the patch that contains the point
+  std::uint32_t other = 0;   ///< the triangle of the surface that contains `closest`
 };
 
-/// Facets of a surface: connected triangles in one plane, and their borders.
+/// Facets of a surface, and their borders. A facet consists of connected triangles in one plane.
 class Facets {
  public:
-  /// @param rounding  largest distance from a plane of points that count as in it.
+  /// @param rounding  points at most this far from a plane count as in the plane.
   Facets(const MeshView& mesh, double rounding);
 
-  /// Position of a triangle relative to a facet, seen along the facet's normal.
+  /// Position of a triangle relative to a facet, in the projection along the facet's normal.
   struct Lie {
-    bool is_over = false;  ///< true if all of it is over the facet
+    bool is_over = false;  ///< true if the whole triangle is over the facet
     double furthest = 0;   ///< largest distance of the corners from the facet's plane
     bool is_crossed = false;
-    /// If a side of the facet crosses the triangle: distances of the corners from the plane through that side, along
-    /// the normal. Some are above 0, some below.
+    /// If a side of the facet crosses the triangle: signed distances of the corners from the plane of this side and the
+    /// facet's normal. At least one is above 0 and one below.
     std::array<double, 3> sides{};
   };
 
-  /// Returns the number of sides and triangles of a triangle's facet.
+  /// Returns the number of border sides plus the number of triangles of the facet of a triangle.
   [[nodiscard]] std::size_t size(std::uint32_t triangle) const {
     const Facet& facet = facets_[facet_of_[triangle]];
     return facet.border.size() + facet.triangles.size();
   }
+  /// Returns the position of a triangle relative to a facet.
+  /// @param points    the corners of the triangle.
   /// @param triangle  one of the facet's triangles.
-  /// Cost: O(size of the facet), 10 ns for each side or triangle.
+  /// Cost: 10 ns for each side and each triangle of the facet.
   [[nodiscard]] Lie lie(const std::array<Vec3d, 3>& points, std::uint32_t triangle) const;
 
  private:
@@ -87,13 +89,13 @@ class Facets {
   [[nodiscard]] bool holds(const Facet& facet, const Point& point) const;
 
   double rounding_;
-  std::vector<std::uint32_t> facet_of_;  ///< of each triangle
+  std::vector<std::uint32_t> facet_of_;  ///< for each triangle: its facet
   std::vector<Facet> facets_;
 };
 
 constexpr std::uint32_t no_facet = 0xffffffffU;
 
-/// Returns the distance from the line from a to b, positive on its left; 0 if a and b are one point.
+/// Returns the distance of p from the line from a to b, positive on its left side. Returns 0 if a and b are one point.
 double left_of(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& p) {
   const double x = b[0] - a[0];
   const double y = b[1] - a[1];
@@ -101,8 +103,9 @@ double left_of(const std::array<double, 2>& a, const std::array<double, 2>& b, c
   return size > 0 ? (x * (p[1] - a[1]) - y * (p[0] - a[0])) / size : 0;
 }
 
-/// Restricts a segment, from 0 to 1, to the part that lies more than a margin left of a line.
-/// @param from, to  distances of its ends from the line, positive on the left.
+/// Restricts a part of a segment to the points that lie more than a margin left of a line. The part is from `begin` to
+/// `end`, as fractions of the segment's length.
+/// @param from, to  distances of the segment's ends from the line, positive on the left.
 void keep_left(double from, double to, double margin, double& begin, double& end) {
   from -= margin;
   to -= margin;
@@ -208,19 +211,20 @@ Facets::Lie Facets::lie(const std::array<Vec3d, 3>& points, std::uint32_t triang
   return out;
 }
 
-/// After this many points, parts are cut no further. The bound then shows how far the search went.
+/// Greatest number of evaluated points. After this number, parts are not cut any more, and the bound may exceed the
+/// depth by more than the tolerance.
 constexpr std::size_t most_points = 200000;
-/// Most sides and triangles of facets that are examined, in all.
+/// Greatest total number of sides and triangles of facets that are examined.
 constexpr std::size_t most_of_facets = 100'000'000;
 
-/// A point of a patch, and the triangle of the surface closest to it.
+/// A point of a patch, its distance from the surface, and the closest triangle of the surface.
 struct Sample {
   Vec3d point;
   double distance = 0;
   std::uint32_t other = 0;
 };
 
-/// A part of a triangle of a patch.
+/// A triangle that is a part of a triangle of a patch.
 struct Part {
   std::array<Sample, 3> corners;
   std::size_t patch = 0;
@@ -231,7 +235,7 @@ struct Part {
   }
 };
 
-/// The surface that a patch lies in.
+/// The surface of the solid in which a patch lies.
 struct Surface {
   Surface(const TriangleMesh& of_patch, double rounding)
       : mesh(of_patch), sites(of_patch), bvh(of_patch, sites), facets(of_patch, 16 * rounding) {}
@@ -289,9 +293,10 @@ class Search {
     return out;
   }
 
-  /// Returns an upper bound on the distance of a part's points from the surface. It is the least of several. The
-  /// distance from any one triangle of the surface is an upper bound, and is largest at a corner. So is the distance of
-  /// a corner, plus the way from there. If all of the part is over a facet, so is the distance from its plane.
+  /// Returns an upper bound on the distances of a part's points from the surface: the least of three kinds of bounds.
+  /// The first is the distance from one triangle of the surface, which is largest at a corner of the part. The second
+  /// is the distance of a corner from the surface plus the longest distance from that corner. If the whole part is over
+  /// a facet, the third is the largest distance of a corner from the facet's plane.
   [[nodiscard]] double bound(const Part& part) {
     double least = std::numeric_limits<double>::infinity();
     for (const Sample& from : part.corners) {
@@ -320,9 +325,9 @@ class Search {
     }
   }
 
-  /// Cuts a part along a side of a facet of the surface, because over a facet the distance from it is linear. Shallow
-  /// contacts of large faces have few such parts, but halving them would take long.
-  /// @return  true if such a side exists.
+  /// Cuts a part along a side of a facet of the surface, because the distance from a facet is linear over it. In
+  /// shallow contacts of large faces this yields few parts. Halving alone would need many.
+  /// @return  true if a side of a facet crosses the part.
   bool cut_along_facets(const Part& part) {
     for (const Sample& corner : part.corners) {
       const std::optional<Facets::Lie> lie = lie_to_facet(part, corner.other);
@@ -333,7 +338,8 @@ class Search {
     return false;
   }
 
-  /// @return  nullopt after most_of_facets sides and triangles.
+  /// Returns the position of a part relative to the facet of a triangle.
+  /// @return  nullopt if more than most_of_facets sides and triangles were examined.
   std::optional<Facets::Lie> lie_to_facet(const Part& part, std::uint32_t triangle) {
     const Facets& facets = surfaces_[part.patch].facets;
     looked_at_ += facets.size(triangle);
@@ -345,9 +351,10 @@ class Search {
     return {part.corners[0].point, part.corners[1].point, part.corners[2].point};
   }
 
-  /// @param sides  signed distances of the corners: some above 0, some below.
+  /// Cuts a part along a line.
+  /// @param sides  signed distances of the corners from the line: at least one above 0 and one below.
   void cut_along(const Part& part, const std::array<double, 3>& sides) {
-    // The corners of both pieces, around the triangle. Those of the cut belong to both pieces.
+    // The corners of both pieces, in cyclic order. Points on the line belong to both pieces.
     std::vector<Sample> above;
     std::vector<Sample> below;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -370,7 +377,7 @@ class Search {
     }
   }
 
-  /// Cuts a part in halves, across its longest side.
+  /// Cuts a part in two halves at the middle of its longest side.
   void cut(const Part& part) {
     std::size_t at = 0;
     double longest = -1;
@@ -396,20 +403,20 @@ class Search {
   double known_;
   double tolerance_;
   const Context& context_;
-  double rounding_ = 0;  ///< more than the error of distances
+  double rounding_ = 0;  ///< a bound on the error of distances
   DeepestPoint best_;
   double dropped_ = 0;  ///< largest bound of parts that are not examined further
   std::size_t points_ = 0;
-  std::size_t looked_at_ = 0;  ///< sides and triangles of facets
+  std::size_t looked_at_ = 0;  ///< number of sides and triangles of facets examined
   std::priority_queue<Part> parts_;
 };
 
-/// Returns the point of patches that is furthest from the surface that its patch lies in. Uses branch and bound (Guthe
-/// and others 2005). The distance from a fixed triangle is convex, so over a part of a triangle it is largest at a
-/// corner. The distance from a surface is no larger than that from any of its triangles.
-/// @param known      depth of another known point. Patches that are nowhere deeper are not examined closely.
-/// @param tolerance  largest excess of the bound over the returned distance, relative to it. If 200,000 points are not
-///   enough for that, the bound shows how far they went.
+/// Returns the point of all patches that is furthest from the surface of the solid in which its patch lies. Uses branch
+/// and bound (Guthe and others 2005). The distance from a fixed triangle is convex, so over a part of a triangle it is
+/// largest at a corner. The distance from a surface is no larger than that from any of its triangles.
+/// @param known      depth of a point found before. Parts whose bound is not above this depth are not cut.
+/// @param tolerance  largest allowed excess of the bound over the depth, relative to the depth. After 200,000 points
+/// the search ends, even if the excess is still larger.
 /// @throws Cancelled.
 DeepestPoint deepest_point(std::span<const DeepPatch> patches, double known, double tolerance, const Context& context) {
   return Search(patches, known, tolerance, context).run();
@@ -430,10 +437,10 @@ void check(const PenetrationOptions& options) {
 namespace blum::detail {
 namespace {
 
-/// The surfaces of one object or two in one mesh, and the sources of their triangles.
+/// The surfaces of one or two objects in one mesh, and the triangles of the objects that they come from.
 struct Surfaces {
   TriangleMesh mesh;
-  std::vector<std::uint32_t> triangle_of;  ///< triangle of the object, for each triangle
+  std::vector<std::uint32_t> triangle_of;  ///< for each triangle, the triangle of its object
   std::size_t of_first = 0;                ///< number of triangles of the first object, which come first
 
   [[nodiscard]] bool is_of_first(std::uint32_t triangle) const { return triangle < of_first; }
@@ -446,13 +453,13 @@ struct Surfaces {
   }
 };
 
-/// The surfaces of the objects of a scene, each made once.
+/// The surfaces of the objects of a scene. Each is computed once.
 class SolidSurfaces {
  public:
   explicit SolidSurfaces(const Context& context) : context_(&context) {}
 
-  /// Returns the surface without parts that lie in it twice. Then points that two surfaces wind around twice are in
-  /// both.
+  /// Returns the surface of the solid that an object bounds, without parts of triangles inside the solid. It winds
+  /// around each point at most once, so points around which two such surfaces wind twice are in both solids.
   /// @throws InvalidMesh; Cancelled.
   const SolidSurface& of(ObjectId id, const SceneObject& object) {
     const auto [at, is_new] = made_.try_emplace(id);
@@ -462,7 +469,7 @@ class SolidSurfaces {
     }
     return at->second;
   }
-  /// Returns the surface as it is.
+  /// Returns the surface of an object without changes.
   /// @throws InvalidMesh.
   static SolidSurface with_itself(ObjectId id, const SceneObject& object) {
     SolidSurface out{mesh_of(object), {}, {}};
@@ -483,7 +490,7 @@ class SolidSurfaces {
   std::map<ObjectId, SolidSurface> made_;
 };
 
-/// One connected part of the overlap of solids.
+/// One connected part of an overlap.
 class Body {
  public:
   Body(const Surfaces& surfaces, const Overlap& overlap, const std::vector<std::uint32_t>& labels,
@@ -499,7 +506,7 @@ class Body {
   }
 
  private:
-  /// The sources of the triangles of a patch, and of the surface that it lies in.
+  /// The source triangles of a patch, and of the surface of the solid in which it lies.
   struct Sources {
     std::vector<std::uint32_t> patch;
     std::vector<std::uint32_t> surface;
@@ -513,13 +520,15 @@ class Body {
       out.area[surfaces_.is_of_first(overlap_.source[t]) ? 0 : 1] += length(normal) / 2;
       out.volume += dot(normal, a - origin) / 6;
     }
-    // Rounding may make the volume of thin parts slightly negative.
+    // Rounding errors may make the volume of thin parts slightly negative.
     const double rounding = 1e-12 * bounds(overlap_.mesh).largest_coordinate() * (out.area[0] + out.area[1]);
     if (out.volume < 0 && out.volume > -rounding) out.volume = 0;
   }
 
-  /// Few labels, as of two solids, are measured together. An object that meets itself may have thousands of them. These
-  /// are measured one by one, those of largest reach first, until the rest reach less far than the depth found.
+  /// Measures the depth of the part: the largest distance of a point of one label's triangles from those of the other
+  /// labels. Up to 8 labels are measured together; two solids have two. An object that meets itself may have thousands
+  /// of labels. These are measured one by one, the largest reach first, until no further reach is above the depth
+  /// found.
   void measure_depth(double tolerance, const Context& context, Penetration& out) const {
     constexpr std::size_t few = 8;
     std::set<std::uint32_t> known;
@@ -533,10 +542,10 @@ class Body {
     }
   }
 
-  /// Upper bound on the distance of points of a label's triangles from the others.
+  /// Upper bound on the distance of points of a label's triangles from the triangles of other labels.
   struct Reach {
     std::uint32_t label = 0;
-    double reach = 0;  ///< infinite if they are not connected to others
+    double reach = 0;  ///< infinite if the triangles have no common edge with other labels
   };
 
   /// Returns the reaches of all labels, the largest first.
@@ -590,7 +599,7 @@ class Body {
     out.direction = out.is_first_deep ? out_of_it : -out_of_it;
   }
 
-  /// Returns the triangles of one label, and those of the others, which they lie in.
+  /// Returns the triangles of one label as a patch, and the triangles of all other labels as the surface.
   [[nodiscard]] DeepPatch patch_of(std::uint32_t label, Sources& from) const {
     DeepPatch out;
     out.surface.vertices = overlap_.mesh.vertices;
@@ -607,7 +616,8 @@ class Body {
     return out;
   }
 
-  /// Takes all of the other surface, for a part that lies in a solid without meeting its surface.
+  /// Fills `surface` with the whole surface of the other solid. This is needed if a part lies in that solid without
+  /// meeting its surface.
   void take_whole_surface(TriangleMesh& surface, Sources& from) const {
     const std::set<std::uint32_t> own(from.patch.begin(), from.patch.end());
     const bool is_of_first = surfaces_.is_of_first(*own.begin());
@@ -626,23 +636,24 @@ class Body {
   std::vector<std::uint32_t> triangles_;
 };
 
-/// Returns a normal, not of length 1.
+/// Returns a normal of a triangle. Its length is twice the triangle's area.
 Vec3d normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
   const auto [a, b, c] = triangle_corners(mesh, triangle);
   return cross(b - a, c - a);
 }
 
-/// Returns true if a vector comes before its opposite.
+/// Returns true if the first nonzero coordinate of a vector is negative.
 bool is_backward(const Vec3d& v) {
   if (v.x != 0) return v.x < 0;
   if (v.y != 0) return v.y < 0;
   return v.z < 0;
 }
 
-/// If both surfaces coincide, each part of the border could belong to either. Equal solids would yield only the first
-/// one's surface, with nothing of the other to be deep in. So the border is divided as if the first solid were moved
-/// infinitely little along x, and still less along y and z. Triangles that face backward become the first's. If one
-/// object meets itself, the first of two triangles that coincide is that with the smaller index.
+/// Decides, for triangles of the overlap on which two surfaces coincide, which surface they belong to. Otherwise the
+/// overlap of two equal solids would have triangles of the first solid only, and no depth. The result is as if the
+/// first solid were moved by an infinitely small step along x, and by smaller ones along y and z. So triangles whose
+/// normal is_backward() belong to the first solid. If one object meets itself, the triangle with the smaller index
+/// counts as the first.
 void share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& overlap) {
   if (overlap.source.empty()) return;
   const Bvh bvh(surfaces.mesh, SiteTable(surfaces.mesh));
@@ -663,9 +674,9 @@ void share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& ove
   }
 }
 
-/// Returns equal labels for triangles of an overlap that belong together: those of one object, or of one part of an
-/// object that meets itself. Parts are connected through common vertices, or through places if triangles have vertices
-/// of their own.
+/// Returns a label for each triangle of an overlap. For two objects, it is 0 or 1. If an object meets itself, it is
+/// equal for triangles of one part of the object. Triangles of a part are connected through common vertices, or through
+/// equal positions if the mesh is not welded.
 std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self) {
   if (!is_self) {
     std::vector<std::uint32_t> out;
@@ -696,7 +707,7 @@ std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& ov
                     " cannot be computed: " + obstacle);
 }
 
-/// Returns the parts, the deepest first.
+/// Returns the parts of the overlap of two objects, the deepest first.
 /// @throws InvalidMesh; Cancelled.
 std::vector<Penetration> parts_of(const TwoObjects& two, SolidSurfaces& solids, double tolerance,
                                   const Context& context, std::vector<PhaseTime>& phases) {
@@ -732,7 +743,7 @@ std::vector<Penetration> parts_of(const TwoObjects& two, SolidSurfaces& solids, 
     parts.back().first_object = two.first;
     parts.back().second_object = two.second;
   }
-  // Parts come in the order of their smallest triangles. Equally deep ones keep this order.
+  // Parts are first ordered by their smallest triangle. Equally deep parts keep this order.
   std::vector<std::size_t> order(parts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
@@ -744,7 +755,7 @@ std::vector<Penetration> parts_of(const TwoObjects& two, SolidSurfaces& solids, 
   return sorted;
 }
 
-/// Adds seconds to the phase of the same name.
+/// Adds the seconds of each phase to the phase with the same name.
 void add(const std::vector<PhaseTime>& from, std::vector<PhaseTime>& to) {
   for (const PhaseTime& one : from) {
     const auto same =

@@ -11,10 +11,11 @@
 
 namespace blum::detail {
 
-/// Returns true if the boxes of two objects show that they have nothing in common.
+/// Returns true if two objects certainly do not overlap, because their boxes do not.
 [[nodiscard]] bool are_apart(const TwoObjects& two);
 
-/// Returns the parts of each pair, as ProximityScene::penetration() does. Each object is converted to a solid once.
+/// Returns, for each pair, the parts of its overlap, as ProximityScene::penetration() does. Each object is converted to
+/// a solid once.
 /// @param phases  receives the time spent.
 [[nodiscard]] std::vector<std::vector<Penetration>> penetrations(std::span<const TwoObjects> pairs,
                                                                  const PenetrationOptions& options,

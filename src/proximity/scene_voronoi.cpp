@@ -22,23 +22,23 @@
 namespace blum::detail {
 namespace {
 
-/// A primitive of a scene.
+/// A primitive of a scene, given by its object and its number.
 struct Member {
   ObjectId object;
   std::uint32_t primitive = 0;
 };
 
-/// The primitives of the compared objects, in the order of objects and then of primitives.
+/// The primitives of all compared objects, in rows: sorted by object, then by primitive.
 class ScenePrimitives {
  public:
-  /// @param pairs    the compared pairs; must outlive this.
+  /// @param pairs    the compared pairs of objects; must outlive this.
   /// @param objects  number of objects in the scene.
   ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t objects);
 
   [[nodiscard]] std::size_t size() const { return members_.size(); }
   [[nodiscard]] const Member& member(std::uint32_t row) const { return members_[row]; }
-  /// Returns all of them in their places in the scene, as triangles. A segment has one corner twice, a point has one
-  /// corner thrice.
+  /// Returns all primitives at their positions in the scene, as triangles: row r is triangle r. A segment has one
+  /// corner twice, and a point has one corner three times.
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t row) const { return triangle_corners(mesh_, row); }
   [[nodiscard]] Box3 box(std::uint32_t row) const;
@@ -47,18 +47,20 @@ class ScenePrimitives {
     return first_row_[object.value] + primitive;
   }
 
-  /// Returns true if two primitives are compared: their objects are, and they are not neighbours in one.
+  /// Returns true if two primitives are compared: their objects are compared, and they are not neighbours in one
+  /// object.
   [[nodiscard]] bool are_compared(std::uint32_t a, std::uint32_t b) const;
-  /// Returns the closest points, with `a` as the first primitive.
+  /// Returns the closest points of two primitives, with `a` as the first primitive.
   [[nodiscard]] PrimitivePair compare(std::uint32_t a, std::uint32_t b) const;
 
  private:
   [[nodiscard]] const ObjectPair* pair(ObjectId a, ObjectId b) const { return pairs_[a.value * objects_ + b.value]; }
 
   std::size_t objects_;
-  std::vector<const ObjectPair*> pairs_;  ///< of any two objects, in either order; null if they are not compared
+  /// For any two objects, in either order: their pair; null if they are not compared.
+  std::vector<const ObjectPair*> pairs_;
   std::vector<Member> members_;
-  std::vector<std::uint32_t> first_row_;  ///< of each object
+  std::vector<std::uint32_t> first_row_;  ///< first row of each object
   TriangleMesh mesh_;
 };
 
@@ -114,28 +116,29 @@ struct CellEntry {
   double distance = 0;
 };
 
-/// A sparse grid of the cells that primitives touch, with the primitives near each cell. These are all that may be the
-/// closest one of any point of a primitive in the cell (Sud 2006, 4.3; docs/theory/proximity.md).
+/// A sparse grid of the cells that primitives touch, with the primitives near each cell. Near primitives may be the
+/// closest ones to a point of another primitive in the cell (Sud 2006, 4.3; docs/theory/proximity.md).
 class VoronoiCells {
  public:
   /// @param cell_size    side of a cell, relative to the mean side of the boxes around primitives.
-  /// @param max_distance  primitives further away do not count.
-  /// @param is_closest    true if only the closest ones are needed; else all within max_distance.
+  /// @param max_distance  mesh units: pairs that are further apart do not count.
+  /// @param is_closest    true if only closest primitives are needed; false if all pairs within max_distance are.
   /// @throws Cancelled.
   VoronoiCells(const ScenePrimitives& primitives, double cell_size, double max_distance, bool is_closest,
                const Context& context);
 
-  /// Returns the cells that a primitive touches; none if it touches too many. A primitive is left to the hierarchy if
-  /// it touches too many cells, or a cell with too many primitives near it.
+  /// Returns the cells that a primitive touches; an empty list if it touches more than 512. Such a primitive is left
+  /// over: the hierarchy handles it. So are primitives that touch a cell with more than 256 primitives near it.
   [[nodiscard]] std::span<const std::uint32_t> cells(std::uint32_t row) const;
   [[nodiscard]] bool is_left_over(std::uint32_t row) const { return is_left_over_[row] != 0; }
-  /// Returns the number of primitives left to the hierarchy.
+  /// Returns the number of primitives that are left over.
   [[nodiscard]] std::size_t left_over() const;
-  /// Returns the primitives near a cell, by rising distance from its middle.
+  /// Returns the primitives near a cell, sorted by rising distance from the cell's middle.
   [[nodiscard]] std::span<const CellEntry> entries(std::uint32_t cell) const;
-  /// Returns the largest distance of points of a cell from its middle. Distances of entries are those from the middle.
+  /// Returns the largest distance of points of a cell from its middle. Distances of entries are also measured from the
+  /// middle.
   [[nodiscard]] double radius() const { return radius_; }
-  /// Returns the largest error of sums of distances.
+  /// Returns a bound on the rounding error of sums of distances.
   [[nodiscard]] double rounding() const { return rounding_; }
   /// Returns the number of cells.
   [[nodiscard]] std::size_t size() const { return cell_first_.size(); }
@@ -154,25 +157,25 @@ class VoronoiCells {
   double side_ = 1;
   double radius_ = 0;
   double rounding_ = 0;
-  std::vector<std::uint64_t> keys_;         ///< of cells
+  std::vector<std::uint64_t> keys_;         ///< key of each cell
   std::vector<std::uint32_t> rows_;         ///< primitives that touch cells, cell by cell
-  std::vector<std::uint32_t> cell_first_;   ///< of each cell, in rows_
+  std::vector<std::uint32_t> cell_first_;   ///< for each cell, its first index in rows_
   std::vector<std::uint32_t> cells_;        ///< cells that primitives touch, primitive by primitive
-  std::vector<std::uint32_t> row_first_;    ///< of each primitive, in cells_; one more at the end
-  std::vector<std::uint8_t> is_left_over_;  ///< of each primitive
+  std::vector<std::uint32_t> row_first_;    ///< for each primitive, its first index in cells_; one more item at the end
+  std::vector<std::uint8_t> is_left_over_;  ///< for each primitive
   std::vector<std::vector<CellEntry>> entries_;
 };
 
-/// Most cells that a primitive may touch, and most primitives near a cell. Primitives beyond these limits are left to
-/// the hierarchy, so that the number of primitives bounds memory and time.
+/// Greatest number of cells that a primitive may touch, and of primitives near a cell. Primitives beyond these limits
+/// are left over, so that memory and time are at most proportional to the number of primitives.
 constexpr std::int64_t most_cells = 512;
 constexpr std::size_t most_entries = 256;
 
 constexpr std::int64_t cells_per_axis = std::int64_t{1} << 20;
 constexpr std::size_t grain = 256;
 
-/// Returns a unit vector perpendicular to a triangle. Returns 0 if the triangle is so thin that its own corners would
-/// not be level.
+/// Returns a unit vector perpendicular to a triangle. Returns 0 if the triangle is so thin that rounding makes the
+/// vector unreliable.
 Vec3d normal_of(const std::array<Vec3d, 3>& p) {
   const Vec3d u = p[1] - p[0];
   const Vec3d v = p[2] - p[0];
@@ -187,7 +190,7 @@ double largest_side(const Box3& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-/// A primitive in a cell.
+/// A cell, given by its key, and a primitive that touches it.
 struct VoronoiCells::Place {
   std::uint64_t key;
   std::uint32_t row;
@@ -306,9 +309,9 @@ void VoronoiCells::fill_cells(double max_distance, bool is_closest, const Contex
   }
 }
 
-/// For each primitive that touches the cell, finds the closest one that it is compared with. This bounds the distance
-/// of others.
-/// @return false if these are too many.
+/// Fills the list of a cell for closest primitives. For each primitive that touches the cell, it finds the closest
+/// primitive to the cell's middle that it is compared with. This bounds the distances of all primitives in the list.
+/// @return false if the list would be too long.
 bool VoronoiCells::fill_closest(const Bvh& bvh, std::uint32_t cell, double max_distance,
                                 std::vector<CellEntry>& out) const {
   const Vec3d q = middle(keys_[cell]);
@@ -316,7 +319,7 @@ bool VoronoiCells::fill_closest(const Bvh& bvh, std::uint32_t cell, double max_d
     const std::vector<NearestPrimitive> near = bvh.nearest_primitives(q, k);
     const bool is_all = near.size() < k;
     if (near.empty()) return true;
-    double furthest = 0;  // second-closest distance of any primitive here
+    double furthest = 0;  // largest distance of such a closest primitive
     bool is_known = true;
     for (const std::uint32_t row : touching(cell)) {
       const auto found = std::find_if(near.begin(), near.end(), [&](const NearestPrimitive& one) {
@@ -352,7 +355,8 @@ bool VoronoiCells::fill_within(const Bvh& bvh, std::uint32_t cell, double distan
   return fits;
 }
 
-/// Calls test(other) once for each primitive that may be the closest one of a primitive, or within a distance.
+/// Calls test(other) once for each primitive that may be the closest one to a primitive (if `is_closest`), or within a
+/// distance of it.
 template <class Test>
 void for_each_candidate(const ScenePrimitives& primitives, const VoronoiCells& cells, std::uint32_t row,
                         double max_distance, bool is_closest, std::vector<std::uint32_t>& seen, const Test& test) {
@@ -363,7 +367,7 @@ void for_each_candidate(const ScenePrimitives& primitives, const VoronoiCells& c
     for (const CellEntry& entry : cells.entries(cell)) {
       if (entry.distance > limit) break;
       if (!primitives.are_compared(row, entry.row)) continue;
-      // Besides the primitive itself, the first one of these is the closest at the middle of the cell.
+      // The first compared entry is the closest primitive to the middle of the cell, except for the primitive itself.
       if (is_first) limit = std::min(limit, entry.distance + 2 * cells.radius());
       is_first = false;
       seen.push_back(entry.row);
@@ -382,8 +386,8 @@ void add_all(const std::vector<ProximityReport>& parts, const VoronoiCells& cell
   for (const ProximityReport& part : parts) add(part, report);
 }
 
-/// Returns an upper bound on the distance of the closest pair. At the middle of a cell, it adds the distance of a
-/// primitive and that of the first listed one that it is compared with.
+/// Returns an upper bound on the distance of the closest pair. For each cell, the distances of two compared primitives
+/// from the cell's middle add up to such a bound.
 double bound_of_cells(const ScenePrimitives& primitives, const VoronoiCells& cells, std::uint32_t rows,
                       double max_distance) {
   double bound = max_distance;
@@ -415,7 +419,7 @@ std::optional<PrimitivePair> closest_pair_by_cells(const ObjectPair& pair, std::
     report.left_over += primitives.size();
     return closest_pair(pair, max_distance, context, report);
   }
-  // Primitives of the first object come first.
+  // Rows of the first object precede those of the second.
   const auto rows = static_cast<std::uint32_t>(pair.a().primitives());
   const double bound = bound_of_cells(primitives, cells, rows, max_distance);
   struct Part {
@@ -496,7 +500,7 @@ void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects,
   const VoronoiCells cells(primitives, cell_size, distance, false, context);
   timer.lap("diagram");
   if (cells.left_over() > 0) {
-    // Pairs of these with all others are needed. The hierarchy finds all other pairs along the way.
+    // All pairs of a left-over primitive are needed. The hierarchy can only find them together with all other pairs.
     near_pairs(pairs, distance, Neighbours::left_out, context, out);
     out.report.left_over = primitives.size();
     timer.lap("exact tests");

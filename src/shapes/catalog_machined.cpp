@@ -24,7 +24,7 @@ ShapeInfo void_cube() {
           {length_parameter("size", "side of the cube", 1),
            length_parameter("void_radius", "radius of the void, below size / 2", 0.3),
            count_parameter("segments", "parts of each edge of the cube", 8, 1, 2041),
-           count_parameter("frequency", "fineness of the void: 20 frequency^2 triangles", 12, 1, 1581)},
+           count_parameter("frequency", "fineness of the void, which has 20 frequency^2 triangles", 12, 1, 1581)},
           [](const ShapeParameters& p) {
             const Values v{p};
             return make_void_cube({v.real("size"), v.real("void_radius"), v.whole("segments"), v.whole("frequency")});
@@ -36,7 +36,7 @@ ShapeInfo nested_shells() {
   return {"nested_shells",
           "spheres in each other: solid, void, solid, ...",
           {count_parameter("shells", "number of shells", 3, 1, 1000), length_parameter("radius", "largest radius", 1),
-           count_parameter("frequency", "fineness: 20 frequency^2 triangles each", 8, 1, 1581)},
+           count_parameter("frequency", "fineness of the shells, each of 20 frequency^2 triangles", 8, 1, 1581)},
           [](const ShapeParameters& p) {
             const Values v{p};
             return make_nested_shells({v.whole("shells"), v.real("radius"), v.whole("frequency")});
@@ -115,7 +115,7 @@ ShapeInfo bracket() {
       {length_parameter("length", "length of the foot, along x", 3),
        length_parameter("height", "height of the wall, along z", 3), length_parameter("width", "width along y", 3),
        length_parameter("thickness", "thickness of foot and wall", 0.4),
-       count_parameter("holes", "holes in the foot, and as many in the wall", 2, 0, 10000),
+       count_parameter("holes", "holes in the foot; the wall has the same number", 2, 0, 10000),
        length_parameter("hole_radius", "radius of each hole", 0.3),
        count_parameter("ribs", "1: ribs between foot and wall; 0: none", 1, 0, 1),
        count_parameter("hole_segments", "sides of each hole, a multiple of 4", 32, 4, 100000)},
@@ -159,8 +159,9 @@ ShapeInfo menger() {
             return make_menger({v.whole("level"), v.real("size")});
           },
           [](const ShapeParameters& p) -> Betti {
-            // 20 copies meet in 24 squares, which are Sierpinski carpets; 8 copies of a carpet meet in 8 segments.
-            std::int64_t sponge = 1;  // Euler characteristics
+            // A sponge consists of 20 copies of the next coarser one, which meet in 24 squares: Sierpinski carpets. A
+            // carpet consists of 8 copies of the coarser one, which meet in 8 segments.
+            std::int64_t sponge = 1;  // Euler characteristic; below, that of a carpet
             std::int64_t carpet = 1;
             for (int level = 0; level < Values{p}.whole("level"); ++level) {
               sponge = 20 * sponge - 24 * carpet;
@@ -171,15 +172,16 @@ ShapeInfo menger() {
 }
 
 ShapeInfo fan_part() {
-  return {"fan_part",
-          "a sector of a fan: curved and flat faces that meet in sharp edges, like a CAD model",
-          {length_parameter("size", "overall size", 1),
-           count_parameter("resolution", "parts of the smallest block; 8 gives 12,288 triangles", 8, 1, 500)},
-          [](const ShapeParameters& p) {
-            const Values v{p};
-            return make_fan_part({v.real("size"), v.whole("resolution")});
-          },
-          always(1, 0, 0)};
+  return {
+      "fan_part",
+      "a sector of a fan: curved and flat faces that meet in sharp edges, like a CAD model",
+      {length_parameter("size", "overall size", 1),
+       count_parameter("resolution", "parts of each edge of the smallest block; 8 gives 12,288 triangles", 8, 1, 500)},
+      [](const ShapeParameters& p) {
+        const Values v{p};
+        return make_fan_part({v.real("size"), v.whole("resolution")});
+      },
+      always(1, 0, 0)};
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace blum::detail {
 
 using Betti = std::optional<std::array<std::int64_t, 3>>;
 
-/// Groups of the catalog, one file each.
+/// Groups of shapes of the catalog. Each is defined in a file of its own.
 [[nodiscard]] std::vector<ShapeInfo> round_shapes();
 [[nodiscard]] std::vector<ShapeInfo> machined_shapes();
 [[nodiscard]] std::vector<ShapeInfo> loose_shapes();
@@ -43,7 +43,7 @@ inline ShapeParameter seed_parameter() {
   return {"seed", "seed of the random numbers", 1, 0, 4294967295.0, true};
 }
 
-/// Parameters that complete_parameters() has checked.
+/// Access to parameters that complete_parameters() has checked.
 struct Values {
   const ShapeParameters& map;
   [[nodiscard]] double real(const char* name) const { return map.at(name); }
@@ -52,7 +52,7 @@ struct Values {
   [[nodiscard]] std::uint64_t seed() const { return static_cast<std::uint64_t>(map.at("seed")); }
 };
 
-/// Returns a topology that does not depend on the parameters.
+/// Returns a function for Betti numbers that do not depend on the parameters.
 inline auto always(std::int64_t components, std::int64_t tunnels, std::int64_t voids) {
   return [=](const ShapeParameters&) -> Betti { return {{components, tunnels, voids}}; };
 }

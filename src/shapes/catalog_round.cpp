@@ -4,10 +4,10 @@
 namespace blum::detail {
 namespace {
 
-constexpr int largest_frequency = 1581;  // 20 f^2 stays below 50 million
+constexpr int largest_frequency = 1581;  // 20 f^2 triangles are fewer than 50 million
 
 ShapeParameter frequency_parameter(int value) {
-  return count_parameter("frequency", "parts of each edge of the icosahedron that it starts from", value, 1,
+  return count_parameter("frequency", "parts of each edge of the icosahedron from which the shape is made", value, 1,
                          largest_frequency);
 }
 

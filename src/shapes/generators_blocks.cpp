@@ -17,7 +17,7 @@ using detail::require_triangle_count;
 
 constexpr std::uint32_t no_vertex = 0xffffffff;
 
-/// A set of cells of a lattice of sizes[0] x sizes[1] x sizes[2] cells.
+/// A set of cells in a lattice of sizes[0] x sizes[1] x sizes[2] cells.
 struct Blocks {
   std::array<int, 3> sizes{};
   std::vector<bool> filled;
@@ -39,8 +39,8 @@ struct Blocks {
   }
 };
 
-/// Returns the boundary of the filled cells. `position` maps lattice points to places. Neighbouring faces share
-/// vertices.
+/// Returns the boundary of the filled cells. `position` maps a lattice point to its position in space. Adjacent faces
+/// share vertices.
 template <class Position>
 TriangleMesh surface_of(const Blocks& blocks, Position position) {
   TriangleMesh mesh;
@@ -92,7 +92,8 @@ TriangleMesh surface_of(const Blocks& blocks, Position position) {
   return mesh;
 }
 
-/// Returns true if a cube belongs to the Menger sponge: no digit of base 3 is 1 in two of its coordinates.
+/// Returns true if cube (x, y, z) belongs to the Menger sponge. It does not if two of its coordinates have the digit 1
+/// at the same position in base 3.
 bool is_in_menger(int x, int y, int z) {
   for (; x > 0 || y > 0 || z > 0; x /= 3, y /= 3, z /= 3) {
     if ((x % 3 == 1) + (y % 3 == 1) + (z % 3 == 1) >= 2) return false;
@@ -115,8 +116,8 @@ TriangleMesh make_box(const BoxOptions& options) {
     return options.size[axis] * (static_cast<double>(index) / options.segments[axis] - 0.5);
   };
   const auto& n = options.segments;
-  // Lattice points on the surface are numbered, so that faces share vertices: full layers at the bottom and top, rims
-  // between them.
+  // Lattice points on the surface are numbered layer by layer, so that faces share vertices. The bottom and top layers
+  // are full; layers between them only have the points on their rim.
   const auto nx = static_cast<std::uint32_t>(n[0]);
   const auto ny = static_cast<std::uint32_t>(n[1]);
   const auto nz = static_cast<std::uint32_t>(n[2]);
@@ -183,7 +184,7 @@ TriangleMesh make_fan_part(const FanPartOptions& options) {
   require_at_least(options.resolution, 1, "resolution");
   require_triangle_count(192.0 * options.resolution * options.resolution);
   const int r = options.resolution;
-  // Blocks: a hub, a foot plate and a blade with a step, in (radius, angle, height).
+  // The blocks form a hub, a foot plate and a blade with a step. Their axes are radius, angle and height.
   Blocks blocks({4 * r, 6 * r, 3 * r});
   for (int k = 0; k < 3 * r; ++k) {
     for (int j = 0; j < 6 * r; ++j) {
@@ -202,7 +203,7 @@ TriangleMesh make_fan_part(const FanPartOptions& options) {
     const double along = static_cast<double>(j) / (6 * r);
     const double angle = 1.3 * (along - 0.5) + 0.12 * unit / options.size * i * along;
     const double radius = unit * (r + i * (0.8 + 0.2 * along)) / 5;
-    // The upper faces sink towards one side, so that steps vanish slowly along their edges.
+    // The upper faces become lower towards one side, so that the heights of steps decrease slowly along their edges.
     const double height = unit * k * (1 - 0.55 * along * along) / 5;
     return Vec3d{radius * std::cos(angle) - 0.6 * options.size, radius * std::sin(angle), height - 0.3 * options.size};
   });

@@ -19,13 +19,15 @@
 namespace blum::detail {
 namespace {
 
-/// A polygon with holes: the outline counter-clockwise, then the holes clockwise, each as consecutive points.
+/// A polygon with holes: a list of loops, each of consecutive points. The outline comes first, counter-clockwise. Then
+/// come the holes, clockwise.
 struct Polygon {
   std::vector<std::array<double, 2>> points;
-  std::vector<std::uint32_t> loop_starts;  ///< first point of each loop; that of the outline is 0
+  std::vector<std::uint32_t> loop_starts;  ///< index of the first point of each loop; 0 for the outline
 
-  /// Adds a loop, and reverses it if its direction is not as above.
-  /// @throws InvalidOption for fewer than three points, more than 20,000 in all, or no area.
+  /// Adds the outline or a hole. A loop in the wrong direction is reversed.
+  /// @throws InvalidOption if the loop has fewer than three points or no area, or if the polygon would have more than
+  /// 20,000 points.
   void add_loop(std::span<const std::array<double, 2>> loop);
   [[nodiscard]] std::uint32_t loop_end(std::size_t loop) const;
 };
@@ -42,9 +44,11 @@ double doubled_area(std::span<const Point> loop) {
   return sum;
 }
 
-/// Returns true if the open segments ab and cd cross or overlap, or an end of one lies inside the other.
+/// Returns true if the segments ab and cd cross or overlap, or if an end of one lies inside the other. A common end
+/// alone does not count.
 bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& d) {
-  const auto between = [](const Point& p, const Point& q, const Point& r) {  // for r on the line pq: strictly inside pq
+  // True if r, on line pq, is strictly between p and q.
+  const auto between = [](const Point& p, const Point& q, const Point& r) {
     return std::min(p, q) < r && r < std::max(p, q);
   };
   const int c_side = orient2d(a, b, c);
@@ -56,7 +60,8 @@ bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& 
          (b_side == 0 && between(c, d, b));
 }
 
-/// @throws InvalidOption if two sides cross or touch other than in a common corner. Sides are swept by rising x.
+/// Tests sides in the order of rising x.
+/// @throws InvalidOption if two sides cross, or touch other than in a common corner.
 void require_simple(const Polygon& polygon, const Context& context) {
   struct Side {
     Point lower, upper;  // by (x, y)
@@ -72,7 +77,7 @@ void require_simple(const Polygon& polygon, const Context& context) {
   std::vector<Point> sorted = polygon.points;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-    throw InvalidOption("the polygon names a point twice; its outline and holes may not touch");
+    throw InvalidOption("the polygon uses a point twice; its outline and holes must not touch");
   }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.lower < b.lower; });
   for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -88,13 +93,15 @@ void require_simple(const Polygon& polygon, const Context& context) {
   }
 }
 
-/// The outline with its holes joined to it by bridges: one loop of point indices, which lists bridge ends twice.
+/// The outline of a polygon, to which its holes are joined by bridges: one loop of point indices. The ends of bridges
+/// occur twice.
 class JoinedLoop {
  public:
   JoinedLoop(const Polygon& polygon, const Context& context) : polygon_(polygon), context_(context) {
     loop_.resize(polygon.loop_end(0));
     std::iota(loop_.begin(), loop_.end(), 0U);
-    // The rightmost hole comes first. Then the bridge of a hole can only cross the loop joined so far.
+    // The rightmost hole is joined first. So the bridge of a hole can only cross the loop joined so far, not a later
+    // hole.
     std::vector<Hole> holes;
     for (std::size_t h = 1; h < polygon.loop_starts.size(); ++h) holes.push_back(rightmost(h));
     std::sort(holes.begin(), holes.end(), [&](const Hole& a, const Hole& b) {
@@ -108,7 +115,7 @@ class JoinedLoop {
  private:
   struct Hole {
     std::size_t loop = 0;
-    std::uint32_t start = 0;  ///< its largest point by (x, y)
+    std::uint32_t start = 0;  ///< index of its largest point by (x, y)
   };
 
   [[nodiscard]] Hole rightmost(std::size_t loop) const {
@@ -119,7 +126,7 @@ class JoinedLoop {
     return {loop, best};
   }
 
-  /// Returns true if the ray from loop_[at] to the point starts inside the polygon at that corner.
+  /// Returns true if the ray from corner loop_[at] to the point `target` starts inside the polygon.
   [[nodiscard]] bool leaves_inwards(std::size_t at, const Point& target) const {
     const std::size_t n = loop_.size();
     const Point& before = polygon_.points[loop_[(at + n - 1) % n]];
@@ -148,7 +155,7 @@ class JoinedLoop {
       const Point& q = polygon_.points[loop_[at]];
       return (q[0] - start[0]) * (q[0] - start[0]) + (q[1] - start[1]) * (q[1] - start[1]);
     };
-    // The closest comes first, because it is nearly always free.
+    // The closest corner is tried first, because the bridge to it almost never crosses the loop.
     const auto goes_later = [&](std::size_t a, std::size_t b) {
       return squared(a) != squared(b) ? squared(a) > squared(b) : a > b;
     };
@@ -164,7 +171,7 @@ class JoinedLoop {
     throw InvalidOption("the polygon cannot be triangulated: a hole lies outside the outline or in another hole");
   }
 
-  /// Inserts the hole's loop from its start back to its start, and the bridge's end once more.
+  /// Inserts after loop_[at] the loop of a hole, from its start back to its start, and then loop_[at] again.
   void splice(std::size_t at, const Hole& hole) {
     std::vector<std::uint32_t> inserted;
     const std::uint32_t first = polygon_.loop_starts[hole.loop];
@@ -195,8 +202,8 @@ std::uint32_t Polygon::loop_end(std::size_t loop) const {
   return loop + 1 < loop_starts.size() ? loop_starts[loop + 1] : static_cast<std::uint32_t>(points.size());
 }
 
-/// Returns counter-clockwise triangles over the polygon's points, by cutting off ears. Holes are first joined to the
-/// outline. Every edge of a loop is an edge of exactly one triangle, and no point is added.
+/// Triangulates a polygon by cutting off ears, after its holes are joined to the outline. Triangles are
+/// counter-clockwise. Every edge of a loop is an edge of exactly one triangle, and no point is added.
 /// @throws InvalidOption if loops cross or touch, or a hole is not inside the outline; Cancelled. Cost: O(n^2) for n
 /// points, in practice.
 std::vector<Triangle> triangulate(const Polygon& polygon, const Context& context) {
@@ -227,9 +234,9 @@ using detail::require_at_least;
 using detail::require_positive;
 using detail::require_triangle_count;
 
-/// Returns the outline of a gear, counter-clockwise. On its share of the circle, each tooth has an arc at the root, a
-/// flank, an arc at the tip, and a flank. Numbers are fractions of the share. The last flank ends where the next tooth
-/// begins.
+/// Returns the outline of a gear, counter-clockwise. Each tooth has a sector of the circle: an arc at the root, a
+/// flank, an arc at the tip, and a second flank. Corner::along is a fraction of the sector. The second flank ends where
+/// the next tooth begins.
 std::vector<Point2> gear_outline(const GearOptions& options) {
   struct Corner {
     double along;
@@ -307,7 +314,7 @@ TriangleMesh make_gear(const GearOptions& options) {
   require_positive(options.root_radius, "root_radius");
   require_positive(options.tip_radius, "tip_radius");
   require(options.tip_radius > options.root_radius, "tip_radius", "above root_radius", options.tip_radius);
-  // Half an arc at the root is a chord, whose middle is closer to the centre than the root radius.
+  // Each half of an arc at the root is a chord. Its middle is closer to the centre than the root radius.
   const double inner_radius = options.root_radius * std::cos(0.175 * detail::pi / options.teeth);
   require(options.bore_radius >= 0 && options.bore_radius < inner_radius, "bore_radius", "0 to below root_radius",
           options.bore_radius);
@@ -360,7 +367,7 @@ TriangleMesh make_nested_shells(const NestedShellsOptions& options) {
   require_positive(options.radius, "radius");
   require_at_least(options.frequency, 1, "frequency");
   require_triangle_count(20.0 * options.shells * options.frequency * options.frequency);
-  // All shells are scaled copies of one convex polyhedron around the origin, so they cannot touch.
+  // All shells are copies of one convex polyhedron around the origin with different scales, so they cannot touch.
   const TriangleMesh outer = make_sphere({options.radius, options.frequency});
   TriangleMesh mesh;
   for (int shell = 0; shell < options.shells; ++shell) {

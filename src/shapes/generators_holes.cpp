@@ -14,21 +14,21 @@
 namespace blum::detail {
 namespace {
 
-/// A solid of boxes and triangular prisms whose faces match exactly where they meet. Faces that two of them share
-/// vanish, and the rest is the boundary. Corners at equal coordinates are one vertex.
+/// A solid that consists of boxes and triangular prisms. Where two of them touch, they must have an equal face. Such
+/// common faces are removed, and the other faces are the boundary. Corners with equal coordinates are one vertex.
 class PrismComplex {
  public:
   /// Adds an axis-aligned box.
   void add_box(const Vec3d& lower, const Vec3d& upper);
-  /// Adds the prism between two triangles. `base` is counter-clockwise seen from `top`, and `top` is so from beyond it.
+  /// Adds the prism between two triangles. Both are counter-clockwise if seen from the side of `top`.
   void add_prism(const std::array<Vec3d, 3>& base, const std::array<Vec3d, 3>& top);
   /// Returns the closed boundary, facing outwards. Cost: O(n log n).
   [[nodiscard]] TriangleMesh boundary() const;
 
  private:
   struct Face {
-    std::array<std::uint32_t, 4> key{};      ///< its corners, sorted
-    std::array<std::uint32_t, 4> corners{};  ///< in order; a triangle lists its last corner twice
+    std::array<std::uint32_t, 4> key{};      ///< corners, sorted by index
+    std::array<std::uint32_t, 4> corners{};  ///< corners in cyclic order; a triangle lists its last corner twice
   };
   std::uint32_t vertex(const Vec3d& p);
   void add_face(const std::array<std::uint32_t, 4>& corners);
@@ -102,10 +102,10 @@ TriangleMesh PrismComplex::boundary() const {
   return mesh;
 }
 
-/// Returns the triangles of a rectangle with a round hole, counter-clockwise. Indices 0 to 3 are the corners of the
-/// rectangle, counter-clockwise from the upper right. Indices 4 to 3 + sides are the points of the hole,
-/// counter-clockwise from the right of the centre. `sides` is a multiple of 4. Each side of the rectangle is an edge of
-/// one triangle.
+/// Returns the triangles of a rectangle with a round hole. Triangles are counter-clockwise. Indices 0 to 3 are the
+/// corners of the rectangle, counter-clockwise from the upper right. Indices 4 to 3 + `sides` are the points of the
+/// hole, counter-clockwise from the one to the right of its centre. `sides` is a multiple of 4. Each side of the
+/// rectangle is an edge of exactly one triangle.
 std::vector<Triangle> triangulate_holed_rectangle(std::uint32_t sides) {
   std::vector<Triangle> triangles;
   const std::uint32_t quarter = sides / 4;
@@ -135,7 +135,7 @@ void require_hole_segments(int segments) {
   require(segments >= 4 && segments % 4 == 0, "hole_segments", "a multiple of 4, at least 4", segments);
 }
 
-/// An interval of one coordinate.
+/// An interval of a coordinate.
 struct Span {
   double lower = 0;
   double upper = 0;
@@ -143,8 +143,7 @@ struct Span {
   [[nodiscard]] double size() const { return upper - lower; }
 };
 
-/// Adds a box with a round hole through it along the third axis. place(u, v, w) maps a point into space without
-/// mirroring.
+/// Adds a box with a round hole along its third axis, w. place(u, v, w) maps a point into space without mirroring.
 template <class Place>
 void add_holed_box(PrismComplex& solid, const Span& u, const Span& v, const Span& w, double radius, int sides,
                    Place place) {
@@ -175,7 +174,7 @@ class BracketBuilder {
     const int bays = std::max(1, options_.holes);
     return (options_.width - (bays + 1) * rib_width_) / bays;
   }
-  /// Returns the radius below which holes leave material on all sides.
+  /// Returns the upper limit of hole radii: smaller holes leave material on all sides.
   [[nodiscard]] double room_for_holes() const {
     return 0.5 * std::min({bay_width(), options_.length - rib_x_, options_.height - rib_z_});
   }
@@ -226,7 +225,8 @@ class BracketBuilder {
   PrismComplex solid_;
 };
 
-/// Numbering of the vertices of a plate: lattice corners and hole points, below and above.
+/// Numbering of the vertices in one layer of a plate: first lattice corners, then points of holes. The lower and the
+/// upper side are one layer each.
 struct PlateLayout {
   std::uint32_t cells_x, cells_y, sides;
 

@@ -17,14 +17,15 @@ using detail::require_positive;
 using detail::require_triangle_count;
 using detail::Ring;
 
-/// Returns a circle around `center` in the plane of two orthonormal vectors, counter-clockwise around first x second.
+/// Returns a circle around `center` in the plane of two orthonormal vectors, counter-clockwise around their cross
+/// product, first x second.
 Ring ring_around(const Vec3d& center, const Vec3d& first, const Vec3d& second, double radius, int sides) {
   Ring ring;
   for (const auto& [x, y] : detail::circle(0, 0, radius, sides)) ring.points.push_back(center + first * x + second * y);
   return ring;
 }
 
-/// Returns a torus in the plane of two orthonormal vectors.
+/// Returns a torus around the origin whose ring lies in the plane of two orthonormal vectors.
 TriangleMesh torus_in_plane(const TorusOptions& options, const Vec3d& first, const Vec3d& second) {
   std::vector<Ring> rings;
   for (const auto& [x, y] : detail::circle(0, 0, 1, options.ring_segments)) {
@@ -53,8 +54,9 @@ KnotFrame knot_frame(const TorusKnotOptions& options, double turn) {
   return {radial * distance + Vec3d{0, 0, options.wind_radius * std::sin(wind)}, velocity / length(velocity), normal};
 }
 
-/// Returns the largest radius of a tube around the curve that does not touch itself, over samples. It is the least
-/// radius of a circle through one point of the curve that is tangent to it at another (Gonzalez, Maddocks 1999).
+/// Returns the largest radius at which a tube around a closed curve does not touch itself, computed from samples. It is
+/// the least radius of a circle that is tangent to the curve at one sample and contains another sample (Gonzalez,
+/// Maddocks 1999).
 double curve_thickness(const std::vector<KnotFrame>& curve) {
   double thickness = HUGE_VAL;
   for (const KnotFrame& a : curve) {
@@ -102,7 +104,8 @@ class SpoonSections {
 
  private:
   [[nodiscard]] double bowl_x(double x) const { return x / bowl_half_length_ - 1; }
-  /// Returns a factor that falls to 0 like an ellipse at the end of the handle.
+  /// Returns a factor that is 1, except near the end of the handle, where it decreases to 0 like the width of an
+  /// ellipse.
   [[nodiscard]] double rounding(double x) const {
     const double left = (options_.length - x) / (0.5 * options_.handle_width);
     return left >= 1 ? 1 : std::sqrt(std::max(0.0, 1 - (1 - left) * (1 - left)));
@@ -112,7 +115,7 @@ class SpoonSections {
   double bowl_half_length_;
 };
 
-/// A bump in a direction: its height, and how narrow it is.
+/// A bump in a direction: its height, and its sharpness, which is larger for narrower bumps.
 struct Lobe {
   Vec3d direction;
   double height = 0;
@@ -128,7 +131,7 @@ const std::vector<Lobe>& organic_lobes() {
   return lobes;
 }
 
-/// A sum of random plane waves, as fine as the mesh can show.
+/// A sum of 36 random plane waves.
 class Skin {
  public:
   Skin(double amplitude, std::uint64_t seed) {
@@ -156,7 +159,8 @@ class Skin {
   std::vector<Wave> waves_;
 };
 
-/// Removes the triangles within `rings` steps of a vertex.
+/// Removes triangles around a vertex. Each of `rings` steps removes all triangles that touch the vertices reached so
+/// far.
 void cut_hole(TriangleMesh& mesh, std::uint32_t center, int rings) {
   std::vector<bool> inside(mesh.vertices.size(), false);
   inside[center] = true;
@@ -261,7 +265,8 @@ TriangleMesh make_linked_tori(const LinkedToriOptions& options) {
   const TorusOptions link{options.ring_radius, options.tube_radius, options.ring_segments, options.tube_segments};
   const TriangleMesh flat = torus_in_plane(link, {1, 0, 0}, {0, 1, 0});
   const TriangleMesh upright = torus_in_plane(link, {1, 0, 0}, {0, 0, 1});
-  // Neighbours are 2 R - step apart, every other link 2 step - 2 R. Both are above 2 r for this step.
+  // R is the ring radius, r the tube radius. The gap between the centre lines is 2 R - step for adjacent links, and 2
+  // step - 2 R for every other link. For this step, both are above 2 r.
   const double step = 1.5 * options.ring_radius - 0.5 * options.tube_radius;
   TriangleMesh mesh;
   for (int i = 0; i < options.count; ++i) {
@@ -307,7 +312,7 @@ TriangleMesh make_spoon(const SpoonOptions& options) {
   const auto unit = detail::circle(0, 0, 1, options.sides);
   std::vector<Ring> rings;
   for (int s = 1; s < options.stations; ++s) {
-    // Stations are dense at both ends, where the outline is round.
+    // Cross-sections are closer together at both ends, where the outline is round.
     const double along = static_cast<double>(s) / options.stations;
     const double x = options.length * 0.5 * (along + 0.5 - 0.5 * std::cos(pi * along));
     Ring& ring = rings.emplace_back();
@@ -327,7 +332,8 @@ TriangleMesh make_organic(const OrganicOptions& options) {
   if (options.holes > 0) require_at_least(options.frequency, 8, "frequency (with holes)");
   TriangleMesh mesh = detail::geodesic(options.frequency);
   const Skin skin(options.detail, options.seed);
-  // The twelve corners of the icosahedron come first. They are `frequency` edges apart, so that holes do not meet.
+  // The first twelve vertices are the corners of the icosahedron. Adjacent ones are `frequency` edges apart, so that
+  // holes do not meet.
   for (int hole = 0; hole < options.holes; ++hole) {
     cut_hole(mesh, static_cast<std::uint32_t>(hole), 1 + options.frequency * (1 + hole % 3) / 12);
   }

@@ -13,7 +13,7 @@
 namespace blum {
 namespace {
 
-/// Appends move(x) for each x of `added`, which may be a part of `all`.
+/// Appends move(x) for each item x of `added`. `added` may be a part of `all`.
 template <class T, class Move>
 void extend(std::vector<T>& all, std::span<const T> added, const Move& move) {
   std::vector<T> moved(added.size());
@@ -38,14 +38,14 @@ Corners ordinary(Random& random, const SoupOptions& options) {
   return corners;
 }
 
-/// Returns a triangle with a short side of 1e-9 to 1e-1 of its size.
+/// Returns a triangle with one short side. The limit of its length is random: 1e-9 to 1e-1 times options.triangle_size.
 Corners needle(Random& random, const SoupOptions& options) {
   Corners corners = ordinary(random, options);
   corners[2] = corners[1] + random.in_ball() * (options.triangle_size * std::pow(10.0, -random.uniform(1, 9)));
   return corners;
 }
 
-/// Returns a triangle with a corner close to the opposite side.
+/// Returns a triangle with one corner close to the opposite side.
 Corners sliver(Random& random, const SoupOptions& options) {
   Corners corners = ordinary(random, options);
   const Vec3d on_side = corners[0] + (corners[1] - corners[0]) * random.uniform();
@@ -53,7 +53,7 @@ Corners sliver(Random& random, const SoupOptions& options) {
   return corners;
 }
 
-/// Returns an earlier triangle, with its corners in a random order.
+/// Returns a copy of a random earlier triangle, with its corners in a random order.
 Corners copy_of_earlier(Random& random, const TriangleMesh& mesh, const SoupOptions& options) {
   if (mesh.triangles.empty()) return ordinary(random, options);
   const Triangle& source = mesh.triangles[random.below(mesh.triangles.size())];
@@ -99,7 +99,7 @@ TriangleMesh subdivide_once(const TriangleMesh& mesh) {
   finer.vertices = mesh.vertices;
   finer.points = mesh.points;
   for (const Segment& edge : sites.edges()) {
-    // Halves first, because the sum of two coordinates may overflow.
+    // Each coordinate is halved before the addition, because the sum of two coordinates may overflow.
     finer.vertices.push_back(mesh.vertices[edge[0]] * 0.5 + mesh.vertices[edge[1]] * 0.5);
   }
   finer.triangles.reserve(4 * mesh.triangles.size());

@@ -29,7 +29,7 @@ std::array<Vec3d, 12> icosahedron_corners() {
            {-g, 0, 1}}};
 }
 
-/// Order of the vertices: 12 corners, then the inner points of 30 edges, then those of 20 faces.
+/// Order of the vertices: the 12 corners, then the inner points of the 30 edges, then the inner points of the 20 faces.
 class Layout {
  public:
   explicit Layout(std::uint32_t frequency) : frequency_(frequency) {
@@ -43,7 +43,7 @@ class Layout {
   }
   [[nodiscard]] std::uint32_t vertex_count() const { return 10 * frequency_ * frequency_ + 2; }
 
-  /// Returns the vertex of a face with weights (w0, w1, w2) at its corners, which sum to the frequency.
+  /// Returns the vertex of a face with weights (w0, w1, w2) for its corners. The sum of the weights is the frequency.
   [[nodiscard]] std::uint32_t vertex(std::uint32_t face, const std::array<std::uint32_t, 3>& weights) const {
     const Triangle& corners = icosahedron_faces[face];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -57,7 +57,7 @@ class Layout {
       return 12 + edge_[corners[a]][corners[b]] * (frequency_ - 1) + along - 1;
     }
     const std::uint32_t inner = (frequency_ - 1) * (frequency_ - 2) / 2;
-    const std::uint32_t row = weights[0] - 1;  // row r holds frequency - 2 - r points
+    const std::uint32_t row = weights[0] - 1;  // row r has frequency - 2 - r points
     const std::uint32_t before = row * (frequency_ - 2) - row * (row - 1) / 2;
     return 12 + 30 * (frequency_ - 1) + face * inner + (row == 0 ? 0 : before) + weights[1] - 1;
   }

@@ -83,10 +83,10 @@ class Collapse {
   std::vector<std::uint32_t> cofaces_;
 };
 
-/// Removes pairs of a cell and a face that only this cell has, from outside, until none exist. The rest has the same
-/// homotopy type. Cells with homology of dimension 3 would leave polyhedra, which are dropped; no solid in space gives
-/// such cells. Edges and polygons are subdivided at a point of their own, so that corners identify them. Cost:
-/// near-linear in the cells.
+/// Collapses the cells: removes a cell together with a face of it that no other cell has, until no such pair exists.
+/// Collapses preserve the homotopy type. For a solid in space, no polyhedron is left; if one were, it would be dropped.
+/// Returns the remaining cells as a complex. Each edge and each polygon is subdivided at its witness. Cost: near-linear
+/// in the number of cells.
 /// @throws Cancelled.
 Complex collapse_cells(const ModelCells& cells, const Context& context) {
   Collapse collapse(cells, context);
@@ -147,7 +147,7 @@ double longest_side(const Box3& box) {
   return std::max({box.size().x, box.size().y, box.size().z});
 }
 
-/// Returns the planes of a grid around a box, with a margin of at least a cube.
+/// Returns the planes of a grid around a box, with a margin of at least one cube on each side.
 GridPlanes planes_around(const Box3& box, const Vec3d& origin, double spacing) {
   Place first{};
   Place last{};
@@ -158,10 +158,10 @@ GridPlanes planes_around(const Box3& box, const Vec3d& origin, double spacing) {
   return {origin, {spacing, spacing, spacing}, first, last};
 }
 
-/// Bodies that do not touch each other, as one mesh.
+/// Several bodies that do not touch each other, in one mesh.
 struct BodyGroup {
   TriangleMesh mesh;
-  std::vector<std::uint32_t> outermost;  ///< a vertex of each outer shell
+  std::vector<std::uint32_t> outermost;  ///< one vertex of each outer shell
 
   void add(const TriangleMesh& body) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -194,7 +194,7 @@ struct GroupModel {
 
 struct CellularModel::Data {
   CellularModelReport report;
-  int exponent = 0;  ///< power of two by which coordinates were scaled
+  int exponent = 0;  ///< coordinates were multiplied by 2^exponent
   std::vector<std::unique_ptr<const GroupModel>> groups;
 };
 
@@ -221,7 +221,8 @@ CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint3
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(box.size()[a] / spacing <= most_resolution + 1) || !(spacing > 64 * std::numeric_limits<double>::epsilon())) {
       throw InvalidOption("spacing is " + exact_text(std::ldexp(spacing, -data->exponent)) +
-                          ", too small for this mesh: at most " + std::to_string(most_resolution) +
+                          ", which is too small for this mesh: the grid may have at most " +
+                          std::to_string(most_resolution) +
                           " cubes along a side, none smaller than the rounding of coordinates");
     }
   }

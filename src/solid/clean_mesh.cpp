@@ -28,13 +28,13 @@ void check_tolerance(const MeshView& mesh, double tolerance) {
   const double diagonal = bounds(mesh).diagonal();
   constexpr double least = 1e-12;
   if (tolerance >= least * diagonal && tolerance <= diagonal && tolerance > 0) return;
-  throw InvalidOption(
-      "cleaning a mesh: the tolerance must be above 0, and 1e-12 to 1 times the diagonal of the mesh, " +
-      rounded_text(diagonal) + ", not " + exact_text(tolerance));
+  throw InvalidOption("cleaning a mesh: the tolerance is " + exact_text(tolerance) +
+                      ", but must be above 0, and 1e-12 to 1 times the diagonal of the mesh, which is " +
+                      rounded_text(diagonal));
 }
 
 void check_coordinates(const MeshView& mesh) {
-  // Fourth powers of lengths neither overflow nor underflow, even for the shortest possible edges.
+  // Within these limits, fourth powers of lengths neither overflow nor underflow, even for the shortest possible edges.
   constexpr double least = 1e-45;
   constexpr double most = 1e45;
   for (const Triangle& triangle : mesh.triangles) {
@@ -43,7 +43,7 @@ void check_coordinates(const MeshView& mesh) {
         const double size = std::abs(mesh.vertices[v][axis]);
         if (size == 0 || (size >= least && size <= most)) continue;
         throw InvalidMesh("vertex " + std::to_string(v) + " has the coordinate " + exact_text(mesh.vertices[v][axis]) +
-                          "; cleaning takes magnitudes of 1e-45 to 1e45, and 0: scale or round the mesh");
+                          "; for cleaning, it must be 0 or have a magnitude of 1e-45 to 1e45: scale or round the mesh");
       }
     }
   }
@@ -53,7 +53,7 @@ bool has_area(const ShrinkingSurface& mesh, std::uint32_t t) {
   return !detail::has_no_area(mesh.corners(t));
 }
 
-/// Returns the corner of a triangle without area that lies between the others. Exact.
+/// Returns which corner of a triangle without area lies between the other two. The test is exact.
 std::size_t middle_corner(const std::array<Vec3d, 3>& p) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& a = p[(k + 1) % 3];
@@ -74,8 +74,8 @@ bool has_flat_triangles(const MeshView& mesh) {
   return false;
 }
 
-/// Flips the longest sides of triangles without area. As a set of points, the surface stays the same.
-/// @return  the triangles. The number of flips is added to `flips`.
+/// Flips the longest sides of triangles without area. The surface stays the same set of points.
+/// @return  all triangles after the flips. The number of flips is added to `flips`.
 std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& flips) {
   std::vector<Triangle> given(mesh.triangles.begin(), mesh.triangles.end());
   std::vector<std::uint32_t> flat;
@@ -84,7 +84,8 @@ std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& 
   }
   if (flat.empty()) return given;
   ShrinkingSurface surface(mesh);
-  // In a row of such triangles, a flip may leave the next one without area. Each row ends with one fewer.
+  // If triangles without area are neighbours, a flip may produce another one, which is queued. Each flip still leaves
+  // one fewer in such a row.
   for (std::size_t turn = 0; turn < flat.size() && turn < 4 * given.size(); ++turn) {
     const std::uint32_t t = flat[turn];
     if (has_area(surface, t)) continue;
@@ -109,7 +110,7 @@ double smallest_height(const MeshView& mesh) {
   return least;
 }
 
-/// Copies the remaining triangles, and the vertices that they name, in their order.
+/// Copies the remaining triangles and the vertices that they use, in the original order.
 void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, TriangleMesh& mesh,
                  std::vector<std::uint32_t>& vertex_of) {
   std::vector<std::uint32_t> number(vertices.size(), 0);
@@ -133,8 +134,9 @@ void check_corners(const MeshView& mesh) {
   }
 }
 
-/// Checks the result.
-/// @throws Error if the result is not a sound polyhedron with the same Betti numbers, within the tolerance.
+/// Checks the result of cleaning.
+/// @throws Error if the result is not a sound polyhedron, has other Betti numbers, or deviates by more than the
+/// tolerance.
 void check_result(const Solid& before, const Solid& after, double deviation, double tolerance) {
   const bool is_sound = after.rule() == SolidRule::polyhedron && !after.resolved() && after.problem().empty() &&
                         problem_of_places(after.surface().mesh).empty();
@@ -190,7 +192,7 @@ CleanedMesh clean_mesh(const Solid& solid, double tolerance, const Context& cont
 
 namespace {
 
-/// Cleans a mesh after flipping sides of flat triangles, before anything can cross there.
+/// Cleans a mesh with flat triangles. It flips their sides first, because flat triangles could count as crossings.
 CleanedMesh clean_without_flat(const MeshView& all, double tolerance, const Context& context) {
   const OrientedMesh oriented = oriented_mesh(all, context);
   std::size_t flips = 0;

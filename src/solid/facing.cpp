@@ -14,7 +14,7 @@ bool names_a_vertex_twice(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// Reverses triangles of a closed manifold so that neighbours agree, by walking over its edges.
+/// Walks over the edges of a closed manifold, and reverses triangles so that neighbours have consistent orientations.
 class Reverser {
  public:
   Reverser(const MeshView& mesh, const SiteTable& sites)
@@ -58,7 +58,8 @@ class Reverser {
     return true;
   }
 
-  /// Sets the orientation of a triangle's neighbours. Returns false if a neighbour already has the opposite one.
+  /// Sets the orientation of a triangle's neighbours. Returns false if a neighbour already has the opposite
+  /// orientation.
   bool visit_neighbours(std::uint32_t t, std::vector<std::uint32_t>& shell) {
     for (const EdgeId edge : sites_.triangle_edges()[t]) {
       const auto& pair = of_edge_[edge.value];
@@ -72,7 +73,7 @@ class Reverser {
     return true;
   }
 
-  /// Returns true if a triangle traverses an edge towards the larger vertex.
+  /// Returns true if a triangle traverses an edge from its smaller vertex to its larger one.
   [[nodiscard]] bool rises(std::uint32_t t, EdgeId edge) const {
     for (std::size_t k = 0; k < 3; ++k) {
       if (sites_.triangle_edges()[t][k] == edge) return mesh_.triangles[t][k] < mesh_.triangles[t][(k + 1) % 3];
@@ -83,7 +84,7 @@ class Reverser {
   const MeshView& mesh_;
   const SiteTable& sites_;
   std::vector<std::array<std::uint32_t, 2>> of_edge_;
-  std::vector<int> facing_;  ///< 1 or -1; 0 if unknown
+  std::vector<int> facing_;  ///< for each triangle: 1, -1 if it is to be reversed, 0 if unknown
   std::vector<Triangle> triangles_;
   std::size_t count_ = 0;  ///< number of reversed triangles
 };

@@ -12,20 +12,21 @@
 
 namespace blum::detail {
 
-/// Entry of shell_of_triangles() for triangles that name a vertex twice.
+/// Entry of shell_of_triangles() for triangles that have the same vertex twice.
 constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 
-/// Returns the closed shell of each triangle. Shells are numbered as in Topology::shells: by their smallest triangle.
+/// Returns for each triangle the number of its closed shell. Shells are numbered as in Topology::shells, in the order
+/// of their first triangles.
 [[nodiscard]] std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites);
 
-/// Returns the triangles of a closed manifold, some of them reversed so that neighbours agree. Each shell keeps the
-/// orientation of most of its triangles. Returns nullopt if a surface has only one side.
-/// @param count  gets the number of reversed triangles.
+/// Returns the triangles of a closed manifold, some of them reversed so that neighbours have consistent orientations.
+/// Each shell gets the orientation that most of its triangles have. Returns nullopt if a shell is one-sided.
+/// @param count  is set to the number of reversed triangles.
 [[nodiscard]] std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
                                                                       std::size_t& count);
 
-/// Returns six times the volume between the triangles of a mesh and the middle of its box. From the middle, rounding
-/// does not lose it if the mesh lies far from the origin. Negative if the mesh faces inwards.
+/// Returns six times the signed volume of a mesh; it is negative if the mesh faces inwards. Coordinates are taken
+/// relative to the middle of the mesh's box, so that rounding is small even far from the origin.
 [[nodiscard]] double volume_around_middle(const MeshView& mesh);
 
 }  // namespace blum::detail

@@ -18,8 +18,9 @@ namespace {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
 
-/// Returns the body of each shell. Outer shells are numbered in order; voids get the body of the shell around them.
-/// Returns nullopt if a void's parent bounds no body. This may happen for shells that cross or coincide.
+/// Returns the body of each shell. Each outer shell (of even depth) gets the next body number; each void gets the body
+/// of the shell around it. Returns nullopt if the shell around a void is not an outer shell. This may happen if shells
+/// cross or coincide.
 std::optional<std::vector<std::uint32_t>> body_of_shells(const std::vector<Shell>& shells) {
   std::vector<std::uint32_t> body(shells.size(), nobody);
   std::uint32_t count = 0;
@@ -35,7 +36,7 @@ std::optional<std::vector<std::uint32_t>> body_of_shells(const std::vector<Shell
   return body;
 }
 
-/// Copies triangles, and the vertices that these name.
+/// Copies the given triangles and the vertices that they use.
 SolidBody copy_of(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
                   const std::vector<bool>& is_reversed) {
   SolidBody body;
@@ -64,9 +65,9 @@ std::string counted(std::size_t n, const char* one, const char* many) {
 
 /// Result of checking how triangles meet.
 struct Meeting {
-  std::string why;      ///< why the mesh bounds no polyhedron; empty if it bounds one
-  std::string problem;  ///< the same as a full sentence; also set if bodies touch each other
-  std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies
+  std::string why;      ///< the reason why the mesh bounds no polyhedron; empty if it bounds one
+  std::string problem;  ///< the same reason as a full sentence; also set if bodies touch each other
+  std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies that touch
 };
 
 Meeting meeting(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle, const Context& context) {
@@ -88,8 +89,8 @@ Meeting meeting(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_
   return out;
 }
 
-/// Returns the mesh as it is, whatever it bounds.
-/// @param why  why it bounds no polyhedron, like `problem`.
+/// Returns the whole mesh as one body, to which the rule of winding numbers applies.
+/// @param why  the reason why the mesh bounds no polyhedron, as in Obstacle; `problem` likewise.
 MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::string& why, std::string problem) {
   MeshSolid out;
   out.problem = std::move(problem);
@@ -103,7 +104,7 @@ MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::strin
   return out;
 }
 
-/// Adds the shells of a polyhedron, and its bodies' Betti numbers.
+/// Adds the shells of a polyhedron to `solid`, and sets the Betti numbers of its bodies.
 void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_t>& body, MeshSolid& solid) {
   for (std::uint32_t s = 0; s < shells.size(); ++s) {
     const Shell& one = shells[s];
@@ -117,14 +118,14 @@ void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_
   }
 }
 
-/// Why a mesh bounds no polyhedron.
+/// The reason why a mesh bounds no polyhedron.
 struct Obstacle {
-  std::string why;      ///< for the reason of the solid: "the mesh bounds no polyhedron: ..."
-  std::string problem;  ///< for an error, with advice
+  std::string why;      ///< continues the text "the mesh bounds no polyhedron: " in Solid::reason()
+  std::string problem;  ///< text for an error, with advice
 };
 
-/// Returns the polyhedron that a mesh bounds as it is.
-/// @param obstacle  is set if it bounds none.
+/// Returns the polyhedron that a mesh bounds without changes; nullopt if it bounds none.
+/// @param obstacle  is set to the reason if nullopt is returned.
 std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites, const Topology& topology,
                                     Obstacle& obstacle, const Context& context) {
   obstacle = {mesh_problem::obstacles(topology), problem_as_solid(topology)};
@@ -180,8 +181,10 @@ std::string resolved_text(const CrossingCounts& counts) {
   return text + ": resolved exactly, the solid is where the winding number is 1 or more";
 }
 
-/// Returns the polyhedron of the points around which a closed, self-crossing mesh winds once or more.
-/// @param obstacle  why the mesh bounds none as it is. Also gets why its crossings are not resolved, if so.
+/// Resolves the crossings of a closed mesh. Returns the polyhedron of the points at which the mesh's winding number is
+/// 1 or more; nullopt if that fails.
+/// @param obstacle  the reason why the mesh bounds no polyhedron without changes. If nullopt is returned, the reason
+///                  why its crossings are not resolved is appended.
 std::optional<MeshSolid> resolved_polyhedron(const MeshView& mesh, Obstacle& obstacle, const Context& context) {
   ResolvedMesh resolved = resolve_crossings(mesh, {}, context);
   Obstacle left{resolved.obstacle, {}};
@@ -201,8 +204,8 @@ std::optional<MeshSolid> resolved_polyhedron(const MeshView& mesh, Obstacle& obs
       return out;
     }
   }
-  obstacle.why += ", which is not resolved: " + left.why;
-  obstacle.problem += ", which is not resolved: " + left.why;
+  obstacle.why += ", and the crossings cannot be resolved: " + left.why;
+  obstacle.problem += ", and the crossings cannot be resolved: " + left.why;
   return std::nullopt;
 }
 
@@ -250,7 +253,7 @@ MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const 
 }
 
 std::vector<std::uint32_t> groups_apart(std::size_t bodies, std::span<const std::array<std::uint32_t, 2>> touching) {
-  std::vector<std::vector<std::uint32_t>> before(bodies);  // for each body: lesser bodies that it touches
+  std::vector<std::vector<std::uint32_t>> before(bodies);  // for each body: touching bodies with smaller numbers
   for (const auto& [one, other] : touching) before[other].push_back(one);
   std::vector<std::uint32_t> group(bodies, 0);
   for (std::size_t body = 0; body < bodies; ++body) {

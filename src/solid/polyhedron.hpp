@@ -23,36 +23,36 @@ struct MeshSolid {
   SolidRule rule = SolidRule::polyhedron;
   std::string reason;
   std::string problem;   ///< see Solid::problem()
-  Topology topology;     ///< of the given mesh
+  Topology topology;     ///< topology of the given mesh
   SolidSurface surface;  ///< see Solid::surface()
   std::size_t reversed_triangles = 0;
-  bool is_closed = false;                  ///< every edge has two triangles, which traverse it in opposite directions
+  bool is_closed = false;                  ///< every edge has two triangles that traverse it in opposite directions
   std::optional<CrossingCounts> resolved;  ///< crossings that were resolved to get the shells
   std::vector<SolidShell> shells;
   std::vector<SolidBody> bodies;
-  std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies that touch, the lesser first; rising
+  std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of touching bodies, the smaller first; ascending
 };
 
-/// Returns a group for each body, such that bodies of one group do not touch each other. All are in group 0 if none
-/// touch.
+/// Returns a group number for each body, such that bodies of the same group do not touch each other. If no bodies
+/// touch, all are in group 0.
 [[nodiscard]] std::vector<std::uint32_t> groups_apart(std::size_t bodies,
                                                       std::span<const std::array<std::uint32_t, 2>> touching);
 
-/// Splits a mesh into the bodies that it bounds.
-/// @throws InvalidMesh if there are no triangles; Cancelled.
+/// Finds the solid that a mesh bounds, and splits it into bodies.
+/// @throws InvalidMesh if the mesh has no triangles; Cancelled.
 [[nodiscard]] MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context);
 
-/// Triangles that face one way within each shell, and the topology with them.
+/// Triangles with a consistent orientation within each shell, and the topology before and after.
 struct Facing {
-  std::optional<std::vector<Triangle>> triangles;  ///< if some were reversed: all of them
+  std::optional<std::vector<Triangle>> triangles;  ///< all triangles; set only if some were reversed
   std::size_t reversed_triangles = 0;
-  bool is_one_sided = false;  ///< closed, but no orientation makes neighbours agree
+  bool is_one_sided = false;  ///< closed, but without a consistent orientation
   Topology given;             ///< of the given mesh
-  Topology facts;             ///< of the mesh with these triangles
+  Topology facts;             ///< topology with `triangles`
 };
 
-/// Returns the mesh's triangles, with those reversed that face another way than most of their shell. Cost: that of
-/// topology(), twice if triangles disagree.
+/// Reverses triangles that face another way than most triangles of their shell. Cost: that of topology(), or twice as
+/// much if triangles were reversed.
 /// @throws Cancelled.
 [[nodiscard]] Facing face_one_way(const MeshView& mesh, const SiteTable& sites, const Context& context);
 

@@ -35,17 +35,18 @@ class PointLocation {
   [[nodiscard]] bool contains(const Vec3d& p) const;
 
  private:
-  /// Returns true if the winding number counted along a ray is above 0, or the point lies on the surface of a
-  /// polyhedron. Returns nullopt if the ray does not decide, because it meets an edge or starts on another surface.
+  /// Returns true if the winding number, counted along a ray from the point, is above 0. Returns true, too, if the
+  /// point lies on the surface of a polyhedron. Returns nullopt if the ray meets an edge, or starts on the surface of a
+  /// mesh that bounds no polyhedron.
   [[nodiscard]] std::optional<bool> contains_along(const Vec3d& p, const Vec3d& direction) const;
 
   bool is_polyhedron_;
-  TriangleMesh mesh_;  ///< all bodies
+  TriangleMesh mesh_;  ///< mesh of all bodies
   std::optional<Bvh> bvh_;
-  std::optional<WindingNumber> winding_;  ///< for meshes that are not closed
+  std::optional<WindingNumber> winding_;  ///< set for meshes that are not closed
 };
 
-/// A ray in one of a fixed sequence of directions meets an edge of a surface with a probability of nearly 0.
+/// Largest number of rays to try. One is nearly always enough: a ray in a random direction almost never meets an edge.
 constexpr std::uint32_t most_rays = 64;
 
 TriangleMesh joined(const std::vector<SolidBody>& bodies) {
@@ -78,7 +79,7 @@ bool PointLocation::contains(const Vec3d& p) const {
     const Vec3d direction{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1)};
     if (const std::optional<bool> found = contains_along(p, direction)) return *found;
   }
-  return true;  // on the surface, where every ray starts
+  return true;  // all rays failed, so the point is taken to lie on the surface
 }
 
 std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& direction) const {
@@ -88,7 +89,7 @@ std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& d
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   bvh_->for_each_crossing({p, direction}, no_limit, [&](const RayCrossing& crossing) {
     const Triangle& t = mesh_.triangles[crossing.triangle.value];
-    // A ray crosses a plane once. If its origin lies in the plane, it is the crossing.
+    // A ray crosses a plane only once. So if the point lies in the triangle's plane, the point is the crossing.
     is_on_surface = is_on_surface || orient3d(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], p) == 0;
     is_decisive = is_decisive && !crossing.on_border;
     winding += crossing.side;
@@ -105,10 +106,10 @@ std::optional<bool> PointLocation::contains_along(const Vec3d& p, const Vec3d& d
 namespace blum {
 namespace {
 
-/// Returns true if a point lies in a closed voxel of a set.
+/// Returns true if a point lies in a closed voxel of the set.
 bool is_in_voxels(const VoxelSet& voxels, const GridSpec& grid, const Vec3d& p) {
   const Vec3d q = grid.direction.transposed_times(p - grid.origin);
-  std::array<std::array<std::int64_t, 2>, 3> candidates{};  // two along an axis if the point lies between voxels
+  std::array<std::array<std::int64_t, 2>, 3> candidates{};  // two along an axis if the point lies between two voxels
   for (std::size_t a = 0; a < 3; ++a) {
     const double at = q[a] / grid.spacing[a] + 0.5;
     const double voxel = std::floor(at);
@@ -129,7 +130,7 @@ bool is_in_voxels(const VoxelSet& voxels, const GridSpec& grid, const Vec3d& p) 
 }  // namespace
 
 struct Solid::Data {
-  detail::MeshSolid mesh;  ///< for images: only rule and reason
+  detail::MeshSolid mesh;  ///< for images, only `rule` and `reason` are set
   std::optional<BettiNumbers> betti;
   std::size_t reversed_shells = 0;
   bool faces_inwards = false;
@@ -138,7 +139,7 @@ struct Solid::Data {
   VoxelSet voxels;
   GridSpec grid;
 
-  /// Built on first use.
+  /// Built at the first use.
   mutable std::once_flag locates;
   mutable std::optional<detail::PointLocation> location;
 };

@@ -17,7 +17,7 @@ std::vector<Warning> reversal_warnings(std::size_t triangles, std::size_t shells
   std::vector<Warning> out;
   if (triangles > 0) {
     out.emplace_back(WarningCode::reversed_shells, plural(triangles, "triangle faces", "triangles face") +
-                                                       " another way than the neighbours, and " +
+                                                       " another way than neighbouring triangles and " +
                                                        were_reversed(triangles));
   }
   if (shells > 0) {

@@ -17,8 +17,8 @@
 namespace blum {
 namespace {
 
-/// Returns true if a surface winds once around all points of its solid, and around no others. Then nothing crosses or
-/// touches, and nested shells face alternate ways.
+/// Returns true if the winding number is 1 at all points inside the solid, and 0 elsewhere. Triangles then do not cross
+/// or touch each other, and nested shells face outwards and inwards alternately.
 bool winds_once(const MeshView& surface, const Context& context) {
   return orientation(surface, SiteTable(surface)).outward && !SelfIntersectionSearch().finds_any(surface, context);
 }

@@ -25,16 +25,17 @@ using ChartCorners = std::array<TexturePlace, 3>;
   return (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
 }
 
-/// Returns true if a chart has an area that is not lost in rounding.
+/// Returns true if the area of a chart is not 0, and the area and its reciprocal are finite.
 [[nodiscard]] inline bool has_area(const ChartCorners& places) {
   const double area = twice_area(places);
   return area != 0 && std::isfinite(area) && std::isfinite(1 / area);
 }
 
-/// The affine map from a texture to the plane of the triangle that a chart shows.
+/// The affine map of a chart: from the texture to the plane of the triangle that the chart shows.
 class Chart {
  public:
-  /// @param places  positions of the triangle's corners in the texture; they span an area.
+  /// @param corners  the triangle's corners in space.
+  /// @param places   the triangle's corners in the texture; has_area() must be true for them.
   Chart(const std::array<Vec3d, 3>& corners, const ChartCorners& places) : corners_(corners), places_(places) {
     const double inverse = 1 / twice_area(places);
     sign_ = inverse < 0 ? -1 : 1;
@@ -46,19 +47,19 @@ class Chart {
                  !(length(cross(u, v)) > sliver_ratio * longest_square(corners));
   }
 
-  /// Returns the point of the triangle's plane for a place.
+  /// Returns the point of the triangle's plane for a place in the texture.
   [[nodiscard]] Vec3d in_plane(const TexturePlace& at) const {
     return corners_[0] + along_x_ * (at.x - places_[0].x) + along_y_ * (at.y - places_[0].y);
   }
-  /// Returns the point of the triangle for a place. For a place beyond the border, it is the point closest to
-  /// in_plane().
+  /// Returns the point of the triangle for a place in the texture. If the place is outside the chart, it is the point
+  /// of the triangle closest to in_plane().
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);
     std::array<bool, 3> is_beyond{};
     for (std::size_t k = 0; k < 3; ++k) is_beyond[k] = beyond(k, at);
     if (!is_beyond[0] && !is_beyond[1] && !is_beyond[2]) return point;
-    // That point lies on a side that the place is beyond. For slivers, rounding may find no side or others, so all are
-    // tested.
+    // The closest point lies on a side that the place is beyond. For slivers, rounding may find no such side or a wrong
+    // one, so all sides are tested.
     Vec3d best;
     double closest = HUGE_VAL;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -72,7 +73,7 @@ class Chart {
     }
     return best;
   }
-  /// Returns the largest stretch of the map, mesh units per texel (the largest singular value).
+  /// Returns the largest stretch of the map (its largest singular value), in the unit of `corners` per texel.
   [[nodiscard]] double stretch() const {
     const double xx = squared_length(along_x_);
     const double yy = squared_length(along_y_);
@@ -95,19 +96,20 @@ class Chart {
     }
     return out;
   }
-  /// Returns true if a place lies beyond a side.
+  /// Returns true if a place lies outside the chart, beyond a given side.
   [[nodiscard]] bool beyond(std::size_t side, const TexturePlace& at) const {
     return sign_ * twice_area({places_[side], places_[(side + 1) % 3], at}) < 0;
   }
 
   std::array<Vec3d, 3> corners_;
   ChartCorners places_;
-  bool is_sliver_ = false;   ///< true for a sliver in the texture or in space
-  double sign_ = 1;          ///< of the chart's area
-  Vec3d along_x_, along_y_;  ///< steps of one texel
+  bool is_sliver_ = false;   ///< true if the triangle is a sliver in the texture or in space
+  double sign_ = 1;          ///< sign of the chart's area
+  Vec3d along_x_, along_y_;  ///< steps in space for steps of one texel along x and along y
 };
 
-/// Charts of a mesh times a power of two, so that products of its coordinates neither overflow nor underflow.
+/// Charts of a mesh whose coordinates are multiplied by a power of two, so that products of coordinates neither
+/// overflow nor underflow.
 struct ScaledCharts {
   const MeshView& mesh;
   const SurfaceAtlas& atlas;
@@ -120,21 +122,22 @@ struct ScaledCharts {
   }
 };
 
-/// Returns the middle of a texel.
+/// Returns the middle of the texel in column x and row y.
 [[nodiscard]] inline TexturePlace middle_of(std::size_t x, std::size_t y) {
   return {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
 }
 
-/// Calls visit(x, y, outside) for the texels that nearest or bilinear reading within a chart uses. The middles of these
-/// are within one texel along x and along y of a place of the chart. `outside` is how far the middle is beyond the side
-/// that it is furthest beyond, in texels. It is 0 or less within the chart.
-/// @param places  with an area.
-/// @param width, height  size of the texture; texels beyond it are left out.
+/// Calls visit(x, y, outside) for the texels that nearest or bilinear reading at a place of a chart uses. The middle of
+/// such a texel is less than one texel, along x and along y, away from a place of the chart. `outside` is the largest
+/// signed distance of the texel's middle beyond a side of the chart, in texels. It is 0 or less if the middle is in the
+/// chart.
+/// @param places  corners of the chart; has_area() must be true for them.
+/// @param width, height  size of the texture; texels outside it are not visited.
 template <class Visit>
 void for_each_texel(const ChartCorners& places, std::uint32_t width, std::uint32_t height, Visit visit) {
   const double sign = twice_area(places) < 0 ? -1 : 1;
-  std::array<double, 3> side{};   ///< lengths
-  std::array<double, 3> reach{};  ///< of a square of two texels a side, across the sides: half its extent
+  std::array<double, 3> side{};   ///< lengths of the sides
+  std::array<double, 3> reach{};  ///< half the extent, across each side, of a square of 2 x 2 texels
   for (std::size_t k = 0; k < 3; ++k) {
     const TexturePlace& a = places[k];
     const TexturePlace& b = places[(k + 1) % 3];
@@ -143,7 +146,7 @@ void for_each_texel(const ChartCorners& places, std::uint32_t width, std::uint32
   }
   const auto [left, right] = std::minmax({places[0].x, places[1].x, places[2].x});
   const auto [top, bottom] = std::minmax({places[0].y, places[1].y, places[2].y});
-  // Middles in the open square around a place: 0.5 + i > left - 1.
+  // Middles are less than one texel away from the box of the chart: 0.5 + i > left - 1.
   const auto first = [](double from) { return static_cast<std::size_t>(std::max(std::floor(from - 1.5) + 1, 0.0)); };
   const auto end = [](double to, std::uint32_t size) {
     return static_cast<std::size_t>(std::clamp(std::ceil(to + 0.5), 0.0, static_cast<double>(size)));
@@ -166,7 +169,7 @@ void for_each_texel(const ChartCorners& places, std::uint32_t width, std::uint32
 /// A convex polygon in a texture.
 using ChartPart = InlineList<TexturePlace, 12>;
 
-/// Returns the part of a polygon on one side of a line along an axis.
+/// Returns the part of a polygon on one side of a line parallel to an axis.
 template <class Coordinate>
 ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limit, double sign) {
   ChartPart out;
@@ -184,8 +187,8 @@ ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limi
   return out;
 }
 
-/// Returns the part of a chart in the square around a place.
-/// @param reach  half the square's side, texels.
+/// Returns the part of a chart that lies in a square around a place.
+/// @param reach  half the side of the square, texels.
 [[nodiscard]] inline ChartPart part_around(const ChartCorners& places, const TexturePlace& middle, double reach) {
   ChartPart left;
   for (const TexturePlace& at : places) left.push_back(at);
@@ -196,7 +199,7 @@ ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limi
   return left;
 }
 
-/// Returns the area of a part, square texels.
+/// Returns the area of a part of a chart, square texels.
 [[nodiscard]] inline double area_of(const ChartPart& part) {
   double twice = 0;
   for (std::size_t k = 2; k < part.size(); ++k)
@@ -204,11 +207,11 @@ ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limi
   return std::abs(twice) / 2;
 }
 
-/// @throws InvalidMesh if a mesh is not valid, or does not have as many triangles as an atlas.
+/// @throws InvalidMesh if the mesh is not valid, or if its number of triangles differs from that of the atlas.
 inline void check_fits(const MeshView& mesh, const SurfaceAtlas& atlas) {
   validate(mesh);
   if (mesh.triangles.size() == atlas.corners.size()) return;
-  throw InvalidMesh("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles, but its atlas " +
+  throw InvalidMesh("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles, but its atlas has " +
                     std::to_string(atlas.corners.size()));
 }
 

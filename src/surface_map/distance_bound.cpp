@@ -13,7 +13,7 @@
 namespace blum::surface {
 namespace {
 
-/// Most primitives at a vertex that are examined.
+/// Greatest number of primitives at one site that are examined.
 constexpr std::size_t most_primitives = 16;
 using Primitives = std::span<const std::uint32_t>;
 using Corners = std::array<const FacingPoint*, 3>;
@@ -35,7 +35,8 @@ double longest_side(const Corners& corners) {
   return std::sqrt(squared);
 }
 
-/// Returns a bound from one primitive. The distance from it is a convex function, so it is largest at a corner.
+/// Returns the bound that one primitive yields. The distance from a primitive is a convex function, so it is largest at
+/// a corner of the triangle.
 double bound_by_primitive(const Corners& corners, const std::array<Primitives, 3>& lists, const FacingSurface& surface,
                           std::uint32_t primitive) {
   const std::array<Vec3d, 3> facing = surface.corners_of(primitive);
@@ -49,7 +50,8 @@ double bound_by_primitive(const Corners& corners, const std::array<Primitives, 3
   return std::sqrt(squared);
 }
 
-/// Finds the common part of two primitives: an edge, or a vertex twice. Returns false if they have none.
+/// Finds the common part of two primitives: the two ends of an edge, or a vertex twice. Returns false if they have no
+/// common vertex.
 bool common_part(const FacingSurface& surface, std::uint32_t a, std::uint32_t b, std::array<Vec3d, 2>& part) {
   const Triangle of_a = surface.vertices_of(a);
   const Triangle of_b = surface.vertices_of(b);
@@ -64,9 +66,9 @@ bool common_part(const FacingSurface& surface, std::uint32_t a, std::uint32_t b,
   return true;
 }
 
-/// Returns a bound after cutting off a corner whose closest point lies on another primitive than the middle one. The
-/// cut is where the sides from the corner come closest to the common part of both primitives. The corner's piece then
-/// faces its own primitive, and the rest faces the middle one.
+/// Returns the bound that a cut yields. The closest point of the corner lies on a primitive (its own) other than the
+/// middle one. The cut joins the points of the two sides at the corner that are closest to the common part of both
+/// primitives. The corner's piece is then bounded by its own primitive, and the rest by the middle one.
 double bound_by_cut(const Corners& corners, std::size_t corner, const std::array<Vec3d, 2>& common) {
   double squared = 0;
   for (const std::size_t other : {(corner + 1) % 3, (corner + 2) % 3}) {
@@ -76,9 +78,10 @@ double bound_by_cut(const Corners& corners, std::size_t corner, const std::array
   return std::sqrt(squared);
 }
 
-/// Returns a bound after cutting the triangle into pieces. Each piece is a convex set that one primitive faces, with
-/// known distances at its corners. One of these primitives is the middle one. The others belong to closest points that
-/// are not on it, and must touch it.
+/// Returns the bound that cuts of the triangle into pieces yield. Each piece is bounded by its distance from one
+/// primitive, which is largest at a corner of the piece. The middle primitive bounds the middle piece. If the closest
+/// point of a corner is not on the middle primitive, a piece is cut off there. A primitive with that closest point
+/// bounds it, and must touch the middle one.
 double bound_around(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                     std::uint32_t middle, double enough) {
   double bound = 0;
@@ -96,7 +99,7 @@ double bound_around(const Corners& corners, const FacingSurface& surface, const 
   return bound;
 }
 
-/// Returns the least bound_around() with any primitive of a closest point in the middle.
+/// Returns the least bound_around() for all choices of the middle primitive among those that contain a closest point.
 double bound_by_cuts(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                      double enough) {
   double best = std::numeric_limits<double>::infinity();
@@ -110,7 +113,8 @@ double bound_by_cuts(const Corners& corners, const FacingSurface& surface, const
   return best;
 }
 
-/// Returns a bound with the primitive closest to the centroid in the middle, because all corners may lie next to it.
+/// Returns the bound with the primitive closest to the centroid as the middle one. The closest points of all corners
+/// may lie on its neighbours.
 double bound_by_centroid(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
                          double largest, double enough) {
   const Vec3d centroid = (corners[0]->point + corners[1]->point + corners[2]->point) / 3.0;
@@ -133,8 +137,8 @@ double bound_by_centroid(const Corners& corners, const FacingSurface& surface, c
 
 double distance_bound(const Corners& corners, const FacingSurface& surface, double enough) {
   const double largest = std::max({corners[0]->distance, corners[1]->distance, corners[2]->distance});
-  // A distance changes by no more than the way moved. No point of a triangle is further than this from its nearest
-  // corner.
+  // If a point moves, its distance changes by at most the length of the move. Each point of a triangle is at most
+  // longest side / sqrt(3) away from its nearest corner.
   double best = largest + longest_side(corners) / std::numbers::sqrt3;
   if (best <= enough) return best;
   std::array<Primitives, 3> lists;

@@ -9,7 +9,7 @@
 
 namespace blum::surface {
 
-/// A point of a surface, and the closest point of the other one.
+/// A point of a surface, and the closest point of the other surface.
 struct FacingPoint {
   Vec3d point;
   Vec3d closest;
@@ -17,10 +17,11 @@ struct FacingPoint {
   SiteId site;
 };
 
-/// Returns an upper bound on the distance of all points of a triangle from a surface, except for rounding. The triangle
-/// may have lost its area.
-/// @param enough  any bound up to this one is good enough.
-/// Cost: 10 ns if the corners' distances and the size of the triangle are enough, else up to 1 us.
+/// Returns an upper bound on the distance of all points of a triangle from a surface, except for rounding errors. The
+/// triangle may have no area.
+/// @param enough  the search for smaller bounds ends at a bound of at most this.
+/// Cost: 10 ns if the distances at the corners and the size of the triangle already yield such a bound; else up to 1
+/// us.
 /// Method: docs/theory/surface-maps.md.
 [[nodiscard]] double distance_bound(const std::array<const FacingPoint*, 3>& corners, const FacingSurface& surface,
                                     double enough);

@@ -20,18 +20,18 @@ namespace blum::surface {
 /// Finds closest sites, and the primitives that touch them.
 class FacingSurface {
  public:
-  /// @param mesh  must outlive this.
+  /// @param mesh  must outlive this object.
   /// @throws Cancelled.
-  /// Cost: that of a Bvh, and 5 ms for 70,000 triangles.
+  /// Cost: that of building a Bvh, and 5 ms more for 70,000 triangles.
   FacingSurface(const MeshView& mesh, const Context& context);
 
   [[nodiscard]] const MeshView& mesh() const { return mesh_; }
   [[nodiscard]] const Bvh& hierarchy() const { return bvh_; }
   [[nodiscard]] const SiteTable& sites() const { return sites_; }
 
-  /// Returns the primitives that a site lies on, in rising order.
+  /// Returns the primitives that contain a site, in rising order.
   [[nodiscard]] std::span<const std::uint32_t> primitives_at(SiteId site) const;
-  /// Returns the vertices of a primitive. For segments and points, one is repeated.
+  /// Returns the vertices of a primitive. For segments and points, a vertex is repeated.
   [[nodiscard]] Triangle vertices_of(std::uint32_t primitive) const { return primitive_vertices(mesh_, primitive); }
   [[nodiscard]] const Vec3d& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
   [[nodiscard]] std::array<Vec3d, 3> corners_of(std::uint32_t primitive) const;
@@ -42,7 +42,7 @@ class FacingSurface {
   Bvh bvh_;
   /// Primitives of vertex or edge s: primitives_[first_[s] .. first_[s + 1]).
   std::vector<std::uint32_t> first_, primitives_;
-  std::vector<std::uint32_t> all_;  ///< 0, 1, 2, ... : the list of a face is one of them
+  std::vector<std::uint32_t> all_;  ///< 0, 1, 2, ...: the list of face f is the item f
 };
 
 }  // namespace blum::surface

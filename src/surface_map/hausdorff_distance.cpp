@@ -25,16 +25,16 @@ using surface::FacingSurface;
 
 constexpr std::size_t points_per_range = 512;
 constexpr std::size_t pieces_per_range = 64;
-/// Smallest number of primitives that are excluded together.
+/// Least number of consecutive primitives that are tested and excluded together.
 constexpr std::size_t smallest_run = 8;
-/// Most pieces divided at once: few enough that results of one round save work in the next.
+/// Greatest number of pieces divided in one round. It is small enough that results of one round save work in the next.
 constexpr std::size_t most_per_round = std::size_t{1} << 16;
 
-/// A part of a primitive: a triangle of evaluated points.
+/// A part of a primitive: a triangle whose corners are evaluated points.
 struct Piece {
   std::array<std::uint32_t, 3> corners{};
   std::uint32_t primitive = 0;
-  double bound = 0;  ///< no point of it is further from the other mesh
+  double bound = 0;  ///< no point of the piece is further from the other mesh than this
 };
 
 void check(const HausdorffOptions& options) {
@@ -44,7 +44,8 @@ void check(const HausdorffOptions& options) {
   if (options.max_points < 1) throw InvalidOption("max_points is 0, but must be at least 1");
 }
 
-/// Hierarchies find nothing beyond 1e150 times the size of their mesh.
+/// Throws if the meshes are too far apart for hierarchies. A hierarchy finds nothing beyond 1e150 times the size of its
+/// mesh.
 void check_sizes(const MeshView& a, const MeshView& b, const Box3& both) {
   constexpr double most = 1e140;
   const Vec3d whole = both.size();
@@ -52,21 +53,21 @@ void check_sizes(const MeshView& a, const MeshView& b, const Box3& both) {
     const Vec3d own = bounds(*mesh).size();
     const double size = std::max({own.x, own.y, own.z});
     if (size > 0 && std::max({whole.x, whole.y, whole.z}) / size > most) {
-      throw InvalidMesh("one mesh is more than 1e140 times as large as the other, or as far from it");
+      throw InvalidMesh("the box around both meshes is more than 1e140 times as large as the box around one of them");
     }
   }
 }
 
-/// Returns a copy in which the largest coordinate of both meshes is about 1. Products of coordinates then stay in
-/// range.
+/// Returns a copy of vertices, multiplied by a factor that makes the largest coordinate of both meshes about 1.
+/// Products of coordinates then neither overflow nor underflow.
 std::vector<Vec3d> scaled(std::span<const Vec3d> vertices, double scale) {
   std::vector<Vec3d> out(vertices.begin(), vertices.end());
   for (Vec3d& v : out) v *= scale;
   return out;
 }
 
-/// Finds the point of a mesh that is furthest from another one. Divides the pieces that may contain it, until they
-/// cannot be much further than a known point.
+/// Finds the point of a mesh that is furthest from another mesh. Pieces that may contain it are divided until no piece
+/// can be further than the furthest known point by more than the tolerance.
 class FurthestPoint {
  public:
   FurthestPoint(const FacingSurface& mesh, const FacingSurface& other, double tolerance, double rounding,
@@ -98,14 +99,14 @@ class FurthestPoint {
  private:
   [[nodiscard]] double furthest() const { return points_[furthest_].distance; }
 
-  /// Returns the closest point of the other mesh for a point. That point is known to be within a bound.
+  /// Returns the closest point of the other mesh for a point. It must be known that its distance is at most `bound`.
   [[nodiscard]] FacingPoint evaluated(const Vec3d& point, double bound) const {
     std::optional<NearestSite> nearest = other_.hierarchy().nearest(point, bound * (1 + 1e-9) + 1e-12);
     if (!nearest) nearest = other_.hierarchy().nearest(point);
     return {point, nearest->point, nearest->distance, nearest->site};
   }
 
-  /// A vertex, and a primitive that it is one of.
+  /// A vertex, and a primitive that contains it.
   struct VertexOf {
     std::uint32_t vertex = 0;
     std::uint32_t primitive = 0;
@@ -139,8 +140,8 @@ class FurthestPoint {
     evaluate_vertices(unknown);
   }
 
-  /// Returns true if most primitives have a vertex of the other mesh, judged by a few of them. This is so if one mesh
-  /// was made by changing a part of the other.
+  /// Returns true if at least half of 32 sampled primitives have a first vertex at distance 0 from the other mesh. This
+  /// is so if one mesh was made by changing a part of the other.
   bool are_mostly_common(const std::vector<std::uint32_t>& primitives) {
     constexpr std::size_t samples = 32;
     if (primitives.size() < 32 * samples) return false;
@@ -154,7 +155,7 @@ class FurthestPoint {
     return 2 * common >= samples;
   }
 
-  /// Evaluates vertices in the place of a vertex of the other mesh, which need no search.
+  /// Evaluates vertices that have the same position as a vertex of the other mesh. These need no search.
   void evaluate_common_vertices() {
     std::vector<Vec3d> both(other_.mesh().vertices.begin(), other_.mesh().vertices.end());
     const std::size_t of_other = both.size();
@@ -168,17 +169,18 @@ class FurthestPoint {
     }
   }
 
-  /// Primitives that are consecutive in the hierarchy's order, and a box around them.
+  /// A range of consecutive primitives in the hierarchy's order, and a box around them.
   struct Run {
     std::size_t begin = 0;
     std::size_t end = 0;
     Box3 box;
-    Vec3d center_closest;  ///< to the middle of the box
+    Vec3d center_closest;  ///< closest point of the other mesh to the middle of the box
     double center_distance = 0;
   };
 
-  /// Returns the primitives that may be further than the furthest known point. Whole runs of others are excluded by the
-  /// closest points of the middles of their boxes.
+  /// Returns the primitives that may contain points further away than the furthest known point. Whole runs of other
+  /// primitives are excluded: half the diagonal of the box, plus the distance of its middle, bounds the distances in a
+  /// run.
   std::vector<std::uint32_t> far_primitives() {
     const std::span<const std::uint32_t> order = mesh_.hierarchy().order();
     std::vector<std::uint32_t> out;
@@ -203,7 +205,7 @@ class FurthestPoint {
         } else if (run.center_distance +
                        half * std::sqrt(static_cast<double>(smallest_run) / static_cast<double>(size)) >
                    furthest() + tolerance_) {
-          take(run);  // its parts will probably not be excluded either
+          take(run);  // smaller parts of the run will probably not be excluded either
         } else {
           further.push_back(run);
         }
@@ -224,7 +226,8 @@ class FurthestPoint {
     return out;
   }
 
-  /// Finds the closest points of the middles of runs, and of a vertex of each.
+  /// For each run, finds the closest point of the other mesh to the middle of the run's box, and to one vertex of the
+  /// run.
   void evaluate(std::vector<Run>& runs, std::span<const std::uint32_t> order) {
     parallel_for(context_, runs.size(), 1, "", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
@@ -272,17 +275,18 @@ class FurthestPoint {
     for (const Piece& piece : all) keep(piece);
   }
 
-  /// Keeps a piece that is worth dividing, and settles any other.
+  /// Keeps a piece if its bound exceeds the furthest known distance by more than the tolerance. Otherwise the piece is
+  /// settled.
   void keep(const Piece& piece) {
     if (piece.bound > furthest() + tolerance_) return pieces_.push_back(piece);
     settled_ = std::max(settled_, piece.bound);
   }
 
-  /// Moves the pieces with the largest bounds out of the list.
+  /// Removes the pieces with the largest bounds from the list and returns them.
   std::vector<Piece> take_furthest() {
     double largest = 0;
     for (const Piece& piece : pieces_) largest = std::max(largest, piece.bound);
-    // Results for these may settle the others.
+    // Results for pieces with larger bounds may settle the others.
     const double least = furthest() + (largest - furthest()) / 2;
     const auto middle = std::partition(pieces_.begin(), pieces_.end(), [&](const Piece& p) { return p.bound < least; });
     const auto rank = [](const Piece& p) { return std::pair(-p.bound, p.corners); };
@@ -293,14 +297,14 @@ class FurthestPoint {
     const std::ptrdiff_t count = std::min(pieces_.end() - middle, static_cast<std::ptrdiff_t>(most_per_round));
     std::vector<Piece> taken(middle, middle + count);
     pieces_.erase(middle, middle + count);
-    // Neighbouring pieces search the same parts of the hierarchy.
+    // Searches for neighbouring pieces use the same parts of the hierarchy.
     std::sort(taken.begin(), taken.end(), [](const Piece& p, const Piece& q) {
       return std::tie(p.primitive, p.corners) < std::tie(q.primitive, q.corners);
     });
     return taken;
   }
 
-  /// Halves pieces at the middle of their longest sides.
+  /// Halves the pieces with the largest bounds at the middle of their longest sides.
   void divide_furthest() {
     const std::vector<Piece> taken = take_furthest();
     const std::size_t first = points_.size();
@@ -369,16 +373,17 @@ class FurthestPoint {
   double rounding_;
   std::size_t max_points_;
   const Context& context_;
-  std::vector<FacingPoint> points_;     ///< the vertices, then points inside of primitives
+  std::vector<FacingPoint> points_;     ///< the vertices of the mesh, then other points of its primitives
   std::vector<std::uint8_t> is_known_;  ///< for each vertex
-  std::vector<Piece> pieces_;           ///< may be further than the furthest known point by more than the tolerance
-  double settled_ = 0;                  ///< the largest bound of all other pieces
+  /// Pieces whose bound exceeds the furthest known distance by more than the tolerance.
+  std::vector<Piece> pieces_;
+  double settled_ = 0;  ///< the largest bound of all settled pieces and runs
   std::uint32_t furthest_ = 0;
   std::uint32_t primitive_of_furthest_ = 0;
   std::size_t evaluations_ = 0;
 };
 
-/// Two meshes scaled to about 1, and the tolerance of the answer at that scale.
+/// Two meshes, scaled so that their largest coordinate is about 1, and the tolerance of the result at that scale.
 class MeshPair {
  public:
   MeshPair(const MeshView& a, const MeshView& b, const HausdorffOptions& options, const Context& context)
@@ -411,7 +416,8 @@ class MeshPair {
   }
 
  private:
-  /// Builds both at once if they are of similar size, because one thread alone does half of the work for each.
+  /// Builds both surfaces in parallel if their sizes differ by at most a factor of 2. A single build does half of its
+  /// work on one thread.
   void build_surfaces(const Context& context) {
     const auto [fewer, more] = std::minmax({primitive_count(meshes_[0]), primitive_count(meshes_[1])});
     const int threads = thread_count(context);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t triangles_per_range = 256;
 
-/// Calls visit(texel) for the texels of a triangle.
+/// Calls visit(texel) for the texels that belong to a triangle.
 template <class Visit>
 void for_each_own_texel(const SurfaceAtlas& atlas, std::uint32_t triangle, Visit visit) {
   const ChartCorners& places = atlas.corners[triangle];
@@ -48,8 +48,8 @@ SurfaceMap::FaceSummary summary_of(const SurfaceMap& map, std::span<const std::u
   return out;
 }
 
-/// Returns the largest finite magnitude that is read within a triangle. Infinite if a distance is too large for
-/// float32, or if the chart has no area.
+/// Returns the largest finite magnitude of a distance that is read in the chart of a triangle. Returns infinity if a
+/// distance is too large for float32, or if the chart has no area.
 double largest_read(const SurfaceMap& map, std::size_t triangle) {
   const SurfaceMap::FaceSummary& own = map.faces[triangle];
   const float largest = std::max(std::abs(own.smallest), std::abs(own.largest));
@@ -105,7 +105,7 @@ void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, 
     if (k == last) continue;
     const auto rank = static_cast<std::size_t>(next - order.first.begin()) - 1;
     const Chart chart = charts[order.triangles[rank]];
-    // Texels are sorted by rows.
+    // The texels of a triangle are sorted by row.
     std::size_t y = order.texels[k] / atlas.width;
     std::size_t row = y * atlas.width;
     for (; k < last; ++k) {
@@ -151,13 +151,14 @@ void fill_texels(SurfaceMap& map, const TexelOrder& order, std::size_t texels_pe
   map.faces.resize(order.triangles.size());
   parallel_for(context, order.texels.size(), texels_per_range, "surface map", [&](const WorkRange& range) {
     fill_range(range.begin, range.end);
-    // Summaries are made while the values are in the caches.
+    // Triangles are summarized here, while their values are in the caches.
     const auto first = std::lower_bound(order.first.begin(), order.first.end(), range.begin);
     for (auto k = static_cast<std::size_t>(first - order.first.begin()); order.first[k] < range.end; ++k) {
       if (order.first[k + 1] <= range.end) map.faces[order.triangles[k]] = summary_of(map, order.of(k));
     }
   });
-  // The rest are triangles in more than one range, and those without texels, which may lie behind the last range.
+  // This loop summarizes the other triangles: those with texels in more than one range, and those without texels, which
+  // may come after the last range.
   parallel_for(context, map.faces.size(), triangles_per_range, "", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const std::size_t begin = order.first[k];
@@ -199,7 +200,8 @@ void bound_errors(SurfaceMap& map, const MeshView& mesh, bool may_jump, const Co
   parallel_for(context, reaches.size(), triangles_per_range, "", [&](const WorkRange& range) {
     for (std::size_t t = range.begin; t < range.end; ++t) {
       const double largest = largest_read(map, t);
-      // Texels hold float32, in which steps below 1e-38 all have the same length. Points are rounded, too.
+      // Texels are stored as float32. Below 1e-38, the steps between float32 numbers all have the same length. Points
+      // are also rounded.
       const double rounding = 1.2e-7 * largest + std::numeric_limits<float>::denorm_min() + 4e-15 * (extent + largest);
       const double jump = may_jump ? 2 * largest : 0;
       map.error[t] = static_cast<float>((reaches[t] + rounding + jump) * (1 + 1e-6));

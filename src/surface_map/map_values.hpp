@@ -18,11 +18,11 @@
 
 namespace blum::surface {
 
-/// The texels of triangles, triangle after triangle. Triangles that are close in space are consecutive. The order is
-/// valid for any positions of the vertices, and best for those that it was made of.
+/// The texels of an atlas, triangle after triangle. Triangles that are close in space are close in the order. The order
+/// is valid for any positions of the vertices, and fastest for those from which it was made.
 struct TexelOrder {
-  std::vector<std::uint32_t> triangles;  ///< all of them
-  std::vector<std::size_t> first;        ///< triangles[k] has texels[first[k]] .. texels[first[k + 1] - 1]
+  std::vector<std::uint32_t> triangles;  ///< all triangles
+  std::vector<std::size_t> first;        ///< triangles[k] has texels[first[k]] to texels[first[k + 1] - 1]
   std::vector<std::uint32_t> texels;
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t k) const {
@@ -35,8 +35,8 @@ struct TexelOrder {
 /// Cost: 0.2 us per triangle, 10 ns per texel.
 [[nodiscard]] TexelOrder texel_order(const MeshView& mesh, const SurfaceAtlas& atlas, const Context& context);
 
-/// Computes the surface points that order.texels[begin] ... order.texels[end - 1] stand for.
-/// @param scale  that of ScaledCharts.
+/// Computes the surface points that the texels order.texels[begin] to order.texels[end - 1] represent.
+/// @param scale  ScaledCharts::scale of the mesh.
 void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, const TexelOrder& order,
                  std::size_t begin, std::size_t end, std::vector<Vec3d>& points);
 
@@ -47,24 +47,24 @@ struct SurfaceValue {
   SiteId site;
 };
 
-/// Returns the smallest triangle at each vertex; none() if it has none.
+/// Returns, for each vertex, the triangle with the smallest index that contains it; none() if no triangle does.
 [[nodiscard]] std::vector<TriangleId> triangles_at_vertices(const MeshView& mesh);
 
-/// Returns a map with room for values.
+/// Returns a map of an atlas in which no texel has a value yet.
 [[nodiscard]] SurfaceMap empty_map(std::shared_ptr<const SurfaceAtlas> atlas, SurfaceQuantity quantity);
-/// Writes the value of a texel. The distance is signed.
+/// Writes the value of a texel, for the surface point that the texel represents. The distance is signed.
 void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceValue& value);
 
-/// Fills the texels of a map, range by range and on many threads, and summarizes those of each triangle.
-/// @param fill_range  callable: puts the values of order.texels[begin] ... order.texels[end - 1].
+/// Fills the texels of a map in ranges, on many threads, and computes the summary of each triangle.
+/// @param fill_range  callable: writes the values of the texels order.texels[begin] to order.texels[end - 1].
 void fill_texels(SurfaceMap& map, const TexelOrder& order, std::size_t texels_per_range,
                  FunctionRef<void(std::size_t begin, std::size_t end)> fill_range, const Context& context);
 
 /// Returns the value at a point of a triangle.
-/// @param last  the value of a point that is probably close by, or null. It may bound the search, but must not change
-///   its result.
+/// @param last  the value at a point that is probably close to `point`, or null. It may be used to bound the search,
+/// but must not change the result.
 using ValueAt = FunctionRef<SurfaceValue(const Vec3d& point, TriangleId triangle, const SurfaceValue* last)>;
-/// Fills the texels, the summaries of triangles and the vertices with such values.
+/// Fills the texels, the summaries of triangles and the distances of vertices of a map with the values of `value_at`.
 void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context);
 
 /// Adds a warning if no texel has a value.
@@ -72,8 +72,8 @@ void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueA
 void warn_of_nothing(SurfaceMap& map, const char* text);
 inline constexpr const char* nothing_lies_within = "nothing lies within the distance of any texel";
 
-/// Fills `error`.
-/// @param may_jump  true if distances may change their sign off the other mesh.
+/// Computes SurfaceMap::error: for each triangle, a bound on the error of distances read from the map.
+/// @param may_jump  true if the sign of distances may change at points that are not on the other mesh.
 void bound_errors(SurfaceMap& map, const MeshView& mesh, bool may_jump, const Context& context);
 
 /// Returns the atlas that options request.

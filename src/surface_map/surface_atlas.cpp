@@ -18,22 +18,25 @@ namespace {
 using surface::for_each_texel;
 
 constexpr std::uint32_t most_a_side = 16384;
-/// Distance of charts from the outermost texel middles, texels. It prevents that rounding of texture coordinates leads
-/// to other texels.
+/// Texels: distance of a chart's border from the outermost middles of its texels. So rounding of texture coordinates
+/// does not select other texels.
 constexpr double inset = 1.0 / 64;
-/// Texels beyond the legs of a chart, in a rectangle that two charts share.
+/// Number of texels by which a rectangle is wider and higher than the legs of its charts are long. Two charts share a
+/// rectangle.
 constexpr std::uint32_t gutter = 3;
 
-/// Returns extra room around large charts, texels, where it costs little. Programs that draw a texture at a smaller
-/// size read beyond the texels of a chart.
+/// Returns the width of an additional border around a chart, texels; it is 0 for small charts. Programs that draw a
+/// texture at a smaller size read beyond the texels of a chart.
 double room_around(double shorter_leg) {
   return std::min(std::floor(shorter_leg / 16), 8.0);
 }
 
-/// A triangle of the mesh as a right triangle.
+/// The two legs of a triangle of the mesh: its sides except the longest one. Its chart is a right triangle with these
+/// legs.
 struct Legs {
-  std::size_t corner = 0;          ///< opposite to the longest side
-  std::array<double, 2> length{};  ///< of the sides to the next corner and to the one after it, mesh units
+  std::size_t corner = 0;  ///< opposite to the longest side
+  /// Mesh units: lengths of the sides from `corner` to the next corner and to the one after that.
+  std::array<double, 2> length{};
 };
 
 std::vector<Legs> legs_of(const MeshView& mesh) {
@@ -48,12 +51,12 @@ std::vector<Legs> legs_of(const MeshView& mesh) {
   return out;
 }
 
-/// Returns the number of texels along a length, rounded up.
+/// Returns the number of texels along a leg, rounded up, at least 1.
 double texels_along(double length, double texel) {
   return std::max(std::ceil(length / texel + 2 * inset), 1.0);
 }
 
-/// Returns the approximate number of texels of a texture.
+/// Returns the approximate number of texels of the whole texture.
 double texel_count(const std::vector<Legs>& legs, double texel) {
   double sum = 0;
   for (const Legs& one : legs) {
@@ -71,14 +74,15 @@ struct Rectangle {
   std::size_t count = 1;
   std::uint32_t x = 0, y = 0;
   std::uint32_t along = 0, across = 0;  ///< lengths of the legs, texels
-  bool is_turned = false;               ///< true if the first leg lies across
+  bool is_turned = false;               ///< true if the first leg is the shorter one, which is vertical
 
   [[nodiscard]] std::uint32_t room() const { return static_cast<std::uint32_t>(room_around(across)); }
   [[nodiscard]] std::uint32_t width() const { return along + gutter + 2 * room(); }
   [[nodiscard]] std::uint32_t height() const { return across + gutter + 2 * room(); }
 };
 
-/// Returns rectangles, the highest first, with similar ones next to each other.
+/// Returns the rectangles of all charts, the highest first, then the widest. Two charts of equal height share a
+/// rectangle.
 std::vector<Rectangle> rectangles_of(const std::vector<Legs>& legs, double texel) {
   std::vector<Rectangle> all(legs.size());
   for (std::uint32_t t = 0; t < legs.size(); ++t) {
@@ -103,8 +107,8 @@ std::vector<Rectangle> rectangles_of(const std::vector<Legs>& legs, double texel
   return out;
 }
 
-/// Puts rectangles into rows.
-/// @return  width and height.
+/// Sets the positions of rectangles, in rows.
+/// @return  width and height of the texture.
 std::array<std::uint64_t, 2> place(std::vector<Rectangle>& rectangles) {
   double area = 0;
   std::uint64_t width = 1;
@@ -138,7 +142,8 @@ std::array<TexturePlace, 3> chart_in(const Rectangle& r, std::size_t which, std:
   out[corner] = {r.is_turned ? along : 0, 0};
   out[(corner + 1) % 3] = r.is_turned ? TexturePlace{along, across} : TexturePlace{along, 0};
   out[(corner + 2) % 3] = r.is_turned ? TexturePlace{0, 0} : TexturePlace{0, across};
-  // The right angle is in the corner of the rectangle, so that the long sides of both charts face each other.
+  // The right angle of the first chart is at a corner of the rectangle, so that the long sides of both charts face each
+  // other.
   const double left = r.room() + (r.is_turned ? gutter - 1 : 0);
   for (TexturePlace& at : out) {
     at = {at.x + left + 0.5 + inset, at.y + r.room() + 0.5 + inset};
@@ -153,9 +158,9 @@ std::array<TexturePlace, 3> chart_in(const Rectangle& r, std::size_t which, std:
   for (const Legs& one : legs) longest = std::max({longest, one.length[0], one.length[1]});
   double fits = std::max(texel, longest / (most_a_side - 32));
   for (int step = 0; step < 200 && texel_count(legs, fits) > 0.98 * most_a_side * most_a_side; ++step) fits *= 1.1;
-  throw InvalidOption("texels of " + exact_text(texel) + " make a texture of more than " + std::to_string(most_a_side) +
-                      " x " + std::to_string(most_a_side) + " texels: use texels of about " + exact_text(fits) +
-                      " or more");
+  throw InvalidOption("texels with a side of " + exact_text(texel) + " make a texture of more than " +
+                      std::to_string(most_a_side) + " x " + std::to_string(most_a_side) +
+                      " texels: use texels with a side of about " + exact_text(fits) + " or more");
 }
 
 void check(const MeshView& mesh) {
@@ -253,7 +258,7 @@ SurfaceAtlas surface_atlas_from(const MeshView& mesh, std::span<const TexturePla
       if (!is_there || !(at.x >= 0 && at.y >= 0 && at.x <= width && at.y <= height)) {
         throw InvalidOption(
             "corner " + std::to_string(k) + " of triangle " + std::to_string(t) +
-            (is_there ? " lies outside the texture" : " names a texture coordinate that does not exist"));
+            (is_there ? " lies outside the texture" : " uses a texture coordinate that does not exist"));
       }
       out.corners[t][k] = at;
     }

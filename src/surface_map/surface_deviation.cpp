@@ -17,14 +17,14 @@ namespace {
 using surface::LongSum;
 
 constexpr std::size_t triangles_per_range = 256;
-/// They take about 100 gigabytes.
+/// Greatest number of pieces. This number takes about 100 gigabytes.
 constexpr std::size_t most_pieces = 1'000'000'000;
 
-/// Small triangles, each represented by its centroid. Lengths are those of the mesh times a scale.
+/// Small triangles, each represented by its centroid. *Scaled* lengths are those of the mesh times a scale.
 struct Pieces {
   std::vector<Vec3d> centroid;      ///< mesh units
   std::vector<double> area;         ///< scaled
-  std::vector<double> mean_square;  ///< of the distance of a piece's points from its centroid, scaled
+  std::vector<double> mean_square;  ///< mean squared distance of a piece's points from its centroid, scaled
   double largest_radius = 0;        ///< largest distance of a corner from its centroid, scaled
 
   void append(const Pieces& more) {
@@ -37,7 +37,7 @@ struct Pieces {
 
 class Cutter {
  public:
-  /// @param size  largest length of a side of pieces, scaled.
+  /// @param size  greatest length of a side of a piece, scaled.
   Cutter(double scale, double size) : scale_(scale), squared_size_(size * size) {}
 
   void cut(const std::array<Vec3d, 3>& corners, Pieces& out) const {
@@ -54,7 +54,7 @@ class Cutter {
     const Vec3d& b = p[(longest + 1) % 3];
     const Vec3d& c = p[(longest + 2) % 3];
     if (2 * area <= squared[longest] / 8 && 4 * area * area <= squared_size_ * squared[longest]) {
-      // Halves of needles are needles side by side, so it is better to cut across.
+      // Halving a needle yields two needles side by side, so it is cut across instead.
       const double part = std::clamp(dot(c - a, b - a) / squared[longest], 0.0, 1.0);
       const Vec3d foot = a + (b - a) * part;
       cut_needle(a, foot, c, area * part, out);
@@ -66,7 +66,7 @@ class Cutter {
     divide({middle, b, c}, area / 2, out);
   }
 
-  /// Cuts a triangle along lines that are parallel to its short side, from b to c.
+  /// Cuts a triangle along lines that are parallel to its short side bc.
   void cut_needle(const Vec3d& tip, const Vec3d& b, const Vec3d& c, double area, Pieces& out) const {
     if (!(area > 0)) return;
     const double longer = std::sqrt(std::max(squared_length(b - tip), squared_length(c - tip)));
@@ -102,7 +102,7 @@ class Cutter {
   double squared_size_;
 };
 
-/// Sums over all triangles, scaled.
+/// Sums of areas and of longest sides over all triangles, scaled.
 struct Extent {
   double area = 0;
   double longest_sides = 0;
@@ -150,8 +150,8 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   const Extent extent = extent_of(mesh, scale);
   if (!(extent.area > 0)) throw InvalidMesh("no triangle of the mesh has an area, so there is no surface to measure");
   const ClosestPointQuery query(other, {options.sign, {}}, context);
-  // Halving right-angled isosceles triangles leaves pieces with an area of a quarter to half of the longest side
-  // squared. Needles are cut along their lengths only.
+  // Halving of right-angled isosceles triangles yields pieces with areas of 1/8 to 1/4 of `size` squared. Needles are
+  // only cut across their lengths.
   const auto count = static_cast<double>(options.pieces);
   const double size = std::max(std::sqrt(4 * extent.area / count), extent.longest_sides / count);
   const Pieces pieces = pieces_of(mesh, scale, size, context);
@@ -182,7 +182,7 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   const double sum = areas.value();
   out.mean = mean.value() / sum / scale;
   const double rounding = 4e-15 * (bounds(mesh).largest_coordinate() * scale + largest);
-  // If the sign can change off the other mesh, it may be different in the rest of a piece.
+  // If the sign may change at points that are not on the other mesh, it may differ within a piece.
   const bool may_jump = query.sign_may_jump();
   out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
   out.rms = surface::root_mean_square(values, pieces.area, largest / scale, sum);

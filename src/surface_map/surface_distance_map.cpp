@@ -18,7 +18,7 @@ namespace {
 
 using surface::SurfaceValue;
 
-/// Texels of a batch are close to each other, and their results stay in caches.
+/// Number of texels in a batch. They are close to each other in space, and their results fit into the caches.
 constexpr std::size_t texels_per_batch = 16384;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
@@ -29,20 +29,21 @@ bool have_common_vertex(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-/// Rejects meshes that ClosestPointQuery does not support, before threads start.
+/// Rejects targets that are too large or too far away for a ClosestPointQuery, before threads start.
 void check_range(const MeshView& target, const ClosestPointQuery& query) {
   const Box3 box = bounds(target);
   try {
     (void)query.nearest(std::vector<Vec3d>{box.lower, box.upper});
   } catch (const InvalidOption&) {
-    throw InvalidMesh("the target is more than 1e140 times as large as the other mesh, or as far from it");
+    throw InvalidMesh(
+        "the target is too large for the other mesh, or too far from it: more than 1e140 times the size of that mesh");
   }
 }
 
 void fill_distances(SurfaceMap& map, const MeshView& target, const surface::TexelOrder& order,
                     const ClosestPointQuery& query, const Context& context) {
   const double scale = scale_to_one(bounds(target).largest_coordinate());
-  // One thread answers a batch, out of its caches.
+  // One thread computes a whole batch, so that data stay in its caches.
   const Context alone{.threads = 1};
   const auto fill_batch = [&](std::size_t begin, std::size_t end) {
     const std::span texels = std::span(order.texels).subspan(begin, end - begin);
@@ -121,7 +122,7 @@ SurfaceMapper::SurfaceMapper(const MeshView& target, SurfaceAtlas atlas, const M
   validate(target);
   validate(other);
   if (atlas.corners.size() != target.triangles.size()) {
-    throw InvalidMesh("the mesh has " + std::to_string(target.triangles.size()) + " triangles, but its atlas " +
+    throw InvalidMesh("the mesh has " + std::to_string(target.triangles.size()) + " triangles, but its atlas has " +
                       std::to_string(atlas.corners.size()));
   }
   data_ = std::make_unique<Data>(
@@ -136,11 +137,12 @@ SurfaceMapper::~SurfaceMapper() = default;
 
 namespace {
 
-/// Moves the vertices of a mesh. The new positions must be as many, and valid.
+/// Moves the vertices of a mesh.
+/// @throws InvalidMesh if the number of positions differs from that of the vertices, or if they are not valid.
 void move_vertices(TriangleMesh& mesh, std::span<const Vec3d> vertices) {
   if (vertices.size() != mesh.vertices.size()) {
     throw InvalidMesh("a mesh of " + std::to_string(mesh.vertices.size()) + " vertices cannot be moved to " +
-                      std::to_string(vertices.size()) + " positions");
+                      std::to_string(vertices.size()) + "; give one position for each vertex");
   }
   validate({vertices, mesh.triangles, mesh.segments, mesh.points});
   mesh.vertices.assign(vertices.begin(), vertices.end());
@@ -199,7 +201,7 @@ SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& op
     const auto is_other = [&](std::uint32_t primitive) {
       return !have_common_vertex(own, primitive_vertices(target, primitive));
     };
-    // The closest point of a point close by bounds the search, if it may be found for this one.
+    // The closest point that was found for a nearby point bounds the search, if its triangle is allowed for this point.
     double limit = furthest;
     if (last != nullptr && last->site.has_value()) {
       const TriangleId on = sites.triangle(last->site);

@@ -26,15 +26,15 @@ void check(const MeshView& mesh, const SurfaceMap& map) {
   }
   for (const TriangleId triangle : atlas.triangle) {
     if (triangle.has_value() && triangle.value >= mesh.triangles.size()) {
-      throw InvalidMesh("the surface map names triangle " + std::to_string(triangle.value) + ", but the mesh has " +
+      throw InvalidMesh("the surface map uses triangle " + std::to_string(triangle.value) + ", but the mesh has " +
                         std::to_string(mesh.triangles.size()) + " triangles");
     }
   }
 }
 
-/// Returns the area of the surface that each texel stands for, of the mesh times a scale. The area of a triangle is
-/// divided in proportion to the part of each texel that its chart covers. It is divided evenly if the chart covers
-/// nothing.
+/// Returns the area of the surface that each texel represents, for the mesh multiplied by a scale. The area of a
+/// triangle is divided among its texels in proportion to the part of each texel that its chart covers. If the chart
+/// covers none of them, the area is divided evenly.
 std::vector<double> texel_areas(const MeshView& mesh, const SurfaceAtlas& atlas, double scale) {
   std::vector<double> out(atlas.size());
   std::vector<double> sums(mesh.triangles.size());

@@ -21,8 +21,8 @@ using surface::ScaledCharts;
 
 constexpr std::size_t texels_per_range = 1 << 14;
 
-/// Returns the largest distance from a point of the points of a chart that read a texel. The chart is cut to the square
-/// of two texels a side around the texel's middle. The furthest point of the rest is a corner.
+/// Returns the largest distance of `point` from points of a chart at which a texel is read. These points are the part
+/// of the chart in the square of 2 x 2 texels around the texel's middle. The furthest of them is a corner of that part.
 double furthest_reader(const Chart& chart, const ChartCorners& places, const TexturePlace& middle, const Vec3d& point) {
   const ChartPart left = part_around(places, middle, 1);
   double furthest = 0;

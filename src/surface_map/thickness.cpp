@@ -25,12 +25,12 @@ namespace {
 using surface::SurfaceValue;
 
 constexpr double nothing = std::numeric_limits<double>::infinity();
-/// Points at the border of a triangle move by this part of the way to its centroid. At the border, rays would run along
-/// neighbours.
+/// A point on the border of a triangle is moved towards the triangle's centroid by this fraction of its distance. Rays
+/// from the border itself could run along neighbouring triangles.
 constexpr double towards_centroid = 1e-7;
-/// A ball is final if another one would make it smaller by no more than this part.
+/// Shrinking ends when a step would reduce the radius of a ball by at most this fraction.
 constexpr double settled = 1e-12;
-/// Balls shrink to their end in 3 to 10 steps.
+/// Greatest number of shrinking steps. Usually 3 to 10 are enough.
 constexpr int most_steps = 200;
 constexpr std::size_t points_per_range = 256;
 
@@ -40,7 +40,7 @@ void check(const ThicknessOptions& options) {
   }
 }
 
-/// Computes thicknesses of a solid that is scaled to about 1.
+/// Computes thicknesses of a solid, which is scaled so that its largest coordinate is about 1.
 class ThicknessSearch {
  public:
   ThicknessSearch(const MeshView& solid, const ThicknessOptions& options, const Context& context)
@@ -66,14 +66,14 @@ class ThicknessSearch {
 
   [[nodiscard]] const SiteTable& sites() const { return surface_->sites(); }
 
-  /// A point that a ball may touch, and the triangle that it lies on.
+  /// A point that a ball may touch, and the triangle that contains it.
   struct Hint {
     Vec3d point;
     TriangleId triangle;
   };
 
   /// Returns the thickness at a point of a triangle.
-  /// @param hint  saves work if the ball touches close to it.
+  /// @param hint  saves work if the ball touches the surface close to it.
   [[nodiscard]] Thickness at(const Vec3d& given, TriangleId triangle,
                              const Hint& hint = {{}, TriangleId::none()}) const {
     const auto [a, b, c] = triangle_corners(mesh_, triangle.value);
@@ -104,8 +104,8 @@ class ThicknessSearch {
     return std::array{1 - second - third, second, third};
   }
 
-  /// Returns the mean normal of triangles at a corner, weighted by their angles there. Only triangles that are turned
-  /// from the triangle's own direction by less than the separation count.
+  /// Returns the mean normal of the triangles at a corner of a triangle, weighted by their angles at the corner. Only
+  /// triangles whose normals differ from that of `triangle` by less than the separation count.
   [[nodiscard]] Vec3d corner_normal(std::uint32_t triangle, std::size_t corner) const {
     const std::uint32_t vertex = mesh_.triangles[triangle][corner];
     Vec3d sum;
@@ -122,7 +122,8 @@ class ThicknessSearch {
     return size > 0 ? sum / size : normals_[triangle];
   }
 
-  /// Returns the normal of the smooth surface that the mesh approximates, interpolated between those of the corners.
+  /// Returns a normal of the smooth surface that the mesh approximates: interpolated between the corner_normal() of the
+  /// three corners.
   [[nodiscard]] Vec3d smooth_normal(const Vec3d& point, std::uint32_t triangle) const {
     const auto weights = weights_of(triangle_corners(mesh_, triangle), point);
     if (!weights) return normals_[triangle];
@@ -146,23 +147,23 @@ class ThicknessSearch {
     return out;
   }
 
-  /// Returns the radius of the ball that touches a plane at a point, from below, and another place. Infinite if none
-  /// does.
+  /// Returns the radius of the ball below a plane that touches the plane at `point` and contains `place` on its
+  /// surface. Returns infinity if there is no such ball.
   static double touching_radius(const Vec3d& point, const Vec3d& normal, const Vec3d& place) {
     const Vec3d way = point - place;
     const double below = dot(way, normal);
     return below > 0 ? squared_length(way) / (2 * below) : nothing;
   }
 
-  /// Shrinks a ball until nothing that counts is left in it. Each step takes the closest point to the centre, and the
-  /// ball that touches both that point and the plane.
+  /// Shrinks a ball until no triangle that counts is inside it. Each step finds the closest point to the ball's centre.
+  /// The next ball touches both that point and the plane at `point`.
   [[nodiscard]] Thickness of_ball(const Vec3d& point, const Vec3d& normal, std::uint32_t own, const Hint& hint) const {
     const auto counts = [&](std::uint32_t triangle) {
       // Triangles without area have no normal to compare.
       return triangle != own && normals_[triangle] != Vec3d{} && dot(normals_[triangle], normal) <= cosine_;
     };
     Thickness out{nothing, point, TriangleId::none()};
-    // A ball inside of the mesh's box that touches something is not larger.
+    // A ball inside the box of the mesh has a smaller radius.
     double radius = 4 * surface_->hierarchy().bounds().diagonal();
     const auto touch = [&](const Vec3d& place, TriangleId triangle) {
       const double next = touching_radius(point, normal, place);
@@ -170,7 +171,7 @@ class ThicknessSearch {
       out = {2 * next, place, triangle};
       radius = next;
     };
-    // Usually a point close to the result is known.
+    // In most cases, a point close to the result is known.
     if (hint.triangle.has_value() && counts(hint.triangle.value)) touch(hint.point, hint.triangle);
     const Thickness far_side = along_ray(point, normal, own);
     if (far_side.triangle.has_value() && counts(far_side.triangle.value)) touch(far_side.opposite, far_side.triangle);
@@ -189,15 +190,16 @@ class ThicknessSearch {
   ThicknessOptions options_;
   double scale_ = 1;
   std::vector<Vec3d> vertices_;
-  double cosine_ = 1;  ///< cosine of the separation, plus the rounding of a product of two normals
+  double cosine_ = 1;  ///< cosine of the separation, plus the rounding error of a product of two normals
   MeshView mesh_;
   std::optional<surface::FacingSurface> surface_;
-  std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 if they have no area
+  std::vector<Vec3d> normals_;  ///< unit normal of each triangle; 0 if it has no area
 };
 
 void check_solid(const MeshView& solid) {
   validate(solid);
-  if (solid.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so there is no solid to be thick");
+  if (solid.triangles.empty())
+    throw InvalidMesh("the mesh has no triangles, so it bounds no solid and has no thickness");
 }
 
 std::vector<Warning> warnings_of(const Orientation& found) {

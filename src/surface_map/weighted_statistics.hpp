@@ -7,8 +7,8 @@
 
 namespace blum::surface {
 
-/// A sum of many numbers that keeps the rounding error of each addition (Neumaier 1974). Millions of terms cost no
-/// digits.
+/// A sum of many numbers that also sums the rounding error of each addition (Neumaier 1974). So millions of terms do
+/// not make it less accurate.
 class LongSum {
  public:
   void add(double term) {
@@ -24,14 +24,16 @@ class LongSum {
 };
 
 /// Returns the weighted root mean square.
-/// @param largest  magnitude of the values; they are divided by it, so that squares neither overflow nor underflow.
-/// @param sum      of the weights, > 0.
+/// @param largest  largest magnitude of the values. Values are divided by it, so that squares neither overflow nor
+/// underflow.
+/// @param sum      sum of the weights, above 0.
 [[nodiscard]] double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest,
                                       double sum);
 
-/// Returns the values below which the given percentages of the weight lie.
-/// @param values    one or more, fewer than 2^32.
-/// @param sum      of the weights, > 0.
+/// Returns, for each percentage, the smallest value such that values up to it have at least that percentage of the
+/// total weight.
+/// @param values    at least one, fewer than 2^32.
+/// @param sum      sum of the weights, above 0.
 /// @param percents  in rising order.
 /// Cost: O(values log values).
 [[nodiscard]] std::array<double, 7> percentiles(std::span<const double> values, std::span<const double> weights,

@@ -21,25 +21,26 @@
 namespace blum::voronoi {
 namespace {
 
-/// Points of the surface that are closest to a point. Labels count as equally close within 1e-9 of the size. The
-/// two of their points that are seen furthest apart are taken, or the same point twice if only one exists.
+/// The footprints of a point. Labels count as equally close if their distances differ by at most 1e-9 of the mesh's
+/// size. Among their closest points, the two at the largest separation angle are the footprints. If only one exists, it
+/// is stored twice.
 struct WallPoint {
   double radius = 0;                ///< exact distance from the closest label
   std::array<Vec3d, 2> footprints;  ///< relative to the centre of the labels
   std::array<LabelIndex, 2> labels{};
-  double separation_angle = 0;  ///< between the footprints, degrees
+  double separation_angle = 0;  ///< separation angle of the footprints, degrees
 };
 
-/// Returns the angle at a point between two others, degrees.
+/// Returns the angle in degrees between the directions from `at` to two other points.
 double separation_angle(const Vec3d& at, const Vec3d& first, const Vec3d& second) {
   const Vec3d a = first - at;
   const Vec3d b = second - at;
   return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
 }
 
-/// @param among  labels that contain all that may be closest.
+/// @param among  labels that include all that may be closest.
 /// @param q  relative to the centre of the labels.
-/// Cost: linear in the labels, quadratic in the closest ones.
+/// Cost: linear in the number of labels, quadratic in the number of closest labels.
 WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> among, const Vec3d& q) {
   struct Near {
     LabelIndex label = outside;
@@ -50,7 +51,7 @@ WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> 
   double least = std::numeric_limits<double>::infinity();
   for (const LabelIndex label : among) {
     const double reach = least + 1e-9 * geometry.size();
-    if (geometry[label].squared_distance(q) > reach * reach) continue;  // a lower bound of its squared distance
+    if (geometry[label].squared_distance(q) > reach * reach) continue;  // a lower bound of the true squared distance
     const Vec3d point = geometry.closest_point(label, q);
     all.push_back({label, point, length(point - q)});
     least = std::min(least, all.back().distance);
@@ -76,15 +77,15 @@ WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> 
   return out;
 }
 
-/// Box that points must stay in; flat along an axis if both coordinates are equal.
+/// Box in which a vertex must stay. It has no extent along an axis if both coordinates are equal.
 struct PlacedBox {
   Vec3d low, high;
 };
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-/// Solves a x = b for a symmetric positive definite matrix, by Gaussian elimination. `inline` here and below: without
-/// it, g++ calls these in the inner loop of settle(), and complexes take 3 % longer.
+/// Solves a x = b by Gaussian elimination, for a symmetric positive definite matrix a. `inline` matters here and below:
+/// without it, g++ does not inline these functions in settle(), and computing a complex takes 3 % longer.
 inline Vec3d solve(Matrix a, Vec3d b) {
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t i = k + 1; i < 3; ++i) {
@@ -112,10 +113,10 @@ inline Distance distance_from(const PlacedLabel& label, const Vec3d& q) {
   return {value, value > 0 ? away / value : Vec3d{}};
 }
 
-/// Returns a point near `start` that is equally far from all labels, or that lies on all of them (`on_surface`). Uses
-/// Gauss-Newton steps of least length. Returns nullopt if it finds no such point nearby in the box.
-/// @param labels      one of each site; two or more, or one or more on the surface.
-/// @param on_surface  true if the distance must be 0.
+/// Returns a point in the box, near `start`, that is equally far from all labels; with `on_surface`, a point that lies
+/// on all labels. Uses Gauss-Newton steps of least length. Returns nullopt if they find no such point.
+/// @param labels      one label for each site: at least two, or at least one with `on_surface`.
+/// @param on_surface  true if the distance from the labels must be 0.
 /// @param start, box  relative to the centre of the labels.
 std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const LabelIndex> labels, bool on_surface,
                             const Vec3d& start, const PlacedBox& box) {
@@ -152,14 +153,15 @@ std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const Label
       }
     }
     if (largest <= enough) {
-      // If q left the box, the iteration continues from the closest point in the box. Alternating like this reaches a
-      // point of both sets if one exists.
+      // If q is outside the box, the iteration continues from the box's closest point. Such alternation finds a point
+      // that satisfies both conditions if one exists.
       const Vec3d inside = max(box.low, min(box.high, q));
       if (inside == q) return q;
       q = inside;
       continue;
     }
-    // A small multiple of the identity keeps steps short along directions that the equations do not determine.
+    // A small multiple of the identity is added. It keeps steps short in directions that the equations do not
+    // determine.
     const double trace = normal[0][0] + normal[1][1] + normal[2][2];
     for (std::size_t i = 0; i < 3; ++i) normal[i][i] += 1e-10 * trace + 1e-300;
     const Vec3d move = solve(normal, right);
@@ -179,7 +181,7 @@ bool are_apart(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   return false;
 }
 
-/// Returns true if a segment meets a triangle and does not lie in its plane. Uses exact signs.
+/// Returns true if a segment meets a triangle and does not lie in the triangle's plane. Uses exact signs.
 bool crosses(const std::array<Vec3d, 2>& segment, const std::array<Vec3d, 3>& triangle) {
   const auto& [p, q] = segment;
   const auto& [a, b, c] = triangle;
@@ -191,7 +193,7 @@ bool crosses(const std::array<Vec3d, 2>& segment, const std::array<Vec3d, 3>& tr
   return least >= 0 || most <= 0;
 }
 
-/// Returns true if a side of one triangle crosses the other one.
+/// Returns true if a side of one triangle crosses the other triangle.
 bool cross_each_other(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   if (are_apart(a, b)) return false;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -203,18 +205,18 @@ bool cross_each_other(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>&
 constexpr std::size_t grain = 64;
 constexpr std::uint32_t no_vertex = UINT32_MAX;
 
-/// A vertex of the complex, before and after it is moved to its place.
+/// A vertex of the complex. It has its final position after settle_one() and move_to_rim().
 struct Place {
-  Vec3d start;  ///< relative to the centre of the labels
+  Vec3d start;  ///< position, relative to the centre of the labels
   std::uint32_t parts = 0;
   PlacedBox box;
-  CellId cube = no_cell;            ///< the cube that it lies in
-  Vec3d on_wall;                    ///< a point at which its walls cross a grid edge
-  Vec3d rim;                        ///< sum of the points on convex edges of the mesh at which its walls end
+  CellId cube = no_cell;            ///< the cube that contains the vertex
+  Vec3d on_wall;                    ///< a point where a wall of its component crosses a grid edge
+  Vec3d rim;                        ///< sum of the points on convex edges of the mesh where its walls end
   std::uint32_t rims = 0;           ///< number of these points
-  bool is_over_corner = false;      ///< true if its walls are a cone about a corner of the mesh, which is then the rim
-  std::vector<LabelIndex> labels;   ///< one of each site
-  std::vector<LabelIndex> surface;  ///< those labels that are triangles of the surface in its component
+  bool is_over_corner = false;      ///< true if `rim` is a corner of the mesh, and the walls form a cone about it
+  std::vector<LabelIndex> labels;   ///< one label for each site
+  std::vector<LabelIndex> surface;  ///< triangles of the surface in its component
 };
 
 class Assembly {
@@ -232,8 +234,8 @@ class Assembly {
     return {finish(), largest_diagonal_, std::move(lost)};
   }
 
-  /// Returns cubes that are too large. Walls lie in the solid, but their triangles may cut corners and cross the
-  /// surface.
+  /// Returns the cubes with triangles that cross the surface. Walls lie in the solid, but their straight triangles may
+  /// cut corners. Smaller cubes may avoid this.
   std::vector<CellId> crossing_cubes() {
     make_triangles();
     const std::vector<std::uint8_t> is_crossing = crossing_triangles();
@@ -290,7 +292,7 @@ class Assembly {
   }
 
   void add_labels(Place& place, const LineEvent& event) const {
-    // If a thin region lies in between, `at` is on its near side.
+    // If the event has a thin region, `at` lies between the label before it and the thin vertex.
     for (const LabelIndex label : {event.before, event.thin != outside ? event.thin : event.after}) {
       if (label != outside) add_label(place.labels, label);
     }
@@ -315,7 +317,7 @@ class Assembly {
     return {tree_.lattice.at(low) - labels_.centre(), tree_.lattice.at(high) - labels_.centre()};
   }
 
-  /// Returns the first vertex of a square's components.
+  /// Returns the index of the first vertex of a square; its components have consecutive vertices.
   std::uint32_t vertex_of_square(const CubeCells::Square& cells, CellId cube) {
     std::uint32_t& first = vertex_of_square_[cells.square];
     if (first != no_vertex) return first;
@@ -342,12 +344,13 @@ class Assembly {
     return first;
   }
 
-  /// A wall between the two faces of a convex edge ends where the edge pierces a square. That wall is in the first
-  /// component that both faces touch. A component with an event between both faces is preferred.
+  /// Adds the ends of walls on convex edges. The wall between the two faces of such an edge ends where the edge pierces
+  /// the square. It belongs to a component that has an event between both faces. If no component has one, it is in the
+  /// first component that both faces touch.
   void add_rims(const CubeCells::Square& cells, const GridSquare& square, std::uint32_t first) {
     for (const std::uint32_t edge : cells.convex_edges) {
       const auto [t, u] = solid_.sites.triangles_of[edge];
-      std::vector<std::uint8_t> touched(cells.component.size(), 0);  // a bit per face, one if an event is between both
+      std::vector<std::uint8_t> touched(cells.component.size(), 0);  // bits 0, 1: faces; bit 2: event between them
       for (std::size_t k = 0; k < cells.events.size(); ++k) {
         if (cells.component_of_event[k] == outside) continue;
         const LineEvent& event = tree_.events[cells.events[k]];
@@ -366,7 +369,7 @@ class Assembly {
     }
   }
 
-  /// Returns the point at which an edge of the mesh pierces a square, relative to the centre of the labels.
+  /// Returns the point where an edge of the mesh pierces a square, relative to the centre of the labels.
   [[nodiscard]] Vec3d piercing(std::uint32_t edge, const GridSquare& square) const {
     const Segment& ends = solid_.table.edges()[edge];
     const Vec3d p = solid_.mesh.vertices[ends[0]] - labels_.centre();
@@ -377,7 +380,7 @@ class Assembly {
     return p + (q - p) * std::clamp(part, 0.0, 1.0);
   }
 
-  /// Returns true if each label of a vertex, or another triangle of its face, has a given corner of the mesh.
+  /// Returns true if the site of each label of a vertex has a given corner of the mesh.
   [[nodiscard]] bool are_at(const Vec3d& corner, const Place& place) const {
     const std::vector<LabelIndex>& near = tree_.cubes[place.cube].governors;
     return std::all_of(place.labels.begin(), place.labels.end(), [&](LabelIndex label) {
@@ -428,8 +431,8 @@ class Assembly {
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
       Place& of_component = places_[first + k];
       of_component.start *= 1.0 / of_component.parts;
-      // A component of one wall has its rim at the mean of the wall's ends. Next to a corner of the mesh, walls are a
-      // cone about the corner, which is then the rim.
+      // If a component consists of one wall, its rim is the mean of the wall's ends. Near a corner of the mesh, walls
+      // form a cone about the corner. Then the corner is the rim.
       if (of_component.rims > 0 && cells.vertices.size() == 1 &&
           are_at(solid_.mesh.vertices[cells.vertices[0]] - labels_.centre(), of_component)) {
         of_component.rim = solid_.mesh.vertices[cells.vertices[0]] - labels_.centre();
@@ -445,7 +448,7 @@ class Assembly {
     std::vector<std::uint8_t> is_crossing(triangles_.size(), 0);
     parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
       for (std::size_t t = range.begin; t < range.end; ++t) {
-        constexpr float least = 1;  // degrees: walls between faces that are bent less are ignored
+        constexpr float least = 1;  // degrees: walls with a smaller separation angle are ignored
         if (triangle_angle_[t] < least) continue;
         const auto& [a, b, c] = triangles_[t];
         const std::array corners{places_[a].start + labels_.centre(), places_[b].start + labels_.centre(),
@@ -460,11 +463,11 @@ class Assembly {
   }
 
   /// Returns true if a triangle's corners run counterclockwise as seen from the region of the larger site. The corners
-  /// lie on a grid edge, in a square at that edge and in a cube at that square. The positions of these cells decide, so
-  /// that the triangles of a region form a closed surface.
+  /// lie on a grid edge, in a square at that edge, and in a cube at that square. Only the positions of these cells
+  /// decide. So the triangles around a region form a consistently oriented closed surface.
   [[nodiscard]] bool faces_larger_site(std::uint32_t event, const GridSquare& square, const GridCube& cube) const {
     const GridEdge& edge = tree_.edges[edge_of_event_[event]];
-    const std::size_t across = 3 - edge.axis - square.axis;  // direction from the edge into the square
+    const std::size_t across = 3 - edge.axis - square.axis;  // axis from the edge into the square
     bool is_along = next_axis(across) == square.axis;  // true if across, the square's, the edge's axis are right-handed
     if (edge.low[across] != square.low[across]) is_along = !is_along;
     if (square.low[square.axis] != cube.low[square.axis]) is_along = !is_along;
@@ -475,8 +478,9 @@ class Assembly {
     return is_along == is_after_larger;
   }
 
-  /// Computes the angle at which the middle of each triangle sees the planes, lines or points of its wall's sites. It
-  /// is 0 on the surface, and below the rounding limit `least`.
+  /// Computes the separation angle at the middle of each triangle: between its feet on the planes, lines or points of
+  /// the wall's two sites. It is set to 0 for triangles of the surface, and if it is below `least`, the limit of
+  /// rounding.
   void find_angles() {
     constexpr double least = 1e-6;  // degrees
     triangle_angle_.assign(triangles_.size(), 0);
@@ -499,19 +503,19 @@ class Assembly {
         settle_one(places_[k], points_[k]);
         if (places_[k].rims > 0) move_to_rim(places_[k], points_[k]);
         const bool is_on_surface = !places_[k].surface.empty() && points_[k].radius <= near();
-        if (is_on_surface) points_[k].radius = 0;  // removes rounding
+        if (is_on_surface) points_[k].radius = 0;  // removes rounding errors
       }
     });
   }
 
-  /// A place for a vertex, and the surface points closest to it.
+  /// A possible position of a vertex, with its footprints.
   struct Settled {
     Vec3d at;
     WallPoint point;
   };
 
-  /// Returns a place where some labels of a vertex are equally close, or that lies on all of them. Returns nullopt if
-  /// that place is not on a wall.
+  /// Returns a position where the given labels are equally close, or that lies on all of them. Returns nullopt if the
+  /// position is not on a wall.
   [[nodiscard]] std::optional<Settled> settled(const Place& place, std::span<const LabelIndex> which) const {
     const auto at = settle(labels_, which, !place.surface.empty(), place.start, place.box);
     if (!at) return std::nullopt;
@@ -519,9 +523,10 @@ class Assembly {
     return is_on_wall(place, out.at, out.point) ? std::optional(out) : std::nullopt;
   }
 
-  /// Returns the best place on a wall between two labels. The largest angle wins, so that narrow sheets are not missed.
+  /// Returns the position with the largest separation angle on a wall between two labels. The largest angle is chosen
+  /// so that narrow sheets are not missed.
   [[nodiscard]] std::optional<Settled> settled_between_two(const Place& place) const {
-    constexpr std::size_t most = 10;  // labels tried if many meet
+    constexpr std::size_t most = 10;  // largest number of labels to try
     const std::size_t count = std::min(most, place.labels.size());
     std::optional<Settled> best;
     for (std::size_t i = 0; i < count; ++i) {
@@ -533,7 +538,8 @@ class Assembly {
     return best;
   }
 
-  /// Returns a place on a seam, where three labels are equally close. The place with most closest labels wins.
+  /// Returns a position on a seam, where three labels are equally close. Among several, the one with the largest number
+  /// of closest sites is chosen.
   [[nodiscard]] std::optional<Settled> settled_on_seam(const Place& place) const {
     constexpr std::size_t most = 10;
     const std::size_t count = std::min(most, place.labels.size());
@@ -554,23 +560,23 @@ class Assembly {
     return best_count > 2 ? best : std::nullopt;
   }
 
-  /// Returns the number of a vertex's sites that are closest at its place.
+  /// Returns the number of sites of a vertex that are closest to the given position.
   [[nodiscard]] std::size_t sites_at(const Place& place, const Settled& found) const {
     return static_cast<std::size_t>(std::count_if(place.labels.begin(), place.labels.end(), [&](LabelIndex label) {
       return length(labels_.closest_point(label, found.at) - found.at) <= found.point.radius + near();
     }));
   }
 
-  /// Moves a vertex to the surface if its component contains a part of it. Otherwise moves it to a place where all its
-  /// labels are equally close, or two of them. If no such place is found nearby, moves it to a point where one of its
-  /// walls crosses a grid edge.
+  /// Moves a vertex to the surface if its component contains a part of the surface. Otherwise moves it to a position
+  /// where all its labels are equally close, or two of them. If no such position is found nearby, moves it to a point
+  /// where one of its walls crosses a grid edge.
   void settle_one(Place& place, WallPoint& out) const {
     const bool is_point = place.box.low == place.box.high;
     std::optional<Settled> found;
     if (!is_point && place.surface.empty()) {
       found = settled(place, place.labels);
-      // Sheets that meet in a corner meet on seams from there on. A vertex on one of them alone would be off the
-      // others.
+      // Sheets that meet at a corner of the mesh also meet on seams that start there. A vertex on only one of the
+      // sheets would not lie on the others.
       if (!found && place.is_over_corner) found = settled_on_seam(place);
       if (!found) found = settled_between_two(place);
     } else if (!is_point) {
@@ -584,9 +590,9 @@ class Assembly {
     out = found->point;
   }
 
-  /// Moves a vertex close to the end of its wall on the surface, if its new place is on a wall, too.
+  /// Moves a vertex close to the point where its wall ends on the surface, unless the new position is not on a wall.
   void move_to_rim(Place& place, WallPoint& out) const {
-    constexpr double left = 0.02;  // share of the way that remains, so that edges do not touch the surface
+    constexpr double left = 0.02;  // fraction of the distance that remains, so that edges do not touch the surface
     const Vec3d rim = place.rim * (1.0 / place.rims);
     const Vec3d at = rim + (place.start - rim) * left;
     const WallPoint found = seen_from(place, at);
@@ -595,24 +601,24 @@ class Assembly {
     out = found;
   }
 
-  /// Returns the surface points that are closest to a vertex at a given place.
+  /// Returns the footprints of a vertex at a given position.
   [[nodiscard]] WallPoint seen_from(const Place& place, const Vec3d& at) const {
     return wall_point(labels_, tree_.cubes[place.cube].governors, at);
   }
 
-  /// Tolerance for points on walls and on the surface, mesh units.
+  /// Returns the tolerance for points on walls and on the surface, in mesh units.
   [[nodiscard]] double near() const { return 1e-9 * labels_.size(); }
 
-  /// Returns true if a point is equally far from two labels and in the solid. A vertex of the surface must lie on the
-  /// surface instead.
+  /// Returns true if a point is equally far from two labels and inside the solid. For a vertex of the surface, returns
+  /// true if the point lies on the surface.
   [[nodiscard]] bool is_on_wall(const Place& place, const Vec3d& at, const WallPoint& found) const {
     if (!place.surface.empty()) return found.radius <= near();
     return found.separation_angle > 0 && is_seen_from_inside(place, at, found, 0) &&
            is_seen_from_inside(place, at, found, 1);
   }
 
-  /// Returns true if a point inside can have this footprint. Footprints are feet of perpendiculars in faces, and points
-  /// of reflex edges and vertices.
+  /// Returns true if a point inside the solid can have footprint `which`. Only feet of perpendiculars in faces, and
+  /// points of reflex edges and vertices, are footprints of points inside.
   [[nodiscard]] bool is_seen_from_inside(const Place& place, const Vec3d& at, const WallPoint& found,
                                          std::size_t which) const {
     if (is_in_domain(found.labels[which], at, found.radius)) return true;
@@ -645,7 +651,7 @@ class Assembly {
   void add_triangle_columns(Columns& out) {
     std::vector<std::int32_t> site_a, site_b;
     for (const auto& [first, second] : walls_) {
-      // The outside becomes -1.
+      // The cast turns the outside into -1.
       const auto [low, high] = std::minmax(
           {static_cast<std::int32_t>(labels_.site_of(first)), static_cast<std::int32_t>(labels_.site_of(second))});
       site_a.push_back(low);
@@ -688,9 +694,9 @@ class Assembly {
   std::vector<CellId> edge_of_event_;
   std::vector<std::uint32_t> vertex_of_event_, vertex_of_square_;
   std::vector<Place> places_;
-  std::vector<WallPoint> points_;  ///< of places_
+  std::vector<WallPoint> points_;  ///< for each of places_
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::array<LabelIndex, 2>> walls_;  ///< of triangles_
+  std::vector<std::array<LabelIndex, 2>> walls_;  ///< for each of triangles_: labels on both sides
   std::vector<CellId> cube_of_triangle_;
   std::vector<float> triangle_angle_;
   double largest_diagonal_ = 0;

@@ -6,17 +6,17 @@
 
 namespace blum::voronoi {
 
-/// A number in double, with a bound on its distance from the result of exact arithmetic. Serves as a filter in front of
-/// exact predicates. Each operation adds its largest rounding error, half a unit of the last place. Bounds are rounded
-/// themselves: after n operations they are too small by at most 2 n units. `grow` makes up for that: every operation
-/// enlarges them by 8 units.
+/// A double with a bound on its difference from the result of exact arithmetic. It is a filter that decides most
+/// predicates before exact arithmetic is needed. Each operation adds its largest rounding error, half a unit in the
+/// last place, to the bound. The bounds themselves are rounded: after n operations a bound may be too small by 2 n
+/// units. To compensate, every operation enlarges its bound by 8 units, by the factor `grow`.
 class BoundedNumber {
  public:
   BoundedNumber() = default;
   /// Makes an exact number.
   explicit BoundedNumber(double value) : value_(value) {}
 
-  /// sign() returns -1, 0 or 1 if the sign is certain, else `unknown`.
+  /// Result of sign() if the sign is uncertain; otherwise sign() returns -1, 0 or 1.
   static constexpr int unknown = 2;
   [[nodiscard]] int sign() const {
     if (!(std::abs(value_) <= std::numeric_limits<double>::max())) return unknown;
@@ -34,7 +34,7 @@ class BoundedNumber {
   [[nodiscard]] friend BoundedNumber operator*(const BoundedNumber& a, const BoundedNumber& b) {
     BoundedNumber out = rounded(a.value_ * b.value_,
                                 std::abs(a.value_) * b.error_ + std::abs(b.value_) * a.error_ + a.error_ * b.error_);
-    // Products, also of bounds, may underflow and lose more than half a unit, unless they are exactly 0.
+    // Products of values or bounds may underflow and lose more than half a unit. Products with an exact 0 do not.
     if (!is_zero(a) && !is_zero(b)) out.error_ += 16 * std::numeric_limits<double>::min();
     return out;
   }

@@ -13,7 +13,7 @@
 
 namespace blum::voronoi {
 
-/// One run of the test.
+/// One run of CubeTest on a cube.
 class CubeAnalysis {
  public:
   CubeAnalysis(const CubeTest& test, const GridCube& cube) : t_(test), cube_(cube) {}
@@ -32,13 +32,13 @@ class CubeAnalysis {
 
  private:
   using Square = SquareOfCube;
-  /// A connected part of a site's region on the boundary.
+  /// A connected part of a site's region on the boundary of the cube.
   struct Region {
     std::uint32_t site = outside;
-    bool exits = false;    ///< true if a way to a footprint leaves the cube from it
-    bool touches = false;  ///< true if the site meets the boundary in it
+    bool exits = false;    ///< true if a segment from it to a footprint leaves the cube at once
+    bool touches = false;  ///< true if the site itself meets the boundary in this part
   };
-  /// A connected part of a face in the cube, and the regions that it touches.
+  /// A connected part of a face in the cube, and the regions that contain its points on the boundary.
   struct FacePart {
     std::uint32_t face = 0;
     std::set<std::uint32_t> touched;
@@ -52,7 +52,7 @@ class CubeAnalysis {
     return static_cast<std::uint32_t>(sets.size());
   }
 
-  /// Returns the components of the requested part of the diagram.
+  /// Returns the components of the requested part of the diagram in the cube.
   [[nodiscard]] CubeCells part_of(std::uint32_t component_count) const {
     CubeContents in{cube_, squares_, component_count, vertices_, edges_, piercings_, parts_.size(), false};
     in.has_inner_face =
@@ -98,7 +98,7 @@ class CubeAnalysis {
     return is_resolved;
   }
 
-  /// Joins pieces, bodies and walls on both sides of a grid edge.
+  /// Joins pieces, bodies and walls of two squares that share an arc or event of a grid edge.
   void join_across_edges() {
     struct AtArc {
       EdgeArc arc;
@@ -152,8 +152,8 @@ class CubeAnalysis {
     for (std::uint32_t r = 0; r < regions_.size(); ++r) regions_of_site_[regions_[r].site].push_back(r);
   }
 
-  /// Marks regions from which ways to footprints leave the cube at once. In one square, either all or none of the ways
-  /// to a face leave.
+  /// Marks regions with a segment to a footprint that leaves the cube at once. In one square, the segments to a face
+  /// either all leave or all stay.
   void find_exits(const Square& square) {
     const std::size_t axis = square.side / 2;
     const double outwards = square.side % 2 == 1 ? 1 : -1;
@@ -175,7 +175,8 @@ class CubeAnalysis {
     }
   }
 
-  /// Returns the ends of an arc, moved inwards a little, relative to the centre of the labels.
+  /// Returns the ends of an arc, each moved inwards by 1 % of its length. They are relative to the centre of the
+  /// labels.
   [[nodiscard]] std::array<Vec3d, 2> ends(const EdgeArc& arc) const {
     const GridEdge& edge = t_.tree_.edges[arc.edge];
     const Vec3d at = t_.tree_.lattice.at(edge.low);
@@ -198,8 +199,8 @@ class CubeAnalysis {
     return std::nullopt;
   }
 
-  /// Finds the edges, vertices and triangles that meet the cube, and the places where the surface meets its boundary.
-  /// Returns false if a triangle is missing, or if a site that crosses a square has no region there.
+  /// Finds the edges, vertices and triangles that meet the cube, and where the surface meets the cube's boundary.
+  /// Returns false if a triangle is missing, or if a site crosses a square in which it has no region.
   bool find_surface() {
     if (cube_.triangles.empty()) return true;
     const SiteTable& table = t_.surface_.table();
@@ -230,8 +231,8 @@ class CubeAnalysis {
   }
   [[nodiscard]] bool meets(std::uint32_t edge) const { return std::binary_search(edges_.begin(), edges_.end(), edge); }
 
-  /// A triangle meets the cube if one of its edges does, or if an edge of the cube crosses it. Returns false if a
-  /// triangle is missing.
+  /// Finds the triangles that meet the cube: one of their edges does, or an edge of the cube crosses them. Returns
+  /// false if a triangle at a found edge or crossing is not among them.
   bool find_triangles() {
     const SiteTable& table = t_.surface_.table();
     for (std::uint32_t s = 0; s < squares_.size(); ++s) {
@@ -248,7 +249,8 @@ class CubeAnalysis {
       if (by_edge || (at != crossings_.end() && (*at)[0] == t)) triangles_.push_back(t);
     }
     std::sort(triangles_.begin(), triangles_.end());
-    // Parts of the surface and of faces in the cube: triangles that share an edge there.
+    // Triangles that share an edge in the cube belong to the same part of the surface, and of a face if the edge is
+    // flat.
     const auto count = static_cast<std::uint32_t>(triangles_.size());
     sheets_.reset(count);
     face_parts_.reset(count);
@@ -301,7 +303,7 @@ class CubeAnalysis {
     return site >= t_.sites_.face_count && site < t_.sites_.face_count + t_.sites_.reflex_edges.size();
   }
 
-  /// The region of a vertex is convex. It passes if it meets the boundary in one piece.
+  /// Tests the regions of vertices. Such a region is convex; it passes if it has exactly one part on the boundary.
   VoronoiObstacle check_vertices() {
     const std::size_t first = t_.sites_.face_count + t_.sites_.reflex_edges.size();
     for (auto at = regions_of_site_.lower_bound(static_cast<std::uint32_t>(first)); at != regions_of_site_.end();
@@ -315,14 +317,14 @@ class CubeAnalysis {
     return VoronoiObstacle::none;
   }
 
-  /// Returns the number of regions of a site that neither exit nor touch it.
+  /// Returns the number of a site's regions that neither exit nor touch the site.
   [[nodiscard]] std::size_t count_closed(const std::vector<std::uint32_t>& regions) const {
     return static_cast<std::size_t>(std::count_if(
         regions.begin(), regions.end(), [&](std::uint32_t r) { return !regions_[r].exits && !regions_[r].touches; }));
   }
 
   VoronoiObstacle check_edges() {
-    std::set<std::uint32_t> inside;  // sites of edges that meet the cube but not its boundary
+    std::set<std::uint32_t> inside;  // sites of edges that lie wholly inside the cube
     for (const std::uint32_t edge : edges_) {
       const std::optional<std::uint32_t> site = t_.labels_.site_of_edge(edge);
       if (!site) continue;
@@ -342,7 +344,7 @@ class CubeAnalysis {
   }
 
   VoronoiObstacle check_faces() {
-    std::set<std::uint32_t> inside;  // faces with a part that does not reach the boundary
+    std::set<std::uint32_t> inside;  // faces with a part that does not reach the cube's boundary
     for (const auto& [root, part] : parts_) {
       if (has_hole_near(part.face)) return VoronoiObstacle::face_hole;
       if (part.touched.empty()) {
@@ -359,13 +361,14 @@ class CubeAnalysis {
     return inside.empty() ? VoronoiObstacle::none : VoronoiObstacle::enclosed;
   }
 
-  /// Returns true if a loop of a face with holes may lie wholly in the cube, as seen along its normal.
+  /// Returns true if the face has holes, and one of its loops, projected along the normal, may lie wholly in the
+  /// projected cube.
   [[nodiscard]] bool has_hole_near(std::uint32_t face) const {
     const auto loops = t_.loops_.of(face);
     if (loops.size() < 2) return false;
     const double half = 0.5 * t_.tree_.lattice.unit * cube_.length;
     const Vec3d middle = t_.tree_.lattice.at(cube_.low) + Vec3d{half, half, half} - t_.labels_.centre();
-    // The cube's projection to the face's plane lies in a disc.
+    // The projection of the cube to the face's plane lies in a disc of this radius.
     const double reach = std::numbers::sqrt3 * half * (1 + 1e-12) + 4 * t_.labels_.rounding();
     const auto found = std::find_if(triangles_.begin(), triangles_.end(),
                                     [&](std::uint32_t t) { return t_.sites_.face_of[t] == face; });
@@ -378,18 +381,18 @@ class CubeAnalysis {
     });
   }
 
-  /// Components of the solid in the cube must be balls: each has one boundary, with Euler number 2.
+  /// Tests that all components of the solid in the cube are balls: each must have one boundary, of Euler number 2.
   VoronoiObstacle check_solid() {
     if (triangles_.empty()) return VoronoiObstacle::none;
     bodies_on_boundary_ = 0;
     std::uint32_t body_count = 0;
     for (const Square& square : squares_) body_count += square.cells.body_count;
-    // Components on the boundary come first, then parts of the surface.
+    // The components on the cube's boundary come first, then the parts of the surface.
     detail::UnionFind joined(body_count + triangles_.size());
     const auto body = [&](std::uint32_t k) { return bodies_.find(k); };
     const auto sheet = [&](std::uint32_t triangle) { return body_count + sheets_.find(rank(triangle)); };
     std::vector<bool> is_solid(body_count, false);
-    std::vector<std::pair<std::uint32_t, int>> sums;  // component, sign of a cell
+    std::vector<std::pair<std::uint32_t, int>> sums;  // component, 1 or -1 for a cell
     for (const Square& square : squares_) {
       std::vector<bool> is_counted(square.cells.body_count, false);
       for (const SquareCells::Run& run : square.cells.runs) {
@@ -401,7 +404,7 @@ class CubeAnalysis {
     }
     for (std::uint32_t k = 0; k < body_count; ++k) bodies_on_boundary_ += is_solid[k] ? 1U : 0U;
     add_intervals(sums, body);
-    std::set<std::uint32_t> bounded;  // parts of the surface that reach the boundary
+    std::set<std::uint32_t> bounded;  // parts of the surface that reach the cube's boundary
     for (const auto& [arc, of] : inside_arcs_) {
       const GridEdge& edge = t_.tree_.edges[arc.edge];
       const std::uint32_t k = edge.first_event + arc.index;
@@ -433,7 +436,7 @@ class CubeAnalysis {
     return VoronoiObstacle::none;
   }
 
-  /// Adds the intervals of grid edges in the solid, and the nodes in it.
+  /// Adds to `sums` -1 for each interval of a grid edge inside the solid, and 1 for each node inside.
   template <class Body>
   void add_intervals(std::vector<std::pair<std::uint32_t, int>>& sums, const Body& body) const {
     std::set<std::array<std::uint32_t, 3>> nodes;
@@ -448,8 +451,8 @@ class CubeAnalysis {
     }
   }
 
-  /// Finds components of walls and surface on the boundary that a part of the surface joins inside. Counting decides
-  /// whether these are all that are joined.
+  /// Joins components of walls and surface on the boundary that a part of the surface connects inside the cube. Then a
+  /// count decides whether other components are connected inside.
   VoronoiObstacle check_joins() {
     std::set<std::uint32_t> before;
     for (const auto& [event, wall] : wall_of_event_) before.insert(walls_.find(wall));
@@ -463,7 +466,7 @@ class CubeAnalysis {
     std::set<std::uint32_t> now;
     for (const std::uint32_t wall : before) now.insert(walls_.find(wall));
     if (now.size() < 2) return VoronoiObstacle::none;
-    // The number of joins equals the number of tunnels of all regions and the outside.
+    // The number of joins equals the number of tunnels of all regions and of the outside.
     std::int64_t joins = bodies_on_boundary_ - bodies_inside_;
     for (const auto& [site, regions] : regions_of_site_) {
       if (site < t_.sites_.face_count) joins += tunnels(site, regions.size());
@@ -475,12 +478,12 @@ class CubeAnalysis {
     return VoronoiObstacle::none;
   }
 
-  /// Parts of the cube's lower sides, as seen along the normal, that a face and its region cover.
+  /// The part of the cube's lower sides (those that look away from a face's normal) that the face's region covers.
   struct LowerPart {
     std::int64_t pieces = 0;
-    std::map<EdgeArc, int> arcs;          ///< number of lower squares with each arc
-    std::map<std::uint32_t, int> events;  ///< crossings of the face with grid edges: number of lower squares with each
-    std::int64_t ends = 0;                ///< of segments in which the face meets lower squares
+    std::map<EdgeArc, int> arcs;          ///< by arc: number of lower squares at it
+    std::map<std::uint32_t, int> events;  ///< by crossing of the face with a grid edge: number of lower squares at it
+    std::int64_t ends = 0;                ///< number of ends of segments in which the face meets lower squares
   };
 
   void add_square(const SquareCells& cells, std::uint32_t face, LowerPart& out) const {
@@ -509,7 +512,8 @@ class CubeAnalysis {
     return out;
   }
 
-  /// Counts grid nodes amid lower squares that the region surrounds: all arcs there lie between two lower squares.
+  /// Returns the number of grid nodes that the region covers completely: each arc of the region at the node has lower
+  /// squares on both sides.
   [[nodiscard]] std::int64_t nodes_amid(const std::map<EdgeArc, int>& arcs) const {
     std::map<Node, bool> is_on_rim;
     for (const auto& [arc, count] : arcs) {
@@ -522,9 +526,9 @@ class CubeAnalysis {
   }
 
   /// Returns the number of tunnels of a face's region in the cube. Along the normal, the region extends from the face,
-  /// or from the cube's lower sides, up to walls. So it retracts to the parts of these that it covers. Their Euler
-  /// number is a sum over cells.
-  /// @param components  number of components of the region.
+  /// or from the cube's lower sides, up to walls. So it retracts to what it covers on the face and on the lower sides.
+  /// The Euler number of that is a sum over cells.
+  /// @param components  number of components of the region in the cube.
   [[nodiscard]] std::int64_t tunnels(std::uint32_t face, std::size_t components) const {
     const LowerPart lower = lower_part(face);
     const auto is_shared = [](const auto& counted) { return counted.second == 2; };
@@ -541,7 +545,7 @@ class CubeAnalysis {
         if (run.label != outside && t_.labels_[run.label].site == face) return t_.labels_[run.label].direction;
       }
     }
-    return t_.labels_[0].direction;  // not reached: the face has a region on the boundary
+    return t_.labels_[0].direction;  // not reached, because the face has a region on the boundary
   }
 
   [[nodiscard]] std::uint32_t wall_of(std::uint32_t event) const {
@@ -553,15 +557,15 @@ class CubeAnalysis {
   const GridCube& cube_;
   std::vector<Square> squares_;
   detail::UnionFind pieces_, walls_, bodies_;
-  std::vector<std::pair<EdgeArc, std::uint32_t>> inside_arcs_;  ///< arcs in the solid, and their components
-  std::vector<std::array<std::uint32_t, 2>> wall_of_event_;     ///< sorted
-  std::vector<std::uint32_t> region_of_;                        ///< of pieces
+  std::vector<std::pair<EdgeArc, std::uint32_t>> inside_arcs_;  ///< arcs in the solid, and the bodies that contain them
+  std::vector<std::array<std::uint32_t, 2>> wall_of_event_;     ///< (event, wall), sorted
+  std::vector<std::uint32_t> region_of_;                        ///< for each piece
   std::vector<Region> regions_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of_site_;
-  std::vector<std::uint32_t> vertices_, edges_, triangles_;  ///< of the mesh that meet the cube, rising
-  std::vector<std::array<std::uint32_t, 2>> piercings_;      ///< edge, square
-  std::vector<std::array<std::uint32_t, 3>> crossings_;      ///< triangle, square, event
-  detail::UnionFind sheets_, face_parts_;                    ///< of triangles_
+  std::vector<std::uint32_t> vertices_, edges_, triangles_;  ///< of the mesh, in the cube; ascending
+  std::vector<std::array<std::uint32_t, 2>> piercings_;      ///< (edge of the mesh, square)
+  std::vector<std::array<std::uint32_t, 3>> crossings_;      ///< (triangle, square, event)
+  detail::UnionFind sheets_, face_parts_;                    ///< over triangles_
   std::map<std::uint32_t, FacePart> parts_;
   std::map<std::uint32_t, std::set<std::uint32_t>> touched_by_edge_;
   std::uint32_t bodies_on_boundary_ = 0;

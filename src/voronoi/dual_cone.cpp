@@ -9,7 +9,7 @@
 namespace blum::voronoi {
 namespace {
 
-/// A cone with an interior that is cut by one constraint after another. Its rays are products of consecutive
+/// A cone with an interior, which one constraint after another cuts. Its rays are cross products of consecutive
 /// constraints, all with the same sign.
 class Cone {
  public:
@@ -29,7 +29,7 @@ class Cone {
     return detail::orient3d(v_, ends_[a], ends_[b], ends_[c]);
   }
 
-  /// Begins with three independent constraints. Returns false if none exist.
+  /// Starts with three linearly independent constraints. Returns false if there are none.
   bool begin() {
     const auto count = static_cast<std::uint32_t>(ends_.size());
     std::uint32_t second = 1;
@@ -37,7 +37,7 @@ class Cone {
     for (std::uint32_t third = second + 1; third < count; ++third) {
       const int sign = determinant(0, second, third);
       if (sign == 0) continue;
-      // x = sign_ (e_a x e_b) must point away from the third edge.
+      // The ray sign_ * (e_a x e_b) must point away from the third edge.
       sign_ = -sign;
       bounds_ = first_ = {0, second, third};
       return true;
@@ -45,9 +45,9 @@ class Cone {
     return false;
   }
 
-  /// Cuts the cone by a half-space. Returns true if the rest has an interior.
+  /// Cuts the cone with the half-space of a constraint. Returns true if the remaining cone has an interior.
   bool cut(std::uint32_t constraint) {
-    // Side of each ray: 1 beyond the half-space, -1 inside, 0 on its plane.
+    // Side of each ray: 1 outside the half-space, -1 inside, 0 on its plane.
     const std::size_t count = bounds_.size();
     side_.resize(count);
     bool has_beyond = false;
@@ -59,13 +59,14 @@ class Cone {
     }
     if (!has_inside) return false;
     if (!has_beyond) return true;
-    // The rays beyond are consecutive, from the one after `from` on. A constraint stays if one of its rays stays.
+    // The rays outside are consecutive; the first one follows ray `from`. A constraint is kept if one of its two rays
+    // is kept.
     std::size_t from = 0;
     while (side_[from] > 0 || side_[(from + 1) % count] <= 0) ++from;
     std::vector<std::uint32_t> left{constraint};
     std::size_t k = (from + 1) % count;
     while (side_[k] > 0) k = (k + 1) % count;
-    // Ray k is the first that stays. It lies between constraints k and k + 1.
+    // Ray k, between constraints k and k + 1, is the first that is kept.
     for (;; k = (k + 1) % count) {
       left.push_back(bounds_[k]);
       if (k == from) break;

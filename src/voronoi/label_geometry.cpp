@@ -12,7 +12,7 @@
 namespace blum::voronoi {
 namespace {
 
-/// Returns true if all corners lie outside of one plane of a label's domain, or behind its triangle.
+/// Returns true if all corners lie outside the same plane of a label's domain, or behind the label's triangle.
 bool is_apart(const LabelGeometry& labels, LabelIndex label, std::span<const Vec3d> corners) {
   const double margin = labels.rounding();
   const auto all_below = [&](const auto& height) {
@@ -26,7 +26,7 @@ bool is_apart(const LabelGeometry& labels, LabelIndex label, std::span<const Vec
   });
 }
 
-/// A sum of two doubles that do not overlap.
+/// A number as the sum of two doubles whose digits do not overlap.
 struct DoubleDouble {
   double high = 0, low = 0;
 };
@@ -37,7 +37,7 @@ DoubleDouble exact_difference(double a, double b) {
   return {high, (a - (high + part)) + (part - b)};
 }
 
-/// Returns a b - c d, to a few units of the last place of the products times 1e-16.
+/// Returns a * b - c * d. Its error is about 1e-16 times a few units in the last place of the products.
 double difference_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
                               const DoubleDouble& d) {
   const double ab = a.high * b.high;
@@ -48,7 +48,8 @@ double difference_of_products(const DoubleDouble& a, const DoubleDouble& b, cons
   return high.high + (high.low + (ab_low - cd_low));
 }
 
-/// Returns the largest distance of the rays of a vertex's cone, of length 1, from the first ray.
+/// Returns the largest distance of a unit vector along a ray of a vertex's dual cone from the unit vector along the
+/// first ray. For narrow cones, this is the width in radians.
 double width_of_cone(const MeshView& mesh, const SiteTable& table, std::span<const std::uint32_t> edges,
                      std::uint32_t v) {
   const std::vector<Vec3d> ends = far_ends(mesh, table, v, edges);
@@ -179,8 +180,8 @@ void LabelGeometry::add_triangles(const MeshView& mesh, const SiteTable& table, 
   add_bisectors(sites);
 }
 
-/// The direction across an edge is the difference of the side normals in both planes, or of both triangles' normals.
-/// The longer difference is more precise.
+/// Finds the bisectors across convex edges. The normal of a bisector is a difference: of the vectors in both triangles
+/// at right angles to the edge, or of both triangles' normals. The longer difference is more precise.
 void LabelGeometry::add_bisectors(const PolyhedronSites& sites) {
   bisectors_.resize(3 * labels_.size());
   for (LabelIndex t = 0; t < labels_.size(); ++t) {
@@ -228,7 +229,7 @@ std::optional<Bisector> LabelGeometry::bisector(LabelIndex a, LabelIndex b) cons
     const Vec3d normal = unit(first.point - second.point);
     return Bisector{b, normal, dot(normal, (first.point + second.point) * 0.5)};
   }
-  // With directions away from the common end, the edge at the smaller angle to a point is closer.
+  // Let both directions point away from the common end. Then the edge at the smaller angle to a point is closer to it.
   for (const double of_a : {1.0, -1.0}) {
     for (const double of_b : {1.0, -1.0}) {
       const Vec3d& end = corners_[a][of_a > 0 ? 0 : 1];
@@ -288,7 +289,8 @@ void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, cons
         planes_.push_back({-side.normal, -side.offset, t, edge});
       }
     }
-    // If the edge is nearly flat, these two also leave room below it, up to rounding.
+    // If the edge is nearly flat, rounding of these two planes would let the domain extend below the surface. The next
+    // plane prevents this.
     const auto [first, second] = sites.triangles_of[edge];
     const Vec3d upwards = unit(labels_[first].direction + labels_[second].direction);
     planes_.push_back({upwards, dot(upwards, label.point), outside, outside});

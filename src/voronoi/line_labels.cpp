@@ -14,13 +14,13 @@ class SegmentSearch {
   SegmentSearch(const SiteLabels& labels, const Vec3d& from, std::size_t axis)
       : labels_(labels), from_(from), axis_(axis) {}
 
-  /// A place on the segment, and a label that is closest there. All labels that are closest there have its site.
+  /// A point of the segment, and a label that is closest to it. All labels that are closest to it have the same site.
   struct Place {
     double at = 0;
     Label label;
   };
 
-  /// Returns nullopt if sites tie.
+  /// Returns the closest label at a coordinate; nullopt if labels of different sites are equally close.
   [[nodiscard]] std::optional<Place> place_at(double at, std::span<const Label> among) const {
     const std::vector<Label> closest = labels_.closest_labels(among, point(at));
     if (closest.empty()) return std::nullopt;
@@ -29,7 +29,7 @@ class SegmentSearch {
     return Place{at, closest[0]};
   }
 
-  /// Adds the changes between two places. Returns false if they cannot be decided.
+  /// Adds the changes of the closest site between two points. Returns false if they cannot be decided.
   bool add_changes(const Place& begin, const Place& end, std::span<const Label> among, SegmentLabels& out) const {
     const std::vector<Label> left = labels_left(begin, end, among);
     if (is_one_site(left)) return true;
@@ -84,7 +84,7 @@ class SegmentSearch {
            labels_.compare_distances(begin.label, end.label, point(end.at)) > 0;
   }
 
-  /// Returns a place near the middle at which no sites tie.
+  /// Returns a point near the middle that has a single closest site; nullopt if three attempts find none.
   [[nodiscard]] std::optional<Place> place_between(double begin, double end, std::span<const Label> among) const {
     for (const double part : {0.5, 0.4375, 0.59375}) {
       const double at = begin + (end - begin) * part;
@@ -101,15 +101,15 @@ class SegmentSearch {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// One end of the interval in which a line runs through a domain.
+/// One end of the interval in which a line lies in a domain.
 struct IntervalEnd {
   double at = 0;
   double error = 0;
   LabelIndex beyond = outside;
-  std::uint32_t edge = outside;  ///< the edge of the mesh that lies in the plane there
+  std::uint32_t edge = outside;  ///< the edge of the mesh in the plane that ends the interval, if any
 };
 
-/// A label along a line; s is measured from a point of the line.
+/// A label that may be closest on a line. Positions are relative to the middle of the searched part.
 struct Candidate {
   LabelIndex label = outside;
   std::uint32_t site = 0;
@@ -117,16 +117,16 @@ struct Candidate {
   Quadratic squared;
   IntervalEnd low{-infinity, 0, outside, outside};
   IntervalEnd high{infinity, 0, outside, outside};
-  bool grazes = false;  ///< true if the line runs along a plane of its domain, or nearly
+  bool grazes = false;  ///< true if the line lies in a plane of the domain, up to rounding
 };
 
-/// The place at which a label takes over from the closest one.
+/// The position at which `label` becomes closest.
 struct Change {
   double at = infinity;
   double error = 0;
   LabelIndex label = outside;
   std::uint32_t site = 0;
-  bool is_certain = true;  ///< true if it happens, given that nothing happens before
+  bool is_certain = true;  ///< true if the change is certain to happen, unless another change happens before
 };
 
 class EnvelopeWalk {
@@ -142,20 +142,21 @@ class EnvelopeWalk {
     for (const LabelIndex label : among) add_candidate(label);
   }
 
-  /// Returns true if all changes are certain.
+  /// Appends the events of the part. Returns true if all changes are certain.
   bool run(std::vector<LineEvent>& events) {
     LabelIndex current = part_.first;
-    std::vector<std::uint32_t> recent;  // sites that ended here, up to rounding
+    std::vector<std::uint32_t> recent;  // sites that ceased to be closest at this position, up to rounding
     double at = low_;
     double error = 0;
     bool is_certain = true;
-    // Two labels change their order at most twice. With more changes, rounding made the walk go in circles.
+    // The distances of two labels change their order at most twice. If more changes occur, rounding has made the walk
+    // circular.
     const std::size_t most = 4 * candidates_.size() + 16;
     for (std::size_t count = 0; count < most; ++count) {
       const Change next = next_change(current, recent, at, error, is_certain);
       if (!(next.at - next.error <= high_)) return is_certain && is_as_expected(current);
       if (next.at + next.error >= high_ || next.label == outside) {
-        return false;  // too close to the end for doubles to decide
+        return false;  // the change is too close to the end of the part for doubles to decide
       }
       events.push_back({base_ + next.at, next.error + labels_.rounding(), current, next.label});
       if (next.at - next.error > at + error) recent.clear();
@@ -203,7 +204,7 @@ class EnvelopeWalk {
     return found == candidates_.end() ? nullptr : &*found;
   }
 
-  /// Returns the place at which the second label becomes as close as the first, and closer beyond it.
+  /// Returns the position from which on the second label is closer than the first.
   [[nodiscard]] Change crossing(const Quadratic& first, const Candidate& second, double from) const {
     const Quadratic difference = first - second.squared;
     const auto& [a, b, c] = difference;
@@ -214,7 +215,8 @@ class EnvelopeWalk {
     const double distance = std::sqrt(std::max(0.0, first.at(from)));
     double error = labels_.rounding_of_squares(distance + (high_ - low_));
     if (!(discriminant > 0)) {
-      // Their order does not change, unless rounding hides a change: then the largest difference is 0 up to rounding.
+      // The order of the distances does not change, unless rounding hides a change. In that case the largest difference
+      // is 0 up to rounding.
       if (a < 0 && discriminant > 4 * a * error) {
         out.at = -b / (2 * a);
         out.error = std::sqrt(error / -a);
@@ -231,7 +233,7 @@ class EnvelopeWalk {
       return out;
     }
     error = labels_.rounding_of_squares(std::sqrt(std::max(0.0, first.at(out.at))));
-    // If the slope changes within the error, the root may not exist.
+    // If the slope changes its sign within the error, the root may not exist.
     if (root * root < 4 * std::abs(a) * error) {
       out.error = std::sqrt(error / std::abs(a));
       out.is_certain = false;
@@ -241,7 +243,7 @@ class EnvelopeWalk {
     return out;
   }
 
-  /// Returns true if a label is certainly further than the current one everywhere between two places.
+  /// Returns true if a label is certainly further than the current one everywhere between two positions.
   [[nodiscard]] bool is_further(const Candidate& other, const Quadratic& squared, double from, double to) const {
     from = std::max({from, other.low.at - other.low.error, low_});
     to = std::min({to, other.high.at + other.high.error, high_});
@@ -257,8 +259,8 @@ class EnvelopeWalk {
     return end.beyond != outside && labels_[end.beyond].site == candidate.site;
   }
 
-  /// Removes a change outside of the label's domain, and marks one for which this is uncertain.
-  /// @param is_next  true if the change is across a convex edge, where the domains overlap.
+  /// Cancels a change that lies outside the label's domain. Marks the change as uncertain if that is not certain.
+  /// @param is_next  true if the change crosses a bisector at a convex edge or common end. There the domains overlap.
   void check_domain(const Candidate& candidate, Change& change, bool is_next) const {
     for (const int side : {-1, 1}) {
       const IntervalEnd& end = side < 0 ? candidate.low : candidate.high;
@@ -274,10 +276,10 @@ class EnvelopeWalk {
     if (candidate.grazes) change.is_certain = false;
   }
 
-  /// Relation of two labels of one kind that are next to each other.
+  /// Relation of two labels of the same kind (two faces or two edges) that may be adjacent.
   struct Adjacency {
-    std::optional<Bisector> bisector;  ///< across a convex edge or a common end, to the side of the other label
-    bool have_between = false;         ///< true if they share an edge or vertex that is a site itself
+    std::optional<Bisector> bisector;  ///< bisector at a convex edge or common end; positive on the side of `other`
+    bool have_between = false;         ///< true if they share a reflex edge or vertex that is a site
   };
   [[nodiscard]] Adjacency adjacency(LabelIndex current, const Candidate& other) const {
     const PlacedLabel& face = labels_[current];
@@ -304,15 +306,16 @@ class EnvelopeWalk {
     return out;
   }
 
-  /// Returns the change to a label across a bisector. It is precise however flat the edge between them is.
+  /// Returns the change to a label at a bisector. It is precise even if the edge between the labels is nearly flat.
   [[nodiscard]] Change change_at(const Bisector& bisector, const Candidate& other) const {
     const double slope = bisector.normal[part_.axis];
     if (!(slope > 0)) return {};
     return {-bisector.height(middle_) / slope, labels_.rounding() / slope, other.label, other.site, true};
   }
 
-  /// Returns a change from the current label to another one behind a place, if one exists.
-  /// @param end  the furthest place that the current label's domain reaches.
+  /// Returns the change from the current label to another label after position `at`; without a change, its position is
+  /// infinity.
+  /// @param end  the end of the current site's domain.
   [[nodiscard]] Change change_to(LabelIndex label, const Quadratic& squared, const Candidate& other, double at,
                                  double error, const IntervalEnd& end) const {
     const PlacedLabel& current = labels_[label];
@@ -320,7 +323,7 @@ class EnvelopeWalk {
       if (other.low.at - other.low.error > end.at + end.error) return {};
       if (other.high.at + other.high.error < at - error) return {};
       const Adjacency adjacent = adjacency(label, other);
-      // Between the two sides of a reflex edge or vertex, that site itself is closest.
+      // Between two faces at a reflex edge, or two edges at a reflex vertex, the edge or vertex itself is closest.
       const bool is_apart =
           other.low.at + other.low.error >= end.at - end.error || other.high.at - other.high.error <= at + error;
       if (adjacent.have_between && is_apart) return {};
@@ -329,18 +332,21 @@ class EnvelopeWalk {
       if (change.at < infinity) check_domain(other, change, adjacent.bisector.has_value());
       return change;
     }
-    // A face changes to its own edge here. Changes from edges and vertices follow from their own domains (add_own_end).
+    // This covers changes from a face to its own edge. add_own_end() covers changes from edges and vertices to incident
+    // sites.
     const IntervalEnd& begin = other.low;
     const bool is_wall = current.kind == SiteKind::face && other.kind == SiteKind::edge && begin.beyond != outside &&
                          labels_[begin.beyond].site == current.site;
     if (!is_wall) return {};
-    // The planes of both triangles of a reflex edge leave room between them, even if it is less than rounding.
+    // Between the planes of both triangles at a reflex edge, the edge's domain is never empty, even if it is narrower
+    // than rounding.
     const bool is_between = other.high.edge == begin.edge && begin.edge != outside;
     const bool may_be_empty = !is_between && begin.at + begin.error > other.high.at - other.high.error;
     return {begin.at, begin.error, other.label, other.site, !may_be_empty && !other.grazes};
   }
 
-  /// Returns the furthest place behind another one that a site's domain reaches without a gap.
+  /// Returns the end of a site's domain: the furthest position that its labels' intervals cover without a gap from
+  /// `at`.
   [[nodiscard]] IntervalEnd end_of_domain(std::uint32_t site, double at, double error) const {
     IntervalEnd end{at, error, outside, outside};
     for (bool grows = true; grows;) {
@@ -355,14 +361,14 @@ class EnvelopeWalk {
     return end;
   }
 
-  /// Adds the end of the domain of an edge or vertex. Returns false if the end is uncertain.
+  /// Adds the change at the end of an edge's or vertex's own domain. Returns false if the end is uncertain.
   bool add_own_end(LabelIndex current) const {
     const Candidate* own = find(current);
     if (own == nullptr || own->grazes) return false;
     if (!(own->high.at < infinity)) return true;
     const LabelIndex beyond = own->high.beyond;
     const bool is_known = beyond != outside;
-    // If its end is not a site, another edge with this end may continue.
+    // If the end of the edge is not a site, another edge with the same end may become closest.
     const double reach = own->high.at + own->high.error;
     const bool goes_on = !is_known && std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
       return change.at - change.error <= reach;
@@ -372,7 +378,7 @@ class EnvelopeWalk {
     return true;
   }
 
-  /// @param recent  sites that were closest up to here; `current` took over from the last of them.
+  /// @param recent  sites that were closest just before, in order; `current` replaced the last of them.
   Change next_change(LabelIndex current, const std::vector<std::uint32_t>& recent, double at, double error,
                      bool& is_certain) const {
     const PlacedLabel& placed = labels_[current];
@@ -386,7 +392,7 @@ class EnvelopeWalk {
       if (!(change.at < infinity) || change.at + change.error < at - error) continue;
       if (change.at - change.error > end.at + end.error) continue;
       if (change.at - change.error <= at + error) {
-        // Skips the change just passed, seen from its other side, and sites that have ended here.
+        // Skips the reverse of the previous change, and sites whose domains end at this position.
         if (!recent.empty() && other.site == recent.back()) continue;
         const bool was_recent = std::find(recent.begin(), recent.end(), other.site) != recent.end();
         if (was_recent && other.high.at - other.high.error <= at + error) continue;
@@ -400,7 +406,7 @@ class EnvelopeWalk {
     for (const Change& change : changes) {
       if (change.at < first.at) first = change;
     }
-    // In the solid, a domain ends only where something else is closest.
+    // Inside the solid, a domain ends only where another site is closest. So a change was missed.
     if (!(first.at < infinity) && end.at + end.error < high_) is_certain = false;
     if (!(first.at - first.error <= high_)) return first;
     if (!first.is_certain) is_certain = false;
@@ -468,7 +474,7 @@ bool LineLabels::add_exact_events(const LinePart& part, std::span<const LabelInd
   for (std::size_t k = 0; k < found->changes.size(); ++k) {
     const LabelIndex next = label_of(found->sites[k + 1]);
     auto [low, high] = found->changes[k];
-    // Halves the interval further, to the only change in it.
+    // Halves the interval further around the only change in it.
     while (high - low > labels_.rounding()) {
       const double middle = low + (high - low) / 2;
       if (!(low < middle && middle < high)) break;

@@ -15,84 +15,85 @@
 
 namespace blum::voronoi {
 
-/// The closest sites along a segment, in order, and the places where they change.
+/// The closest sites along a segment, in order, and intervals that contain the changes between them.
 struct SegmentLabels {
-  std::vector<std::uint32_t> sites;  ///< numbers of SiteLabels::site_of(); neighbours differ
-  /// Entry k: coordinates along the segment of two points between which sites k and k + 1 change, and no others.
+  std::vector<std::uint32_t> sites;  ///< numbers as in SiteLabels::site_of(); neighbours in the list differ
+  /// Entry k: coordinates of two points. Between them, the closest site changes exactly once, from site k to the next
+  /// one.
   std::vector<std::array<double, 2>> changes;
 };
 
 /// Finds the closest sites along a segment exactly, by halving.
 ///
-/// A label is excluded from a part of the segment if that part lies outside of one plane of the label's domain. It is
-/// also excluded if it is further than a label whose distance is attained all over the part. Three signs of the polar
-/// form decide this.
-/// A part is done if the remaining labels belong to one site. It is also done if two labels of two sites remain, one at
-/// each end, and the order of their squared distances changes once. Their difference is quadratic, so it changes its
-/// sign once if it does so between the ends. For a triangle and its own edge, or an edge and its end, the difference is
-/// a square. The plane between their domains separates these, and a segment crosses it once.
-/// All other parts are halved.
+/// A label is excluded from a part of the segment if that part lies outside one plane of the label's domain. It is also
+/// excluded if it is further everywhere than another label that contains the feet of all points of the part. Three
+/// signs of polar forms decide that. A part is done if all remaining labels belong to one site. It is also done if only
+/// two labels of different sites remain, and the order of their squared distances differs at the ends. The difference
+/// of squared distances is quadratic, so it then changes its sign exactly once. For a triangle and its own edge, or an
+/// edge and its own end, the difference is a square, without a change of sign. In that case the plane between both
+/// domains decides, and a segment crosses the plane once. A part that is not done is halved.
 ///
-/// @param among  labels that contain all that are closest anywhere on the segment.
-/// @param from, to  differ along `axis` alone, in rising order; the segment lies in the solid.
-/// @return  nullopt if two sites tie at an end or all over a part, or if changes are closer than doubles can separate.
+/// @param among  labels that include all that are closest to a point of the segment.
+/// @param from, to  differ only along `axis`, with the smaller coordinate first. The segment lies in the solid.
+/// @return  nullopt if two sites are equally close at an end or along a whole part, or if doubles cannot separate two
+///          changes.
 [[nodiscard]] std::optional<SegmentLabels> labels_along(const SiteLabels& labels, std::span<const Label> among,
                                                         const Vec3d& from, const Vec3d& to, std::size_t axis);
 
-/// A place on an axis-parallel line at which the closest site changes.
+/// A point of an axis-parallel line at which the closest site changes.
 struct LineEvent {
   double at = 0;                ///< coordinate along the axis, mesh units, rounded
-  double error = 0;             ///< largest error of `at`
-  LabelIndex before = outside;  ///< closest below it
-  LabelIndex after = outside;   ///< closest above it
-  double width = 0;             ///< of the thin regions in between, from `at` on
-  LabelIndex thin = outside;    ///< the first vertex that has one
-  bool has_several = false;     ///< true if more vertices have one
+  double error = 0;             ///< bound on the error of `at`
+  LabelIndex before = outside;  ///< closest label below the point
+  LabelIndex after = outside;   ///< closest label above the point
+  double width = 0;             ///< width of the thin regions in between; they start at `at`
+  LabelIndex thin = outside;    ///< the first thin vertex with a region in between
+  bool has_several = false;     ///< true if several thin vertices have a region in between
 
-  /// Returns the coordinate at which the region above begins.
+  /// Returns the coordinate at which the region of `after` begins.
   [[nodiscard]] double upper() const { return at + width; }
 
-  /// Returns the triangle that the line crosses here, if it enters or leaves the solid.
+  /// Returns the triangle that the line crosses at the point; nullopt unless the line enters or leaves the solid there.
   [[nodiscard]] std::optional<LabelIndex> crossed() const {
     if (before == outside) return after;
     return after == outside ? std::optional(before) : std::nullopt;
   }
 };
 
-/// A part of an axis-parallel line in the solid.
+/// A segment of an axis-parallel line. It lies in the solid.
 struct LinePart {
-  Vec3d origin;  ///< any point of the line, mesh units
+  Vec3d origin;  ///< any point of the line, in mesh units
   std::size_t axis = 0;
   double low = 0, high = 0;    ///< coordinates of the ends along the axis
-  LabelIndex first = outside;  ///< closest at the lower end
-  LabelIndex last = outside;   ///< closest at the upper end, if known
+  LabelIndex first = outside;  ///< closest label at the lower end
+  LabelIndex last = outside;   ///< closest label at the upper end; `outside` if unknown
 };
 
-/// Counts of parts of lines whose order of events was searched.
+/// Counts of the parts of lines that add_events() searched.
 struct LineCounts {
-  std::size_t parts = 0;      ///< all
-  std::size_t exact = 0;      ///< decided by exact signs, not by doubles
-  std::size_t undecided = 0;  ///< decided by neither
+  std::size_t parts = 0;      ///< number of all parts
+  std::size_t exact = 0;      ///< number of parts that only exact signs decided
+  std::size_t undecided = 0;  ///< number of parts that neither doubles nor exact signs decided
 };
 
-/// Returns true if a point of a line lies behind the place at which label `after` takes over from `before`. Exact. No
-/// other place at which it does so may be near.
+/// Returns true if a point of a line lies beyond the point at which label `after` becomes closer than label `before`.
+/// The test is exact. It requires that this change happens only once nearby.
 [[nodiscard]] bool is_behind_change(const SiteLabels& exact, const LabelGeometry& labels, LabelIndex before,
                                     LabelIndex after, const Vec3d& q);
 
-/// Finds the closest labels along lines.
+/// Finds the closest labels along axis-parallel lines.
 ///
-/// Along a line, squared distances are quadratic functions and domains are intervals, so the closest labels form a
-/// lower envelope. From one end on, a label stays closest until another one gets as close (a root of a quadratic
-/// function), or until its domain ends. Labels that share a footprint (a face and its edge, an edge and its end) change
-/// only at planes of domains. Roots have bounds on their rounding. If these leave the order of two roots open,
-/// labels_along() finds it by exact signs.
+/// Along a line, squared distances are quadratic functions and domains are intervals. So the closest labels form a
+/// lower envelope, which is followed from the lower end. A label stays closest until its domain ends, or until another
+/// label becomes as close, at a root of a quadratic function. Between a face and its own edge, or an edge and its own
+/// end, changes occur only at planes of domains. Roots have bounds on their rounding errors. If these leave the order
+/// of two roots open, labels_along() finds the order by exact signs.
 class LineLabels {
  public:
   LineLabels(const SiteLabels& exact, const LabelGeometry& labels) : exact_(exact), labels_(labels) {}
 
-  /// Appends the events of a part, in rising order. No events lie between labels of one site.
-  /// @param among  labels that contain all that are closest anywhere on it.
+  /// Appends the events of a part, in ascending order. A change between two labels of the same site is not an event.
+  /// @param among  labels that include all that are closest to a point of the part.
   /// @return  true if all events are certain.
   bool add_events(const LinePart& part, std::span<const LabelIndex> among, std::vector<LineEvent>& events) const;
 

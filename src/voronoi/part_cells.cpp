@@ -15,8 +15,8 @@
 namespace blum::voronoi {
 namespace {
 
-/// Returns the constraints that hold facets of a dual cone, in the order around it, without those that touch it in a
-/// ray.
+/// Returns the indices of the constraints whose planes contain facets of a dual cone, in the order around the cone.
+/// Constraints that touch the cone only in a ray are left out.
 std::vector<std::uint32_t> facets(const Vec3d& v, std::span<const Vec3d> ends) {
   std::vector<std::uint32_t> out = dual_cone(v, ends);
   for (std::size_t k = 0; k < out.size() && out.size() > 3;) {
@@ -32,8 +32,8 @@ std::vector<std::uint32_t> facets(const Vec3d& v, std::span<const Vec3d> ends) {
   return out;
 }
 
-/// Returns the corner at a vertex with two reflex edges and otherwise flat ones. All faces there lie in two planes, and
-/// both edges lie in the line in which these meet.
+/// Returns the corner at a passing vertex: two of its edges are reflex, and all others are flat. Then all faces at the
+/// vertex lie in two planes, and both reflex edges lie in their common line.
 std::optional<ReflexCorner> passing_corner(std::uint32_t v, std::span<const std::uint32_t> edges,
                                            const PolyhedronSites& sites, const LabelGeometry& labels) {
   std::vector<std::uint32_t> bent;
@@ -57,8 +57,8 @@ std::optional<ReflexCorner> passing_corner(std::uint32_t v, std::span<const std:
 
 /// The dual cone of a vertex's edges.
 struct Cone {
-  std::vector<std::uint32_t> edges;  ///< edges that hold facets, in the order around it
-  std::vector<Vec3d> rays;           ///< of length 1; ray k lies between facets k and k + 1
+  std::vector<std::uint32_t> edges;  ///< edges whose constraints contain facets, in order around the cone
+  std::vector<Vec3d> rays;           ///< unit vectors; ray k lies between facets k and k + 1
 };
 
 Cone cone_at(std::uint32_t v, std::span<const std::uint32_t> edges, const MeshView& mesh, const SiteTable& table) {
@@ -151,8 +151,9 @@ class PartOfSquare {
     }
   }
 
-  /// Walls between faces and edges join the pieces around a thin region between two of its places on the border. Across
-  /// the region, all pieces are joined. Returns the number of arcs that the regions stand for.
+  /// Joins pieces across thin regions. If a thin region reaches the border in several events, all pieces around it are
+  /// joined. Dropped walls between faces and edges join them along the region. The region itself joins them across.
+  /// Returns the number of arcs to which the thin regions correspond.
   std::size_t join_across_thin(detail::UnionFind& classes) {
     std::size_t joins = 0;
     for (const ThinRegion& region : out_.thin) {
@@ -172,7 +173,8 @@ class PartOfSquare {
 
   void add_arc(std::uint32_t a, std::uint32_t b) { out_.arcs.push_back({std::min(a, b), std::max(a, b)}); }
 
-  /// Returns the piece of a site; for the outside, the piece next to an event. Returns `outside` if none exists.
+  /// Returns the piece of a site; for the outside, the piece next to the event. Returns `outside` if there is no such
+  /// piece.
   [[nodiscard]] std::uint32_t piece_of(std::uint32_t site, std::uint32_t event) const {
     if (site == outside) {
       const auto at = std::find(cells_.events.begin(), cells_.events.end(), event);
@@ -206,8 +208,9 @@ class PartOfSquare {
     return std::binary_search(out_.arcs.begin(), out_.arcs.end(), Pair{std::min(a, b), std::max(a, b)});
   }
 
-  /// Around the normal of a face at a reflex vertex lie the face, one of its edges, the vertex, and the other edge. At
-  /// a vertex in which edges in one line meet, the face and both edges lie around it.
+  /// Finds points in the square around which all walls are dropped. Such a point lies on the normal of a face at a
+  /// vertex. At a reflex vertex, the regions around the normal are those of the face, one edge, the vertex and another
+  /// edge. At a passing vertex, they are those of the face and both edges.
   void find_corners() {
     for (const auto& [a, b] : out_.arcs) {
       const std::uint32_t low = cells_.pieces[a].site;
@@ -224,7 +227,7 @@ class PartOfSquare {
       if (rule_.is_vertex(site)) find_corners_of(k);
       if (!rule_.is_edge(site)) continue;
       for (const auto& [edge, v] : rule_.thin_ends(site)) {
-        // Each vertex is examined once, from its first edge.
+        // Each vertex is examined only once, at its first edge.
         if (rule_.corner(v).edges.front() == site && !reaches_border(v) && is_surrounded(v)) {
           out_.corners.push_back({outside, v});
         }
@@ -237,7 +240,7 @@ class PartOfSquare {
                        [&](const ThinRegion& region) { return region.vertex == v; });
   }
 
-  /// Returns true if pieces of all faces and edges of a vertex are joined around it.
+  /// Returns true if the pieces of all faces and edges of a vertex exist, and each edge is joined with its two faces.
   [[nodiscard]] bool is_surrounded(std::uint32_t v) const {
     const std::vector<std::uint32_t>& edges = rule_.corner(v).edges;
     return std::all_of(edges.begin(), edges.end(), [&](std::uint32_t edge) {
@@ -308,7 +311,7 @@ bool PartRule::drops(std::uint32_t first, std::uint32_t second) const {
   if (first == outside) return is_face(second);
   if (second == outside) return is_face(first);
   if (part_ != VoronoiPart::medial_axis) return false;
-  // Sites are numbered in the order faces, edges, vertices.
+  // Sites are numbered in the order faces, edges, vertices, so `low` cannot be a vertex if `high` is an edge.
   const std::uint32_t low = std::min(first, second);
   const std::uint32_t high = std::max(first, second);
   const bool is_step = (is_face(low) && is_edge(high)) || (is_edge(low) && is_vertex(high));

@@ -19,35 +19,36 @@
 
 namespace blum::voronoi {
 
-/// Walls and lines at a vertex v that is a site, or in which two reflex edges in one line meet (a passing vertex).
+/// Walls and lines at a vertex v that is a site, or a passing vertex: one at which two collinear reflex edges meet.
 ///
-/// Next to a vertex v the diagram is a cone. The region of v is bounded there by walls between v and some of its edges,
-/// one for each facet of the dual cone. These walls meet in rays of the cone, some of which are normals of faces. A
-/// passing vertex has no region: a wall lies between both edges, in the plane across them. The region of a thin vertex
-/// counts as a line. If all its edges are reflex, all walls around that line are dropped.
+/// Near a vertex v the diagram is a cone. There, the region of v is the dual cone of its edges. Each facet of this cone
+/// is a wall between v and an edge. These walls meet in rays of the cone, and some rays are normals of faces. A passing
+/// vertex has no region. Instead, a wall lies between its two edges, in the plane at a right angle to them. The region
+/// of a thin vertex counts as a line. If a thin vertex has no convex edge, all walls around that line are dropped.
 struct ReflexCorner {
-  std::vector<std::uint32_t> edges;  ///< sites
-  /// Directions, of length 1, of the two rays between which the facet of each edge lies.
+  std::vector<std::uint32_t> edges;  ///< sites of the edges
+  /// For each edge: unit vectors along the two rays that bound its facet.
   std::vector<std::array<Vec3d, 2>> rays;
-  std::vector<std::uint32_t> faces;  ///< sites, of the normals
-  bool is_passing = false;           ///< if so, two edges and two faces are listed
-  bool is_thin = false;  ///< if so, its edges are reflex or flat; reflex ones are listed, no faces, and a ray twice
+  std::vector<std::uint32_t> faces;  ///< sites of the faces whose normals are rays
+  bool is_passing = false;           ///< true for a passing vertex: two edges and two faces are listed
+  bool is_thin = false;  ///< true for a thin vertex without convex edges: reflex edges and a ray (twice) are listed
 
-  /// Returns the number of parts of the medial axis next to v. Around v, the walls that are kept form a forest, and
-  /// Euler's formula counts its trees. The number is 0 if all edges are reflex. Two or more parts meet in v only.
+  /// Returns the number of components of the medial axis near v, without v itself. On a small sphere around v, the kept
+  /// walls form a forest, and Euler's formula counts its trees. The number is 0 if all edges are reflex. If it is 2 or
+  /// more, the components meet only at v.
   [[nodiscard]] std::int64_t axis_parts() const {
     if (is_passing || is_thin) return 0;
     return static_cast<std::int64_t>(edges.size()) - static_cast<std::int64_t>(faces.size());
   }
 };
 
-/// Returns the corner at each vertex of a mesh. It is empty if the vertex is of neither kind, or is thin with convex
-/// edges.
+/// Returns the corner at each vertex of a mesh. It is empty if the vertex is neither a site nor passing, or if it is
+/// thin with a convex edge.
 [[nodiscard]] std::vector<ReflexCorner> reflex_corners(const MeshView& mesh, const SiteTable& table,
                                                        const PolyhedronSites& sites, const LabelGeometry& labels);
 
-/// Rule for the walls that a part of the diagram drops. Regions on both sides of a dropped wall count as joined across
-/// it.
+/// Rule for the walls that the requested part of the diagram drops. The regions on both sides of a dropped wall count
+/// as joined.
 class PartRule {
  public:
   PartRule(VoronoiPart part, const PolyhedronSites& sites, const LabelGeometry& labels,
@@ -67,23 +68,24 @@ class PartRule {
   [[nodiscard]] bool is_edge(std::uint32_t site) const { return site >= first_edge_ && site < first_vertex_; }
   [[nodiscard]] bool is_vertex(std::uint32_t site) const { return site >= first_vertex_ && site != outside; }
 
-  /// Returns the vertex of the mesh that is a site.
+  /// Returns the vertex of the mesh for the site of a vertex.
   [[nodiscard]] std::uint32_t vertex_of(std::uint32_t site) const {
     return sites_.reflex_vertices[site - first_vertex_];
   }
 
-  /// Returns true if walls between two sites, or between a site and the outside, are dropped. Every part but `all`
-  /// drops the surface. A medial axis also drops walls between a face and its reflex edges, and between an edge and its
-  /// ends. It drops walls between two edges in one line with a common end, too. Both footprints of these walls are one
-  /// point.
+  /// Returns true if walls between two sites, or between a site and the outside, are dropped. Every part except `all`
+  /// drops the surface. The medial axis also drops walls between a face and its own reflex edges, and between an edge
+  /// and its own ends. It also drops walls between the two edges at a passing vertex. Points of these walls have only
+  /// one footprint.
   [[nodiscard]] bool drops(std::uint32_t first, std::uint32_t second) const;
-  /// Returns the vertex of the mesh in which two edges in one line meet; nullopt for other sites.
+  /// Returns the passing vertex at which two edges meet; nullopt for other pairs of sites.
   [[nodiscard]] std::optional<std::uint32_t> passing_vertex(std::uint32_t edge, std::uint32_t other) const;
-  /// Returns the thin vertices at the ends of an edge around which all walls are dropped, each with the edge.
+  /// Returns pairs of the given edge and a thin vertex at one of its ends. Only thin vertices without convex edges are
+  /// included: all walls around them are dropped.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> thin_ends(std::uint32_t edge) const;
   /// Returns the sites of the faces on both sides of an edge.
   [[nodiscard]] std::array<std::uint32_t, 2> faces_of(std::uint32_t edge) const;
-  /// Returns the vertex of the mesh whose thin region an event lies in, if that region counts as a dropped line.
+  /// Returns the mesh vertex of a thin label of an event, if its region counts as a dropped line; otherwise nullopt.
   [[nodiscard]] std::optional<std::uint32_t> dropped_thin(LabelIndex thin) const {
     if (!is_medial() || thin == outside) return std::nullopt;
     const std::uint32_t v = vertex_of(labels_[thin].site);
@@ -93,7 +95,7 @@ class PartRule {
   [[nodiscard]] const ReflexCorner& corner(std::uint32_t v) const { return corners_[v]; }
 
  private:
-  /// Two edges, the smaller one first, and a vertex.
+  /// The two edges at a passing vertex, the smaller one first, and the vertex.
   using PassingPair = std::array<std::uint32_t, 3>;
   [[nodiscard]] static std::vector<PassingPair> passing_pairs(std::span<const ReflexCorner> corners);
   [[nodiscard]] static std::vector<std::array<std::uint32_t, 2>> thin_ends_of(std::span<const ReflexCorner> corners);
@@ -104,29 +106,30 @@ class PartRule {
   const LabelGeometry& labels_;
   std::span<const ReflexCorner> corners_;
   std::vector<PassingPair> passing_;                     ///< sorted
-  std::vector<std::array<std::uint32_t, 2>> thin_ends_;  ///< edge, vertex: sorted
+  std::vector<std::array<std::uint32_t, 2>> thin_ends_;  ///< (edge, vertex), sorted
 };
 
-/// A thin region in a square that counts as a line, and meets the square's border.
+/// A thin region that counts as a line and meets the border of a square.
 struct ThinRegion {
   std::uint32_t vertex = 0;         ///< vertex of the mesh
-  std::vector<std::size_t> events;  ///< events of the border that lie in it, by their numbers in SquareCells
+  std::vector<std::size_t> events;  ///< events of the border in the region, as indices in SquareCells
 };
 
-/// A part of the diagram in a resolved square.
+/// The requested part of the diagram in a resolved square.
 ///
-/// Pieces are joined across dropped walls. Each piece is connected and reaches the border, so two of them share at most
-/// one arc: two arcs would enclose a third piece. Joined pieces may go around a point around which all walls are
-/// dropped. There a reflex edge pierces the square, or the normal of a face at a vertex (`corners`). Anything else that
-/// they go around is a component of the part that lies strictly inside; then `is_decided` is false. A thin region that
-/// reaches the border in k places is convex. So it joins the k chains of pieces between these as k - 1 arcs would.
+/// Pieces are joined across dropped walls. Each piece is connected and reaches the border. So two pieces share at most
+/// one arc, because two arcs would enclose a third piece. Joined pieces may surround a point around which all walls are
+/// dropped. At this point, a reflex edge or the normal of a face at a vertex (`corners`) pierces the square. If joined
+/// pieces surround anything else, it is a component of the part strictly inside the square; then `is_decided` is false.
+/// A thin region that reaches the border in k events is convex. It joins the k chains of pieces between these events,
+/// just as k - 1 arcs would.
 struct PartSquare {
-  std::vector<std::array<std::uint32_t, 2>> arcs;  ///< dropped: the pieces on both sides, the smaller one first
+  std::vector<std::array<std::uint32_t, 2>> arcs;  ///< dropped arcs: pieces on both sides, the smaller one first
   std::vector<std::array<std::uint32_t, 2>>
-      corners;                           ///< the site of a face, or `outside` for a thin vertex; a vertex of the mesh
-  std::vector<std::uint32_t> component;  ///< of the part, for each event; `outside` for dropped ones
+      corners;                           ///< (site of a face, or `outside` for a thin vertex; vertex of the mesh)
+  std::vector<std::uint32_t> component;  ///< for each event: component of the part, or `outside` if dropped
   std::uint32_t component_count = 0;
-  std::vector<ThinRegion> thin;  ///< regions that reach the border
+  std::vector<ThinRegion> thin;  ///< thin regions that reach the border
   bool is_decided = true;
 };
 

@@ -17,7 +17,7 @@ VoronoiObstacle PartOfCube::find(CubeCells& out) {
   number_components(out);
   const std::int64_t on_boundary = out.component_count;
   if (components != on_boundary) {
-    // Some components on the boundary are joined inside. It is known which ones only if all are.
+    // Some components on the boundary are connected inside the cube. Only if all are connected is it known which ones.
     if (components != 1 || on_boundary == 0) return VoronoiObstacle::joins;
     for (CubeCells::Square& square : out.squares) square.component.assign(square.component.size(), 0);
     out.component_count = 1;
@@ -36,7 +36,7 @@ void PartOfCube::collect() {
       const Pair sites{square.cells.pieces[a].site, square.cells.pieces[b].site};
       walls_[{std::min(sites[0], sites[1]), std::max(sites[0], sites[1])}].push_back(s);
     }
-    // In a square, dropped arcs count as -1 and dropped points as 1.
+    // In a square, each dropped arc counts as -1, and each dropped point as 1.
     corners_.insert(parts_.back().corners.begin(), parts_.back().corners.end());
     euler_ += static_cast<std::int64_t>(parts_.back().corners.size());
     euler_ -= static_cast<std::int64_t>(parts_.back().arcs.size());
@@ -48,8 +48,8 @@ void PartOfCube::collect() {
   joined_.reset(count);
 }
 
-/// Joins components across edges of the grid, and counts dropped events. Returns false if squares disagree about an
-/// event, which happens next to nodes with contradicting sites.
+/// Joins components of squares that share an event on an edge of the grid, and counts dropped events. Returns false if
+/// two squares disagree about an event. This happens near nodes with contradictory sites.
 bool PartOfCube::join_events() {
   struct AtEvent {
     std::uint32_t event, square, component;
@@ -85,7 +85,7 @@ bool PartOfCube::join_events() {
 }
 
 VoronoiObstacle PartOfCube::add_dropped_walls() {
-  // Without its boundary, each counts as 1.
+  // Each part of a face counts as 1, because its boundary was counted before.
   if (in_.has_inner_face) return VoronoiObstacle::enclosed;
   euler_ += static_cast<std::int64_t>(in_.face_parts);
   if (!solid_.rule.is_medial()) return VoronoiObstacle::none;
@@ -93,7 +93,7 @@ VoronoiObstacle PartOfCube::add_dropped_walls() {
   for (const auto& [sites, squares] : walls_) {
     if (sites[1] == outside) continue;
     if (!solid_.rule.is_face(sites[0])) {
-      ++euler_;  // the region of a vertex is convex, and so is its border to an edge
+      ++euler_;  // a vertex's region is convex, and so is its wall to an edge
       continue;
     }
     const VoronoiObstacle obstacle = add_edge_walls(sites, squares);
@@ -102,8 +102,8 @@ VoronoiObstacle PartOfCube::add_dropped_walls() {
   return VoronoiObstacle::none;
 }
 
-/// Returns true if a wall that begins at an edge or vertex in the cube does not reach the boundary. Also if a line at a
-/// vertex does not.
+/// Returns true if a dropped wall that starts at an edge or vertex in the cube does not reach the cube's boundary.
+/// Returns true, too, if a dropped line at a vertex does not reach it.
 bool PartOfCube::is_any_wall_inside() const {
   const auto has_wall = [&](std::uint32_t a, std::uint32_t b) {
     return walls_.contains({std::min(a, b), std::max(a, b)});
@@ -132,12 +132,13 @@ bool PartOfCube::is_any_wall_inside() const {
   return false;
 }
 
-/// Adds walls between a face and a reflex edge, which lie in a plane. A point of a wall can move along the face's
-/// normal towards the edge. It stays in the wall until it meets the edge or leaves the cube. So the number of walls is
-/// that of connected parts of the edge and of the places where points leave.
+/// Adds the components of the wall between a face and a reflex edge in the cube. The wall lies in a plane. Let a point
+/// of the wall move against the face's normal, towards the edge. It stays in the wall until it reaches the edge or
+/// leaves the cube. So the components of the wall correspond to the connected parts of the edge and of the points where
+/// it leaves.
 VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares) {
   const auto [face, site] = sites;
-  // Any triangle of the face has its normal; labels of triangles have their numbers.
+  // All triangles of a face have the same normal. The label of a triangle has the triangle's index.
   const Vec3d& normal = solid_.labels[solid_.triangle_of_face[face]].direction;
   const auto is_low = [&](std::uint32_t s) { return is_lower_side(in_.squares[s].side, normal); };
   const std::uint32_t edge = solid_.sites.reflex_edges[site - solid_.sites.face_count];
@@ -145,7 +146,7 @@ VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<
   const auto rank = [&](std::uint32_t s) {
     return static_cast<std::uint32_t>(std::lower_bound(squares.begin(), squares.end(), s) - squares.begin());
   };
-  // The last entry is the edge's part in the cube.
+  // The last entry represents the part of the edge in the cube.
   detail::UnionFind parts(count + 1);
   for (const auto& [s, t] : events_of_walls_[sites]) {
     if (is_low(s) && is_low(t)) parts.join(rank(s), rank(t));
@@ -164,23 +165,24 @@ VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<
   return VoronoiObstacle::none;
 }
 
-/// Adds thin regions that count as lines and meet edges of the grid. One that ends in the cube only at its vertex is
-/// convex. Without the boundary, its Euler number is 1 less that of its parts on the boundary, which must be discs. If
-/// its vertex is in the cube, 0 takes the place of 1, because the vertex is counted on its own.
+/// Adds thin regions that count as lines and meet edges of the grid. If such a region has no end in the cube except its
+/// vertex, it is convex there. Its parts on the cube's boundary must be discs. Its Euler number, without the boundary,
+/// is 1 minus that of these parts. If its vertex is in the cube, it is 0 minus that of the parts, because the vertex is
+/// counted separately.
 VoronoiObstacle PartOfCube::add_thin_regions() {
   for (const std::uint32_t v : thin_) {
     const ThinOnBoundary met = thin_on_boundary(v);
     if (met.euler != met.parts || may_end_inside(v)) return VoronoiObstacle::joins;
     const bool has_vertex = std::binary_search(in_.vertices.begin(), in_.vertices.end(), v);
     euler_ += (has_vertex ? 0 : 1) - met.euler;
-    corners_.erase({outside, v});  // not a separate line
+    corners_.erase({outside, v});  // no longer counted as a separate line
   }
   return VoronoiObstacle::none;
 }
 
 PartOfCube::ThinOnBoundary PartOfCube::thin_on_boundary(std::uint32_t v) const {
   ThinOnBoundary out;
-  std::vector<Pair> events;  // event of the tree, square
+  std::vector<Pair> events;  // (event of the tree, square)
   for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
     const std::int64_t points = std::count(parts_[s].corners.begin(), parts_[s].corners.end(), Pair{outside, v});
     out.euler += points;
@@ -202,8 +204,8 @@ PartOfCube::ThinOnBoundary PartOfCube::thin_on_boundary(std::uint32_t v) const {
   return out;
 }
 
-/// Returns true if a thin region may have its far end in the cube. It may if a label without its vertex can be closest
-/// on its axis, or beside the axis within its width.
+/// Returns true if the far end of a thin region may lie in the cube. It may if another label can be closest to a point
+/// on the region's axis, or within the region's width of it. Labels with the region's vertex as corner do not count.
 bool PartOfCube::may_end_inside(std::uint32_t v) const {
   const Vec3d at = solid_.mesh.vertices[v] - solid_.labels.centre();
   const Vec3d way = solid_.corners[v].rays[0][0];
@@ -234,9 +236,9 @@ bool PartOfCube::may_end_inside(std::uint32_t v) const {
   return false;
 }
 
-/// Adds lines around which all walls are dropped: reflex edges, and normals of faces at reflex vertices. Each meets the
-/// cube in one part, which counts as 1 less than its ends on the boundary. Then adds points: reflex vertices. Parts of
-/// the axis that meet in such a point alone are kept apart.
+/// Adds the lines around which all walls are dropped: reflex edges, and normals of faces at reflex vertices. Each line
+/// has one segment in the cube, whose Euler number is its number of ends on the boundary minus 1. Then adds points:
+/// reflex vertices. Components of the axis that meet only at such a point are counted separately.
 void PartOfCube::add_lines_and_points() {
   if (!solid_.rule.is_medial()) return;
   euler_ -= static_cast<std::int64_t>(corners_.size());
@@ -247,7 +249,7 @@ void PartOfCube::add_lines_and_points() {
   }
 }
 
-/// Numbers the components on the boundary.
+/// Numbers the components on the cube's boundary.
 void PartOfCube::number_components(CubeCells& out) {
   out.vertices.assign(in_.vertices.begin(), in_.vertices.end());
   CubeNumbers numbers;

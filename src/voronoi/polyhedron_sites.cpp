@@ -28,7 +28,7 @@ void check_areas(const MeshView& mesh) {
   }
 }
 
-/// Returns the two triangles of each edge. The first one traverses it from the smaller to the larger vertex.
+/// Returns the two triangles of each edge. The first triangle traverses the edge from the smaller to the larger vertex.
 std::vector<std::array<std::uint32_t, 2>> triangles_of_edges(const MeshView& mesh, const SiteTable& sites) {
   std::vector<std::array<std::uint32_t, 2>> out(sites.edge_count(), {nobody, nobody});
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -38,7 +38,7 @@ std::vector<std::array<std::uint32_t, 2>> triangles_of_edges(const MeshView& mes
       std::uint32_t& place = out[edge][is_first ? 0 : 1];
       if (place != nobody) {
         throw InvalidMesh("two triangles, " + std::to_string(place) + " and " + std::to_string(t) +
-                          ", traverse an edge in the same direction; a polyhedron's do not");
+                          ", traverse an edge in the same direction; in a polyhedron, the directions are opposite");
       }
       place = t;
     }
@@ -78,13 +78,13 @@ void number_faces(const MeshView& mesh, PolyhedronSites& out) {
   }
 }
 
-/// Returns true if a vertex is closest to points inside that fill a cone.
+/// Returns true if a vertex is the closest site to a cone of points inside the solid.
 bool is_reflex_vertex(const MeshView& mesh, const SiteTable& sites, const PolyhedronSites& found, std::uint32_t v,
                       std::span<const std::uint32_t> edges) {
   const auto is_reflex = [&](std::uint32_t edge) { return found.turn[edge] == EdgeTurn::reflex; };
   if (std::none_of(edges.begin(), edges.end(), is_reflex)) return false;
   const std::vector<Vec3d> ends = voronoi::far_ends(mesh, sites, v, edges);
-  // Flat edges among those that bound the cone decide nothing; all others agree.
+  // Flat edges that bound the cone decide nothing. All other edges that bound it are reflex, or all are convex.
   for (const std::uint32_t k : voronoi::dual_cone(mesh.vertices[v], ends)) {
     if (found.turn[edges[k]] != EdgeTurn::flat) return found.turn[edges[k]] == EdgeTurn::reflex;
   }

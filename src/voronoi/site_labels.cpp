@@ -11,7 +11,7 @@ namespace blum::voronoi {
 using detail::Dyadic;
 namespace {
 
-/// A vector of numbers of any kind.
+/// A vector whose coordinates have any type of number.
 template <class Number>
 struct Vector {
   Number x, y, z;
@@ -35,7 +35,7 @@ Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// A squared distance as a ratio. In its polar form only the numerator depends on the points.
+/// A squared distance, or its polar form, as a ratio. Only the numerator depends on the points.
 template <class Number>
 struct Ratio {
   Number numerator, denominator;
@@ -58,7 +58,7 @@ Ratio<Number> squared_distance(const MeshView& mesh, const SiteTable& table, con
   return {dot(between<Number>(v, q), between<Number>(v, r)), Number(1.0)};
 }
 
-/// Returns the position of an entry in a rising list.
+/// Returns the index of an entry in an ascending list.
 std::uint32_t rank_in(const std::vector<std::uint32_t>& list, std::uint32_t entry) {
   return static_cast<std::uint32_t>(std::lower_bound(list.begin(), list.end(), entry) - list.begin());
 }
@@ -84,7 +84,8 @@ std::size_t SiteLabels::site_count() const {
   return sites_.face_count + sites_.reflex_edges.size() + sites_.reflex_vertices.size();
 }
 
-/// @param expression  callable: takes a number that selects the type, and returns the number whose sign is needed.
+/// @param expression  a callable. It gets a number, which selects the type, and returns the number whose sign is
+///                    needed.
 template <class Expression>
 int SiteLabels::sign_of(const Expression& expression) const {
   asked_.fetch_add(1, std::memory_order_relaxed);
@@ -164,7 +165,7 @@ bool SiteLabels::is_attained(const Label& label, const Vec3d& q, const Vec3d& r)
 
 bool SiteLabels::is_attained(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const {
   if (a.kind != SiteKind::face || b.kind != SiteKind::face || a == b || site_of(a) != site_of(b)) return false;
-  // The way leaves neither triangle through a side other than the common one.
+  // The segment from q to r must not leave either triangle's prism through a side other than the common one.
   const std::array<std::array<EdgeId, 3>, 2> edges{table_.triangle_edges()[a.index], table_.triangle_edges()[b.index]};
   bool have_common = false;
   for (const std::size_t which : {0U, 1U}) {
@@ -210,7 +211,7 @@ std::vector<Label> SiteLabels::closest_labels(std::span<const Label> among, cons
 }
 
 bool SiteLabels::are_incident(const Label& a, const Label& b) const {
-  const Label& more = a.kind > b.kind ? a : b;  // SiteKind is ordered by dimension
+  const Label& more = a.kind > b.kind ? a : b;  // SiteKind is ordered by dimension, vertices first
   const Label& less = a.kind > b.kind ? b : a;
   if (more.kind == SiteKind::face && less.kind == SiteKind::edge) {
     const auto& edges = table_.triangle_edges()[more.index];

@@ -16,13 +16,13 @@
 
 namespace blum::voronoi {
 
-/// Returns the edges of a SiteTable at each of its vertices, in rising order.
+/// Returns for each vertex of a SiteTable its edges, in ascending order.
 [[nodiscard]] inline IndexRows edges_of_vertices(const SiteTable& table) {
   return detail::rows_of(table.edge_count(), table.vertex_count(),
                          [&](std::size_t edge) -> const Segment& { return table.edges()[edge]; });
 }
 
-/// Returns the other ends of edges at a vertex.
+/// Returns the positions of the other ends of edges at a vertex.
 [[nodiscard]] inline std::vector<Vec3d> far_ends(const MeshView& mesh, const SiteTable& table, std::uint32_t v,
                                                  std::span<const std::uint32_t> edges) {
   std::vector<Vec3d> out;
@@ -33,34 +33,33 @@ namespace blum::voronoi {
   return out;
 }
 
-/// An object that a point can be closest to: a triangle (part of a face), a reflex edge of the SiteTable, or a reflex
-/// vertex.
+/// An object that can be closest to a point: a triangle (a part of a face), a reflex edge or a reflex vertex.
 struct Label {
   SiteKind kind = SiteKind::face;
-  std::uint32_t index = 0;  ///< of the triangle, edge or vertex
+  std::uint32_t index = 0;  ///< index of the triangle, edge or vertex
 
   [[nodiscard]] friend bool operator==(const Label&, const Label&) = default;
 };
 
-/// Number of signs computed, and number of those that doubles left open.
+/// Number of all signs computed, and number of those that needed exact arithmetic.
 struct SignCounts {
   std::size_t all = 0;
   std::size_t exact = 0;
 };
 
-/// The labels of a polyhedron, and exact signs about them at points given in double.
+/// The labels of a polyhedron, and exact signs of expressions about them, at points with double coordinates.
 ///
-/// A label's domain contains the points that project onto it. For a triangle, that is the prism over it, which three
-/// planes across it through its sides bound. For an edge, it is the slab between the planes across it through its ends,
-/// outside of the prisms of its two triangles. For a vertex v, it is the points q with (q - v) . (w - v) <= 0 for all
-/// its edges v - w.
+/// A label's domain contains the points that project onto the label. For a triangle, it is the prism between three
+/// planes, one through each side and at a right angle to the triangle. For an edge, it is the slab between the two
+/// planes through its ends at a right angle to the edge. The prisms of the edge's two triangles are excluded. For a
+/// vertex v, it is the set of points q with (q - v) . (w - v) <= 0 for all edges v - w.
 ///
-/// If a label is closest to a point, the point is in its domain. Signs are computed in double with bounds on all
-/// rounding, and without rounding if these leave them open. Signs that neighbouring labels share come from one
-/// expression, so that they agree.
+/// If a label is closest to a point, the point is in the label's domain. Signs are first computed in double with bounds
+/// on all rounding. If the bounds leave a sign open, it is computed without rounding. If neighbouring labels share a
+/// plane, the same expression gives its sign for both, so that they agree.
 class SiteLabels {
  public:
-  /// @param mesh, table, sites  of one polyhedron; must outlive this.
+  /// @param mesh, table, sites  all of the same polyhedron. They must outlive this object.
   SiteLabels(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
 
   [[nodiscard]] const std::vector<Label>& all() const { return all_; }
@@ -68,39 +67,41 @@ class SiteLabels {
   [[nodiscard]] std::uint32_t site_of(const Label& label) const;
   [[nodiscard]] std::size_t site_count() const;
 
-  /// Returns the side of a point relative to the plane across a triangle through its side k (from corner k to the
-  /// next). It is 1 on the triangle's side.
+  /// Returns on which side of a plane a point lies: 1, 0 or -1, with 1 on the side of the triangle. The plane is at a
+  /// right angle to the triangle and contains its side k (from corner k to the next).
   [[nodiscard]] int side_of_triangle(std::uint32_t triangle, std::size_t k, const Vec3d& q) const;
-  /// Returns the side of a point relative to the plane across an edge through one of its ends. It is 1 on the edge's
-  /// side.
-  /// @param end  0 or 1
+  /// Returns on which side of a plane a point lies: 1, 0 or -1, with 1 on the side of the edge. The plane is at a right
+  /// angle to the edge and contains one of its ends.
+  /// @param end  0 or 1.
   [[nodiscard]] int side_of_end(std::uint32_t edge, std::size_t end, const Vec3d& q) const;
   /// Returns true if a point is in a label's domain, borders included.
   [[nodiscard]] bool is_in_domain(const Label& label, const Vec3d& q) const;
-  /// Returns true if two points lie strictly outside of the same plane of a label's domain. Then so does the segment
-  /// between them.
+  /// Returns true if two points lie strictly outside the same plane of a label's domain. Then the segment between them
+  /// does not meet the domain.
   [[nodiscard]] bool is_apart(const Label& label, const Vec3d& q, const Vec3d& r) const;
-  /// Returns true if a surface point attains the distance from a label's plane, line or point all the way between two
-  /// points. That is so over a triangle, in the slab of an edge, and anywhere for a vertex.
+  /// Returns true if, for all points between q and r, the label is as close as its plane, line or point. This holds
+  /// over a triangle, in the slab of an edge, and everywhere for a vertex.
   [[nodiscard]] bool is_attained(const Label& label, const Vec3d& q, const Vec3d& r) const;
-  /// Returns the same for two triangles of one face that share an edge: true if the way between the points lies over
-  /// them.
+  /// Returns true if a and b are adjacent triangles of the same face, and the segment from q to r lies over their
+  /// union.
   [[nodiscard]] bool is_attained(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const;
-  /// Returns the sign of the distance from one label's plane, line or point less that from another's.
+  /// Returns the sign of (distance from a) - (distance from b), where a and b stand for the labels' planes, lines or
+  /// points.
   [[nodiscard]] int compare_distances(const Label& a, const Label& b, const Vec3d& q) const;
-  /// Returns the same sign for the polar forms of both squared distances. Squared distances are quadratic. At a point
-  /// with weights w_k of points q_k, their difference is the sum of w_i w_j times the polar form at q_i and q_j. So a
-  /// label is further than another one all over a convex hull if this is 1 for all pairs of its corners.
+  /// Returns the sign of the difference of both squared distances' polar forms at q and r. Consider the point sum(w_k
+  /// q_k) with weights w_k >= 0 of sum 1. There, the difference of squared distances is the sum of w_i w_j times the
+  /// polar form at q_i and q_j. So label a is further than label b everywhere in a convex hull if the sign is 1 for all
+  /// pairs of its corners.
   [[nodiscard]] int compare_polar(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const;
 
-  /// Returns the labels that a point is closest to, exactly: more than one on walls. Outside of the solid the result is
-  /// of no use, because other edges and vertices are closest there. Cost: O(labels); this is the slow reference for
-  /// faster methods.
+  /// Returns the labels that are closest to a point: several on walls. The result is exact for points in the solid. It
+  /// has no meaning outside, where other edges and vertices may be closest. Cost: O(labels). This is the slow reference
+  /// for faster methods.
   [[nodiscard]] std::vector<Label> closest_labels(const Vec3d& q) const;
-  /// Returns the closest of some labels, which must include all that are closest.
+  /// Does the same with a search among the given labels, which must include all closest ones.
   [[nodiscard]] std::vector<Label> closest_labels(std::span<const Label> among, const Vec3d& q) const;
-  /// Returns true if one label is a triangle and the other one of its edges, or an edge and one of its ends. Then
-  /// squared distances differ by a square, which is 0 on the plane that separates their domains.
+  /// Returns true if the labels are a triangle and one of its edges, or an edge and one of its ends. Then their squared
+  /// distances differ by a square, which is 0 only on the plane between their domains.
   [[nodiscard]] bool are_incident(const Label& a, const Label& b) const;
 
   [[nodiscard]] SignCounts counts() const;
@@ -108,8 +109,8 @@ class SiteLabels {
  private:
   template <class Expression>
   [[nodiscard]] int sign_of(const Expression& expression) const;
-  /// Calls visit(side) for each plane of a label's domain, with the side that a point lies on, 1 inside. Stops when
-  /// visit returns false, and then returns false.
+  /// Calls visit(side) for each plane of a label's domain, with the side of the point: 1 inside, 0 on the plane, -1
+  /// outside. Stops and returns false as soon as visit() returns false.
   template <class Visit>
   bool all_sides(const Label& label, const Vec3d& q, Visit visit) const;
 
@@ -117,7 +118,7 @@ class SiteLabels {
   const SiteTable& table_;
   const PolyhedronSites& sites_;
   std::vector<Label> all_;
-  IndexRows edges_;  ///< of each vertex
+  IndexRows edges_;  ///< for each vertex
   mutable std::atomic<std::size_t> asked_{0};
   mutable std::atomic<std::size_t> exact_{0};
 };

@@ -8,7 +8,7 @@
 namespace blum::voronoi {
 namespace {
 
-/// Collects events, runs and arcs along the border.
+/// Collects the events, runs and arcs along the border of a square.
 void follow_border(const CellTree& tree, const GridSquare& square, SquareCells& out) {
   out.runs.push_back({});
   bool is_first = true;
@@ -31,7 +31,7 @@ void follow_border(const CellTree& tree, const GridSquare& square, SquareCells& 
     });
   }
   if (out.events.empty()) return;
-  // The last run ends where the first begins.
+  // The last run and the first run are the same run.
   const auto last = static_cast<std::uint32_t>(out.runs.size() - 1);
   out.runs.pop_back();
   for (SquareCells::ArcOfRun& arc : out.arcs) {
@@ -39,8 +39,8 @@ void follow_border(const CellTree& tree, const GridSquare& square, SquareCells& 
   }
 }
 
-/// Numbers the components into which the surface cuts the square. Each of its arcs leads from one component to another
-/// and, at its end, back.
+/// Numbers the components into which the surface cuts the square. Along the border, an arc of the surface leads into
+/// another component at its first end, and back at its second end.
 void find_bodies(const GridSquare& square, SquareCells& out) {
   std::vector<std::uint32_t> partner(out.events.size(), outside);
   for (const auto& [a, b] : square.chains) {
@@ -78,7 +78,7 @@ EventComponents join_events(std::span<const std::uint32_t> region_of_run) {
     if (first[region] == outside) {
       first[region] = k;
     } else {
-      joined.join(last[region], k - 1);  // the event behind the last run, and the one before this run
+      joined.join(last[region], k - 1);  // the event after the region's previous run, and the event before this run
     }
     last[region] = k;
   }

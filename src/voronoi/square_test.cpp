@@ -15,7 +15,8 @@
 namespace blum::voronoi {
 namespace {
 
-/// Returns the part of a convex polygon where a height is above -margin. Mostly that is all of it, or nothing.
+/// Returns the part of a convex polygon where a linear function `height` is at least -margin. This is mostly the whole
+/// polygon, or nothing.
 template <class Height>
 std::vector<Vec3d> clipped(std::vector<Vec3d> polygon, double margin, const Height& height) {
   const auto is_in = [&](const Vec3d& q) { return height(q) + margin >= 0; };
@@ -34,7 +35,7 @@ std::vector<Vec3d> clipped(std::vector<Vec3d> polygon, double margin, const Heig
   return out;
 }
 
-/// Returns the part of a polygon where heights over some planes are above -margin.
+/// Returns the part of a polygon where the heights over all given planes are at least -margin.
 std::vector<Vec3d> clipped_by(std::vector<Vec3d> polygon, double margin, std::span<const DomainPlane> planes) {
   for (const DomainPlane& plane : planes) {
     polygon = clipped(std::move(polygon), margin, [&](const Vec3d& q) { return plane.height(q); });
@@ -43,14 +44,14 @@ std::vector<Vec3d> clipped_by(std::vector<Vec3d> polygon, double margin, std::sp
   return polygon;
 }
 
-/// Returns the largest distance of a corner from the first one.
+/// Returns the largest distance of a polygon's corner from its first corner.
 double extent(const std::vector<Vec3d>& polygon) {
   double largest = 0;
   for (const Vec3d& p : polygon) largest = std::max(largest, length(p - polygon[0]));
   return largest;
 }
 
-/// Returns true if a quadratic function is positive on [0, 1], from its coefficients in Bernstein form.
+/// Returns true if a quadratic function with these Bernstein coefficients is positive on [0, 1].
 bool is_positive(double first, double middle, double last) {
   return first > 0 && last > 0 && (middle >= 0 || middle * middle < first * last);
 }
@@ -63,7 +64,7 @@ bool PartSquareTest::resolve(GridSquare& square) const {
   if (rule_.is_all()) return true;
   square.inner_arcs.clear();
   square.reflex_piercings = 0;
-  // The square is resolved, so no closed curve exists.
+  // The square is resolved, so the surface has no closed curve in it.
   if (const auto chains = surface_chains(tree_, surface_, square)) add_surface(*chains, square);
   const SquareCells cells = square_cells(tree_, labels_, square);
   bool is_decided = true;
@@ -73,8 +74,8 @@ bool PartSquareTest::resolve(GridSquare& square) const {
   return is_decided;
 }
 
-/// Adds arcs of the surface between the outside and faces, and of walls that begin where a reflex edge pierces the
-/// square.
+/// Adds arcs of the surface, between the outside and faces. Adds arcs of walls that start where a reflex edge pierces
+/// the square.
 void PartSquareTest::add_surface(const SurfaceChains& chains, GridSquare& square) const {
   for (const auto& [chain, triangle] : chains.triangles) {
     square.inner_arcs.push_back({labels_[triangle].site, outside, chains.ends[chain][0]});
@@ -90,10 +91,11 @@ void PartSquareTest::add_surface(const SurfaceChains& chains, GridSquare& square
   }
 }
 
-/// Adds walls between pieces that touch one component of walls. Returns false if the existence of one is unknown.
+/// Adds arcs of dropped walls between pieces that touch the same component of walls. Returns false if the existence of
+/// such a wall is unknown.
 bool PartSquareTest::add_walls(const SquareCells& cells, GridSquare& square) const {
-  std::vector<std::array<std::uint32_t, 2>> touching;  // component, site
-  std::vector<std::array<std::uint32_t, 2>> known;     // sites
+  std::vector<std::array<std::uint32_t, 2>> touching;  // (component, site)
+  std::vector<std::array<std::uint32_t, 2>> known;     // pairs of sites
   for (std::size_t k = 0; k < cells.events.size(); ++k) {
     const std::uint32_t before = cells.site_before(k);
     const std::uint32_t behind = cells.site_behind(k);
@@ -125,8 +127,8 @@ bool PartSquareTest::add_walls(const SquareCells& cells, GridSquare& square) con
   return true;
 }
 
-/// Answers whether two pieces have a wall in common.
-/// @param low, high  sites: a face and an edge of it, an edge and an end of it, or two edges in one line.
+/// Answers if the regions of two sites have a common wall in the square.
+/// @param low, high  sites: a face and its edge, an edge and its end, or the two edges at a passing vertex.
 PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_t high,
                                                  const GridSquare& square) const {
   const std::uint32_t edge = rule_.is_edge(low) ? low : high;
@@ -137,7 +139,7 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
   std::size_t facet = 0;
   if (vertex) {
     corner = &rule_.corner(*vertex);
-    if (corner->is_thin) return Answer::unknown;  // its region has no runs, except contradicting ones at nodes in it
+    if (corner->is_thin) return Answer::unknown;  // thin regions have no runs, except at contradictory nodes
     while (facet < corner->edges.size() && corner->edges[facet] != edge) ++facet;
     if (facet == corner->edges.size()) return Answer::no;
   }
@@ -146,7 +148,7 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
   if (own == square.governors.end()) return Answer::no;
   const std::optional<DomainPlane> plane = plane_between(*own, other, vertex);
   if (!plane) return Answer::unknown;
-  // In the plane between both domains, both are equally close.
+  // Both sites are equally close in the plane between their domains.
   const std::vector<Vec3d> strip = test_.along_plane(*own, *plane, square);
   if (strip.empty() || test_.is_closest_nowhere(*own, square.governors, strip)) return Answer::no;
   if (is_closest_on(strip, *own, other, square)) return Answer::yes;
@@ -154,8 +156,7 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
   return Answer::unknown;
 }
 
-/// Returns the plane that separates the domain of an edge from that of a face or vertex, or of the edge behind a
-/// vertex.
+/// Returns the plane between the domain of an edge and that of a face, a vertex, or the other edge at a passing vertex.
 std::optional<DomainPlane> PartSquareTest::plane_between(LabelIndex edge, std::uint32_t other,
                                                          const std::optional<std::uint32_t>& vertex) const {
   const auto planes = labels_.planes(edge);
@@ -166,7 +167,7 @@ std::optional<DomainPlane> PartSquareTest::plane_between(LabelIndex edge, std::u
   return at == planes.end() ? std::nullopt : std::optional(*at);
 }
 
-/// Returns true if one of some points along a strip is closest to a label and a site beside it.
+/// Returns true if one of 16 points along a strip certainly has no closer site than `label` and `beside`.
 bool PartSquareTest::is_closest_on(const std::vector<Vec3d>& strip, LabelIndex label, std::uint32_t beside,
                                    const GridSquare& square) const {
   std::size_t far = 0;
@@ -181,8 +182,9 @@ bool PartSquareTest::is_closest_on(const std::vector<Vec3d>& strip, LabelIndex l
   return false;
 }
 
-/// Returns true if a point of a facet of a vertex's cone is closest to the vertex, however narrow the facet is. Labels
-/// that have this vertex for a corner need no test, because none is closer there.
+/// Returns true if one of 5 points on a facet of a vertex's dual cone certainly has no closer label than the vertex.
+/// This works for narrow facets, too. Labels with this vertex as corner need no test, because none of them is closer on
+/// the facet.
 bool PartSquareTest::have_wall_at_vertex(const Vec3d& v, const std::array<Vec3d, 2>& rays,
                                          const GridSquare& square) const {
   const Vec3d low = tree_.lattice.at(square.low) - labels_.centre();
@@ -207,7 +209,8 @@ bool PartSquareTest::have_wall_at_vertex(const Vec3d& v, const std::array<Vec3d,
   return false;
 }
 
-/// Returns true if only a label and a site beside it are closest to a point and to all points within rounding of it.
+/// Returns true if no sites except those of `label` and `beside` are closest to a point, or to points within rounding
+/// of it.
 bool PartSquareTest::is_closest(LabelIndex label, std::uint32_t beside, const Vec3d& q,
                                 const GridSquare& square) const {
   const double distance = length(labels_.closest_point(label, q) - q);
@@ -239,11 +242,11 @@ bool SquareTest::resolve(GridSquare& square) const {
   sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
   const Polygon whole = polygon(square);
   std::vector<LabelIndex> present;
-  // Over one vertex, labels that are doubtful one by one may be decided all at once.
+  // Labels that are doubtful one by one may be decided together if all have a common vertex.
   const auto is_cone = [&] { return square.chains.empty() && is_over_one_vertex(present, whole); };
   bool is_any_doubtful = false;
   for (const LabelIndex label : square.governors) {
-    // Thin regions are part of walls, wherever they are.
+    // Thin regions count as parts of walls, so they need not be absent.
     if (labels_.is_thin(label) || std::binary_search(sites.begin(), sites.end(), labels_[label].site)) {
       present.push_back(label);
       continue;
@@ -254,7 +257,7 @@ bool SquareTest::resolve(GridSquare& square) const {
     if (!is_any_doubtful && !is_cone()) return false;
     is_any_doubtful = true;
   }
-  // That takes time linear in the labels; stars take quadratic time.
+  // is_cone() takes time linear in the number of labels, is_star_shaped() quadratic time.
   const bool is_known_cone = is_cone();
   if (is_any_doubtful && !is_known_cone) return false;
   const std::vector<std::uint32_t> single = is_known_cone ? sites_of_one_run(square) : std::vector<std::uint32_t>{};
@@ -266,11 +269,11 @@ bool SquareTest::resolve(GridSquare& square) const {
   return true;
 }
 
-/// Returns true if all labels that are closest somewhere in a square have one vertex for a corner, and feet close to
-/// it. Then distances in the square are those from a cone about the vertex: from the sectors and rays that contain the
-/// labels. The region of a face or an edge retracts along ways to footprints to its sectors or ray. So if the square
-/// does not meet the surface, none of these regions has a component strictly inside. (The region of the vertex itself
-/// may lie there.)
+/// Returns true if all labels that may be closest in a square have a common vertex as corner. The feet of the square on
+/// them must be close to it. Then distances in the square are those from a cone about the vertex: from the sectors and
+/// rays that contain the labels. Points of a face's or edge's region move straight to their footprints, on its sectors
+/// or ray. So if the square does not meet the surface, no region of a face or edge has a component strictly inside the
+/// square. The region of the vertex itself may lie strictly inside.
 bool SquareTest::is_over_one_vertex(std::span<const LabelIndex> present, const Polygon& whole) const {
   if (present.empty()) return false;
   const std::span<const std::uint32_t> corners = labels_.vertices(present.front());
@@ -281,7 +284,8 @@ bool SquareTest::is_over_one_vertex(std::span<const LabelIndex> present, const P
   });
 }
 
-/// Returns true if a square's feet on a label's plane or line are closer to a corner than the other end or side is.
+/// Returns true if all feet of a square on a label's plane or line lie closer to corner v than the opposite side or
+/// end.
 bool SquareTest::is_near_corner(LabelIndex label, std::uint32_t v, const Polygon& whole) const {
   const std::span<const Vec3d> corners = labels_.corners(label);
   if (corners.size() == 1) return true;
@@ -298,7 +302,7 @@ bool SquareTest::is_near_corner(LabelIndex label, std::uint32_t v, const Polygon
                      [&](const Vec3d& q) { return length(labels_[label].foot(q) - at) + margin < reach * (1 - 1e-9); });
 }
 
-/// Returns the sites that have exactly one run on a square's border, rising.
+/// Returns the sites that have exactly one run on a square's border, in ascending order.
 std::vector<std::uint32_t> SquareTest::sites_of_one_run(const GridSquare& square) const {
   std::vector<std::uint32_t> of_runs;
   for (const SquareCells::Run& run : square_cells(tree_, labels_, square).runs) {
@@ -314,8 +318,8 @@ std::vector<std::uint32_t> SquareTest::sites_of_one_run(const GridSquare& square
   return out;
 }
 
-/// Returns true if a label is closest nowhere in a square. Also if it is closest only next to a point over one of its
-/// corners, where it has no islands.
+/// Returns true if a label is closest nowhere in a square. Returns true, too, if it is closest only near a point over
+/// one of its corners, where its region cannot be a separate component.
 bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const {
   const Polygon part = in_domain(label, whole);
   const bool by_incident = !is_thin(label, whole);
@@ -364,7 +368,7 @@ SquareTest::Polygon SquareTest::polygon(const GridSquare& square) const {
   return out;
 }
 
-/// @param plane  bisector(other, label).
+/// @param plane  bisector(other, label), if it exists.
 bool SquareTest::is_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
                             const Polygon& part) const {
   if (plane) {
@@ -380,7 +384,7 @@ bool SquareTest::is_further(LabelIndex label, LabelIndex other, const std::optio
   return true;
 }
 
-/// Returns a part of a polygon that contains all points where a label may be as close as another one.
+/// Returns a part of a polygon that contains all points where `label` may be at least as close as `other`.
 SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
                                             const Polygon& part) const {
   const double margin = 2 * labels_.rounding();
@@ -390,8 +394,8 @@ SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, 
   const PlacedLabel& near = labels_[other];
   const PlacedLabel& far = labels_[label];
   if (near.kind != SiteKind::face) return part;
-  // The distance from an edge or vertex less that from a plane is convex. If it is positive at a corner, its tangent
-  // plane there separates that corner from the rest.
+  // The distance from an edge or vertex minus that from a plane is convex. If it is positive at a corner, it is also
+  // positive where its tangent at the corner is.
   Polygon left = part;
   for (const Vec3d& corner : part) {
     const Vec3d away = corner - far.foot(corner);
@@ -412,21 +416,22 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   Vec3d middle;
   for (const Vec3d& p : part) middle += p;
   middle *= 1.0 / static_cast<double>(part.size());
-  // Searches for the surface point closest to the middle, without the label's own site.
+  // The surface point closest to the middle is searched on all sites except the label's own.
   std::vector<LabelIndex> others;
   for (const LabelIndex other : all) {
     if (labels_[other].site != labels_[label].site) others.push_back(other);
   }
   if (others.empty()) return false;
-  // That point may suffice: the label's squared distance less that from the point is concave.
+  // That point may suffice. The squared distance from the label minus that from the point is concave, so the corners
+  // decide.
   const Vec3d foot = closest_surface_point(labels_, others, middle);
   const bool is_beyond_foot = std::all_of(part.begin(), part.end(), [&](const Vec3d& q) {
     const double distance = length(q - foot) + labels_.rounding();
     return labels_[label].squared_distance(q) > distance * distance + labels_.rounding_of_squares(distance);
   });
   if (is_beyond_foot) return true;
-  // Otherwise another label may exclude this one where a surface point attains its distance. Others must cover the
-  // rest. Labels that a plane separates from this one are tried first.
+  // Otherwise another label may exclude this one where the other label is as close as its plane, line or point. Further
+  // labels must cover the rest. Labels that have a bisector with this label are tried first.
   struct Candidate {
     bool is_curved = false;
     double squared = 0;
@@ -448,7 +453,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   for (const Candidate& candidate : candidates) {
     const LabelIndex other = candidate.label;
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
-    // Points between a face's sides are not in its edges' domains. The converse is not known.
+    // Points over a face are not in the domains of its edges. The converse is not known.
     const bool is_part_of_it = labels_[other].kind < labels_[label].kind;
     if (are_incident && (!allowed.by_incident || is_part_of_it)) continue;
     const bool from_behind = is_behind(other, middle);
@@ -457,7 +462,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
     const std::optional<Bisector> plane =
         from_behind ? labels_.bisector_behind(other, label) : labels_.bisector(other, label);
     Polygon left;
-    // Domains of incident labels meet only in their borders.
+    // The domains of incident labels meet only in their borders, so nothing is left inside.
     if (!are_incident && !is_further(label, other, plane, inside)) {
       if (from_behind && !plane) continue;
       left = not_further(label, other, plane, inside);
@@ -469,8 +474,8 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   return false;
 }
 
-/// Returns the planes between which a surface point attains the distance from a label's plane, line or point. A
-/// triangle does so on one side only: in front, its signed height is that distance, and behind, its negative.
+/// Returns the planes between which a label is as close as its plane, line or point. For a triangle, its own plane is
+/// added. The signed height is the distance in front of the triangle; minus the height is the distance behind it.
 std::vector<DomainPlane> SquareTest::attained_between(LabelIndex label, bool from_behind) const {
   const std::span<const DomainPlane> ends = labels_.ends(label);
   std::vector<DomainPlane> out(ends.begin(), ends.end());
@@ -488,18 +493,19 @@ bool SquareTest::is_attained(LabelIndex label, bool from_behind, const Vec3d& q)
                      [&](const DomainPlane& plane) { return plane.height(q) >= -labels_.rounding(); });
 }
 
-/// Returns true if a point lies behind a triangle, not on the solid's side. A point behind all of the surface is not in
-/// the solid. But the distance from the triangle suffices to find that no other label is closest there.
+/// Returns true if a point lies behind a triangle, on the side away from the solid. The triangle is then not the
+/// closest label of a point in the solid. But its distance can still show that another label is not the closest one.
 bool SquareTest::is_behind(LabelIndex label, const Vec3d& q) const {
   return labels_[label].kind == SiteKind::face && labels_[label].height(q) < -labels_.rounding();
 }
 
-/// Returns true if a label is closest nowhere in the part of a polygon that is not between some planes.
+/// Returns true if a label is closest nowhere in the part of a polygon that lies outside at least one of the given
+/// planes.
 bool SquareTest::is_absent_outside(LabelIndex label, std::span<const DomainPlane> planes,
                                    std::span<const LabelIndex> all, Polygon part, const Allowance& allowed,
                                    int depth) const {
   for (const DomainPlane& plane : planes) {
-    // The part inside covers slivers by rounding, too.
+    // Slivers that exist only by rounding are covered by the part between the planes.
     const auto beyond = [&](const Vec3d& q) { return -plane.height(q); };
     const bool leaves =
         std::any_of(part.begin(), part.end(), [&](const Vec3d& q) { return beyond(q) > 2 * labels_.rounding(); });
@@ -521,7 +527,7 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   });
   const SiteKind kind = labels_[own[0]->label].kind;
   if (kind == SiteKind::vertex) return true;
-  // The domain of an edge is convex, and may be thinner than rounding.
+  // The domain of an edge is convex, so its part of the square suffices. It may be thinner than rounding.
   const Polygon part = kind == SiteKind::edge ? in_domain(own[0]->label, square) : square;
   if (kind == SiteKind::face) {
     std::erase_if(own, [&](const BorderArc* arc) {
@@ -533,7 +539,7 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   std::vector<LabelIndex> own_labels;
   std::copy_if(others.begin(), others.end(), std::back_inserter(own_labels),
                [&](LabelIndex label) { return labels_[label].site == site; });
-  std::vector<std::optional<Polygon>> domains(others.size());  // in `part`, computed on demand
+  std::vector<std::optional<Polygon>> domains(others.size());  // domains of `others` in `part`, computed on demand
   const auto is_centre = [&](const BorderArc* arc, const Vec3d& from) {
     for (std::size_t k = 0; k < others.size(); ++k) {
       const LabelIndex other = others[k];
@@ -552,12 +558,14 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   });
 }
 
-/// Returns true if no ray from a point of a label's region leaves it to another label and comes back in `domain`.
+/// Returns true if no ray from `from` leaves the label's region into that of `other` and comes back at a point of
+/// `domain`.
 bool SquareTest::returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& domain) const {
   if (domain.empty()) return true;
   if (labels_.are_incident(labels_[label].site, other)) return false;
   const PolarDifference difference(labels_, label, other);
-  // If a ray comes back at q, D(q, q) = 0 and D(from, q) >= 0, because its slope there is -2 D(from, q).
+  // If a ray comes back at q, D(q, q) = 0. The slope of D(x, x) along the ray is -2 D(from, q) at q, times a positive
+  // number, and it is not positive. So D(from, q) >= 0.
   double error = 0;
   for (const Vec3d& q : domain) error = std::max(error, 4 * difference.error(from, q));
   const Polygon part = clipped(domain, error, [&](const Vec3d& q) { return difference.at(from, q); });
@@ -569,7 +577,7 @@ bool SquareTest::returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d
   return true;
 }
 
-/// Returns true if a label's domain in a square may lie entirely within rounding of the domains next to it.
+/// Returns true if a label's domain in a polygon may be so thin that rounding lets adjacent domains cover it.
 bool SquareTest::is_thin(LabelIndex label, Polygon part) const {
   return clipped_by(std::move(part), -2 * labels_.rounding(), labels_.planes(label)).empty();
 }
@@ -593,10 +601,9 @@ SquareTest::Polygon SquareTest::along_plane(LabelIndex label, const DomainPlane&
   return clipped(in_domain(label, polygon(square)), margin, [&](const Vec3d& q) { return -plane.height(q); });
 }
 
-/// Returns true if the region of a site has no border with that of another label in a square. Then their domains have
-/// no common point there, or only one over a common corner, and nothing without this corner is closer there. In such a
-/// place the diagram is a cone, in which regions are connected. Regions over both sides of a reflex edge do not meet,
-/// either.
+/// Returns true if the region of a site certainly has no common border with the region of another label in a square.
+/// Two triangles at a reflex edge have none. Otherwise, where the domains meet, a third label must be closer, or the
+/// common points must lie over a common corner. Over a corner the diagram is a cone, in which regions are connected.
 bool SquareTest::never_meet(const SiteInSquare& own, LabelIndex other, const Vec3d& from,
                             const Polygon& of_other) const {
   return std::all_of(own.labels.begin(), own.labels.end(), [&](LabelIndex label) {
@@ -604,12 +611,13 @@ bool SquareTest::never_meet(const SiteInSquare& own, LabelIndex other, const Vec
     const Polygon common = in_domain(label, of_other);
     if (common.empty() || returns_nowhere(own.on_border, other, from, common)) return true;
     const Allowance allowed{false, labels_.common_vertex(label, other)};
-    // Something else may be closer where they meet, except over a common corner.
+    // Where the domains meet, another label may be closer, except over a common corner.
     return is_absent(other, own.all, common, allowed, 0) || is_absent(label, own.all, common, allowed, 0);
   });
 }
 
-/// Returns true if a part lies next to one point over a corner, and nothing without this corner is closer there.
+/// Returns true if a polygon is tiny (a few thousand times rounding), and no label without corner v is closer there
+/// than the corner.
 bool SquareTest::is_at_corner(const Polygon& part, std::uint32_t v, std::span<const LabelIndex> all) const {
   constexpr double small = 4096;
   if (extent(part) > small * labels_.rounding()) return false;
@@ -621,7 +629,7 @@ bool SquareTest::is_at_corner(const Polygon& part, std::uint32_t v, std::span<co
   });
 }
 
-/// Returns true if no ray from a point of a label's region leaves it to another label and comes back.
+/// Returns true if no ray from `from` leaves the label's region into that of `other` and comes back in the polygon.
 bool SquareTest::stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const {
   const PlacedLabel& own = labels_[label];
   const PlacedLabel& rival = labels_[other];
@@ -635,9 +643,9 @@ bool SquareTest::stays_behind(LabelIndex label, LabelIndex other, const Vec3d& f
   }
   const std::optional<Bisector> plane = labels_.bisector(label, other);
   if (plane && plane->height(from) > 2 * labels_.rounding()) return true;
-  // Along a ray, the difference of squares is quadratic. Its Bernstein coefficients are its value at the start, its
-  // polar form, and its value at the end. It begins negative. It comes back only if the second is positive and the
-  // third negative.
+  // Along a ray, the difference of squared distances is quadratic. Its Bernstein coefficients are its value at the
+  // start, its polar form at both ends, and its value at the end. The first is negative. The ray comes back only if the
+  // second is positive and the third negative.
   const auto polar = [&](const Vec3d& q, const Vec3d& r) { return own.polar(q, r) - rival.polar(q, r); };
   if (!(polar(from, from) < 0)) return false;
   for (std::size_t k = 0; k < square.size(); ++k) {

@@ -15,41 +15,43 @@
 
 namespace blum::voronoi {
 
-/// Decides whether a square is resolved. In a resolved square, the region of each site is connected and touches the
-/// border. The surface consists of arcs that end on the border. Then the components of walls and surface in the square
-/// are contractible, and its border determines them (SquareCells).
+/// Decides if a square is resolved. In a resolved square, the region of each site is connected and touches the border.
+/// The surface consists of arcs that end on the border. Then the components of walls and surface in the square are
+/// contractible, and the border determines them (SquareCells).
 ///
-/// A label that is closest nowhere on the border must be proven absent. To this end, the part of the square in its
-/// domain is covered by pieces. Each piece lies in the domain of another label that is closer all over the piece. A
-/// site on the border must be star-shaped about a point of the border, as seen by each of the other labels. That is:
-/// along each ray, once another label is closer, the site stays behind. The region of a vertex is convex.
-/// The test is one-sided: rounding only leads to another split.
+/// If a label is closest nowhere on the border, it must be proven to be closest nowhere in the square. For this,
+/// polygons cover the part of the square in the label's domain. On each polygon, another label or a surface point is
+/// closer everywhere. The region of a site with points on the border must be star-shaped about one of them. That is: on
+/// each ray from this point, once another label is closer than the site, the site does not become closer again. This
+/// needs no test for a vertex, whose region is convex. The test is one-sided: rounding may only cause an unnecessary
+/// split.
 class SquareTest {
  public:
   SquareTest(const LabelGeometry& labels, const SurfaceInCells& surface, const CellTree& tree)
       : labels_(labels), surface_(surface), tree_(tree) {}
 
-  /// Returns true if the square is resolved, and then sets its chains.
+  /// Returns true if the square is resolved. Then its state and chains are set.
   bool resolve(GridSquare& square) const;
 
   using Polygon = std::vector<Vec3d>;
-  /// Returns a strip of a square that contains the places where a plane of a label's domain bounds that domain.
+  /// Returns a strip of a square that contains all points of the square where the given plane bounds the label's
+  /// domain.
   [[nodiscard]] Polygon along_plane(LabelIndex label, const DomainPlane& plane, const GridSquare& square) const;
-  /// Returns true if a label is proven to be closest nowhere in a part of a square.
+  /// Returns true if a label is proven to be closest nowhere in a polygon.
   [[nodiscard]] bool is_closest_nowhere(LabelIndex label, std::span<const LabelIndex> all, const Polygon& part) const;
 
  private:
-  /// An arc of the border, relative to the centre of the labels.
+  /// An arc of the border with one closest label. Positions are relative to the centre of the labels.
   struct BorderArc {
     LabelIndex label = outside;
     Vec3d low, high;
     double error = 0;
   };
 
-  /// Means to exclude a label, in addition to labels that are closer.
+  /// Additional ways to exclude a label where no other label is closer.
   struct Allowance {
-    bool by_incident = false;             ///< the domain of an incident label, which shares only its border
-    std::optional<std::uint32_t> vertex;  ///< a corner of it, if the rest lies next to a point over that corner
+    bool by_incident = false;             ///< exclude it in the domains of incident labels
+    std::optional<std::uint32_t> vertex;  ///< exclude it near a point over this corner
   };
 
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const;
@@ -77,11 +79,11 @@ class SquareTest {
   [[nodiscard]] bool returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from,
                                      const Polygon& domain) const;
   [[nodiscard]] Polygon in_domain(LabelIndex label, Polygon part) const;
-  /// A site on the border of a square.
+  /// A site that is closest to points on the border of a square.
   struct SiteInSquare {
-    LabelIndex on_border = outside;      ///< one of its labels
-    std::span<const LabelIndex> labels;  ///< its own labels that may be in the square
-    std::span<const LabelIndex> all;     ///< labels of all sites
+    LabelIndex on_border = outside;      ///< one of its labels that is closest on the border
+    std::span<const LabelIndex> labels;  ///< labels of the site that may be closest in the square
+    std::span<const LabelIndex> all;     ///< labels of all sites that may be closest in the square
   };
   [[nodiscard]] bool never_meet(const SiteInSquare& own, LabelIndex other, const Vec3d& from,
                                 const Polygon& of_other) const;
@@ -92,11 +94,12 @@ class SquareTest {
   const CellTree& tree_;
 };
 
-/// Decides whether a square is resolved for a part of the diagram. Then it is resolved for all of the diagram
-/// (SquareTest). The dropped walls between its pieces are known, and no component of the part lies strictly inside.
+/// Decides if a square is resolved for the requested part of the diagram. It must be resolved for the whole diagram
+/// (SquareTest). All dropped walls between its pieces must be known. No component of the part may lie strictly inside.
 ///
-/// A dropped wall that the border does not show may lie between pieces that touch one component of walls. Then a point
-/// of it must be found at which nothing else is as close. Or its place must be proven to be closest to other labels.
+/// A dropped wall without an event on the border may lie between two pieces that touch the same component of walls.
+/// Such a wall exists if a point with no closer third site is found on it. It does not exist if all its possible points
+/// are proven to be closer to other labels. In all other cases the square is not resolved.
 class PartSquareTest {
  public:
   PartSquareTest(const VoronoiSolid& solid, const SquareTest& test, const SurfaceInCells& surface, const CellTree& tree)
@@ -108,7 +111,7 @@ class PartSquareTest {
         sites_(solid.sites),
         tree_(tree) {}
 
-  /// Returns true if the square is resolved, and then sets its inner arcs.
+  /// Returns true if the square is resolved. Then its inner arcs are set.
   bool resolve(GridSquare& square) const;
 
  private:
@@ -121,7 +124,7 @@ class PartSquareTest {
                                                          const std::optional<std::uint32_t>& vertex) const;
   [[nodiscard]] bool is_closest_on(const std::vector<Vec3d>& strip, LabelIndex label, std::uint32_t beside,
                                    const GridSquare& square) const;
-  /// Returns a vertex relative to the centre of the labels.
+  /// Returns the position of a vertex relative to the centre of the labels.
   [[nodiscard]] Vec3d place_of(std::uint32_t v) const { return mesh_.vertices[v] - labels_.centre(); }
   [[nodiscard]] bool have_wall_at_vertex(const Vec3d& v, const std::array<Vec3d, 2>& rays,
                                          const GridSquare& square) const;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t splitter_grain = 16;
 
-/// Returns true if a triangle may meet a box, sides included. Tests its own box and its plane.
+/// Returns true if a triangle may meet a closed box. Tests the triangle's bounding box and its plane.
 bool may_meet(const MeshView& mesh, const LabelGeometry& labels, std::uint32_t t, const Box3& box) {
   const std::array<Vec3d, 3> p = triangle_corners(mesh, t);
   const Vec3d low = min(p[0], min(p[1], p[2]));
@@ -51,7 +51,7 @@ class Subdivider {
     divide_all();
     out_.passed_at_first = out_.failing.empty();
     constexpr int most_rounds = 6;
-    std::vector<CellId> seen;  // rising
+    std::vector<CellId> seen;  // all leaves of earlier rounds, ascending
     for (int round = 0; round < most_rounds && out_.failing.empty() && !is_full(); ++round) {
       std::vector<CellId> all = out_.leaves;
       std::sort(all.begin(), all.end());
@@ -75,8 +75,8 @@ class Subdivider {
     return count;
   }
 
-  /// Divides the waiting cubes. After a cube passes, a neighbour may cause a split of its squares. More of its boundary
-  /// is known then, so it is tested again.
+  /// Divides the waiting cubes. After a cube passes, its neighbour may split their common squares. Then more of the
+  /// cube's boundary is known, so the cube is tested again.
   void divide_all() {
     divide();
     for (;;) {
@@ -93,7 +93,7 @@ class Subdivider {
     }
   }
 
-  /// Divides the waiting cubes, the largest first.
+  /// Tests the waiting cubes, the largest first, and splits those that fail.
   void divide() {
     while (!waiting_.empty()) {
       const auto [depth, cubes] = *waiting_.begin();
@@ -102,7 +102,7 @@ class Subdivider {
     }
   }
 
-  /// @param cubes  all of one size.
+  /// @param cubes  all of the size that belongs to `depth`.
   void divide(int depth, const std::vector<CellId>& cubes) {
     const bool is_last = depth >= options_.most_depth || is_full();
     std::vector<CellId> to_test;
@@ -141,7 +141,7 @@ class Subdivider {
     return depth;
   }
 
-  /// Splits leaves that pass but must become smaller.
+  /// Splits leaves that pass but are too large.
   void split_leaves(const std::vector<CellId>& cubes) {
     std::map<int, std::vector<CellId>> by_depth;
     std::vector<CellId> gone;
@@ -158,7 +158,7 @@ class Subdivider {
     }
   }
 
-  /// Returns true if the requested part of the diagram may meet a cube.
+  /// Returns true if a cube may contain points of the requested part of the diagram.
   [[nodiscard]] bool may_hold_some(const GridCube& cube) const {
     if (solid_.rule.is_all()) return true;
     return std::any_of(cube.governors.begin(), cube.governors.end(), [&](LabelIndex label) {
@@ -166,8 +166,8 @@ class Subdivider {
     });
   }
 
-  /// Returns true if a cube has too many governors for its test, and its split reduces them. Also true for cubes above
-  /// the least depth that may meet the part.
+  /// Returns true if a cube has too many governors for its test, and splits have reduced their number so far. Returns
+  /// true, too, if the cube is less deep than the least depth and may contain points of the requested part.
   [[nodiscard]] bool is_crowded(const GridCube& cube, int depth) const {
     constexpr std::size_t many = 64;
     if (depth < 1) return true;
@@ -175,14 +175,15 @@ class Subdivider {
     return cube.governors.size() > many && cube.governors.size() * 10 < cube.governors_of_parent * 9;
   }
 
-  /// Returns true if no more cells are made: the squares are too many, or the uncertain lines and nodes are.
+  /// Returns true if no more cells may be made, because there are too many squares, or too many uncertain lines and
+  /// nodes.
   [[nodiscard]] bool is_full() const {
     constexpr std::size_t squares_per_cube = 16;
     return out_.tree.squares.size() > squares_per_cube * options_.most_cubes ||
            splitter_.counts().undecided + splitter_.contradictions() > Subdivision::most_undecided;
   }
 
-  /// Splits squares of cubes until each is resolved or small.
+  /// Splits squares on the boundaries of cubes until each square is resolved or has the least size.
   void resolve_squares(const std::vector<CellId>& cubes) {
     std::vector<CellId> squares;
     for (const CellId cube : cubes) {
@@ -215,7 +216,7 @@ class Subdivider {
     }
   }
 
-  /// Adds cubes that pass to the leaves; returns the others.
+  /// Tests cubes. Adds those that pass to the leaves; returns the others.
   std::vector<FailingCube> test(const std::vector<CellId>& cubes) {
     resolve_squares(cubes);
     std::vector<VoronoiObstacle> obstacles(cubes.size());
@@ -248,7 +249,7 @@ class Subdivider {
   SquareTest square_test_;
   PartSquareTest part_test_;
   CubeTest cube_test_;
-  std::map<int, std::vector<CellId>> waiting_;  ///< by depth
+  std::map<int, std::vector<CellId>> waiting_;  ///< cubes to test, by depth
 };
 
 }  // namespace
@@ -257,9 +258,9 @@ void CellSplitter::add_root(int grid) {
   const Box3& box = labels_.box();
   const Vec3d size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
-  // Sides and halves of cells must not coincide with features of shapes. Nor may they coincide with seams between
-  // faces, which lie at square roots of numbers. So the shift takes its fractions from gamma, e and 1 / pi, one for
-  // each axis.
+  // Planes of the grid must not coincide with features of typical shapes, at simple fractions of their size. Nor may
+  // they coincide with seams between faces, which often lie at square roots. So the shifts along the three axes are
+  // derived from gamma, e and 1 / pi.
   const Vec3d fractions{std::numbers::egamma, std::numbers::e - 2, std::numbers::inv_pi};
   Vec3d shift;
   for (std::size_t axis = 0; axis < 3; ++axis) shift[axis] = std::fmod(fractions[axis] * (grid + 1), 1.0) - 0.5;
@@ -286,8 +287,8 @@ void CellSplitter::add_root(int grid) {
       square.axis = axis;
       square.length = Lattice::most;
       square.low[axis] = side_k * Lattice::most;
-      square.state = SquareState::resolved;  // all of it is outside
-      // Edges along u are numbered by v, axis; edges along v by axis, u.
+      square.state = SquareState::resolved;  // the whole square is outside
+      // The four edges along u are ordered by v, then axis. The four edges along v are ordered by axis, then u.
       const auto along_u = [&](CellId at_v) { return static_cast<CellId>(4 * u) + at_v + 2 * side_k; };
       const auto along_v = [&](CellId at_u) { return static_cast<CellId>(4 * v) + side_k + 2 * at_u; };
       square.edges = {along_u(0), along_v(1), along_u(1), along_v(0)};
@@ -371,7 +372,7 @@ void CellSplitter::find_events(NewEdge& made, std::span<const LabelIndex> among,
   if (labels_.is_thin(edge.last)) contradictions_.fetch_add(1, std::memory_order_relaxed);
 }
 
-/// Thin regions are part of walls: merges the events at both ends of one.
+/// Merges the events at both ends of a thin region into one, because thin regions count as parts of walls.
 void CellSplitter::pass_over_thin(std::vector<LineEvent>& events) const {
   std::size_t count = 0;
   for (const LineEvent& event : events) {
@@ -414,7 +415,7 @@ bool CellSplitter::is_below(const GridEdge& edge, const LineEvent& event, const 
   if (event.upper() + margin < at) return true;
   if (event.at - margin > at) return false;
   if (event.thin != outside) {
-    // Nodes must not lie on walls.
+    // The node lies in or near a thin region, which counts as a wall, and nodes must not lie on walls.
     contradictions_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
@@ -563,7 +564,7 @@ void CellSplitter::split_squares(std::span<const CellId> squares, const Context&
 
 std::array<CellSplitter::NewEdge, 6> CellSplitter::inner_edges(const GridCube& cube) const {
   const std::uint32_t half = cube.length / 2;
-  // Label in the middle of a square, where its inner edges along u meet.
+  // Returns the label at the middle of a square, where its inner edges along u meet.
   const auto middle_of = [&](std::size_t square) {
     return tree_.edges[tree_.squares[cube.squares[square]].inner_edges].last;
   };
@@ -590,8 +591,8 @@ void CellSplitter::place_squares(const GridCube& cube, CellId first_edge, CellId
     for (CellId k = 0; k < 4; ++k) {
       const CellId at_u = k & 1U;
       const CellId at_v = k >> 1U;
-      // In squares across v, inner edges along u run along the second axis. In squares across u, inner edges along v
-      // run along the first axis.
+      // In a square across v, edges along u are inner edges along its second axis. In a square across u, edges along v
+      // are inner edges along its first axis.
       const auto along_u = [&](CellId side) {
         return side == at_v ? inner_of(2 * v + side) + 2 + at_u : first_edge + static_cast<CellId>(2 * u) + at_u;
       };

@@ -21,31 +21,31 @@
 
 namespace blum::voronoi {
 
-/// Splits squares and cubes of a CellTree. New edges begin at a node with a known closest label, so no search covers
-/// all labels. An edge that is split shares its events among its halves.
+/// Splits squares and cubes of a CellTree. Each new edge starts at a node whose closest label is known, so no search
+/// through all labels is needed. When an edge is split, its halves take over its events.
 class CellSplitter {
  public:
-  /// Side of the first cube, divided by the longest side of the box around the mesh.
+  /// Side of the root cube, relative to the longest side of the mesh's bounding box.
   static constexpr double side_of_root = 1.4;
 
   CellSplitter(const MeshView& mesh, const SiteLabels& exact, const LabelGeometry& labels, CellTree& tree)
       : mesh_(mesh), exact_(exact), labels_(labels), lines_(exact, labels), tree_(tree) {}
 
-  /// Makes one cube around the mesh, whose sides lie outside of the solid.
-  /// @param grid  number of the grid; each has its own position.
+  /// Makes the root cube around the mesh. Its sides lie outside the solid.
+  /// @param grid  number of the grid, counted from 0. Each number has its own position.
   void add_root(int grid);
-  /// Splits squares that have no children into four each.
+  /// Splits each of the given squares into four. They must have no children.
   void split_squares(std::span<const CellId> squares, const Context& context);
-  /// Splits cubes into eight each; their squares may have been split before.
+  /// Splits each of the given cubes into eight. Squares on their boundaries may already have children.
   void split_cubes(std::span<const CellId> cubes, const Context& context);
 
   [[nodiscard]] LineCounts counts() const { return lines_.counts(); }
-  /// Returns the number of nodes at which signs contradict each other. These are nodes in thin regions, and nodes for
-  /// which two ways to them yield different sites.
+  /// Returns the number of contradictions at nodes. Either a node lies in a thin region, or two edges that lead to the
+  /// node yield different closest sites.
   [[nodiscard]] std::size_t contradictions() const { return contradictions_.load(); }
 
  private:
-  /// An edge to be made, with its events.
+  /// A new edge with its events, before it is stored.
   struct NewEdge {
     GridEdge edge;
     std::vector<LineEvent> events;
@@ -54,7 +54,7 @@ class CellSplitter {
   void split_edges(std::vector<CellId> edges, const Context& context);
   void split_edge(CellId id);
   [[nodiscard]] bool is_below(const GridEdge& edge, const LineEvent& event, const Node& node) const;
-  /// Finds the labels along an edge from the one at its lower end.
+  /// Finds the events along an edge and the label at its upper end, starting from the label at its lower end.
   void find_events(NewEdge& made, std::span<const LabelIndex> among, std::span<const std::uint32_t> triangles) const;
   void pass_over_thin(std::vector<LineEvent>& events) const;
   [[nodiscard]] std::vector<std::uint32_t> crossed(const GridEdge& edge,
@@ -84,15 +84,16 @@ class CellSplitter {
 };
 
 struct SubdivisionOptions {
-  int grid = 0;                        ///< number of the grid's position
-  int least_depth = 0;                 ///< cubes that may meet the part are split at least this often
-  int most_depth = 16;                 ///< cubes are split at most this often
-  int most_square_depth = 9;           ///< squares of a cube are split at most this often before the cube is
+  int grid = 0;                        ///< number of the grid, which sets its position
+  int least_depth = 0;                 ///< least depth of cubes that may contain points of the requested part
+  int most_depth = 16;                 ///< largest depth of cubes
+  int most_square_depth = 9;           ///< largest number of splits of a cube's square before the cube itself is split
   std::size_t most_cubes = 1'000'000;  ///< largest number of cubes, including those that are split
 };
 
 struct Subdivision {
-  /// With more undecided lines and contradictory nodes than this, splitting stops: the grid's position is bad.
+  /// If there are more undecided lines and contradictory nodes than this, splitting stops, because the grid has a bad
+  /// position.
   static constexpr std::size_t most_undecided = 200;
 
   CellTree tree;
@@ -103,18 +104,18 @@ struct Subdivision {
   std::size_t splits = 0;        ///< number of splits of cubes that did not pass
   LineCounts lines;
   std::size_t contradictions = 0;
-  std::size_t governors = 0;  ///< sum over leaves
+  std::size_t governors = 0;  ///< sum of the numbers of governors over all leaves
 };
 
-/// Returns those of some leaves that must become smaller though they pass.
+/// Returns those of the given leaves that must be split although they pass.
 using Refine = FunctionRef<std::vector<CellId>(const CellTree&, std::span<const CellId>)>;
 
 struct RefineNothing {
   std::vector<CellId> operator()(const CellTree& /*tree*/, std::span<const CellId> /*leaves*/) const { return {}; }
 };
 
-/// Splits a cube around the mesh until each leaf passes CubeTest or has the largest depth. Then splits the leaves that
-/// `refine` returns, six times at most.
+/// Splits a cube around the mesh until each leaf passes CubeTest or a limit of the options is reached. Then splits the
+/// leaves that `refine` returns, in at most six rounds.
 [[nodiscard]] Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options,
                                     const Context& context, const Refine& refine = RefineNothing{});
 

@@ -8,13 +8,14 @@
 
 namespace blum::voronoi {
 
-/// The surface runs along triangles, from an event of the border or an edge of the mesh to the next one.
+/// Each triangle connects two points of the surface in the square: events of the border, or edges of the mesh that
+/// pierce the square.
 std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceInCells& surface,
                                             const GridSquare& square) {
   SurfaceChains out;
   if (square.triangles.empty()) return out;
-  std::vector<std::array<std::uint32_t, 2>> nodes;  // triangle, node
-  std::vector<std::uint32_t> events;                // of the first nodes
+  std::vector<std::array<std::uint32_t, 2>> nodes;  // (triangle, node)
+  std::vector<std::uint32_t> events;                // events; the first nodes
   for (const CellId id : square.edges) {
     const GridEdge& edge = tree.edges[id];
     for (std::uint32_t k = edge.first_event; k < edge.last_event; ++k) {
@@ -34,7 +35,7 @@ std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceI
   }
   std::sort(out.edges.begin(), out.edges.end());
   out.edges.erase(std::unique(out.edges.begin(), out.edges.end()), out.edges.end());
-  // Edges are numbered by their rank.
+  // The nodes of edges are numbered by the edges' indices in out.edges.
   for (auto& [triangle, node] : nodes) {
     if (node < count) continue;
     const auto at = std::lower_bound(out.edges.begin(), out.edges.end(), node - count);
@@ -50,7 +51,7 @@ std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceI
   for (std::uint32_t k = 0; k < count; ++k) ends[joined.find(k)].push_back(events[k]);
   for (std::uint32_t k = 0; k < ends.size(); ++k) {
     if (joined.find(k) != k) continue;
-    if (ends[k].size() != 2) return std::nullopt;  // without ends: a closed curve
+    if (ends[k].size() != 2) return std::nullopt;  // a curve without ends is closed
     chain_of[k] = static_cast<std::uint32_t>(out.ends.size());
     out.ends.push_back({ends[k][0], ends[k][1]});
   }
@@ -68,7 +69,7 @@ bool SurfaceInCells::pierces(std::uint32_t edge, const GridSquare& square) const
   const bool starts_above = detail::is_above(p[0][axis], plane);
   if (starts_above == detail::is_above(p[1][axis], plane)) return false;
   for (const std::size_t along : {next_axis(axis), next_axis(next_axis(axis))}) {
-    // Seen against the third axis, the edge passes the plane above or below a coordinate.
+    // Projected along the third axis, the edge passes the square's plane above or below a coordinate.
     const std::size_t seen = 3 - axis - along;
     const auto is_beyond = [&](double coordinate) {
       if (detail::is_above(p[0][along], coordinate) == detail::is_above(p[1][along], coordinate)) {
@@ -77,7 +78,8 @@ bool SurfaceInCells::pierces(std::uint32_t edge, const GridSquare& square) const
       const bool axis_is_first = next_axis(seen) == axis;
       const int side = axis_is_first ? detail::side_of_line(p, seen, plane, coordinate)
                                      : detail::side_of_line(p, seen, coordinate, plane);
-      // If the axis is the first one seen and the edge runs up along it, a line to its left is above it.
+      // If `axis` is the first axis of the projection and the edge rises along it, a line left of the edge is above the
+      // edge.
       const bool line_is_above = (side > 0) == (axis_is_first ? !starts_above : starts_above);
       return !line_is_above;
     };

@@ -13,8 +13,8 @@
 
 namespace blum::voronoi {
 
-/// Exact tests of a mesh against the cells of a grid. The grid's planes count as moved by infinitely small amounts
-/// (grid_predicates.hpp).
+/// Exact tests of a mesh against the cells of a grid. The planes of the grid count as moved by infinitely small
+/// amounts, so that nothing lies exactly in them (grid_predicates.hpp).
 class SurfaceInCells {
  public:
   SurfaceInCells(const MeshView& mesh, const SiteTable& table, const Lattice& lattice)
@@ -24,7 +24,7 @@ class SurfaceInCells {
   /// Returns true if an edge of the mesh passes through a square.
   [[nodiscard]] bool pierces(std::uint32_t edge, const GridSquare& square) const;
   [[nodiscard]] bool is_in(std::uint32_t vertex, const GridCube& cube) const;
-  /// Returns the edges of some triangles, rising.
+  /// Returns the edges of the given triangles, each once, in ascending order.
   [[nodiscard]] std::vector<std::uint32_t> edges_of(std::span<const std::uint32_t> triangles) const;
 
  private:
@@ -33,14 +33,15 @@ class SurfaceInCells {
   const Lattice& lattice_;
 };
 
-/// The arcs in which the surface meets a square. Each runs along triangles from an event of the border to another.
+/// The arcs (chains) in which the surface meets a square. Each arc passes from triangle to triangle, between two events
+/// of the border.
 struct SurfaceChains {
-  std::vector<std::array<std::uint32_t, 2>> ends;       ///< the events at both ends of each
-  std::vector<std::array<std::uint32_t, 2>> triangles;  ///< chain, triangle: sorted
-  std::vector<std::uint32_t> edges;                     ///< edges of the mesh that pierce the square, rising
+  std::vector<std::array<std::uint32_t, 2>> ends;       ///< for each arc: the events at its ends
+  std::vector<std::array<std::uint32_t, 2>> triangles;  ///< (arc, triangle), sorted
+  std::vector<std::uint32_t> edges;                     ///< edges of the mesh that pierce the square, ascending
 };
 
-/// Returns the arcs, or nullopt if the surface in the square has a closed curve.
+/// Returns the arcs; nullopt if the surface has a closed curve in the square.
 [[nodiscard]] std::optional<SurfaceChains> surface_chains(const CellTree& tree, const SurfaceInCells& surface,
                                                           const GridSquare& square);
 

@@ -47,19 +47,20 @@ void check(const VoronoiOptions& options) {
   }
 }
 
-/// @throws InvalidMesh if the size of the mesh is below 1e-45, or a coordinate above 1e45. Also if the mesh is so far
-///   from the origin that a grid in double has no room around it.
+/// @throws InvalidMesh if the size of the mesh is below 1e-45, or a coordinate is above 1e45. Also if the mesh lies
+///   more than 1e8 times its size from the origin, where doubles are too coarse for a grid.
 void check_distance(const MeshView& mesh) {
   const Box3 box = bounds(mesh);
-  constexpr double smallest = 1e-45;  // range of magnitudes that exact signs support
+  constexpr double smallest = 1e-45;  // exact signs support magnitudes in this range
   constexpr double largest = 1e45;
   if (!(box.diagonal() >= smallest && box.largest_coordinate() <= largest)) {
     throw InvalidMesh("the mesh has a size of " + exact_text(box.diagonal()) + " and coordinates up to " +
-                      exact_text(box.largest_coordinate()) + "; Voronoi diagrams take 1e-45 to 1e45: scale it");
+                      exact_text(box.largest_coordinate()) +
+                      "; Voronoi diagrams need a size of at least 1e-45 and coordinates up to 1e45: scale the mesh");
   }
   constexpr double furthest = 1e8;
   if (box.largest_coordinate() > furthest * box.diagonal()) {
-    throw InvalidMesh("the mesh lies more than 1e8 times its size from the origin: move it there first");
+    throw InvalidMesh("the mesh lies more than 1e8 times its size from the origin: move it to the origin first");
   }
 }
 
@@ -67,8 +68,8 @@ void check_distance(const MeshView& mesh) {
   throw InvalidMesh(std::string(problem));
 }
 
-/// @throws InvalidMesh if a solid is not a polyhedron, has segments or points, or has a surface that meets itself. Also
-///   if check_distance() throws.
+/// @throws InvalidMesh if the solid is not a polyhedron, its mesh has segments or points, or its surface touches
+///   itself. Also if check_distance() throws.
 void check(const Solid& solid) {
   if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh(solid.problem());
   const MeshView surface = solid.surface().mesh;
@@ -77,31 +78,31 @@ void check(const Solid& solid) {
   check_manifold(solid);
 }
 
-/// Returns the volume inside, cubic mesh units.
+/// Returns the volume of the solid in cubic mesh units.
 double volume_of(const Solid& solid) {
   double sum = 0;
   for (const SolidShell& shell : solid.shells()) sum += shell.depth % 2 == 0 ? shell.volume : -shell.volume;
   return sum;
 }
 
-/// Returns the smallest number of splits of a cube that satisfies the resolution and the tolerance. Its side must be at
-/// most the box's longest side over the resolution, and its diagonal at most the tolerance.
-/// @throws InvalidOption if the tolerance needs more splits than allowed.
+/// Returns the smallest depth whose cubes satisfy the resolution and the tolerance. Their side must be at most the
+/// box's longest side divided by the resolution, and their diagonal at most the tolerance.
+/// @throws InvalidOption if the tolerance needs a depth of more than 12.
 int least_depth(const VoronoiOptions& options, const Box3& box) {
   const Vec3d size = box.size();
   const double root = CellSplitter::side_of_root * std::max({size.x, size.y, size.z});
   int depth = 0;
   while ((1 << depth) < CellSplitter::side_of_root * options.resolution) ++depth;
   if (!options.tolerance) return depth;
-  constexpr int most = 12;  // some 10^9 cubes if all of the box is solid
+  constexpr int most = 12;  // about 10^9 cubes if the solid fills the box
   while (depth <= most && std::ldexp(root * std::numbers::sqrt3, -depth) > *options.tolerance) ++depth;
   if (depth <= most) return depth;
   throw InvalidOption("Voronoi complex: a tolerance of " + exact_text(*options.tolerance) +
                       " is too small: it must be at least 6e-4 times the longest side of the mesh");
 }
 
-/// Refuses options that cannot succeed: with the surface, cubes of the requested size fill the solid.
-/// @throws InvalidOption if these are more than max_cubes.
+/// Rejects options that cannot succeed. With part `all`, cubes of the requested size must fill the solid.
+/// @throws InvalidOption if these cubes are more than max_cubes.
 void check_count(const VoronoiOptions& options, int least_depth, const Box3& box, double volume) {
   if (options.part != VoronoiPart::all) return;
   const Vec3d size = box.size();
@@ -111,15 +112,16 @@ void check_count(const VoronoiOptions& options, int least_depth, const Box3& box
   throw InvalidOption("Voronoi complex: the resolution or tolerance needs at least " +
                       std::to_string(static_cast<std::int64_t>(std::min(least, 1e18))) + " cubes, but max_cubes is " +
                       std::to_string(options.max_cubes) +
-                      ": use a coarser one, compute only walls, or raise max_cubes");
+                      ": use a coarser resolution or tolerance, compute only walls, or raise max_cubes");
 }
 
-/// Returns the number of problems that keep an octree from passing.
+/// Returns the number of problems of an octree: failing cubes, undecided lines and contradictory nodes.
 std::size_t obstacles(const Subdivision& cells) {
   return cells.failing.size() + cells.lines.undecided + cells.contradictions;
 }
 
-/// Returns true if another position of the grid may help: few problems exist, or this grid was given up.
+/// Returns true if another position of the grid may help: there are few problems, or splitting stopped because of a bad
+/// position.
 bool may_pass_elsewhere(const Subdivision& cells) {
   constexpr std::size_t few = 16;
   constexpr std::size_t share = 10;
@@ -158,7 +160,7 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
 }
 
 /// Returns the Betti numbers of the requested part (docs/theory/voronoi.md).
-/// @param solid  Betti numbers of the solid.
+/// @param solid  the Betti numbers of the solid.
 BettiNumbers expected_betti(const VoronoiSolid& sited, const BettiNumbers& solid) {
   BettiNumbers out = solid;
   if (sited.rule.is_medial()) return out;
@@ -171,7 +173,7 @@ BettiNumbers expected_betti(const VoronoiSolid& sited, const BettiNumbers& solid
   return out;
 }
 
-/// @param phases  phases done before.
+/// @param phases  phases that were already completed.
 VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::vector<PhaseTime> phases,
                        const Context& context) {
   VoronoiComplex out;
@@ -201,7 +203,8 @@ VoronoiComplex compute(const Solid& solid, const VoronoiOptions& options, std::v
       return crossing_cubes(tree, leaves, CubeTest(sited, surface, tree), sited, context);
     };
     Subdivision cells = subdivide(sited, how, context, crossing);
-    // A proof is more important than triangles that stay inside.
+    // If refinement made a cube fail, the refinement is omitted. A certified complex matters more than triangles that
+    // do not cross the surface.
     if (cells.passed_at_first && !cells.failing.empty()) cells = subdivide(sited, how, context);
     return cells;
   };
@@ -259,10 +262,11 @@ VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& optio
 
 void add_failing_cells(Complex& complex, std::span<const FailingVoronoiCell> failing) {
   constexpr std::size_t corners = 8;
-  if (!complex.edges.empty()) throw InvalidOption("failing cells: the complex has edges already");
+  if (!complex.edges.empty())
+    throw InvalidOption("add_failing_cells(): the complex must not have edges, but it has some");
   const std::size_t first = complex.positions.size();
   if (failing.size() > (max_id_count - first) / corners) {
-    throw InvalidOption("failing cells: their corners are more vertices than a complex may have");
+    throw InvalidOption("add_failing_cells(): the corners of the cells are more vertices than a complex may have");
   }
   std::vector<std::int32_t> obstacles;
   for (const FailingVoronoiCell& cell : failing) {

@@ -44,8 +44,8 @@ class GraphBuilder {
   void find_walls() {
     const auto count = static_cast<std::uint32_t>(complex_.triangles.size());
     detail::UnionFind joined(count);
-    // In a cube, triangles of one wall may be joined only by its vertex.
-    std::vector<std::pair<std::array<std::int32_t, 2>, std::uint32_t>> at;  // sites, triangle
+    // Triangles of the same wall may share only the vertex of their cube, so a common vertex joins them.
+    std::vector<std::pair<std::array<std::int32_t, 2>, std::uint32_t>> at;  // (sites, triangle)
     for (std::size_t v = 0; v < complex_.positions.size(); ++v) {
       at.clear();
       for (const std::uint32_t t : incidence_.triangles_of_vertex()[v]) at.push_back({{site_a_[t], site_b_[t]}, t});
@@ -81,7 +81,7 @@ class GraphBuilder {
     return out;
   }
 
-  /// Returns true if walls of three or more regions meet in an edge.
+  /// Returns true if three or more triangles and at least three regions meet at an edge.
   [[nodiscard]] bool is_seam(std::size_t e) const {
     const std::span<const std::uint32_t> at = incidence_.triangles_of_edge()[e];
     return at.size() > 2 && sites_of(at).size() > 2;
@@ -107,15 +107,15 @@ class GraphBuilder {
     }
   }
 
-  /// Edges of seams in a row. At each vertex between them, exactly two of these edges meet.
+  /// A chain of seam edges. At each vertex inside the chain, exactly two seam edges meet.
   struct Chain {
     std::size_t edges = 0;
-    bool has_many_sites = false;      ///< true if each edge has four or more sites
-    std::vector<std::uint32_t> ends;  ///< vertices at its ends
-    std::uint32_t number = none;      ///< of the seam; `none` for a chain that is part of a junction
+    bool has_many_sites = false;      ///< true if at least four regions meet at each edge
+    std::vector<std::uint32_t> ends;  ///< vertices at the ends of the chain
+    std::uint32_t number = none;      ///< index of its seam; `none` if the chain belongs to a junction
   };
 
-  /// Returns the chain of each edge; `none` for edges on no seam.
+  /// Returns for each edge the index of its chain; `none` for edges that are not on seams.
   std::vector<std::uint32_t> find_chains() {
     const std::size_t count = incidence_.edges().size();
     std::vector<std::uint8_t> is_on_seam(count, 0);
@@ -151,12 +151,12 @@ class GraphBuilder {
   }
 
   [[nodiscard]] static bool is_short(const Chain& chain) {
-    constexpr std::size_t few = 4;  // edges from a square into a cube, and on
+    constexpr std::size_t few = 4;  // for example through a square, a cube and another square
     return chain.has_many_sites && chain.edges <= few && chain.ends.size() == 2;
   }
 
-  /// Around a point in which four or more regions meet, the vertices of neighbouring cells all see these regions. They
-  /// form one junction.
+  /// Finds the junctions. Around a point where four or more regions meet, several vertices in neighbouring cells may
+  /// represent that point. Short chains connect them, and they become one junction.
   void join_junctions() {
     detail::UnionFind joined(static_cast<std::uint32_t>(is_end_.size()));
     for (const Chain& chain : chains_) {
@@ -174,7 +174,8 @@ class GraphBuilder {
       }
       junction_of_[v] = junction;
       VoronoiJunction& own = out_.junctions[junction];
-      // Vertices of cubes have the most triangles. They lie where distances are equal, if that place is in their cube.
+      // The vertex with the most triangles is the vertex of a cube. It was moved to the point with equal distances if
+      // that point is in its cube.
       const IndexRows& at = incidence_.triangles_of_vertex();
       if (at[v].size() > at[own.vertex].size()) own.vertex = v;
       own.position = complex_.positions[own.vertex];
@@ -217,9 +218,9 @@ class GraphBuilder {
   std::span<const std::int32_t> site_a_, site_b_;
   const Incidence incidence_;
   const Context& context_;
-  std::vector<std::uint32_t> wall_of_;      ///< of each triangle
-  std::vector<std::uint8_t> is_end_;        ///< of each vertex: 1 if chains end there
-  std::vector<std::uint32_t> junction_of_;  ///< of each vertex at which chains end
+  std::vector<std::uint32_t> wall_of_;      ///< for each triangle
+  std::vector<std::uint8_t> is_end_;        ///< for each vertex: 1 if chains end at it
+  std::vector<std::uint32_t> junction_of_;  ///< for each vertex at which chains end
   std::vector<Chain> chains_;
   VoronoiGraph out_;
 };
@@ -243,7 +244,7 @@ std::vector<VoronoiRegion> voronoi_regions(const Complex& complex) {
     const auto& [a, b, c] = complex.triangles[t];
     const Vec3d p = complex.positions[a] - middle;
     const Vec3d normal = cross(complex.positions[b] - middle - p, complex.positions[c] - middle - p);
-    // Corners run counterclockwise as seen from the region of site_b, so the normal points into that region.
+    // The corners run counterclockwise as seen from the region of site_b, so the normal points into that region.
     const double cone = dot(p, normal) / 6;
     const double area = 0.5 * length(normal);
     volumes[site_b[t]] -= cone;

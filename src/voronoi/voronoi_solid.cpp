@@ -8,7 +8,8 @@ namespace blum::voronoi {
 FaceLoops::FaceLoops(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites) {
   const auto edge_of = [&](std::uint32_t t, std::uint32_t k) { return table.triangle_edges()[t][k].value; };
   const auto is_border = [&](std::uint32_t t, std::uint32_t k) { return sites.turn[edge_of(t, k)] != EdgeTurn::flat; };
-  // From side k of triangle t, the border continues with the next border side around the corner between them.
+  // Finds the side that follows side k of triangle t on the face's border. It is searched around the corner at the end
+  // of side k.
   const auto next = [&](std::uint32_t t, std::uint32_t k) {
     k = (k + 1) % 3;
     while (!is_border(t, k)) {

@@ -15,17 +15,17 @@
 
 namespace blum::voronoi {
 
-/// Loops of edges that bound each face: one, plus one for each hole. If a face touches itself in a vertex, loops follow
-/// the triangles around the vertex.
+/// The loops of edges that bound each face: one outer loop, and one for each hole. If a face touches itself at a
+/// vertex, the loop continues along the same fan of triangles.
 class FaceLoops {
  public:
   FaceLoops(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
 
-  /// Returns the loops of a face, as lists of vertices.
+  /// Returns the loops of a face, each as a list of vertices.
   [[nodiscard]] std::span<const std::vector<std::uint32_t>> of(std::uint32_t face) const {
     return std::span(loops_).subspan(first_[face], first_[face + 1] - first_[face]);
   }
-  /// Returns the number of holes of all faces.
+  /// Returns the number of holes in all faces together.
   [[nodiscard]] std::size_t hole_count() const { return loops_.size() + 1 - first_.size(); }
 
  private:
@@ -33,8 +33,8 @@ class FaceLoops {
   std::vector<std::vector<std::uint32_t>> loops_;
 };
 
-/// A polyhedron with its sites, and the requested part of its diagram. The mesh and its table must outlive it. It
-/// cannot be copied or moved.
+/// A polyhedron with its sites, and the rule of the requested part of its diagram. The mesh and its table must outlive
+/// this object, which cannot be copied or moved.
 struct VoronoiSolid {
   VoronoiSolid(const MeshView& of, const SiteTable& table_of, VoronoiPart part, const Context& context = {})
       : mesh(of),
@@ -61,9 +61,9 @@ struct VoronoiSolid {
   const SiteLabels exact;
   const LabelGeometry labels;
   const FaceLoops loops;
-  const std::vector<ReflexCorner> corners;  ///< of each vertex, for a medial axis
+  const std::vector<ReflexCorner> corners;  ///< for each vertex; empty except for a medial axis
   const PartRule rule;
-  std::vector<std::uint32_t> triangle_of_face;  ///< any triangle of each face
+  std::vector<std::uint32_t> triangle_of_face;  ///< for each face: the index of one of its triangles
 };
 
 }  // namespace blum::voronoi

@@ -1,4 +1,4 @@
-# What the tests of the command-line tool share.
+# Fixtures that the tests of the command-line tool share.
 import re
 import signal
 
@@ -6,13 +6,13 @@ import pytest
 
 from tool import FORMATS, run
 
-# Where the tests run in the background of a script, SIGINT is ignored, and the tools that they start would inherit that.
+# A script's background jobs ignore SIGINT, and the tools that the tests start would inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
 def shapes(tmp_path_factory):
-    """A folder with a sphere, a torus, a ball image, labelled balls, and fields of the first."""
+    """A folder with a sphere, a torus, a ball image, an image of labelled balls, and fields of the sphere."""
     folder = tmp_path_factory.mktemp("shapes")
     run("make", "sphere", "-o", folder / "sphere.ply", "--frequency", 6)
     run("make", "torus", "-o", folder / "torus.obj", "--ring-segments", 24, "--tube_segments=12")
@@ -25,7 +25,7 @@ def shapes(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def solids(shapes):
-    """Beside the shapes, a box, one inside out, one that is open, and a plate with narrow holes."""
+    """The folder of `shapes` with a box, a reversed box, an open box and a plate with narrow holes added."""
     run("make", "box", "-o", shapes / "box.obj")
     lines = (shapes / "box.obj").read_text().splitlines()
     turned = [re.sub(r"^f (\S+) (\S+) (\S+)$", r"f \1 \3 \2", line) for line in lines]
@@ -38,7 +38,7 @@ def solids(shapes):
 
 @pytest.fixture(scope="session")
 def axes(solids, tmp_path_factory):
-    """Axes of the box in every format, with all vertices, of the torus, and of the open box."""
+    """Axes, not decimated: of the box in every format, of the torus and of the open box."""
     folder = tmp_path_factory.mktemp("axes")
     for end in FORMATS:
         run("medial", solids / "box.obj", "-o", folder / f"box.{end}", "--resolution", 16, "--decimate", 0)

@@ -1,4 +1,4 @@
-# Reads what a page of the viewer shows.
+# Reads the scene of a viewer page.
 import base64
 import json
 import re

@@ -1,5 +1,4 @@
-# Proves that --graph writes the graph of every axis that is written, and of no other, and that the files say what the
-# axis holds.
+# Proves that --graph writes one graph for each axis that is written, and that the graph matches the axis.
 import json
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -15,7 +14,7 @@ XML = "{http://graphml.graphdrawing.org/xmlns}"
 
 
 def areas(path):
-    """Of the sheets of an axis, by a reader of our own."""
+    """Areas of the sheets of an axis, computed without Blum."""
     with np.load(path) as file:
         corners, sheet = file["vertices"][file["triangles"]], file["triangle_sheet"]
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
@@ -36,7 +35,7 @@ def test_the_graph_has_the_sheets_of_the_axis(solids, tmp_path):
     assert all(len(line["vertices"]) == len(line["points"]) for line in graph["seams"] + graph["curves"])
 
 
-def test_every_angle_and_label_has_its_own(solids, tmp_path):
+def test_every_angle_and_label_has_its_own_graph(solids, tmp_path):
     output = ["-o", tmp_path / "b.ply", "--graph", tmp_path / "g.graphml"]
     out, _ = run("medial", solids / "balls.npy", *output, "--label", "1,3", "--theta", "30,90")
     files = [f"{name}-label{label}-theta{theta}{end}" for name, end in (("b", ".ply"), ("g", ".graphml"))
@@ -49,7 +48,7 @@ def test_every_angle_and_label_has_its_own(solids, tmp_path):
         assert nodes and ends <= nodes
 
 
-def test_info_makes_one_of_a_file(axes, tmp_path):
+def test_info_writes_the_graph_of_a_file(axes, tmp_path):
     for end in ("vtp", "ply", "npz"):
         facts = run_json("info", axes / f"box.{end}", "--graph", tmp_path / "g.json")
         graph = json.loads((tmp_path / "g.json").read_text())
@@ -59,14 +58,14 @@ def test_info_makes_one_of_a_file(axes, tmp_path):
     assert run_json("info", axes / "box.npz")["graph"] is None
 
 
-def test_the_thinnest_wall_is_told(tmp_path):
+def test_the_thinnest_wall_is_reported(tmp_path):
     run("make", "bracket", "-o", tmp_path / "b.ply")
     arguments = ["medial", tmp_path / "b.ply", "-o", tmp_path / "b.vtp", "--resolution", 48, "--theta", 120]
     wall = run_json(*arguments, "--graph", tmp_path / "g.json")["solids"][0]["axes"][0]["graph"]["thinnest_wall"]
-    assert abs(wall["thickness"]["median"] - 0.24) < 0.01  # a rib
+    assert abs(wall["thickness"]["median"] - 0.24) < 0.01  # the thickness of a rib
 
 
-def test_sheets_that_run_into_edges_are_no_thin_walls(tmp_path):
+def test_sheets_that_end_at_edges_do_not_count_as_thin_walls(tmp_path):
     run("make", "plate", "-o", tmp_path / "p.ply")
     arguments = ["medial", tmp_path / "p.ply", "-o", tmp_path / "p.vtp", "--resolution", 64, "--theta", 60]
     wall = run_json(*arguments, "--graph", tmp_path / "g.json")["solids"][0]["axes"][0]["graph"]["thinnest_wall"]
@@ -75,7 +74,7 @@ def test_sheets_that_run_into_edges_are_no_thin_walls(tmp_path):
     assert min(sheet["thickness"]["low"] for sheet in sheets) < 0.5 * wall["thickness"]["low"]
 
 
-def test_what_cannot_be_is_said_before_any_work(solids, axes, tmp_path):
+def test_impossible_requests_are_rejected_before_any_work(solids, axes, tmp_path):
     box = solids / "box.obj"
     for arguments, status, message in [
         (["medial", box, "-o", tmp_path / "a.ply", "--graph", "g.gml"], 2, "'g.gml': the extension must be .json"),

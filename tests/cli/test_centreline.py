@@ -1,4 +1,4 @@
-"""`blum centreline` writes the graph of each label in every format, and says what differs from the label."""
+"""Proves that `blum centreline` writes the graph of each label in every format and reports differences in homotopy."""
 
 import json
 
@@ -31,7 +31,7 @@ def image(tmp_path_factory):
     return folder / "image.npy"
 
 
-def test_every_label_is_a_graph(image, tmp_path):
+def test_every_label_gets_a_graph(image, tmp_path):
     out = tmp_path / "g.json"
     summary = run_json("centreline", image, "-o", out, warns=True)
     assert summary["command"] == "centreline" and summary["outputs"] == [str(out)]
@@ -91,13 +91,13 @@ def test_labels_and_thresholds_are_chosen(image, tmp_path):
     assert names(tmp_path) == ["g.json"]
 
 
-def test_meshes_are_refused_and_help_has_examples(tmp_path):
+def test_meshes_are_rejected_and_help_has_examples(tmp_path):
     run("make", "box", "-o", tmp_path / "box.ply")
     assert "not a voxel image" in run("centreline", tmp_path / "box.ply", "-o", tmp_path / "g.json", status=1)[1]
     assert "blum centreline vessels.nii.gz -o vessels.json" in run("centreline", "--help")[0]
 
 
-def test_images_of_one_layer_are_warned_of(tmp_path):
+def test_images_of_one_layer_cause_a_warning(tmp_path):
     np.save(tmp_path / "ring.npy", np.ones((1, 20, 30), dtype=np.uint8))
     lines = run_json("centreline", tmp_path / "ring.npy", "-o", tmp_path / "g.json", warns=True)
     assert any("single layer" in warning["text"] for warning in lines["warnings"])

@@ -1,4 +1,4 @@
-"""`blum clean` writes a closed mesh without needles and needless vertices, and tells how far it moved."""
+"""Proves that `blum clean` removes needles and redundant vertices, keeps meshes closed and reports the deviation."""
 
 import json
 
@@ -10,13 +10,13 @@ pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the too
 
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory):
-    """A plate with holes, in single precision, as CAD programs leave it."""
+    """A plate with holes in single precision, as CAD programs export it."""
     folder = tmp_path_factory.mktemp("clean")
     run("make", "plate", "-o", folder / "plate.stl")
     return folder / "plate.stl"
 
 
-def test_cylinders_of_many_rings_lose_them(tmp_path):
+def test_cylinders_lose_their_inner_rings(tmp_path):
     run("make", "cylinder", "--sides", 24, "--stacks", 40, "-o", tmp_path / "rings.ply")
     found = run_json("clean", tmp_path / "rings.ply", "-o", tmp_path / "clean.ply", "--tolerance", "1e-6")
     assert found["command"] == "clean" and found["tolerance"] == 1e-6
@@ -30,7 +30,7 @@ def test_cylinders_of_many_rings_lose_them(tmp_path):
     assert info["vertices"] == 50 and info["betti"] == [1, 0, 0]
 
 
-def test_the_distance_that_is_told_holds(plate, tmp_path):
+def test_the_reported_deviation_bounds_the_hausdorff_distance(plate, tmp_path):
     out = tmp_path / "clean.obj"
     found = run_json("clean", plate, "-o", out, "--tolerance", "0.01")
     assert found["triangles"] < found["triangles_before"]
@@ -38,7 +38,7 @@ def test_the_distance_that_is_told_holds(plate, tmp_path):
     assert 0 < apart["lower"] <= found["deviation"] <= 0.01
 
 
-def test_text_says_what_was_done(plate, tmp_path):
+def test_text_reports_counts_deviation_and_topology(plate, tmp_path):
     text, _ = run("clean", plate, "-o", tmp_path / "clean.ply", "--tolerance", "0.01")
     for words in ("triangles", "deviation", "1 component, 6 tunnels, 0 voids, unchanged", "wrote"):
         assert words in text
@@ -55,7 +55,7 @@ def test_diagrams_of_cleaned_meshes_have_fewer_sites(tmp_path):
     assert run_json("voronoi", tmp_path / "clean.ply")["faces"] == 6
 
 
-def test_what_is_wrong_is_said(plate, tmp_path):
+def test_wrong_arguments_and_meshes_are_rejected(plate, tmp_path):
     out = tmp_path / "out.ply"
     assert "--tolerance" in run("clean", plate, "-o", out, status=2)[1]
     for tolerance in ("0", "-1", "nan", "x"):
@@ -69,7 +69,7 @@ def test_what_is_wrong_is_said(plate, tmp_path):
     assert "out.ply" not in names(tmp_path)
 
 
-def test_what_is_no_triangle_is_left_out_with_a_warning(tmp_path):
+def test_segments_and_points_are_left_out_with_a_warning(tmp_path):
     run("make", "box", "-o", tmp_path / "box.obj")
     with (tmp_path / "box.obj").open("a") as file:
         file.write("l 1 8\np 3\n")

@@ -1,5 +1,5 @@
-# Proves that the command-line tool does what its help says: every verb end to end on generated shapes, exit status and
-# message of bad usage and hostile input, existing output untouched by failure, and the keys of its JSON.
+# Proves the tool's basic verbs end to end on generated shapes: output, exit status, messages and JSON keys.
+# Bad usage and hostile input leave existing output untouched.
 import json
 import math
 import os
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the too
 
 
 def read_nrrd(path):
-    """Header fields, key/value pairs and array [z, y, x] of a raw NRRD file: a reader of our own, on purpose."""
+    """Header fields, key/value pairs and array [z, y, x] of a raw NRRD file, read without Blum on purpose."""
     data = Path(path).read_bytes()
     header, body = data.split(b"\n\n", 1)
     fields = {}
@@ -34,7 +34,7 @@ def read_nrrd(path):
     return fields, array.reshape(sizes[::-1])
 
 
-# ---- The verbs ----
+# ---- Verbs ----
 
 
 def test_version_and_help():
@@ -45,7 +45,7 @@ def test_version_and_help():
         assert "Examples:" in out and "blum " in out
 
 
-def test_make_writes_what_it_says(tmp_path):
+def test_make_reports_the_written_mesh(tmp_path):
     facts = run_json("make", "torus", "-o", tmp_path / "t.off", "--ring-segments", 12, "--tube-segments", 8)
     assert (facts["shape"], facts["kind"], facts["vertices"], facts["triangles"]) == ("torus", "mesh", 96, 192)
     assert facts["betti"] == [1, 1, 0] and facts["parameters"]["ring_segments"] == 12
@@ -89,7 +89,7 @@ def test_info_of_a_mesh(shapes):
     assert "1 tunnel, 0 voids" in text
 
 
-def test_info_of_parts_that_cross_knows_no_solid(tmp_path):
+def test_info_reports_no_solid_for_parts_that_cross(tmp_path):
     run("make", "box", "-o", tmp_path / "box.obj")
     lines = (tmp_path / "box.obj").read_text().splitlines()
     corners = [line.split()[1:] for line in lines if line.startswith("v ")]
@@ -110,7 +110,7 @@ def test_info_counts_self_intersections(shapes, tmp_path):
     assert "defects  none" in run("info", shapes / "torus.obj")[0]
     assert "crossings       none" in run("info", shapes / "torus.obj", "--verbose")[0]
     mesh = tmp_path / "cross.obj"
-    # The second triangle passes through the first; the third stands on it with a corner.
+    # The second triangle crosses the first. A corner of the third touches the first.
     mesh.write_text("v 0 0 0\nv 3 0 0\nv 0 3 0\nv 1 1 -1\nv 1 1 1\nv 5 5 1\nv 1 0.5 0\nv 1 0.25 3\nv 2 0.25 3\n"
                     "f 1 2 3\nf 4 5 6\nf 7 8 9\n")
     assert run_json("info", mesh)["self_intersections"] == {
@@ -148,7 +148,7 @@ def test_field_of_a_sphere_is_its_distance(shapes):
     h = 2 * 1.2 / 23
     axis = -1.2 + h * np.arange(24)
     z, y, x = np.meshgrid(axis, axis, axis, indexing="ij")
-    # 720 triangles: the polyhedron lies within 0.02 of the sphere
+    # The polyhedron of 720 triangles lies within 0.02 of the sphere.
     assert np.abs(distance - (np.sqrt(x * x + y * y + z * z) - 1)).max() < 0.02
     _, site = read_nrrd(shapes / "sphere.site.nrrd")
     assert site.shape == distance.shape and site.min() >= 0
@@ -189,7 +189,7 @@ def test_quiet_is_silent(shapes, tmp_path):
                       ["slice", shapes / "sphere.nrrd", "-o", tmp_path / "q.png"],
                       ["make", "box", "-o", tmp_path / "q.stl"], ["info", shapes / "sphere.ply"]]:
         assert run(*arguments, "--quiet") == ("", "")
-        if arguments[0] != "slice":  # which prints nothing but what it wrote
+        if arguments[0] != "slice":  # slice has no --verbose
             assert run(*arguments, "--quiet", "--verbose") == ("", "")
 
 
@@ -215,10 +215,10 @@ def test_a_slice_by_position_is_that_of_the_nearest_layer(shapes, tmp_path):
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
-def test_welding_everything_away_is_warned_of(shapes, tmp_path):
+def test_welding_all_triangles_away_causes_a_warning(shapes, tmp_path):
     err = run("field", shapes / "sphere.ply", "-o", tmp_path / "w.nrrd", "--resolution", 8, "--sign", "none",
               "--bounds", "-1,-1,-1,1,1,1", "--weld", "1e9", warns=True)[1]
-    assert "welding left no triangle" in err
+    assert "welding removed all triangles" in err
 
 
 def test_fields_without_sites(shapes, tmp_path):
@@ -243,11 +243,11 @@ def test_fields_without_sites(shapes, tmp_path):
     assert "written without them" in err
 
 
-def test_a_flat_box_gives_a_2d_field_and_picture(shapes, tmp_path):
+def test_flat_bounds_give_a_2d_field_and_picture(shapes, tmp_path):
     summary = run_json("field", shapes / "sphere.ply", "-o", tmp_path / "cut.nrrd", "--bounds",
                        "-1.5,0.25,-2,1.5,0.25,2", "--spacing", "0.1")
     assert summary["grid"]["size"] == [31, 1, 41] and summary["grid"]["origin"][1] == pytest.approx(0.25)
-    run("slice", tmp_path / "cut.nrrd", "-o", tmp_path / "cut.png")  # finds the axis by itself
+    run("slice", tmp_path / "cut.nrrd", "-o", tmp_path / "cut.png")  # slice chooses the axis
     width, height, _ = png_rows(tmp_path / "cut.png")
     assert height > width > 600
 
@@ -285,7 +285,7 @@ def test_site_ids_and_sign(shapes, tmp_path):
     assert np.array_equal(np.signbit(by_normals), np.signbit(by_winding)) and by_normals.min() < 0
 
 
-def test_an_open_mesh_takes_winding(shapes, tmp_path):
+def test_an_open_mesh_is_signed_by_winding_numbers(shapes, tmp_path):
     (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     summary = run_json("field", tmp_path / "open.obj", "-o", tmp_path / "open.nrrd", "--resolution", 8, warns=True)
     assert summary["fields"][0]["sign"]["rule"] == "winding" and not summary["input"]["closed"]
@@ -314,7 +314,7 @@ def test_several_labels_give_a_file_each(shapes, tmp_path):
     assert np.array_equal(read_nrrd(tmp_path / "one.nrrd")[1], read_nrrd(tmp_path / "b-label2.nrrd")[1])
 
 
-def test_content_tells_where_the_name_does_not(shapes, tmp_path):
+def test_content_decides_the_format_of_unknown_extensions(shapes, tmp_path):
     for name in ("sphere.ply", "torus.obj", "ball.nrrd", "balls.npy"):
         (tmp_path / "shape.dat").write_bytes((shapes / name).read_bytes())
         assert run_json("info", tmp_path / "shape.dat")["format"] == Path(name).suffix[1:].upper()
@@ -409,7 +409,7 @@ def test_bad_usage_is_2_and_writes_nothing(shapes, arguments):
     assert {path: path.read_bytes() for path in shapes.iterdir()} == files
 
 
-def test_one_letter_for_an_option_is_told_what_begins_with_it(shapes):
+def test_a_one_letter_option_gets_a_hint_for_its_first_letter(shapes):
     assert "no option -q (did you mean --quiet?)" in run("info", shapes / "sphere.ply", "-q", status=2)[1]
     assert "no option -x;" in run("info", shapes / "sphere.ply", "-x", status=2)[1]
 
@@ -454,7 +454,7 @@ def test_missing_and_unreadable_files_are_1(shapes, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["folder.nrrd"]
 
 
-def test_a_grid_that_no_machine_holds_is_refused_at_once(shapes, tmp_path):
+def test_a_grid_beyond_memory_is_rejected_at_once(shapes, tmp_path):
     start = time.monotonic()
     _, err = run("field", shapes / "sphere.ply", "-o", tmp_path / "out.nrrd", "--resolution", 10000, status=1)
     assert "memory" in err and time.monotonic() - start < 5 and not any(tmp_path.iterdir())
@@ -463,15 +463,15 @@ def test_a_grid_that_no_machine_holds_is_refused_at_once(shapes, tmp_path):
 def test_misspelt_commands_and_options_get_a_hint(shapes, tmp_path):
     assert "did you mean field" in run("fild", shapes / "sphere.ply", status=2)[1]
     assert "slice" in run("frobnicate", status=2)[1]
-    # The word that was not understood comes before what is missing because of it.
+    # The message names the unknown word before the option that is missing because of it.
     err = run("field", shapes / "sphere.ply", "--outptu", tmp_path / "out.nrrd", status=2)[1]
     assert err.index("no option --outptu (did you mean --output?)") < err.index("required")
     err = run("slice", shapes / "sphere.nrrd", "out.png", status=2)[1]
     assert err.index("'out.png' was not expected") < err.index("required")
 
 
-def test_files_that_are_no_field_are_refused(shapes, tmp_path):
-    """The sites beside a field, images and meshes hold numbers that are no distances."""
+def test_slice_rejects_files_without_distances(shapes, tmp_path):
+    """A field's file of sites, images and meshes hold numbers that are not distances."""
     out = tmp_path / "out.png"
     for command in (["slice", shapes / "sphere.site.nrrd", "-o", out], ["info", shapes / "sphere.site.nrrd"]):
         assert "'sphere.nrrd'" in run(*command, status=1)[1]
@@ -481,7 +481,7 @@ def test_files_that_are_no_field_are_refused(shapes, tmp_path):
     assert not out.exists()
 
 
-def test_an_image_of_nan_is_refused_as_such(tmp_path):
+def test_an_image_of_nan_is_rejected_by_that_name(tmp_path):
     np.save(tmp_path / "nan.npy", np.full((2, 3, 4), np.nan))
     assert "every voxel is NaN" in run("field", tmp_path / "nan.npy", "-o", tmp_path / "out.nrrd", status=1)[1]
 
@@ -538,7 +538,7 @@ def test_field_on_a_device(shapes, tmp_path):
 
 @pytest.fixture(scope="module")
 def emulated_module():
-    """The module that runs CUDA's kernels on the host."""
+    """The module that runs CUDA kernels on the host."""
     path = Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so"
     assert path.is_file(), "build the target blum_emulated_cuda first"
     return path
@@ -558,7 +558,7 @@ def test_field_on_the_host_as_a_device(shapes, tmp_path, monkeypatch, emulated_m
         assert np.array_equal(found[1], found[2])
 
 
-def test_the_module_beside_a_tool_that_path_finds(shapes, tmp_path, monkeypatch, emulated_module):
+def test_a_tool_found_through_path_loads_the_module_beside_it(shapes, tmp_path, monkeypatch, emulated_module):
     place = tmp_path / "bin"
     place.mkdir()
     shutil.copy(BLUM, place / "blum")

@@ -1,4 +1,4 @@
-"""Each example in the tool's help runs, and each `blum` command in the documents names verbs and options that exist."""
+"""Proves that each example in the tool's help runs, and that `blum` commands in documents use existing options."""
 
 import functools
 import pathlib
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the too
 
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 def serves(line: str) -> bool:
-    """True for examples that serve a page until Ctrl-C; test_view.py does that."""
+    """True for examples that serve a page until Ctrl-C; test_view.py tests serving."""
     return line.startswith("blum view") and " -o " not in line
 
 
@@ -35,13 +35,13 @@ def verbs() -> list[tuple[str, ...]]:
 
 
 def examples(verb: tuple[str, ...]) -> list[str]:
-    """Commands of the examples in a help text. A comment follows after two spaces or more."""
+    """Commands of the examples in a help text. Two spaces or more separate a command from its comment."""
     text = help_of(*verb).partition("Examples:\n")[2].partition("\n\n")[0]
     return [re.split(r"\s{2,}|$", line.strip())[0] for line in text.splitlines() if line.strip().startswith("blum ")]
 
 
 def make_images(folder):
-    """Labelled tubes and balls as NIfTI and NRRD: labels 1 and 3; values of 300 and more; labels 2 and 7 to 9."""
+    """NIfTI and NRRD images of tubes and balls: labels 1 and 3; values of 300 and more; labels 2 and 7 to 9."""
     nibabel = pytest.importorskip("nibabel")
     x, y, z = np.mgrid[0:24, 0:24, 0:48]
     tube = ((x - 12) ** 2 + (y - 12) ** 2 < 36) & (z > 3) & (z < 44)
@@ -58,7 +58,7 @@ def make_images(folder):
 
 
 def make_points(folder):
-    """Points beside a part, in each format that examples name."""
+    """Points near a part, in each format that examples name."""
     points = np.random.default_rng(5).uniform(-1, 1, (200, 3))
     np.save(folder / "points.npy", points)
     np.savetxt(folder / "points.csv", points, delimiter=",", header="x,y,z", comments="")
@@ -66,7 +66,7 @@ def make_points(folder):
 
 
 def make_queries(folder):
-    """A vertex that falls through a triangle, and an edge that falls through another, with the answer 1."""
+    """A vertex that falls through a triangle, and an edge that falls through another edge; both answers are 1."""
     triangle = [(-1, -1, 0), (1, -1, 0), (0, 1, 0)]
     flat, high = [(-1, 0, 0), (1, 0, 0)], [(0, -1, 1), (0, 1, 1)]
     low = [(0, -1, -1), (0, 1, -1)]
@@ -79,7 +79,7 @@ def make_queries(folder):
 
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
-    """The files that examples read, small ones, by their names."""
+    """A folder with small versions of the files that examples read."""
     folder = tmp_path_factory.mktemp("examples")
     size = ("--size-x", 1, "--size-y", 0.5, "--size-z", 0.4)
     boxes = ("part.ply", "part.stl", "part.obj", "part-off.obj", "design.stl", "housing.stl", "arm.ply", "a.ply")
@@ -130,7 +130,7 @@ COMMAND = re.compile(r"^(?:\$ )?(blum [^\n#]*?)\s*(?:\s#.*|\s{2,}.*)?$", re.MULT
 
 
 def document_commands():
-    """The commands in code blocks of README, guides and the theory: (page, words)."""
+    """The commands in code blocks of the README and the documents: (page, command)."""
     for page in [PROJECT / "README.md", *sorted((PROJECT / "docs").rglob("*.md"))]:
         for block in re.findall(r"^```\w*\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL):
             for line in COMMAND.findall(block.replace("\\\n", " ")):
@@ -139,7 +139,7 @@ def document_commands():
                         yield page.relative_to(PROJECT), part
 
 
-def test_commands_in_documents_name_verbs_and_options_that_exist():
+def test_commands_in_documents_use_existing_verbs_and_options():
     count = 0
     for page, line in document_commands():
         words = shlex.split(line)[1:]
@@ -148,7 +148,7 @@ def test_commands_in_documents_name_verbs_and_options_that_exist():
             verb = (*verb, words.pop(0))
         assert verb or words[0].startswith("-"), f"{page}: {line}"
         if verb == ("make",):
-            continue  # Options depend on the shape; the guides' shapes are made below.
+            continue  # Options depend on the shape; the next test checks them.
         known = set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", help_of(*verb)))
         wrong = [word for word in words if re.match(r"--?[a-z]", word) and word.partition("=")[0] not in known]
         assert not wrong, f"{page}: {line}: {wrong}"

@@ -1,5 +1,5 @@
-# Proves that --extend writes the extended surface of every axis that is written, and of no other, that files hold
-# what they can, and that the summary tells what became of the rims.
+# Proves that --extend writes one extended surface for each written axis, in every format.
+# The summary reports the rim vertices that reach the border and those that do not.
 from pathlib import Path
 
 import numpy as np
@@ -71,7 +71,7 @@ def test_formats_hold_the_surface_or_its_columns(plate, tmp_path, extension):
     assert np.isclose(area(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)).sum(), 200)
 
 
-def test_every_angle_has_its_own(plate, tmp_path):
+def test_every_angle_has_its_own_extended_surface(plate, tmp_path):
     summary = medial(
         plate, tmp_path / "a.vtp", "--theta", "100,120", "--extend", tmp_path / "s.ply", "--graph", tmp_path / "g.json"
     )
@@ -83,7 +83,7 @@ def test_every_angle_has_its_own(plate, tmp_path):
     assert names(tmp_path) == sorted(wanted) == sorted(Path(name).name for name in summary["outputs"])
 
 
-def test_a_short_length_is_told(plate, tmp_path):
+def test_a_length_too_short_for_the_border_causes_a_warning(plate, tmp_path):
     summary = medial(
         plate, tmp_path / "a.vtp", "--theta", 110, "--extend", tmp_path / "s.ply", "--extend-length", 0.3, warns=True
     )
@@ -105,13 +105,13 @@ def test_a_short_length_is_told(plate, tmp_path):
         (["--extend", "a.vtp"], "a.vtp"),
     ],
 )
-def test_what_is_refused(plate, tmp_path, arguments, message):
+def test_wrong_arguments_are_rejected(plate, tmp_path, arguments, message):
     given = [str(tmp_path / word) if "." in word else word for word in arguments]
     _, err = run("medial", plate, "-o", tmp_path / "a.vtp", *given, status=2)
     assert message in err and not names(tmp_path)
 
 
-def test_axes_without_sheets_are_told(tmp_path):
+def test_axes_without_sheets_are_rejected_or_reported(tmp_path):
     run("make", "torus", "-o", tmp_path / "t.ply")
     medial_of = ["medial", tmp_path / "t.ply", "-o", tmp_path / "a.vtp", "--resolution", 32, "--theta", 170, "--extend"]
     _, err = run(*medial_of, tmp_path / "s.stl", status=2)
@@ -120,7 +120,7 @@ def test_axes_without_sheets_are_told(tmp_path):
     assert "the axis has no rims" in out and names(tmp_path) == ["a.vtp", "s.obj", "t.ply"]
 
 
-def test_images_are_extended_when_smooth(tmp_path):
+def test_images_need_smooth_to_be_extended(tmp_path):
     run("make", "ball_image", "-o", tmp_path / "b.nrrd")
     _, err = run("medial", tmp_path / "b.nrrd", "-o", tmp_path / "a.vtp", "--extend", tmp_path / "s.ply", status=2)
     assert "--smooth" in err and names(tmp_path) == ["b.nrrd"]

@@ -1,4 +1,4 @@
-# Proves what `blum field` warns of, and what it takes for a mesh or an image.
+# Proves that `blum field` warns of dubious meshes and rejects fields as input unless they have a threshold.
 import pytest
 
 from tool import BLUM, run, run_json
@@ -21,8 +21,8 @@ def test_warnings_go_to_stderr(tmp_path):
         assert run_json(*command, "--sign", "none")["warnings"] == []
 
 
-def test_shells_that_cross_face_the_right_way(shapes, tmp_path):
-    """Winding numbers join overlapping parts; a part within another that faces as that one does is a mistake."""
+def test_only_wrongly_nested_shells_cause_a_warning_about_facing(shapes, tmp_path):
+    """Winding numbers unite overlapping parts. A part inside another part must face the other way."""
     run("make", "box", "-o", tmp_path / "box.obj")
     corners = [line for line in (tmp_path / "box.obj").read_text().splitlines() if line.startswith("v ")]
     faces = [line for line in (tmp_path / "box.obj").read_text().splitlines() if line.startswith("f ")]
@@ -40,7 +40,7 @@ def test_shells_that_cross_face_the_right_way(shapes, tmp_path):
     assert "face the wrong way" in err and "do not all face away" in out
 
 
-def test_a_field_is_no_image_but_with_a_threshold(shapes, tmp_path):
+def test_a_field_is_an_image_only_with_a_threshold(shapes, tmp_path):
     for end in ("nrrd", "npz"):
         run("field", shapes / "torus.obj", "-o", tmp_path / f"t.{end}", "--resolution", 12)
         err = run("field", tmp_path / f"t.{end}", "-o", tmp_path / "out.npz", status=1)[1]

@@ -1,4 +1,4 @@
-"""`blum formats` says what is read and written; each format has first inputs for its fuzz target."""
+"""Proves that `blum formats` lists the formats, and that each one has a fuzz target with a corpus."""
 
 import pathlib
 
@@ -17,7 +17,7 @@ def test_formats_are_listed_for_people_and_programs():
     text, _ = run("formats")
     for one in formats:
         assert one["extensions"] or one["written"]
-        assert set(one["written"]) <= set(one["extensions"]) or not one["extensions"]  # the last are not read
+        assert set(one["written"]) <= set(one["extensions"]) or not one["extensions"]  # else only written
         assert all(extension in text for extension in one["extensions"] + one["written"])
         assert one["holds"] in text and one["opens_in"] in text
 
@@ -26,6 +26,6 @@ def test_each_format_is_fuzzed():
     read = [one for one in run_json("formats")["formats"] if one["extensions"]]
     read = [one for one in read if one["content"] in {"mesh", "image", "field", "complex"}]
     wanted = {f"fuzz_{one['content']}_{one['name'].lower()}" for one in read}
-    wanted |= {"fuzz_queries_csv", "fuzz_points_csv", "fuzz_maps_npz"}  # what `blum ccd`, `query` and `view` read
+    wanted |= {"fuzz_queries_csv", "fuzz_points_csv", "fuzz_maps_npz"}  # the inputs of `blum ccd`, `query` and `view`
     assert wanted == {folder.name for folder in CORPUS.iterdir()}
     assert all(any(folder.iterdir()) for folder in CORPUS.iterdir())

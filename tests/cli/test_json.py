@@ -1,4 +1,4 @@
-# Proves that JSON of all verbs begins with what made it.
+# Proves that the JSON of all verbs begins with Blum's version and the command.
 import pytest
 
 from tool import BLUM, run, run_json

@@ -280,7 +280,7 @@ def test_voxels_finer_than_requested_are_reported(solids, tmp_path):
     longest = max(upper - lower for lower, upper in zip(*run_json("info", tmp_path / "p.obj")["bounds"].values()))
     assert solid["asked_spacing"] == pytest.approx(longest / 16) and spacing < 0.6 * longest / 16
     (line,) = [line for line in out.splitlines() if line.startswith("refined")]
-    assert f"voxels from side {longest / 16:.6g} to {spacing:.6g}: no larger voxel lies inside" in line
+    assert f"voxels from side {longest / 16:.6g} to {spacing:.6g}: no larger voxel has its centre inside" in line
     assert "refined" not in run("medial", solids / "box.obj", "-o", tmp_path / "b.vtp", "--resolution", 12)[0]
 
 
@@ -345,7 +345,7 @@ def test_an_open_mesh_is_certified_against_voxels(solids, axes, tmp_path):
     command = ["medial", solids / "open.obj", "-o", tmp_path / "o.npz", "--resolution", 16]
     out, err = run(*command, warns=True)
     assert "it is open (3 boundary edges)" in err and "winding number is above 1/2" in err
-    assert "topology of the voxels of the winding number of side 0.0625 (" in out
+    assert "topology of the voxels inside by winding number, side 0.0625 (" in out
     summary = run_json(*command, warns=True)
     assert summary["solids"][0]["rule"] == "winding"
     assert axis_of(summary)["certificate"]["against"] == "winding"
@@ -447,7 +447,7 @@ USAGE = [
     ("medial", "required"),
     ("medial box.obj", "--output"),
     ("medial box.obj -o out.stl", "extension"),
-    ("medial box.obj -o box.obj", "is the input"),
+    ("medial box.obj -o box.obj", "is also the input"),
     ("medial box.obj -o out.obj --json out.obj", "two outputs"),
     ("medial box.obj -o out.vtp --theta 181", "0 to 180"),
     ("medial box.obj -o out.vtp --theta=-1", "negative"),
@@ -484,7 +484,7 @@ USAGE = [
     ("verify ball.nrrd box.npz --weld", "meshes"),
     ("verify ball.nrrd box.npz --label 1,2", "one label"),
     ("verify ball.nrrd box.npz --label 1 --threshold 1", "--threshold"),
-    ("verify box.obj box.npz --json box.obj", "is the input"),
+    ("verify box.obj box.npz --json box.obj", "is also the input"),
 ]
 
 

@@ -1,4 +1,4 @@
-# Proves that pictures show what the field holds: the right way up, one colour for each region, lines at levels only.
+# Proves that pictures of fields are the right way up, with one colour for each region and lines only at levels.
 import math
 
 import numpy as np
@@ -10,7 +10,7 @@ pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the too
 
 
 def test_a_distance_picture_is_right_way_up(tmp_path, shapes):
-    # A field that grows with y alone: the inside (warm) must be at the bottom, the outside (blue) at the top.
+    # The field grows with y alone. The inside (warm) must be at the bottom, the outside (blue) at the top.
     ramp = np.broadcast_to(np.linspace(-1, 2, 40, dtype="<f4")[None, :, None], (2, 40, 40))
     header = "NRRD0004\ntype: float\ndimension: 3\nsizes: 40 40 2\nencoding: raw\nendian: little\nspacings: 0.0769231 0.0769231 0.0769231\n\n"
     (tmp_path / "ramp.nrrd").write_bytes(header.encode() + ramp.tobytes())
@@ -40,25 +40,25 @@ def layer_picture(folder, values):
     (folder / "layer.nrrd").write_bytes(header.encode() + values.astype("<f4").tobytes())
     run("slice", folder / "layer.nrrd", "-o", folder / "layer.png", "--scale", "10")
     height, width = 10 * values.shape[0], 10 * values.shape[1]
-    return read_png(folder / "layer.png")[2][20:20 + height, 20:20 + width].astype(int)  # margins of 20
+    return read_png(folder / "layer.png")[2][20:20 + height, 20:20 + width].astype(int)  # without margins of 20
 
 
-def test_a_plateau_at_a_contour_level_is_no_line(tmp_path):
+def test_a_plateau_at_a_contour_level_draws_no_line(tmp_path):
     y, x = np.mgrid[0:40, 0:40]
     radius = np.hypot(x - 19.7, y - 19.3) / 10
-    # The plateau is the highest value either way, and so of one colour; 1 is a level and 0.99 is none.
+    # The plateau is the highest value in both pictures, so it has one colour. 1 is a level, 0.99 is not.
     at_level, beside = (layer_picture(tmp_path, np.minimum(radius, top))
                         for top in (1.0, 0.99))
     corner = (slice(0, 60), slice(0, 60))
     assert np.ptp(at_level[corner].reshape(-1, 3), axis=0).max() == 0
     assert np.array_equal(at_level[corner], beside[corner])
-    # Rounding of the plateau's values draws nothing either.
+    # Rounding of the plateau's values draws no line.
     noise = np.where((x + y) % 2 == 0, 1, 1 + 1e-7)
     assert np.ptp(layer_picture(tmp_path, np.minimum(radius, 1) * noise)[corner].reshape(-1, 3), axis=0).max() <= 1
 
 
-def test_ridges_have_no_worms(tmp_path):
-    """Along a ridge oblique to the grid, a contour is crossed once where the field passes its level."""
+def test_contours_do_not_repeat_along_an_oblique_ridge(tmp_path):
+    """Along a ridge oblique to the grid, each contour appears once, where the field passes its level."""
     y, x = np.mgrid[0:40, 0:40]
     across, along = (x - y + 0.3) / math.sqrt(2), (x + y) / math.sqrt(2)
     pixels = layer_picture(tmp_path, 39.5 - np.abs(across) + 0.02 * along)

@@ -1,4 +1,4 @@
-"""`blum query` tells distances of points, `blum sample` makes points of surfaces; what their files hold."""
+"""Proves that `blum query` writes exact distances of points, and that `blum sample` draws points of surfaces."""
 
 import csv
 
@@ -17,7 +17,7 @@ def box(tmp_path_factory):
 
 
 def box_distance(points):
-    """Of the box [-1/2, 1/2]^3, negative inside."""
+    """Signed distance to the box [-1/2, 1/2]^3, negative inside."""
     beyond = np.abs(points) - 0.5
     return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(-1), 0)
 
@@ -45,7 +45,7 @@ def test_distances_of_points_in_every_format(box, tmp_path):
         assert all(np.array_equal(found[key], again[key]) for key in ("distance", "closest", "site", "triangle")), name
 
 
-def test_what_is_written_reads_back(box, tmp_path):
+def test_written_distances_read_back_as_points(box, tmp_path):
     points = np.random.default_rng(2).uniform(-1, 1, (300, 3))
     np.save(tmp_path / "p.npy", points)
     run("query", box, tmp_path / "p.npy", "-o", tmp_path / "d.npz", "--max-distance", "0.3", "--sign", "none")
@@ -103,7 +103,7 @@ def test_samples_of_the_surface(box, tmp_path):
     run("sample", box, "-n", "400", "-o", tmp_path / "even.npz", "--blue-noise")
     even = np.load(tmp_path / "even.npz")["points"]
     apart = np.linalg.norm(even[:, None] - even[None], axis=2) + 9 * np.eye(400)
-    assert apart.min() > 0.06  # a lattice of triangles: 0.13
+    assert apart.min() > 0.06  # a triangular lattice has 0.13
 
 
 def test_samples_near_the_surface(box, tmp_path):
@@ -113,7 +113,7 @@ def test_samples_near_the_surface(box, tmp_path):
     assert np.abs(found["points"][1500:]).max() <= 0.55
 
 
-def test_what_makes_no_sense_is_refused(box, tmp_path):
+def test_wrong_points_and_options_are_rejected(box, tmp_path):
     (tmp_path / "short.csv").write_text("x,y,z\n1,2,3\n4,5\n")
     (tmp_path / "word.xyz").write_text("1 2 3\n4 five 6\n")
     (tmp_path / "nan.csv").write_text("nan,2,3\n")

@@ -1,5 +1,5 @@
-"""`blum ccd` answers single questions exactly, `blum proximity` finds all colliding pairs of a mesh that moves, in every
-format; both say what was wrong."""
+"""Proves that `blum ccd` answers single queries exactly, and that `blum proximity continuous` finds all colliding pairs
+of a deforming mesh in every format. Both reject wrong input."""
 
 import csv
 import json
@@ -48,7 +48,7 @@ def test_answers_are_compared_with_the_truth(tmp_path):
     assert "1 false negative, 1 false positive" in run("ccd", tmp_path / "wrong-vf.csv")[0]
 
 
-def test_edges_are_told_by_name_or_option(tmp_path):
+def test_the_kind_of_queries_follows_from_name_or_option(tmp_path):
     cross = [(-1, 0, 0), (1, 0, 0), (0, -1, 1), (0, 1, 1)], [(-1, 0, 0), (1, 0, 0), (0, -1, -1), (0, 1, -1)]
     write_queries(tmp_path / "cloth_ee.csv", [cross], [1])
     assert counts(run_json("ccd", tmp_path / "cloth_ee.csv")) == [1, 1, 0, 0, 0]
@@ -75,16 +75,16 @@ def test_edges_are_told_by_name_or_option(tmp_path):
         ("9007199254740993,1,2,1,3,1", "not exactly a double"),
         ("9" * 400 + ",1,2,1,3,1", "not exactly a double"),
         ("1,1,2,1,3,1,2", "must be 0 or 1"),
-        ("1,1,2,1,3,1,1", "within a question"),
+        ("1,1,2,1,3,1,1", "within a query"),
     ],
 )
-def test_what_is_no_question_is_refused(tmp_path, line, message):
+def test_malformed_queries_are_rejected(tmp_path, line, message):
     (tmp_path / "vf.csv").write_text(line + "\n")
     error = run("ccd", tmp_path / "vf.csv", status=1)[1]
     assert message in error and "line 1" in error
 
 
-def test_files_without_questions_are_refused(tmp_path):
+def test_files_without_queries_are_rejected(tmp_path):
     (tmp_path / "vf.csv").write_text("\n\n")
     assert "no queries" in run("ccd", tmp_path / "vf.csv", status=1)[1]
     assert "absent-vf.csv" in run("ccd", tmp_path / "absent-vf.csv", status=1)[1]
@@ -95,7 +95,7 @@ def test_files_without_questions_are_refused(tmp_path):
     rows = (tmp_path / "a-vf.csv").read_text().splitlines()
     rows[3] = rows[3][:-1] + "0"
     (tmp_path / "a-vf.csv").write_text("\n".join(rows))
-    assert "line 4: the answer differs from that of the row before" in run("ccd", tmp_path / "a-vf.csv", status=1)[1]
+    assert "line 4: the answer differs from the answer in" in run("ccd", tmp_path / "a-vf.csv", status=1)[1]
     write_queries(tmp_path / "b-vf.csv", [FALLING], [1])
     assert "tolerance" in run("ccd", tmp_path / "b-vf.csv", "--tolerance", "0", status=2)[1]
 
@@ -107,7 +107,7 @@ def write_obj(path, vertices, triangles):
 
 @pytest.fixture
 def frames(tmp_path):
-    """A triangle that falls through another."""
+    """Two frames in which a triangle falls through another one."""
     triangles = [(0, 1, 2), (3, 4, 5)]
     floor = [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0)]
     falling = np.array([(0.5, 0.5, 1.0), (1.0, 0.5, 1.5), (9.0, 0.5, 1.5)])
@@ -152,7 +152,7 @@ def test_pairs_do_not_depend_on_threads(frames):
     assert files[0] == files[1] == files[2]
 
 
-def test_what_is_no_motion_is_refused(frames):
+def test_frames_without_a_common_motion_are_rejected(frames):
     start, end, out = frames / "start.obj", frames / "end.obj", frames / "p.npz"
     write_obj(frames / "less.obj", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
     vertices = [(float(k), 0.0, 0.0) for k in range(6)]
@@ -186,7 +186,7 @@ def test_every_colliding_pair_of_the_cloth_is_found(tmp_path):
     found = np.load(tmp_path / "p.npz")
     triangles = ply_triangles(frames[0])
     edges = np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
-    edges = edges[np.lexsort((edges[:, 0], edges[:, 1]))]  # by (larger, smaller vertex), as the ids of the data set
+    edges = edges[np.lexsort((edges[:, 0], edges[:, 1]))]  # the data set's order: by larger, then smaller vertex
     vertices = 46598
 
     def colliding(kind):
@@ -203,7 +203,7 @@ def test_every_colliding_pair_of_the_cloth_is_found(tmp_path):
 
 
 def ply_triangles(path):
-    """Of a big-endian file of floats, whose faces have a count of one byte and indices of four."""
+    """Triangles of a big-endian PLY file whose faces have a one-byte count and four-byte indices."""
     data = path.read_bytes()
     head, body = data.split(b"end_header\n", 1)
     sizes = {line.split()[1]: int(line.split()[2]) for line in head.decode().splitlines() if line.startswith("element")}

@@ -1,5 +1,6 @@
-"""`blum proximity continuous --to END...` reports collisions of several moving objects: what Python says,
-in every format with the objects of each pair, at times that are known; it says what was wrong."""
+"""Proves that `blum proximity continuous --to END...` finds the collisions of moving objects at known times.
+
+Every format equals the package's arrays and names the objects of each pair. Wrong input is rejected."""
 
 import csv
 import json
@@ -21,7 +22,7 @@ def moved(mesh, *offset):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A ball that falls through a plate, one that falls beside it, and a ring that turns inside out."""
+    """A ball that falls through a plate, a ball that falls beside the plate, and a ring that turns inside out."""
     folder = tmp_path_factory.mktemp("moving")
     ball, plate = blum.generate("sphere", radius=0.5), blum.generate("box", size_x=4, size_y=4, size_z=0.2)
     ring = blum.generate("torus", ring_segments=16, tube_segments=8)
@@ -44,7 +45,7 @@ def continuous(folder, start, end, output, *options):
 
 
 def python_answer(folder, start, end, compare_self=False, **options):
-    """The arrays that files should hold, as the package finds them."""
+    """The arrays that files must hold, computed by the package."""
     scene = blum.ProximityScene()
     meshes = [blum.read_mesh(folder / name) for name in start]
     for mesh in meshes:
@@ -101,7 +102,7 @@ def options_of(options):
 
 
 @pytest.mark.parametrize(("start", "end", "options"), SCENES)
-def test_every_format_holds_what_python_says(folder, tmp_path, start, end, options):
+def test_every_format_equals_the_package(folder, tmp_path, start, end, options):
     wanted, found = python_answer(folder, start, end, **options)
     assert len(wanted["vertex_face"]) > 0 and len(wanted["edge_edge"]) > 0
     for extension, read in READERS.items():
@@ -129,9 +130,8 @@ def test_every_format_holds_what_python_says(folder, tmp_path, start, end, optio
     assert [metadata[f"end_{k}"] for k in range(len(start))] == end
 
 
-def test_features_are_drawn_where_they_meet(folder, tmp_path):
-    """The ball falls by 4 onto the plate, which rests: of each pair vertex and face, or both edges, have a point in
-    common in the file, as planes or lines that meet do."""
+def test_features_are_drawn_at_their_contact(folder, tmp_path):
+    """The ball falls by 4 onto the resting plate. In the file, the two features of each pair share a point."""
     wanted, _ = python_answer(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"])
     continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], tmp_path / "p.vtp")
     drawn = blum.read_complex(tmp_path / "p.vtp").complex
@@ -144,8 +144,8 @@ def test_features_are_drawn_where_they_meet(folder, tmp_path):
     assert drawn.edge_columns["time"].tolist() == np.repeat(wanted["edge_edge_time"], 2).tolist()
     points = drawn.vertices.reshape(-1, 4, 3)
     assert len(points) == faces + edges
-    # Of a vertex and a face, or two edges, that have a point in common, all four points are in one plane. A time is at
-    # most 1e-6 early, in which the ball falls by 4e-6.
+    # The four corners of two features that share a point lie in one plane. A time is at most 1e-6 early, and in 1e-6
+    # the ball falls by 4e-6.
     a, b, c, d = points.transpose(1, 0, 2)
     normal = np.cross(np.where(np.arange(len(points))[:, None] < faces, c - b, b - a), d - c)
     height = np.abs(((c - a) * normal).sum(1)) / np.linalg.norm(normal, axis=1)
@@ -153,7 +153,7 @@ def test_features_are_drawn_where_they_meet(folder, tmp_path):
 
 
 @pytest.mark.parametrize(("start", "end", "options"), SCENES)
-def test_the_summary_tells_each_pair_of_objects(folder, tmp_path, start, end, options):
+def test_the_summary_lists_each_pair_of_objects(folder, tmp_path, start, end, options):
     answer = continuous(folder, start, end, tmp_path / "p.npz", *options_of(options))
     arrays = read_npz(tmp_path / "p.npz")
     assert [pair["object"] for pair in answer["pairs"]] == sorted(pair["object"] for pair in answer["pairs"])
@@ -168,8 +168,8 @@ def test_the_summary_tells_each_pair_of_objects(folder, tmp_path, start, end, op
     assert answer["query"] == "continuous" and answer["self"] is ("compare_self" in options)
 
 
-def test_a_ball_meets_a_plate_when_it_must(folder, tmp_path):
-    """Its lowest point is 1.4 above the plate and falls by 4."""
+def test_a_ball_meets_a_plate_at_the_known_time(folder, tmp_path):
+    """The lowest point of the ball is 1.4 above the plate and falls by 4."""
     out = tmp_path / "p.npz"
     answer = continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], out)
     assert 1.4 / 4 - TOLERANCE <= answer["earliest"] <= 1.4 / 4
@@ -183,7 +183,7 @@ def test_a_ball_meets_a_plate_when_it_must(folder, tmp_path):
 
 
 def test_two_balls_meet_in_the_middle(folder, tmp_path):
-    """Octahedra whose tips are 3 apart, and come closer by 4; or by 2."""
+    """The tips of two octahedra are 3 apart and approach by 4, or by 2, which is too little."""
     tips = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]) * 0.5
     triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
     for name, x in {"a1": -2, "a2": 0, "b1": 2, "b2": 0}.items():
@@ -195,7 +195,7 @@ def test_two_balls_meet_in_the_middle(folder, tmp_path):
 
 
 @pytest.mark.parametrize("extension", READERS)
-def test_what_passes_by_is_a_file_too(folder, tmp_path, extension):
+def test_motions_without_contact_write_empty_files(folder, tmp_path, extension):
     output = tmp_path / f"p.{extension}"
     answer = continuous(folder, ["beside1.ply", "plate.ply"], ["beside2.ply", "plate.ply"], output)
     assert [answer["vertex_face"], answer["edge_edge"], answer["earliest"], answer["pairs"]] == [0, 0, None, []]
@@ -203,8 +203,8 @@ def test_what_passes_by_is_a_file_too(folder, tmp_path, extension):
         "vertex_face_time": 0, "edge_edge_time": 0}  # fmt: skip
 
 
-def test_a_file_that_says_the_same_rests_too(folder, tmp_path):
-    """Naming a copy of a file is the same as naming the file again."""
+def test_an_object_with_an_equal_end_file_rests(folder, tmp_path):
+    """Naming a copy of a file as the end gives the same result as naming the file again."""
     (tmp_path / "copy.ply").write_bytes((folder / "plate.ply").read_bytes())
     one = continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], tmp_path / "one.csv")
     other = continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", tmp_path / "copy.ply"], tmp_path / "other.csv")
@@ -212,7 +212,7 @@ def test_a_file_that_says_the_same_rests_too(folder, tmp_path):
     assert [one["objects"][1]["moves"], other["objects"][1]["moves"]] == [False, True]
 
 
-def test_it_is_told_in_words(folder, tmp_path):
+def test_text_reports_objects_pairs_and_first_time(folder, tmp_path):
     files = ["--to", folder / "ball2.ply", folder / "plate.ply", "-o", tmp_path / "p.csv"]
     out = run("proximity", "continuous", folder / "ball1.ply", folder / "plate.ply", *files)[0]
     assert "2 objects, of which 1 moves; 5,132 triangles" in out
@@ -223,11 +223,11 @@ def test_it_is_told_in_words(folder, tmp_path):
     assert run("proximity", "continuous", folder / "ball1.ply", folder / "plate.ply", *files, "--quiet")[0] == ""
 
 
-def test_many_pairs_of_objects_are_cut_short_in_words(folder, tmp_path):
+def test_text_lists_only_the_first_pairs_of_objects(folder, tmp_path):
     files = [folder / "ball1.ply"] + [folder / "plate.ply"] * 7
     ends = [folder / "ball2.ply"] + [folder / "plate.ply"] * 7
     out = run("proximity", "continuous", *files, "--to", *ends, "-o", tmp_path / "p.csv")[0]
-    assert "22 pairs of objects more: --json FILE lists all" in out  # plates that rest in one place meet, too
+    assert "22 pairs of objects more: --json FILE lists all" in out  # resting plates in one place meet, too
 
 
 def test_files_do_not_depend_on_threads(folder, tmp_path):
@@ -241,8 +241,8 @@ def test_files_do_not_depend_on_threads(folder, tmp_path):
         assert files[0] == files[1] == files[2]
 
 
-def test_frames_of_one_mesh_say_what_they_said(folder, tmp_path):
-    """Without --to two files are frames of one mesh; the same as one object with an end."""
+def test_frames_of_one_mesh_equal_one_object_with_an_end(folder, tmp_path):
+    """Without --to, two files are frames of one mesh. The pairs equal those of one object with --to."""
     run("proximity", "continuous", folder / "ring1.ply", folder / "ring2.ply", "--self", "-o",
         tmp_path / "frames.npz")  # fmt: skip
     continuous(folder, ["ring1.ply"], ["ring2.ply"], tmp_path / "object.npz", "--self")
@@ -258,7 +258,7 @@ def test_frames_of_one_mesh_say_what_they_said(folder, tmp_path):
     assert text["face"].tolist() == frames["face"].tolist()
 
 
-def test_what_is_no_motion_is_refused(folder, tmp_path):
+def test_ends_that_do_not_match_are_rejected(folder, tmp_path):
     ball, fallen, plate, ring = (folder / name for name in ("ball1.ply", "ball2.ply", "plate.ply", "ring1.ply"))
     out = tmp_path / "p.npz"
     mesh = blum.read_mesh(plate)
@@ -266,7 +266,7 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
     blum.Mesh(mesh.vertices * 1e72, mesh.triangles).write(tmp_path / "far.obj")
     two = [ball, plate, "-o", out, "--to"]
     for arguments, status, message in [
-        ([*two, fallen], 2, "--to has 1 file, but 2 objects are given; give one file for each, in the same order"),
+        ([*two, fallen], 2, "--to has 1 file, but 2 objects are given; give one file for each object, in the"),
         ([*two, fallen, plate, plate], 2, "--to has 3 files, but 2 objects are given"),
         ([*two, plate, fallen], 1, f"'{plate}': it has 8 vertices, not 2,562 like '{ball}': frames of one motion need"),
         ([*two, fallen, tmp_path / "other.ply"], 1, "other.ply': its triangles, segments or points have other corners"),

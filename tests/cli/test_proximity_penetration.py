@@ -1,5 +1,6 @@
-"""`blum proximity penetration` reports the common parts of solids, and `--frames` what each frame of a moving
-object holds, for `blum view`; both say what was wrong."""
+"""Proves that `blum proximity penetration` and `signed` report the overlaps of solids as the package does.
+
+`--frames` writes the pairs of each frame for `blum view`. Wrong input is rejected."""
 
 import json
 
@@ -13,7 +14,7 @@ blum = pytest.importorskip("blum")
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A box from -1/2 to 1/2, a ball that reaches 0.1 into it from above, and frames of the ball going down."""
+    """A box from -1/2 to 1/2, a ball that reaches 0.1 into the box from above, and frames of the sinking ball."""
     folder = tmp_path_factory.mktemp("penetration")
     run("make", "box", "-o", folder / "box.ply")
     ball = blum.generate("sphere", radius=0.5, frequency=6)
@@ -30,7 +31,7 @@ def frames(folder):
     return [folder / f"frame{k}.ply" for k in range(4)]
 
 
-def test_tells_what_solids_have_in_common(folder):
+def test_the_overlap_of_two_solids_is_reported(folder):
     answer = run_json(
         "proximity", "penetration", folder / "box.ply", folder / "ball.ply", "-o", folder / "parts.npz"
     )
@@ -66,7 +67,7 @@ def test_finer_tolerance_brings_the_bound_closer(folder):
     assert part("--depth-tolerance", "1")["depth_bound"] <= 2 * fine["depth"] + 1e-12
 
 
-def test_says_what_was_wrong_with_solids(folder, tmp_path):
+def test_wrong_solids_and_options_are_rejected(folder, tmp_path):
     open_mesh = blum.generate("box")
     blum.Mesh(open_mesh.vertices, np.asarray(open_mesh.triangles)[1:]).write(tmp_path / "open.ply")
     files = folder / "ball.ply", tmp_path / "open.ply"
@@ -82,10 +83,10 @@ def test_says_what_was_wrong_with_solids(folder, tmp_path):
     assert "--depth-tolerance" in run("proximity", "separation", *two, "--depth-tolerance", "0.1", status=2)[1]
 
 
-def test_messages_call_objects_by_their_files(folder, tmp_path):
+def test_messages_name_objects_by_their_files(folder, tmp_path):
     box = blum.generate("box")
     open_mesh = blum.Mesh(box.vertices + [0.2, 0.1, 0.1], np.asarray(box.triangles)[1:])
-    open_mesh.write(tmp_path / "object 0.ply")  # a name that could be a number
+    open_mesh.write(tmp_path / "object 0.ply")  # a name that looks like the number of an object
     blum.Mesh(box.vertices, np.asarray(box.triangles)[:, ::-1]).write(tmp_path / "inward.ply")
     blum.Mesh(box.vertices, np.repeat(np.asarray(box.triangles)[:1], 40000, axis=0)).write(tmp_path / "heap.ply")
     first, odd, inward, heap = folder / "box.ply", *(tmp_path / f"{name}.ply" for name in ("object 0", "inward", "heap"))
@@ -93,7 +94,7 @@ def test_messages_call_objects_by_their_files(folder, tmp_path):
         (["penetration", first, odd], f"'{odd}' is not closed"),
         (["signed", first, odd], f"'{odd}' is not closed"),
         (["penetration", first, inward], f"'{inward}' faces inwards"),
-        (["separation", first, heap, "--self"], f"'{heap}': 40000 primitives meet at vertex"),
+        (["separation", first, heap, "--self"], f"'{heap}': 40000 primitives share vertex"),
         (["penetration", first, odd, "--frames", "--self"], f"'{odd}' is not closed"),
     ):
         assert run("proximity", *arguments, status=1)[1].startswith(f"blum: error: {wanted}"), arguments
@@ -121,7 +122,7 @@ def test_all_pairs_are_those_of_the_library(folder, tmp_path):
             assert file[name].tolist() == getattr(signed, name).tolist(), name
 
 
-def test_signed_is_one_number_for_each_two_solids(folder, tmp_path):
+def test_signed_returns_one_number_for_each_pair_of_solids(folder, tmp_path):
     ball = blum.read_mesh(folder / "ball.ply")
     blum.Mesh(ball.vertices + [5, 0, 0], ball.triangles).write(tmp_path / "far.ply")
     blum.Mesh(ball.vertices * 0.1, ball.triangles).write(tmp_path / "swallowed.ply")
@@ -146,13 +147,13 @@ def test_signed_is_one_number_for_each_two_solids(folder, tmp_path):
 
 
 @pytest.mark.parametrize("query", ["separation", "closest", "collide", "continuous", "penetration"])
-def test_tells_of_each_frame_for_the_viewer(folder, query):
+def test_pairs_of_each_frame_are_written_for_the_viewer(folder, query):
     out = folder / f"{query}.json"
     answer = run_json("proximity", query, *frames(folder), "--frames", "--self", "-o", out)
     told = json.loads(out.read_text())["frames"]
     assert answer["frames"] == len(told) == 4
     assert answer["pairs"] == [len(frame["pairs"]) for frame in told]
-    # Apart by 0.3 and 0.1, then 0.1 and 0.3 in each other; on the way from the second frame to the third they meet.
+    # The distances are 0.3, 0.1, -0.1 and -0.3: contact is between the second frame and the third.
     has_pairs = {
         "separation": [1, 1, 1, 1],
         "closest": [1, 1, 1, 1],
@@ -169,7 +170,7 @@ def test_tells_of_each_frame_for_the_viewer(folder, query):
     run("view", *frames(folder), "--frames", "--pairs", out, "-o", folder / f"{query}.html")
 
 
-def test_says_what_was_wrong_with_frames(folder):
+def test_wrong_options_with_frames_are_rejected(folder):
     out = folder / "bad.json"
     for arguments, word in (
         ([*frames(folder), "--frames", "-o", out], "--self"),

@@ -1,5 +1,6 @@
-"""What `blum proximity` says without a file, of files that are no frames of one mesh, and by which names; how --limit and
---weld work."""
+"""Proves the texts of `blum proximity`: results without a file, names of objects, and errors for differing frames.
+
+Also proves --limit, --weld and --skip-changed."""
 
 import json
 
@@ -13,7 +14,7 @@ blum = pytest.importorskip("blum")
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Boxes that cross, one of them also open and not welded; frames of two boxes that collide, and such as differ."""
+    """Two boxes that cross, an open box, an unwelded box; frames of two boxes that collide, and frames that differ."""
     folder = tmp_path_factory.mktemp("words")
     box = blum.generate("box")
     crossing = blum.Mesh(box.vertices + [0.5, 0.25, 0.25], box.triangles)
@@ -52,7 +53,7 @@ def test_frames_that_differ_are_an_error(folder, tmp_path, other, what):
     assert not out.exists()
 
 
-def test_steps_that_change_are_skipped_and_told(folder, tmp_path):
+def test_steps_that_change_are_skipped_and_reported(folder, tmp_path):
     files = "frame0.obj", "frame1.obj", "short.obj", "short.obj"
     out = tmp_path / "pairs.json"
     command = [*frames(folder, *files), "--skip-changed", "-o", out]
@@ -77,7 +78,7 @@ def test_pairs_are_counted_without_a_file(folder, query):
     assert f"{answer['pairs']} pairs" in out and "wrote" not in out
 
 
-def test_first_time_is_told_without_a_file(folder):
+def test_first_time_is_reported_without_a_file(folder):
     start, end = folder / "frame0.obj", folder / "frame1.obj"
     for command in (
         ["proximity", "continuous", start, end, "--self"],
@@ -95,7 +96,7 @@ def test_first_time_is_told_without_a_file(folder):
     assert f"from '{folder / 'frame0.obj'}' to '{folder / 'frame1.obj'}', at time 0.66666" in out and "view" not in out
 
 
-def test_limit_cuts_files_short_and_says_so(folder, tmp_path):
+def test_limit_shortens_files_and_is_reported(folder, tmp_path):
     start, end = folder / "frame0.obj", folder / "frame1.obj"
     commands = {
         "collide": ["proximity", "collide", folder / "box.obj", folder / "crossing.obj"],
@@ -108,7 +109,7 @@ def test_limit_cuts_files_short_and_says_so(folder, tmp_path):
         answer = run_json(*command, "-o", short, "--limit", 5)
         assert answer["limit"] == 5
         assert short.read_text().splitlines() == whole.read_text().splitlines()[:6], name
-        assert "; only the first 5 were written (--limit)" in run(*command, "-o", short, "--limit", 5)[0]
+        assert "; only the first 5 pairs were written (--limit)" in run(*command, "-o", short, "--limit", 5)[0]
         assert "(--limit)" not in run(*command, "-o", short, "--limit", 10000)[0]
         assert whole.read_bytes() == short.read_bytes()
     out = tmp_path / "pairs.json"
@@ -117,14 +118,14 @@ def test_limit_cuts_files_short_and_says_so(folder, tmp_path):
     assert "--limit '-1'" in run(*commands["collide"], "--limit", "-1", status=2)[1]
 
 
-def test_to_without_files_says_so(folder, tmp_path):
+def test_to_without_files_is_rejected(folder, tmp_path):
     two = [folder / "box.obj", folder / "crossing.obj"]
     err = run("proximity", "continuous", *two, "--to", "-o", tmp_path / "z.csv", status=2)[1]
     assert "--to needs a file for each SCENE" in err
     assert names(tmp_path) == []
 
 
-def test_objects_of_one_name_are_told_apart(folder, tmp_path):
+def test_objects_of_one_file_name_get_distinct_names(folder, tmp_path):
     two = [folder / "first" / "part.obj", folder / "second" / "part.obj"]
     assert "first/part.obj, second/part.obj  they meet" in run("proximity", "separation", *two, "-o", tmp_path / "p.json")[0]
     metadata = json.loads((tmp_path / "p.json").read_text())["metadata"]
@@ -133,7 +134,7 @@ def test_objects_of_one_name_are_told_apart(folder, tmp_path):
     assert "second/part.obj, box.obj" in out and "first/part.obj, first/part.obj" in out
 
 
-def test_errors_of_solids_name_files_and_what_to_do(folder):
+def test_errors_of_solids_name_files_and_a_remedy(folder):
     box = folder / "box.obj"
     for file, word in (("open.obj", "is not closed, or its triangles"), ("loose.obj", "weld")):
         err = run("proximity", "penetration", folder / file, box, status=1)[1]
@@ -153,14 +154,14 @@ def test_weld_closes_meshes(folder):
     assert "1 object" in out
 
 
-def test_what_is_zero_but_for_rounding_reads_so(folder, tmp_path):
+def test_rounding_errors_are_printed_as_zero(folder, tmp_path):
     torus, ball = tmp_path / "torus.ply", tmp_path / "ball.ply"
     blum.generate("torus").write(torus)
     blum.generate("sphere", radius=0.4).write(ball)
     assert "from (0.54077, 0.443896, 0) to (0.309156, 0.253816, 0)" in run("proximity", "separation", torus, ball)[0]
 
 
-def test_frames_tell_their_time_as_other_queries_do(folder):
+def test_frames_report_time_as_other_queries_do(folder):
     out = run(*frames(folder, "frame0.obj", "frame1.obj"))[0]
     assert " s, peak memory " in out and "phases" not in out
     assert "phases  boxes 0" in run(*frames(folder, "frame0.obj", "frame1.obj"), "--verbose")[0]

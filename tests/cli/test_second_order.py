@@ -1,4 +1,4 @@
-# Proves that `blum field --order 2` writes second distances and sites into every format, and says what it did.
+# Proves that `blum field --order 2` writes and summarizes second distances and sites in every format.
 
 import numpy as np
 import pytest

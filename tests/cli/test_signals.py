@@ -1,4 +1,4 @@
-# Proves that Ctrl-C and SIGTERM end the tool as shells expect it, and that nothing half-done stays.
+# Proves that Ctrl-C and SIGTERM end the tool as shells expect, and that no half-written file remains.
 import signal
 import subprocess
 import time

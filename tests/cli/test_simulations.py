@@ -1,4 +1,4 @@
-"""The simulations of the examples: frames that cross nothing, results that are complete or not there, and errors."""
+"""Proves that the example simulations write frames without crossings, complete results and clear errors."""
 
 import json
 import os
@@ -32,7 +32,7 @@ def test_help_and_bad_arguments(tmp_path):
         (["cloth", "out", "--frames"], 2, "--frames takes a number"),
         (["silk"], 2, "there is no simulation 'silk'"),
         (["cloth", "--fast"], 2, "there is no option --fast"),
-        (["cloth", "file", "--frames", "2"], 1, "'file' is no folder"),
+        (["cloth", "file", "--frames", "2"], 1, "'file' is not a folder"),
         (["cloth", "/proc/out", "--frames", "2"], 1, "cannot write '/proc/out'"),
     ):
         done = simulate(*arguments, folder=tmp_path)
@@ -40,7 +40,7 @@ def test_help_and_bad_arguments(tmp_path):
     assert names(tmp_path) == ["file"]
 
 
-def test_results_take_the_place_of_earlier_ones(tmp_path):
+def test_results_replace_earlier_ones(tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / "frame_007.ply").write_text("old")
@@ -52,7 +52,7 @@ def test_results_take_the_place_of_earlier_ones(tmp_path):
     assert len(json.loads((out / "pairs.json").read_text())["frames"]) == 2
 
 
-def test_a_stopped_run_leaves_whole_results(tmp_path):
+def test_a_stopped_run_leaves_complete_results(tmp_path):
     with subprocess.Popen([PROGRAM, "cloth", "out"], cwd=tmp_path, stdout=subprocess.PIPE, text=True) as process:
         while not (tmp_path / "out.part" / "frame_000.ply").exists():
             assert process.poll() is None
@@ -65,7 +65,7 @@ def test_a_stopped_run_leaves_whole_results(tmp_path):
 
 
 def test_bodies_do_not_cross_themselves(tmp_path):
-    """The first of them meet the bowl at frame 6, and would cross themselves soon after."""
+    """The first bodies meet the bowl at frame 6. Without contact handling they would soon cross themselves."""
     assert simulate("bodies", "out", "--frames", "16", folder=tmp_path).returncode == 0
     frames = sorted((tmp_path / "out").glob("frame_*.ply"))
     answer = run_json("proximity", "collide", *frames, "--frames", "--self")

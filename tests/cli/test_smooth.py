@@ -1,5 +1,5 @@
-# Proves that `--smooth` takes what the smooth surface of an image bounds as its solid, that files tell so, and that
-# `blum verify` goes by it.
+# Proves that `--smooth` takes the solid inside the smooth surface of an image, records this in files, and that
+# `blum verify` checks against the same solid.
 import json
 
 import numpy as np
@@ -10,18 +10,18 @@ pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the too
 
 ALONG = np.array([0.3, 0.5, 0.81]) / np.linalg.norm([0.3, 0.5, 0.81])
 MIDDLE = np.array([15.2, 15.7, 15.9])
-SPACING = 0.5  # of the image that is written with one
+SPACING = 0.5  # spacing of the image in rod.nrrd
 
 
 def offsets(points):
-    """Of points from the axis of the rod."""
+    """Distances of points from the axis of the rod."""
     along = np.clip((points - MIDDLE) @ ALONG, -10, 10)
     return np.linalg.norm(points - MIDDLE - along[..., None] * ALONG, axis=-1)
 
 
 @pytest.fixture(scope="module")
 def rod(tmp_path_factory):
-    """A rod of radius 4 with round ends, and the same with another label beside it."""
+    """An image of a rod of radius 4 with round ends, and an image that has another label beside the rod."""
     folder = tmp_path_factory.mktemp("smooth")
     z, y, x = np.meshgrid(*[np.arange(32)] * 3, indexing="ij")
     image = (offsets(np.stack([x, y, z], axis=-1)) < 4).astype(np.uint8)
@@ -39,7 +39,7 @@ def areas(arrays):
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
 
 
-def test_a_slanted_rod_has_a_curve_and_hardly_a_sheet(rod, tmp_path):
+def test_a_slanted_rod_has_a_curve_and_only_narrow_sheets(rod, tmp_path):
     summary = run_json("medial", rod / "rod.npy", "-o", tmp_path / "a.npz", "--smooth", "--theta", "60,120")
     (solid,) = summary["solids"]
     axis, least = solid["axes"]
@@ -47,8 +47,8 @@ def test_a_slanted_rod_has_a_curve_and_hardly_a_sheet(rod, tmp_path):
     assert solid["asked_spacing"] == 1 and solid["smooth"]["iterations"] == 60
     assert 0 < solid["smooth"]["largest_move"] < 0.5 and solid["smooth"]["held_vertices"] == 0
     assert least["counts"]["triangles"] == 0 and least["counts"]["curve_edges"] > 0
-    # Where sections are not quite round there are ribbons, narrower than a voxel: 0.6 voxels in the mean. In the round
-    # end, what bumps show at 60 to 70 degrees reaches further.
+    # Sections that are not quite round leave ribbons of 0.6 voxels mean width. In the round ends, bumps with angles of
+    # 60 to 70 degrees reach further.
     arrays = np.load(tmp_path / "a-theta60.npz")
     assert axis["counts"]["sheets"] <= 3 and areas(arrays).sum() < 0.65 * 20
     assert abs(arrays["radius"].mean() - 4) < 0.4
@@ -57,7 +57,7 @@ def test_a_slanted_rod_has_a_curve_and_hardly_a_sheet(rod, tmp_path):
     curve = np.load(tmp_path / "a-theta120.npz")
     assert np.abs(curve["radius"] - 4).max() < 0.2 and offsets(curve["vertices"]).max() < 0.3
     assert json.loads(str(curve["metadata"]))["smooth"] == "60"
-    # The heap of boxes has sheets at this angle.
+    # The voxels as boxes have sheets at this angle.
     boxes = run_json("medial", rod / "rod.npy", "-o", tmp_path / "b.npz")["solids"][0]
     assert boxes["smooth"] is None and boxes["axes"][0]["counts"]["sheets"] > 20
     assert areas(np.load(tmp_path / "b.npz")).sum() > 4 * areas(arrays).sum()
@@ -80,7 +80,7 @@ def test_trees_and_balls_are_certified(tmp_path):
     arrays = np.load(tmp_path / "t.npz")
     edges = arrays["edges"][arrays["edge_role"] == 3]
     lengths = np.linalg.norm(arrays["vertices"][edges[:, 0]] - arrays["vertices"][edges[:, 1]], axis=1)
-    # But for what the middle of the fork and round ends take.
+    # The middle of the fork and the round ends shorten the curves.
     assert 40 < lengths.sum() < 60 and areas(arrays).sum() < 25
     np.save(tmp_path / "ball.npy", np.linalg.norm(places - [20.3, 20.8, 21.1], axis=-1) < 9)
     run("medial", tmp_path / "ball.npy", "-o", tmp_path / "b.npz", "--smooth", "--theta", 120)
@@ -89,7 +89,7 @@ def test_trees_and_balls_are_certified(tmp_path):
     assert np.abs(ball["radius"] - 9).max() < 0.3
 
 
-def test_verify_makes_the_surface_again(rod, tmp_path):
+def test_verify_recomputes_the_smooth_surface(rod, tmp_path):
     for end in ("vtp", "ply", "npz"):
         run("medial", rod / "rod.nrrd", "-o", tmp_path / f"a.{end}", "--smooth")
         certificate = run_json("verify", rod / "rod.nrrd", tmp_path / f"a.{end}")["certificate"]
@@ -97,12 +97,12 @@ def test_verify_makes_the_surface_again(rod, tmp_path):
         assert "smooth surface" in run("info", tmp_path / f"a.{end}")[0]
     radius = np.load(tmp_path / "a.npz")["radius"]
     assert abs(radius.mean() - 4 * SPACING) < 0.4 * SPACING
-    # Moved out of the middle.
+    # An axis that is moved out of the middle fails.
     arrays = dict(np.load(tmp_path / "a.npz"))
     arrays["vertices"] = arrays["vertices"] + [0.3, 0, 0]
     np.savez(tmp_path / "false.npz", **arrays)
     run("verify", rod / "rod.nrrd", tmp_path / "false.npz", status=3)
-    # Against boxes it is not what it says.
+    # An axis without the record of smoothing fails against boxes.
     arrays = dict(np.load(tmp_path / "a.npz"))
     arrays["metadata"] = np.array(str(arrays["metadata"]).replace('"smooth"', '"rough"'))
     np.savez(tmp_path / "false.npz", **arrays)
@@ -116,7 +116,7 @@ def test_files_without_metadata_need_the_option(rod, tmp_path):
     assert run_json("verify", rod / "rod.npy", tmp_path / "a.ma", "--smooth")["certificate"]["certified"]
 
 
-def test_labels_each_by_itself(rod, tmp_path):
+def test_each_label_is_smoothed_alone(rod, tmp_path):
     solids = run_json("medial", rod / "labels.npy", "-o", tmp_path / "a.npz", "--smooth", "--label", "1,7",
                       "--resolution", 40)["solids"]
     assert [solid["label"] for solid in solids] == [1, 7]
@@ -134,7 +134,8 @@ def test_surfaces_of_images_are_written(rod, tmp_path):
     lines = [line.split()[1:] for line in (tmp_path / "t.obj").read_text().splitlines() if line.startswith("v ")]
     vertices = np.array(lines, dtype=float)
     assert set(np.unique(vertices)) == {0.5, 1.5, 2.5}
-    assert "at most 0.49 voxels from the boxes" in run("surface", rod / "rod.nrrd", "-o", tmp_path / "u.ply", "--smooth")[0]
+    out, _ = run("surface", rod / "rod.nrrd", "-o", tmp_path / "u.ply", "--smooth")
+    assert "at most 0.49 voxels from the surface of the boxes" in out
 
 
 @pytest.mark.parametrize(
@@ -154,7 +155,7 @@ def test_surfaces_of_images_are_written(rod, tmp_path):
         ("verify ball.ply a.vtp --smooth", "images", 2),
     ],
 )
-def test_what_does_not_fit_is_refused(rod, tmp_path, arguments, reason, status):
+def test_wrong_arguments_and_inputs_are_rejected(rod, tmp_path, arguments, reason, status):
     run("make", "sphere", "-o", tmp_path / "ball.ply")
     run("field", tmp_path / "ball.ply", "-o", tmp_path / "f.npz", "--resolution", 16)
     before = names(tmp_path)

@@ -1,4 +1,4 @@
-"""`blum surface` makes of a field the mesh of the asked level, refuses fields without one, and says what is doubtful."""
+"""Proves that `blum surface` writes the mesh of a level of a field and rejects fields without that level."""
 
 import numpy as np
 import pytest
@@ -43,9 +43,13 @@ def test_every_format_of_meshes_is_written(ball, tmp_path, end):
     assert "triangles at the level 0" in out and names(tmp_path) == [f"s.{end}"]
 
 
-def test_what_has_no_surface_is_refused_and_nothing_written(ball, tmp_path):
-    for arguments, reason in [(("ball.npz", "--level", 9), "one side"), (("ball.npz", "--level", -3), "one side"),
-                              (("unsigned.npz",), "is unsigned"), (("band.npz", "--level", 1), "up to 0.3 only")]:
+def test_fields_without_the_level_are_rejected_and_nothing_is_written(ball, tmp_path):
+    for arguments, reason in [
+        (("ball.npz", "--level", 9), "or all are below"),
+        (("ball.npz", "--level", -3), "or all are below"),
+        (("unsigned.npz",), "are unsigned"),
+        (("band.npz", "--level", 1), "up to 0.3 only"),
+    ]:
         name, *rest = arguments
         _, err = run("surface", ball / name, "-o", tmp_path / "s.ply", *rest, status=1)
         assert "no surface at the level" in err and reason in err
@@ -55,7 +59,7 @@ def test_what_has_no_surface_is_refused_and_nothing_written(ball, tmp_path):
     assert names(tmp_path) == []
 
 
-def test_the_field_is_not_overwritten_and_reconstruct_names_the_verb(ball, tmp_path):
+def test_reconstruct_names_the_verb_for_fields(ball, tmp_path):
     for name in ("ball.nrrd", "ball.npz", "ball.vti"):
         _, err = run("reconstruct", ball / name, "-o", tmp_path / "s.ply", status=2)
         assert "blum surface FIELD --level L -o MESH" in err

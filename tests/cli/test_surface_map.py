@@ -1,4 +1,4 @@
-"""`blum surface-map` makes maps of every kind, in every format, and says what is asked wrongly."""
+"""Proves that `blum surface-map` writes maps of every kind in every format and rejects wrong arguments."""
 
 import json
 
@@ -53,7 +53,7 @@ def test_thickness_and_self(shapes, tmp_path):
     assert own["quantity"] == "self-distance" and own["without_value"] > 0
 
 
-def test_maps_of_nothing_are_told(shapes, tmp_path):
+def test_maps_without_values_cause_a_warning(shapes, tmp_path):
     run("make", "sphere", "--radius", 0.2, "-o", tmp_path / "far.ply")
     far = run_json(
         "surface-map", shapes / "torus.ply", tmp_path / "far.ply", "-o", tmp_path / "m.png", "--max-distance", 0.01, warns=True
@@ -70,7 +70,7 @@ def test_all_formats_at_once(shapes, tmp_path):
     assert all(out.stat().st_size > 500 for out in outs) and text.count("wrote") == 5 and " mm between texels" in text
 
 
-def test_what_is_wrong_is_said(shapes, tmp_path):
+def test_wrong_arguments_are_rejected(shapes, tmp_path):
     plate, sphere, out = shapes / "plate.ply", shapes / "sphere.ply", tmp_path / "map.png"
     for words, said in (
         ((plate, "-o", out), "another mesh"),
@@ -103,7 +103,7 @@ def test_values_by_area(shapes, tmp_path):
     assert "percentiles  1 % below 0.5, 5 % below 0.5" in text and "by area" in text
 
 
-def test_meshes_without_an_inside_are_warned_of(shapes, tmp_path):
+def test_meshes_without_an_inside_cause_a_warning(shapes, tmp_path):
     corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
     quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 

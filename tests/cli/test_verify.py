@@ -105,18 +105,18 @@ def change_angles(arrays):
 @pytest.mark.parametrize("change,reason", [
     (claim_winding, "its solid is 'winding', but it is 'polyhedron'"),
     (claim_nonsense, "its solid is 'nonsense', but it is 'polyhedron'"),
-    (drop_radii, "holds no radii"),
-    (drop_footprints, "holds no footprints"),
-    (drop_sites, "holds no sites"),
-    (drop_angles, "holds no separation angles"),
-    (change_sites, "off the site that it names"),
+    (drop_radii, "contains no radii"),
+    (drop_footprints, "contains no footprints"),
+    (drop_sites, "contains no sites"),
+    (drop_angles, "contains no separation angles"),
+    (change_sites, "off its site"),
     (change_angles, "a separation angle differs"),
     (move_a_vertex, "a radius differs from the exact distance"),
     (move_a_vertex_outside, "outside the solid"),
     (scale_radii, "a radius differs from the exact distance"),
     (move_a_footprint, "a footprint lies off the surface"),
-    (drop_a_triangle, "the solid has 0 tunnels, the axis 1"),
-    (add_a_vertex, "the solid has 1 component, the axis 2"),
+    (drop_a_triangle, "the solid has 0 tunnels, the axis has 1"),
+    (add_a_vertex, "the solid has 1 component, the axis has 2"),
 ], ids=lambda value: getattr(value, "__name__", ""))
 def test_a_falsified_axis_is_rejected(solids, axes, tmp_path, change, reason):
     false = falsified(axes, tmp_path, "box.npz", change)
@@ -139,10 +139,10 @@ def test_the_axis_of_another_solid_is_rejected(solids, axes):
 
 
 def test_an_error_first_names_the_solid_of_the_file_if_another_is_given(solids, axes, tmp_path):
-    said = "blum: error: NOT certified: the file names 'box.obj' as its solid; "
+    said = "blum: error: NOT certified: the file of the axis states that the solid is 'box.obj'; "
     assert run("verify", solids / "torus.obj", axes / "box.npz", status=3)[1].startswith(said)
     false = falsified(axes, tmp_path, "box.npz", scale_radii)
-    assert "as its solid" not in run("verify", solids / "box.obj", false, status=3)[1]
+    assert "states that the solid is" not in run("verify", solids / "box.obj", false, status=3)[1]
 
 
 def test_a_mesh_without_inside_has_no_solid(axes, tmp_path):
@@ -174,7 +174,7 @@ def test_the_file_records_its_selection_of_voxels(solids, tmp_path, end, selecti
 def test_a_file_without_a_selection_needs_the_option(solids, tmp_path):
     for end in ("obj", "ma"):
         run("medial", solids / "balls.npy", "-o", tmp_path / f"b.{end}", "--label", 2)
-        assert "repeat --label, --threshold or --smooth" in run("verify", solids / "balls.npy", tmp_path / f"b.{end}",
+        assert "--threshold or --smooth, repeat it" in run("verify", solids / "balls.npy", tmp_path / f"b.{end}",
                                                             status=3)[1]
         run("verify", solids / "balls.npy", tmp_path / f"b.{end}", "--label", 2)
     assert "--threshold" not in run("verify", solids / "balls.npy", tmp_path / "b.ma", "--label", 1, status=3)[1]
@@ -215,7 +215,7 @@ def frame(path, window):
 def test_a_weld_tolerance_that_changes_the_solid_causes_a_warning(tmp_path):
     part = tmp_path / "part.obj"
     frame(part, 0.02)
-    told = "welding within 0.03 removed 6 of 16 vertices: the surface has 1 component and the Euler number"
+    told = "welding within 0.03 removed 6 of 16 vertices: the surface now has 1 component and the Euler number"
     _, err = run("medial", part, "-o", tmp_path / "p.npz", "--resolution", 16, "--weld", 0.03, "--allow-uncertified",
                  warns=True)
     assert told in err and "instead of 1 component and the Euler number 0" in err
@@ -264,7 +264,7 @@ def test_the_claims_of_a_file_are_reported(solids, axes):
 
 def test_the_voxels_of_an_open_mesh_are_reported(solids, axes, tmp_path):
     out, _ = run("verify", solids / "open.obj", axes / "open.npz")
-    assert "topology of the voxels of the winding number of side 0.0625 (" in out
+    assert "topology of the voxels inside by winding number, side 0.0625 (" in out
     false = falsified(axes, tmp_path, "open.npz", lambda arrays: change_metadata(arrays, spacing="0.03125"))
     assert "its spacing is 0.03125, but its grid has a spacing of 0.0625" in run("verify", solids / "open.obj", false,
                                                                             status=3)[1]
@@ -273,11 +273,12 @@ def test_the_voxels_of_an_open_mesh_are_reported(solids, axes, tmp_path):
 def test_missing_parts_are_not_checked_if_random_points_show_nothing(solids, axes, tmp_path):
     false = falsified(axes, tmp_path, "box.npz", lambda arrays: change_metadata(arrays, **{"lambda": "1.7"}))
     out, _ = run("verify", solids / "box.obj", false, "--verbose")
-    assert "lambda 1.7" in out and "missing parts: random points show nothing above 90 degrees" in out
+    assert "lambda 1.7" in out and "points of the solid show no medial ball with an angle above 90 degrees" in out
     assert "missing parts not checked" in out
     certificate = run_json("verify", solids / "box.obj", false)["certificate"]
     assert "missing" not in certificate["checked"]
-    assert "missing parts: random points show nothing above 90 degrees" in certificate["not_checked"]
+    reason = "random points of the solid show no medial ball with an angle above 90 degrees"
+    assert f"missing parts: {reason}" in certificate["not_checked"]
 
 
 def test_nested_axes_are_reported_as_not_checked(solids, tmp_path):
@@ -341,7 +342,7 @@ def test_fields_and_axes_are_not_confused(solids, axes, tmp_path):
     assert "is a medial axis; a mesh" in run("slice", axes / "box.npz", "-o", tmp_path / "x.png", status=1)[1]
     assert "is a medial axis; a mesh" in run("field", axes / "box.vtp", "-o", tmp_path / "x.npz", status=1)[1]
     np.savez(tmp_path / "else.npz", vertices=np.zeros((2, 3)), metadata=np.array('{"content": "a sonnet"}'))
-    assert "call it 'a sonnet', not a medial axis" in run("info", tmp_path / "else.npz", status=1)[1]
+    assert "state the content 'a sonnet', not a medial axis" in run("info", tmp_path / "else.npz", status=1)[1]
 
 
 @pytest.mark.parametrize("end", ["vtp", "ply", "npz", "ma"])
@@ -384,7 +385,7 @@ def test_an_axis_of_voxels_needs_a_file_that_records_them(solids, tmp_path):
         run("medial", solids / "open.obj", "-o", tmp_path / f"o.{end}", "--resolution", 12, warns=True)
         _, err = run("verify", solids / "open.obj", tmp_path / f"o.{end}", status=1)
         assert "not closed and manifold" in err and ".obj and .ma store neither rule nor grid" in err
-        assert "Verify the .vtp, .ply or .npz file of the same run" in err
+        assert "Verify the .vtp, .ply or .npz file of the same axis" in err
 
 
 def test_an_open_mesh_that_faces_inwards_is_reported(solids, tmp_path):

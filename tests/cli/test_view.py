@@ -1,5 +1,5 @@
-# Proves that `blum view` hands over what its files hold, exactly, names what it cannot read, and serves this machine
-# the page and the scene and nothing else.
+# Proves that pages of `blum view` hold the exact data of its files and name unreadable files.
+# The server serves the page and the scene to this machine, and nothing else.
 import http.client
 import os
 import re
@@ -18,7 +18,7 @@ from tool import BLUM, read_png, run, run_json
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
 
-def test_help_says_what_it_does():
+def test_help_describes_output_server_and_exit_status():
     out, _ = run("view", "--help")
     for words in ("--output", "--port", "--open", "only this machine", "Exit status 1"):
         assert words in out
@@ -53,7 +53,7 @@ def test_pages_are_named_by_what_they_show(tmp_path):
     assert "<title>a&amp;b&lt;c&gt;.ply and 1 more - Blum</title>" in (tmp_path / "two.html").read_text()
 
 
-def test_files_of_pairs_say_how_they_are_shown(tmp_path):
+def test_files_of_pairs_get_a_hint_for_frames(tmp_path):
     for name in ("box.ply", "other.ply"):
         run("make", "box", "-o", tmp_path / name)
     run("proximity", "separation", tmp_path / "box.ply", tmp_path / "other.ply", "-o", tmp_path / "s.vtp")
@@ -61,7 +61,7 @@ def test_files_of_pairs_say_how_they_are_shown(tmp_path):
     assert "blum view FRAME... --frames --pairs PAIRS.json" in err
 
 
-def test_field_without_a_band_from_nrrd_and_its_sites_alone(tmp_path, shapes):
+def test_nrrd_fields_without_a_band_and_files_of_sites_are_shown(tmp_path, shapes):
     run("view", shapes / "sphere.nrrd", shapes / "sphere.site.nrrd", "-o", tmp_path / "page.html")
     scene = scene_of_page(tmp_path / "page.html")
     field, sites = scene.header["items"]
@@ -92,12 +92,12 @@ def scene(tmp_path, solids):
 
 
 def slice_of_blocks(folder, distance, site, *options):
-    """The colours of pixels [block, 3] in a picture of a field of which each block has one distance and one site."""
+    """Colours [block, 3] in the picture of a field in which each block has one distance and one site."""
     blocks = [np.repeat(values, 8).reshape(1, 1, -1).repeat(8, axis=1) for values in (distance, site)]
     np.savez(folder / "blocks.npz", distance=blocks[0].astype("<f4"), site=blocks[1].astype("<i4"),
              origin=np.zeros(3), spacing=np.ones(3))
     run("slice", folder / "blocks.npz", "-o", folder / "blocks.png", "--scale", 5, *options)
-    # Margins are 20 pixels wide, and a block is 40.
+    # Margins are 20 pixels wide, blocks 40.
     return read_png(folder / "blocks.png")[2][40, 40:40 + 40 * len(distance):40].astype(int)
 
 
@@ -107,7 +107,7 @@ def test_ramps_of_a_scene_are_those_of_pictures(tmp_path, scene, ramp, least):
     assert table.shape == (512, 4) and (table[:, 3] == 255).all()
     entries = np.arange(0, 512, 73)
     distance = least + (1 - least) * entries / 511
-    # Distances are in single precision, which may round to the next byte.
+    # Distances in single precision may round to the next byte.
     assert np.abs(slice_of_blocks(tmp_path, distance, 0 * entries) - table[entries, :3]).max() <= 1
 
 
@@ -116,7 +116,7 @@ def test_regions_of_a_scene_have_the_colours_of_pictures(tmp_path, scene):
     ids = np.arange(len(regions))
     assert np.array_equal(slice_of_blocks(tmp_path, ids, ids, "--show", "sites"), regions[:, :3])
     assert palette.shape == (16 * 256, 4) and (palette[:, 3] == 255).all()
-    # The palette has fewer hues: 1.4 degrees from each other.
+    # The palette has fewer hues, 1.4 degrees apart.
     away = np.abs(regions[:, None].astype(int) - palette[None]).max(axis=2)
     assert away.min(axis=1).max() <= 2
 
@@ -127,7 +127,7 @@ def test_a_scene_names_roles(scene):
 
 def test_nested_axes(tmp_path, solids):
     run("medial", solids / "box.obj", "-o", tmp_path / "box.npz", "--theta", 10, "--nested", "--resolution", 24)
-    assert "all from 10 degrees on" in run("info", tmp_path / "box.npz")[0]
+    assert "all from 10 to 180 degrees" in run("info", tmp_path / "box.npz")[0]
     assert run_json("info", tmp_path / "box.npz")["nested_theta"] == 10
     whole = ["--resolution", 24, "--decimate", 0]
     run("medial", solids / "box.obj", "-o", tmp_path / "cut.npz", "--theta", "10,100", *whole)
@@ -146,13 +146,13 @@ def test_nested_axes(tmp_path, solids):
 
 @pytest.mark.parametrize("arguments", [("-o", "axis.vtp"), ("-o", "axis.npz", "--theta", "20,60"),
                                        ("-o", "axis.npz", "--prune", "sheets")])
-def test_nested_is_refused_where_it_makes_no_sense(tmp_path, solids, arguments):
+def test_nested_is_rejected_with_options_that_exclude_it(tmp_path, solids, arguments):
     arguments = [tmp_path / word if word.startswith("axis") else word for word in arguments]
     _, err = run("medial", solids / "box.obj", "--nested", *arguments, status=2)
     assert "--nested" in err
 
 
-def test_whole_numbers_are_labels_where_they_name_things(tmp_path):
+def test_few_or_blockwise_whole_numbers_are_labels(tmp_path):
     rng = np.random.default_rng(1)
     few = rng.integers(0, 5, (8, 8, 8)).astype(np.uint8)
     grey = rng.integers(0, 4000, (16, 16, 16)).astype(np.int16)
@@ -167,7 +167,7 @@ def test_whole_numbers_are_labels_where_they_name_things(tmp_path):
 
 
 @pytest.mark.parametrize(("size", "shown"), [(1e-30, False), (1e-11, True), (1e29, True), (1e31, False)])
-def test_what_browsers_cannot_draw_is_said_so(tmp_path, size, shown):
+def test_sizes_that_browsers_cannot_draw_are_rejected(tmp_path, size, shown):
     (tmp_path / "part.obj").write_text(f"v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n")
     if shown:
         run("view", tmp_path / "part.obj", "-o", tmp_path / "page.html")
@@ -176,7 +176,7 @@ def test_what_browsers_cannot_draw_is_said_so(tmp_path, size, shown):
         assert "cannot be drawn" in err and "scale it" in err
 
 
-def test_whole_numbers_that_doubles_do_not_hold_are_not_shown(tmp_path):
+def test_whole_numbers_beyond_doubles_are_rejected(tmp_path):
     np.save(tmp_path / "big.npy", np.full((2, 2, 2), 2**53 + 1, dtype=np.int64))
     _, err = run("view", tmp_path / "big.npy", "-o", tmp_path / "page.html", status=1)
     assert "2^53" in err
@@ -194,7 +194,7 @@ def test_files_that_cannot_be_read_are_named_in_the_page(tmp_path, shapes):
     assert last["kind"] == "error" and "gone.nrrd" in last["message"]
 
 
-def test_where_nothing_can_be_read_nothing_is_written(tmp_path):
+def test_nothing_is_written_if_no_file_is_readable(tmp_path):
     page = tmp_path / "page.html"
     page.write_text("before")
     _, err = run("view", tmp_path / "gone.ply", "-o", page, status=1)
@@ -264,7 +264,7 @@ def test_the_server_answers_no_other_host_and_no_other_method(server):
         assert ask(server, "/", method=method)[0].status == 405
 
 
-def test_the_server_stands_what_is_no_request(server):
+def test_the_server_survives_malformed_requests(server):
     for data in (b"", b"nonsense\r\n\r\n", b"GET / HTTP/1.1\r\n\r\n", b"\0" * 20000, b"GET  HTTP/1.1\r\nHost: x\r\n\r\n",
                  b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nHost: evil\r\n\r\n" % server):
         with socket.create_connection(("127.0.0.1", server), timeout=10) as connection:
@@ -275,7 +275,7 @@ def test_the_server_stands_what_is_no_request(server):
     assert ask(server, "/")[0].status == 200
 
 
-def test_who_reads_nothing_keeps_nobody_waiting(shapes, tmp_path):
+def test_a_client_that_reads_nothing_does_not_block_others(shapes, tmp_path):
     np.save(tmp_path / "big.npy", np.random.default_rng(1).random((200, 200, 200), dtype=np.float32))
     process, port = serve(tmp_path / "big.npy")
     with socket.socket() as lazy:
@@ -288,14 +288,14 @@ def test_who_reads_nothing_keeps_nobody_waiting(shapes, tmp_path):
         assert process.wait(timeout=10) == 0
 
 
-def test_idle_connections_shut_nobody_out(server):
+def test_idle_connections_do_not_block_others(server):
     idle = [socket.create_connection(("127.0.0.1", server), timeout=10) for _ in range(80)]
     assert ask(server, "/")[0].status == 200
     for connection in idle:
         connection.close()
 
 
-def test_without_descriptors_the_server_waits(shapes):
+def test_the_server_waits_for_file_descriptors(shapes):
     process, port = serve(shapes / "sphere.ply", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (12, 12)))
     idle = [socket.create_connection(("127.0.0.1", port), timeout=10) for _ in range(20)]
     before = cpu_seconds(process)
@@ -322,6 +322,6 @@ def test_the_server_is_on_the_loopback_only(server):
     assert f"00000000:{server:04X}" not in listening
 
 
-def test_a_port_that_is_taken_is_said_so(server, shapes):
+def test_a_port_in_use_is_reported(server, shapes):
     _, err = run("view", shapes / "sphere.ply", "--port", server, status=1)
     assert f"port {server}" in err

@@ -1,4 +1,4 @@
-# Proves that `blum view --frames` hands over what frames and pairs hold, exactly, and says what is wrong with them.
+# Proves that pages of `blum view --frames` hold frames and pairs exactly, and that wrong files are rejected.
 import json
 import signal
 import subprocess
@@ -24,7 +24,7 @@ def write_obj(path, vertices, triangles, more=""):
 
 @pytest.fixture
 def frames(tmp_path):
-    """A square that rises, far from the origin, and loses a triangle in its last frame."""
+    """Frames of a square that rises, far from the origin, and has lost a triangle in its last frame."""
     moved = [SQUARE + [1000, 0, height] for height in (0.0, 0.1, 0.3)]
     paths = [write_obj(tmp_path / f"f{k}.obj", vertices, TWO) for k, vertices in enumerate(moved)]
     return [*paths, write_obj(tmp_path / "f3.obj", moved[2][:3], TWO[:1])]
@@ -42,7 +42,7 @@ def frames_item(tmp_path, *arguments):
     return scene, item, out
 
 
-def test_help_says_what_frames_are():
+def test_help_describes_frames_and_pairs():
     out, _ = run("view", "--help")
     for words in ("--frames", "--pairs", "moving scene"):
         assert words in out
@@ -79,7 +79,7 @@ def test_pairs_and_stages_are_held_exactly(tmp_path, frames):
     hit = pair(kind="collision", distance=0, time=0.5)
     deep = pair(kind="penetration", points=[[1000.25, 0, 0], [1000.25, 0.5, 0]], distance=-0.5)
     content = {
-        "made_by": "a test",  # what is not known is passed over
+        "made_by": "a test",  # unknown keys are ignored
         "frames": [
             {"pairs": [pair(), deep | {"first": 7}], "stages": {"objects": 0.25, "diagram": 1e-3}},
             {},
@@ -106,7 +106,7 @@ def test_pairs_and_stages_are_held_exactly(tmp_path, frames):
         assert [f"pairs: {kind}", "1"] in item["facts"]
 
 
-def test_free_segments_and_points_are_said_to_be_left_out(tmp_path, frames):
+def test_free_segments_and_points_are_reported_as_not_shown(tmp_path, frames):
     write_obj(frames[1], SQUARE, TWO, "l 1 2\np 3\n")
     _, item, _ = frames_item(tmp_path, *frames)
     assert ["not shown", "2 free segments and points"] in item["facts"]
@@ -139,7 +139,7 @@ def test_free_segments_and_points_are_said_to_be_left_out(tmp_path, frames):
     ('{"frames": [{"stages": {"a": 1e999}}, {}, {}, {}]}', ["pairs.json"]),
     ('{"frames": [{"stages": {"a": NaN}}, {}, {}, {}]}', ["not JSON"]),
 ])
-def test_what_is_wrong_with_pairs_is_said_with_its_place(tmp_path, frames, content, words):
+def test_wrong_pairs_are_reported_with_their_place(tmp_path, frames, content, words):
     if isinstance(content, list):
         content = {"frames": content + [{}] * (4 - len(content))}
     text = content if isinstance(content, str) else json.dumps(content)
@@ -173,7 +173,7 @@ def test_frames_that_cannot_be_shown_are_named(tmp_path, frames, text, words):
     assert page.read_text() == "before"
 
 
-def test_frames_are_meshes(tmp_path, frames, shapes, axes):
+def test_frames_must_be_meshes(tmp_path, frames, shapes, axes):
     for other in (shapes / "ball.nrrd", shapes / "sphere.npz", axes / "box.npz"):
         _, err = run("view", frames[0], other, "--frames", "-o", tmp_path / "page.html", status=1)
         assert other.name in err and "not a mesh" in err
@@ -182,7 +182,7 @@ def test_frames_are_meshes(tmp_path, frames, shapes, axes):
 @pytest.mark.parametrize(("arguments", "words"), [
     (("f0.obj", "--frames"), "two meshes"),
     (("f0.obj", "f1.obj", "--pairs", "pairs.json"), "--frames"),
-    (("f0.obj", "f1.obj", "--frames", "--pairs", "p.html", "-o", "p.html"), "is the input"),
+    (("f0.obj", "f1.obj", "--frames", "--pairs", "p.html", "-o", "p.html"), "is also the input"),
     (("f0.obj", "f1.obj", "--frames", "-o", "page.txt"), ".html"),
 ])
 def test_bad_usage(tmp_path, frames, arguments, words):

@@ -1,4 +1,4 @@
-# Proves that `blum view` hands over surface maps as their files hold them, and names damaged ones.
+# Proves that pages of `blum view` hold surface maps exactly, and that damaged maps are rejected by name.
 import numpy as np
 import pytest
 
@@ -64,5 +64,5 @@ def test_damaged_maps_are_named(maps, tmp_path):
     arrays["triangle"] = np.where(arrays["triangle"] == 0, 12, arrays["triangle"])
     np.savez(tmp_path / "bad.npz", **arrays)
     _, err = run("view", tmp_path / "bad.npz", "-o", tmp_path / "page.html", status=1)
-    assert "bad.npz(triangle.npy)" in err and "triangle 12 is named" in err
+    assert "bad.npz(triangle.npy)" in err and "triangle 12 is used" in err
     assert not (tmp_path / "page.html").exists()

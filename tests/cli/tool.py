@@ -1,4 +1,4 @@
-# Runs the command-line tool for the tests beside, and reads the pictures that it makes.
+# Runs the command-line tool for the tests in this folder, and reads pictures.
 import json
 import os
 import struct
@@ -9,12 +9,11 @@ from pathlib import Path
 import numpy as np
 
 BLUM = os.environ.get("BLUM_CLI", "")
-FORMATS = ["vtp", "ply", "obj", "ma", "npz"]  # of medial axes
+FORMATS = ["vtp", "ply", "obj", "ma", "npz"]  # file formats of medial axes
 
 
 def run(*arguments, status=0, timeout=60, warns=False):
-    """Runs the tool and checks its exit status; stderr must hold warnings where they are due and nothing else on
-    success, and one message else."""
+    """Runs the tool, and checks its exit status and stderr: warnings only if `warns`, and one error only on failure."""
     done = subprocess.run([BLUM, *map(str, arguments)], capture_output=True, timeout=timeout, check=False)
     out, err = done.stdout.decode(), done.stderr.decode()
     assert done.returncode == status, f"{arguments}: status {done.returncode}, expected {status}\n{out}\n{err}"
@@ -37,7 +36,7 @@ def names(folder):
 
 
 def png_rows(path):
-    """Width, height and filtered rows of a PNG of 8-bit RGB, its checksums tested."""
+    """Width, height and filtered rows of a PNG of 8-bit RGB, after a test of its checksums."""
     data = Path(path).read_bytes()
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     chunks, at = {}, 8

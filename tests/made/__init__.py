@@ -1,4 +1,4 @@
-"""Hostile closed solids with known Betti numbers: embedded meshes made by a seeded program, as input for tests."""
+"""Hostile closed solids with known Betti numbers, as input for tests: embedded meshes from a seeded program."""
 
 from .solids import MadeSolid, made_solid, made_solids, names
 

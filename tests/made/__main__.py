@@ -1,7 +1,8 @@
 """Writes made solids for the command-line tool: python -m made OUT_DIR [--count N] [--family NAME]
 
-One PLY per solid, with doubles, and manifest.json: name, file, family, triangles, betti, thinnest feature as asked for
-(0: it runs out to a point or edge), and the same in voxels of a grid of 64 along the longest side."""
+Writes one PLY with doubles for each solid, and manifest.json with name, file, family, triangles and Betti numbers.
+The manifest also lists the requested thinnest feature, in units and in voxels of a grid of 64 along the longest side.
+It is 0 if the solid tapers to a point or edge."""
 
 from __future__ import annotations
 

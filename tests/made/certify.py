@@ -1,8 +1,8 @@
 """Certifies axes of made solids: python -m made.certify SOLIDS OUT.jsonl [-- OPTIONS of blum medial]
 
-SOLIDS is a folder that `python -m made` wrote. A line of JSON for each solid is added to OUT.jsonl; those that it has
-already are left out, so that a run can be cut off and go on. Says at the end how many were certified, what the others
-said, and which took longest."""
+SOLIDS is a folder that `python -m made` wrote. Adds a line of JSON for each solid to OUT.jsonl. Skips solids that
+OUT.jsonl contains, so that an interrupted run can continue. Prints the number of certified axes, the warnings and
+errors of the others, and the slowest solids."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BLUM = os.environ.get("BLUM_CLI", "blum")
 
 
 def run(file: Path, options: list[str], limit: float) -> dict[str, object]:
-    """What `blum medial` makes of a solid: its status (-1: over the limit), seconds, warnings and last error."""
+    """Runs `blum medial` on a solid; returns its status (-1: over the limit), seconds, warnings and last error."""
     with tempfile.TemporaryDirectory() as folder:
         command = [BLUM, "medial", str(file), "-o", f"{folder}/axis.npz", *options]
         before, start = os.times(), time.monotonic()

@@ -1,7 +1,8 @@
 """Closed solids that are hard for Voronoi diagrams, by seed.
 
-Cones over polygons with any mix of convex and reflex edges at one corner, the same cut out of blocks, saddles,
-terrains, faces of one plane that are apart, thin wedges; as made, turned, in single precision, tiny, far off."""
+The families are cones over polygons, such cones cut out of blocks, saddles, terrains, separate coplanar faces, and thin
+wedges. One corner may have any mix of convex and reflex edges. Each solid is kept as made, turned, rounded to single
+precision, tiny, or far from the origin."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ FAMILIES = (
     "thin",
 )
 WAYS = ("made", "turned", "single", "tiny", "far")
-#: A plus: pairs of its sides lie on one line.
+#: A plus, whose sides are collinear in pairs.
 PLUS = np.array(
     [[1, 0], [3, 0], [3, 1], [4, 1], [4, 3], [3, 3], [3, 4], [1, 4], [1, 3], [0, 3], [0, 1], [1, 1]], dtype=float
 )
@@ -42,7 +43,7 @@ def _star(random, count, least=0.3):
 
 
 def _cut(polygon, parts):
-    """Each side in equal parts: corners on lines."""
+    """Divides each side into equal parts, so that corners are collinear."""
     ends = np.roll(polygon, -1, axis=0)
     return np.concatenate(
         [polygon[k] + (ends[k] - polygon[k]) * np.arange(parts)[:, None] / parts for k in range(len(polygon))]
@@ -50,7 +51,7 @@ def _cut(polygon, parts):
 
 
 def _ears(points):
-    """Triangles of a polygon without crossings, counterclockwise; corners may be there twice, as along a slit."""
+    """Counterclockwise triangles of a polygon without crossings; corners may occur twice, for example along a slit."""
     left, out = list(range(len(points))), []
 
     def turn(a, b, c):
@@ -86,7 +87,7 @@ def _pyramid(polygon, apex):
 
 
 def _dent(polygon, apex, half=2.0):
-    """A block out of which a pyramid is cut, from below."""
+    """A block with a pyramid cut out from below."""
     count = len(polygon)
     square = half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     low, high = count + 1, count + 5
@@ -108,7 +109,7 @@ def _dent(polygon, apex, half=2.0):
 
 
 def _saddle(folds, height, bend):
-    """A prism whose top is a fan of as many convex as reflex edges."""
+    """A prism whose top is a fan with equal numbers of convex and reflex edges."""
     count = 2 * folds
     angles = np.arange(count) * 2 * np.pi / count
     ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -181,7 +182,7 @@ def _turned(vertices, random):
 
 
 def cone_solid(seed: int) -> ConeSolid | None:
-    """None where a polygon was not cut into triangles."""
+    """The solid of a seed; None if a polygon was not triangulated."""
     random = np.random.default_rng(seed)
     family, way = FAMILIES[seed % len(FAMILIES)], WAYS[seed // len(FAMILIES) % len(WAYS)]
     made = _made(family, random)

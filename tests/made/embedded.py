@@ -1,5 +1,6 @@
-"""Whether a mesh touches or crosses itself, decided exactly and without Blum: any two triangles may share a corner or
-an edge of both, and nothing else."""
+"""Decides exactly, without Blum, if a mesh touches or crosses itself.
+
+Any two triangles may share a common corner or a common edge, and nothing else."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ def integers(vertices: np.ndarray) -> list[Point]:
 
 
 def box_pairs(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Pairs of triangles whose closed boxes meet."""
+    """Pairs of triangles with closed boxes that meet."""
     corners = vertices[triangles]
     lower, upper = corners.min(axis=1), corners.max(axis=1)
     axis = int(np.argmax(vertices.max(axis=0) - vertices.min(axis=0)))
@@ -37,7 +38,7 @@ def box_pairs(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 class Orientation:
-    """Signs of determinants of vertices, in floating point where that decides them."""
+    """Exact signs of determinants of vertices, in floating point if its error bound allows."""
 
     def __init__(self, vertices: np.ndarray) -> None:
         self.doubles = vertices
@@ -60,19 +61,19 @@ class Orientation:
         x, y, z = np.abs(u), np.abs(v), np.abs(w)
         sizes = sum(x[:, i] * (y[:, j] * z[:, k] + y[:, k] * z[:, j]) for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
         found = np.sign(values).astype(int)
-        # Differences and products are rounded; tiny ones may have been flushed to nothing.
+        # Differences and products are rounded, and tiny ones may have become zero.
         for i in np.flatnonzero(np.abs(values) <= 1e-14 * sizes + 1e-280):
             found[i] = self.exact_sign(int(a[i]), int(b[i]), int(c[i]), int(d[i]))
         return found
 
     def meet_in_plane(self, p: int, q: int, triangle: tuple[int, int, int]) -> bool:
-        """Whether a segment meets a closed triangle of its plane."""
+        """True if a segment meets a closed triangle in its plane."""
         a, b, c = (self.exact[i] for i in triangle)
         u, v = [b[i] - a[i] for i in range(3)], [c[i] - a[i] for i in range(3)]
         normal = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
         drop = max(range(3), key=lambda i: abs(normal[i]))
         if normal[drop] == 0:
-            return True  # a triangle without area: nothing that may stand
+            return True  # a degenerate triangle is never allowed
         x, y = (drop + 1) % 3, (drop + 2) % 3
 
         def side(s: Point, t: Point, o: Point) -> int:
@@ -82,7 +83,7 @@ class Orientation:
         corners = (a, b, c) if normal[drop] > 0 else (a, c, b)
         ends = self.exact[p], self.exact[q]
         sides = [[side(corners[i], corners[(i + 1) % 3], end) for end in ends] for i in range(3)]
-        # Apart if an edge of the triangle, or the segment, has the other strictly on its far side.
+        # Apart if an edge of the triangle, or the segment, has the other part strictly on its far side.
         if any(s < 0 and t < 0 for s, t in sides):
             return False
         across = [side(*ends, corner) for corner in corners]
@@ -100,7 +101,7 @@ def bad_pairs(vertices: np.ndarray, triangles: np.ndarray) -> list[tuple[int, in
     orientation = Orientation(vertices)
     bad = set(map(tuple, pairs[shared == 3].tolist()))
 
-    # A common edge: bad if one lies on the other.
+    # Triangles with a common edge are bad if one lies on the other.
     edge = np.flatnonzero(shared == 2)
     for one, other in ((first, second),):
         apex = other[edge][~same[edge].any(axis=1)]
@@ -135,7 +136,7 @@ def bad_pairs(vertices: np.ndarray, triangles: np.ndarray) -> list[tuple[int, in
 
 
 def folded(a: Point, b: Point, p: Point, q: Point) -> bool:
-    """Whether p and q, in one plane with the line a b, are on one side of it (or on it)."""
+    """True if p and q, coplanar with the line a b, lie on one side of the line or on it."""
 
     def normal(tip: Point) -> tuple[int, int, int]:
         u, v = [b[i] - a[i] for i in range(3)], [tip[i] - a[i] for i in range(3)]

@@ -1,4 +1,4 @@
-"""Families on grid planes and of implicit surfaces: voxels, mazes, Menger sponges, gyroids; booleans at random."""
+"""Families of solids on grid planes and of implicit surfaces: voxels, mazes, Menger sponges, gyroids, booleans."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .shapes import (
 
 @family(7)
 def polycubes(k: int, rng: np.random.Generator) -> Draft:
-    """Voxels of exact binary coordinates that touch through faces only; terraces of them."""
+    """Voxels with exact binary coordinates that touch only through faces; terraces of voxels."""
     side = 4 + k
     if k % 3 == 2:
         steps = np.sort(rng.integers(1, side, (side, side)), axis=0)
@@ -40,7 +40,7 @@ def polycubes(k: int, rng: np.random.Generator) -> Draft:
 
 
 def carved(rng: np.random.Generator, shape: tuple[int, ...]) -> np.ndarray:
-    """The corridors of a maze without loops: cells at odd places, walls between them."""
+    """The corridors of a maze without loops: cells at odd places with walls between them."""
     open_cells = np.zeros([2 * n + 1 for n in shape], dtype=bool)
     stack = [tuple(int(rng.integers(n)) for n in shape)]
     open_cells[tuple(2 * c + 1 for c in stack[0])] = True
@@ -89,7 +89,7 @@ def hilbert(order: int) -> np.ndarray:
 
 @family(7)
 def mazes(k: int, rng: np.random.Generator) -> Draft:
-    """Corridors as voxels: a maze open above, one closed all around, the corridors as a solid, Hilbert's curve."""
+    """Voxels of mazes: open above, closed on all sides, or the corridors as a solid; Hilbert's curve."""
     if k in (2, 5):
         order = 2 if k == 2 else 3
         points = hilbert(order)
@@ -109,7 +109,7 @@ def mazes(k: int, rng: np.random.Generator) -> Draft:
 
 
 def menger(level: int, width: float = 1 / 3) -> Manifold:
-    """Side 3**level, a corner in the origin; `width`: of its holes, relative."""
+    """A Menger sponge of side 3**level with a corner in the origin; `width` is the relative width of its holes."""
     side = 3.0**level
     holes = []
     for depth in range(1, level + 1):
@@ -127,7 +127,7 @@ def menger(level: int, width: float = 1 / 3) -> Manifold:
 
 @family(7)
 def menger_sponges(k: int, rng: np.random.Generator) -> Draft:
-    """Menger sponges and pieces of them: on grid planes, with thin walls, cut by planes in any direction."""
+    """Menger sponges on grid planes, turned, with thin walls, or cut by planes of any direction."""
     if k < 2:
         return Draft(menger(1 + k), 1, (1, (5, 81)[k], 0))
     if k == 2:
@@ -156,7 +156,7 @@ TPMS = {
 
 @family(8)
 def gyroids(k: int, rng: np.random.Generator) -> Draft:
-    """Pieces of periodic minimal surfaces, on one side of them or as walls; in boxes and balls."""
+    """Pieces of periodic minimal surfaces in boxes and balls: one side of the surface, or a wall along it."""
     value = TPMS[("gyroid", "primitive", "diamond")[k % 3]]
     wall = (0, 0.7, 0, 0.5, 0, 0.6, 0, 0.4)[k]
     half = (3.0, 3.3, 4.0, 3.0, 3.1, 3.4, 5.2, 3.6)[k]
@@ -175,7 +175,7 @@ def gyroids(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def random_booleans(k: int, rng: np.random.Generator) -> Draft:
-    """Blocks, balls, cylinders and cones, added and subtracted at random."""
+    """Boxes, balls, cylinders and cones, added and subtracted at random."""
     solid = box((2, 2, 2))
     for number in range(6 + 4 * k):
         size = rng.uniform(0.2, 0.9)

@@ -1,4 +1,4 @@
-"""Families of shells, holes and voids."""
+"""Families of solids with shells, holes and voids."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from .shapes import (
 
 
 def voxel(solid: Manifold) -> float:
-    """Of a grid of 64 cells along the longest side."""
+    """The voxel size of a grid of 64 cells along the longest side."""
     lower, upper = bounds_of(solid)
     return float((upper - lower).max()) / 64
 
 
 def shell_of(solid: Manifold, thickness: float) -> Manifold:
-    """A solid that each ray from the origin leaves once, hollowed: its wall is at most `thickness`."""
+    """Hollows a star-shaped solid around the origin; the wall is at most `thickness`."""
     lower, upper = bounds_of(solid)
     half = (upper - lower).max() / 2
     return solid - solid.scale((float(1 - thickness / half),) * 3)
@@ -37,7 +37,7 @@ def shell_of(solid: Manifold, thickness: float) -> Manifold:
 
 @family(8)
 def thin_shells(k: int, rng: np.random.Generator) -> Draft:
-    """Closed walls of 0.001 to 1 voxel of a grid of 64."""
+    """Closed walls of 0.001 to 1 voxel thickness in a grid of 64."""
     voxels = (1, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.5)[k]
     if k in (2, 6):
         thickness = voxels * 2 * 1.4 / 64
@@ -71,7 +71,7 @@ def pierced_shells(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def pinholes(k: int, rng: np.random.Generator) -> Draft:
-    """Tiny holes through a plate, straight or at a slant."""
+    """Tiny holes through a plate, straight or slanted."""
     radius = (0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)[k]
     side = 2 + k % 4
     places = [(x, y) for x in np.arange(side) for y in np.arange(side)]
@@ -89,7 +89,7 @@ def pinholes(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def drillings(k: int, rng: np.random.Generator) -> Draft:
-    """Thin holes that meet in the middle of a block, or miss each other closely."""
+    """Thin holes that meet in the middle of a block or a ball, or narrowly miss each other."""
     holes, radius = 2 + k // 2, 0.2 * 0.3**k
     solid = ball(1, segments=24) if k % 3 == 2 else box((2, 2, 2))
     directions = random_directions(rng, holes, 0.5)
@@ -107,7 +107,7 @@ def drillings(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def nested_voids(k: int, rng: np.random.Generator) -> Draft:
-    """Solids in voids of solids, with thin walls and gaps; many voids side by side."""
+    """Solids nested in voids of solids with thin walls and gaps, or many voids side by side."""
     if k % 4 == 3:
         side = 2 + k // 4
         cells = [(x, y, z) for x in range(side) for y in range(side) for z in range(side)]
@@ -135,7 +135,7 @@ def nested_voids(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def bellows(k: int, rng: np.random.Generator) -> Draft:
-    """Folded walls of revolution: open tubes, and closed ones."""
+    """Folded walls of revolution as open or closed tubes."""
     folds, wall = 3 + k, 0.1 * 0.4**k
     heights = np.linspace(0, 2, 2 * folds + 1)
     radii = np.where(np.arange(2 * folds + 1) % 2, 1.0, 0.55)
@@ -154,7 +154,7 @@ def bellows(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def hairs(k: int, rng: np.random.Generator) -> Draft:
-    """Bodies that hairs join; chambers that hairs of air open."""
+    """Bodies connected by hairs, or chambers opened by hair-thin holes."""
     count, radius = 1 + k, (0.05, 0.01, 2e-3, 5e-4, 1e-4, 1e-5, 1e-6, 1e-3)[k]
     places = rng.uniform(-0.6, 0.6, (count, 2))
     while count > 1 and min(np.linalg.norm(a - b) for i, a in enumerate(places) for b in places[:i]) < 0.12:

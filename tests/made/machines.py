@@ -24,7 +24,7 @@ from .shapes import (
 
 
 def thread(radius: float, depth: float, pitch: float, turns: int, steps: int) -> Manifold:
-    """A helical ridge with a triangular section; its foot reaches below `radius`."""
+    """A helical ridge with a triangular section; the foot of the ridge reaches below `radius`."""
     t = 2 * np.pi * turns * np.arange(turns * steps + 1) / (turns * steps)
     profile = np.array([(-0.1 * radius, -0.42 * pitch), (depth, 0.0), (-0.1 * radius, 0.42 * pitch)])
     out = np.column_stack([np.cos(t), np.sin(t), 0 * t])
@@ -35,7 +35,7 @@ def thread(radius: float, depth: float, pitch: float, turns: int, steps: int) ->
 
 @family(8)
 def screws(k: int, rng: np.random.Generator) -> Draft:
-    """Threads: on screws, in nuts, both with little play between them; twisted bars."""
+    """Threads on screws, in nuts, or on both with little play between them; twisted bars."""
     kind, turns, steps = k % 4, 3 + k // 2, 16 + k
     if kind == 3:
         section = np.concatenate([circle(1.0 + 0.3 * (i % 2), 1, turn=2 * np.pi * i / 12) for i in range(12)])
@@ -57,7 +57,7 @@ def screws(k: int, rng: np.random.Generator) -> Draft:
 
 
 def gear(teeth: int, radius: float, depth: float, gap: float = 0.0) -> np.ndarray:
-    """`gap`: by how much its teeth are narrower than the room between those of another."""
+    """The outline of a gear; `gap` is the share by which teeth are narrower than without play."""
     points = []
     for tooth in range(teeth):
         for at, r in ((-0.27, -1), (-0.12, 1), (0.12, 1), (0.27, -1)):
@@ -68,12 +68,12 @@ def gear(teeth: int, radius: float, depth: float, gap: float = 0.0) -> np.ndarra
 
 @family(7)
 def gears(k: int, rng: np.random.Generator) -> Draft:
-    """Gears with bores and windows between spokes, straight and helical; pairs with little play."""
+    """Straight and helical gears with bores and windows between spokes; pairs of gears with little play."""
     teeth, depth = 8 + 4 * k, 0.4 * 0.7**k
     wheel, bore = gear(teeth, 2, depth), circle(0.4, 16)[::-1]
     if k % 3 == 2:
         play = 0.2 * 0.3**k
-        gap = 4 + 2 * depth + play  # beside each other: teeth do not reach in
+        gap = 4 + 2 * depth + play  # side by side, with teeth that do not interlock
         pair = [extruded([wheel, bore], 0.6), extruded([gear(teeth, 2, depth), bore], 0.6).translate((gap, 0, 0))]
         return Draft(turned(union(pair), rng), play, (2, 2, 0))
     windows, thin = 3 + k, 0.15 * 0.5**k
@@ -83,7 +83,7 @@ def gears(k: int, rng: np.random.Generator) -> Draft:
         along = np.linspace(start, end, 6)
         outer = np.column_stack([np.cos(along), np.sin(along)]) * (2 - depth - thin)
         middle = (start + end) / 2
-        aside = outer + 0  # parallel spokes: both sides of a window move in by half their width
+        aside = outer + 0  # for parallel spokes, both sides of a window move in by half a spoke
         aside[[0, -1]] += thin / 2 * np.array([(-np.sin(start), np.cos(start)), (np.sin(end), -np.cos(end))])
         inner = np.array([(np.cos(middle), np.sin(middle))]) * (0.4 + thin) * 1.2
         holes.append(np.concatenate([aside, inner])[::-1])
@@ -93,7 +93,7 @@ def gears(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def joints(k: int, rng: np.random.Generator) -> Draft:
-    """Parts that hold each other with little play: ball and socket, axle and bushing, hinges."""
+    """Interlocked parts with little play: ball and socket, axle and bushing, hinges."""
     play = 0.05 * 0.15**k
     if k % 3 == 0:
         head = ball(1, segments=24) + rod((0, 0, 0), (0, 0, 3), 0.4, 12)
@@ -149,14 +149,14 @@ def near_parts(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def folds(k: int, rng: np.random.Generator) -> Draft:
-    """Bodies that nearly touch themselves: wound up, folded to and fro, bent to a ring with a slit."""
+    """Bodies that nearly touch themselves: rolled up, folded back and forth, or bent to a ring with a slit."""
     gap = 0.2 * 0.25**k
     kind = k % 4
-    if kind == 0 or kind == 3:  # a wall wound up; or such a slit in a disc
+    if kind == 0 or kind == 3:  # a rolled-up wall, or a spiral slit in a disc
         turns, wall = 2 + k // 2, 0.1
         pitch = wall + gap if kind == 0 else wall + 0.1
         width = wall if kind == 0 else gap
-        t = 2 * np.pi * np.arange(3, 24 * turns) / 24  # each turn has its corners above those of the one before
+        t = 2 * np.pi * np.arange(3, 24 * turns) / 24  # corners of successive turns lie above each other
         r = 0.2 + pitch * t / (2 * np.pi)
         inner, outer = ((r + s * width)[:, None] * np.column_stack([np.cos(t), np.sin(t)]) for s in (0, 1))
         strip = extruded([np.concatenate([outer, inner[::-1]])], 1)

@@ -1,4 +1,4 @@
-"""Families of needles, solid and empty, of fans of thin triangles, and of grazing contacts."""
+"""Families of solid and empty needles, fans of thin triangles, and grazing contacts."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from .shapes import (
 
 
 def cone(tip: np.ndarray, towards: np.ndarray, length: float, degrees: float, sides: int) -> Manifold:
-    """`degrees`: its whole angle at the tip."""
+    """A cone; `degrees` is the whole angle at the tip."""
     radius = length * np.tan(np.radians(degrees) / 2)
     return rod(tip + length * towards, tip, radius, sides, 0.0)
 
 
 @family(8)
 def solid_needles(k: int, rng: np.random.Generator) -> Draft:
-    """Spikes of 2 to 20 degrees out of a ball or block."""
+    """Spikes of 2 to 20 degrees on a ball or box."""
     degrees = (20, 15, 10, 7, 5, 3, 2, 2)[k]
     spikes = [
         cone(3 * one, -one, 3, degrees, 3 + k) for one in random_directions(rng, 3 + 3 * k, 0.4 if k > 4 else 0.6)
@@ -42,7 +42,7 @@ def solid_needles(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def empty_needles(k: int, rng: np.random.Generator) -> Draft:
-    """Closed voids in the form of cones, pyramids and spindles, tips in any direction."""
+    """Voids shaped like cones, pyramids and spindles, with tips in any direction."""
     degrees = (20, 15, 10, 7, 5, 3, 2, 12)[k]
     side = 1 + (k + 1) // 3
     voids = []
@@ -73,7 +73,7 @@ def cut_needles(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def hourglasses(k: int, rng: np.random.Generator) -> Draft:
-    """Pairs of cones, tip to tip: apart by a hair, or joined in a hair; of air in a block, or solid."""
+    """Pairs of cones tip to tip, a hair apart or joined by a hair; solid, or empty in a block."""
     gap, degrees = 0.1**k if k else 0.2, (40, 20, 10, 30, 60, 15, 5)[k]
     meets = k % 2 == 1
     parts, radius = [], 2 * np.tan(np.radians(degrees) / 2)
@@ -92,10 +92,10 @@ def hourglasses(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def fans(k: int, rng: np.random.Generator) -> Draft:
-    """Vertices of high valence, and needle triangles around them."""
+    """Vertices of high valence with needle triangles around them."""
     sides = (16, 64, 200, 500, 1000, 2000, 97, 300)[k]
     rim = np.column_stack([circle(1, sides, turn=0.1 * k), np.zeros(sides)])
-    if k % 4 == 3:  # a disc: each face a fan around one corner of the rim
+    if k % 4 == 3:  # a disc; each face is a fan around one corner of the border
         lower, upper = rim, rim + np.array([0, 0, 0.05])
         around = np.arange(sides)
         following = (around + 1) % sides
@@ -120,7 +120,7 @@ def fans(k: int, rng: np.random.Generator) -> Draft:
 
 
 def sphere_mesh(rows: int, around: int) -> Arrays:
-    """Unit sphere with two poles of high valence."""
+    """A unit sphere with two poles of high valence."""
     heights = np.pi * np.arange(1, rows) / rows
     angles = 2 * np.pi * np.arange(around) / around
     rings = np.array([[(np.sin(h) * np.cos(a), np.sin(h) * np.sin(a), -np.cos(h)) for a in angles] for h in heights])
@@ -139,7 +139,7 @@ def sphere_mesh(rows: int, around: int) -> Arrays:
 
 @family(7)
 def urchins(k: int, rng: np.random.Generator) -> Draft:
-    """Spheres with each vertex moved along its ray, from rough to spikes of single vertices."""
+    """Spheres whose vertices are moved along their rays, from roughness to spikes of single vertices."""
     vertices, triangles = sphere_mesh(6 + 2 * k, 8 + 4 * k)
     if k % 2:
         radii = np.where(rng.uniform(size=len(vertices)) < 0.1, rng.uniform(1.5, 4, len(vertices)), 1)
@@ -150,17 +150,17 @@ def urchins(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def grazing(k: int, rng: np.random.Generator) -> Draft:
-    """Bodies that reach through a plane by very little, faces that are nearly in one plane."""
+    """Bodies that barely reach through a plane, and nearly coplanar faces."""
     by = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-5, 1e-3, 1e-4)[k]
     kind = k % 4
     if kind == 0:  # dents and bumps as shallow as `by`
         bumps = [ball(1, (x, 0.1, 0.5 + 1 - by), 64) for x in (-2.0, 1.0)]
         dents = [Manifold.cylinder(1, 0.3, -1, 24).translate((x, -0.7, 0.5 - by)) for x in (-2.0, 1.0)]
         return Draft(cut(box((8, 3, 1)), dents) + union(bumps), by, (1, 0, 0))
-    if kind == 1:  # holes along an edge that nearly break out of the face
+    if kind == 1:  # holes near a face that nearly break through
         drills = [Manifold.cylinder(3, 0.25, -1, 24, True).translate((x, 0.75 - by, 0)) for x in (-1.5, 0.0, 1.5)]
         return Draft(cut(box((4, 2, 2)), drills), by, (1, 3, 0))
-    if kind == 2:  # blocks turned against each other by very little
+    if kind == 2:  # boxes turned slightly against each other
         blocks = [
             box((2, 1, 1)).rotate((0.0, 0.0, float(np.degrees(by) * i))).translate((0.9 * i, 0, 0)) for i in range(4)
         ]

@@ -10,7 +10,7 @@ from .shapes import Draft, block, box, circle, cut, extruded, family, placed, ra
 
 @family(8)
 def crossed_plates(k: int, rng: np.random.Generator) -> Draft:
-    """Plates in any direction through one place."""
+    """Plates of any direction through one place."""
     thickness = 0.4 * 0.4**k
     plates = []
     for _ in range(2 + k):
@@ -21,7 +21,7 @@ def crossed_plates(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def egg_crates(k: int, rng: np.random.Generator) -> Draft:
-    """Two sets of parallel plates, of exact binary coordinates; some with a floor; some turned."""
+    """Two sets of parallel plates with exact binary coordinates; some have a floor, some are turned."""
     rows, columns, thickness = 2 + k % 3, 2 + k // 2, 2.0 ** -(2 + k)
     plates = [block((0, y, 0), (columns + 1, y + thickness, 1)) for y in np.linspace(1, rows, rows)]
     plates += [block((x, 0, 0), (x + thickness, rows + 1, 1)) for x in np.linspace(1, columns, columns)]
@@ -35,7 +35,7 @@ def egg_crates(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def slits(k: int, rng: np.random.Generator) -> Draft:
-    """Narrow cuts in a block: open at three sides, through, or closed all around."""
+    """Narrow cuts in a block: open on three sides, through the block, or closed on all sides."""
     count, width = 3 + k, (0.2, 0.05, 0.01, 1e-3, 1e-4, 1e-5, 1e-6, 0.02)[k]
     solid = box((4, 4, 2))
     lengths = rng.uniform(1, 3.5, count)
@@ -76,7 +76,7 @@ def heat_sinks(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def slots(k: int, rng: np.random.Generator) -> Draft:
-    """Grooves with a mouth narrower than their bottom: T slots, dovetails, keyholes; a wall as thin between two."""
+    """Grooves with a mouth narrower than the bottom: T slots, dovetails, keyholes. The last wall is as thin."""
     mouth = 0.3 * 0.3**k
     count = 2 + k % 3
     parts = []
@@ -105,14 +105,14 @@ def slots(k: int, rng: np.random.Generator) -> Draft:
                     extruded([circle(0.4, 12, (x, 0.3))], 6), np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), (0, 5, 0)
                 )
             )
-    # Its top lies on z = 1 exactly; the last wall is as thin as the mouth.
+    # The top lies exactly on z = 1. The last wall is as thin as the mouth.
     solid = cut(block((-1.5, 0, -0.5), (2.0 * count - 2 + (0.5, 0.7, 0.4)[k % 3] + mouth, 4, 1)), parts)
     return Draft(turned(solid, rng) if k % 2 else solid, mouth, (1, 0, 0))
 
 
 @family(8)
 def wedges(k: int, rng: np.random.Generator) -> Draft:
-    """Deep grooves with a sharp bottom, side by side and crossing; or a knife edge."""
+    """Deep grooves with a sharp bottom, side by side or crossing, or a knife edge."""
     degrees = (10, 5, 2, 1, 0.5, 0.2, 0.1, 3)[k]
     half = np.tan(np.radians(degrees) / 2)
     depth = 1.5
@@ -152,7 +152,7 @@ def honeycombs(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def membranes(k: int, rng: np.random.Generator) -> Draft:
-    """Tubes that a thin wall closes, at a slant; a tunnel beside stays open."""
+    """Tubes closed by a thin wall, also a slanted one, beside an open tunnel."""
     thickness = 0.3 * 0.15**k
     count = 1 + k % 4
     solid = box((2 * count + 2, 2, 3))

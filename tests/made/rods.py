@@ -35,13 +35,13 @@ def frame_of(nodes: np.ndarray, edges: list[tuple[int, int]], radius: float, sid
 
 
 def tunnels(nodes: np.ndarray, edges: list[tuple[int, int]]) -> int:
-    """Of a connected graph."""
+    """The number of tunnels of a connected graph."""
     return len(edges) - len(nodes) + 1
 
 
 @family(8)
 def trusses(k: int, rng: np.random.Generator) -> Draft:
-    """Girders of three booms, and flat ones, with diagonals."""
+    """Girders of three booms, and flat girders of two, with diagonals."""
     bays, radius = 2 + k, 0.08 * 0.6**k
     booms = 3 if k % 2 else 2
     corners = np.array([(0, 0), (0.5, 0.9), (1, 0)])[:booms]
@@ -60,7 +60,7 @@ def trusses(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def crossing_rods(k: int, rng: np.random.Generator) -> Draft:
-    """Rods in any direction through a small room; or stacked as logs, each layer across the one below."""
+    """Rods of any direction through a small region, or layers of logs stacked crosswise."""
     count, radius = 6 + 5 * k, 0.08 * 0.75**k
     if k % 3 == 2:
         layers, each = 3 + k // 2, 3
@@ -81,7 +81,7 @@ def crossing_rods(k: int, rng: np.random.Generator) -> Draft:
 
 @family(8)
 def lattices(k: int, rng: np.random.Generator) -> Draft:
-    """Struts between the nodes of a cubic or body-centred lattice; square bars of exact binary coordinates."""
+    """Struts between the nodes of a cubic or body-centred lattice; square bars with exact binary coordinates."""
     side, radius = 2 + k % 3, 0.16 * 0.65**k
     nodes = np.array(list(np.ndindex(side, side, side)), dtype=float)
     lengths = np.linalg.norm(nodes[:, None] - nodes[None], axis=2)
@@ -108,7 +108,7 @@ def lattices(k: int, rng: np.random.Generator) -> Draft:
 def branches(
     rng: np.random.Generator, levels: int, radius: float
 ) -> list[tuple[np.ndarray, np.ndarray, float, float, bool]]:
-    """Start, end, radii at both and whether it is a leaf, of the vessels of a tree that forks in two."""
+    """The vessels of a binary tree: start, end, radius at both, and True for a leaf."""
     found = []
 
     def grow(start: np.ndarray, direction: np.ndarray, wide: float, length: float, level: int) -> None:
@@ -133,22 +133,22 @@ def branches(
 
 
 def vessels(tree: list[tuple[np.ndarray, np.ndarray, float, float, bool]], wall: float, open_by: float) -> Manifold:
-    """With radii less by `wall`, and leaves and root longer by `open_by`."""
+    """The union of vessels with radii reduced by `wall`, and leaves and root extended by `open_by`."""
     parts = []
     for number, (start, end, wide, thin, is_leaf) in enumerate(tree):
         along = (end - start) / np.linalg.norm(end - start)
-        more = (wide - thin) / np.linalg.norm(end - start) * open_by  # the taper goes on
+        more = (wide - thin) / np.linalg.norm(end - start) * open_by  # continues the taper
         first, at_first = (start - along * open_by, wide + more) if number == 0 else (start, wide)
         last, at_last = (end + along * open_by, thin - more) if is_leaf else (end, thin)
         parts.append(rod(first, last, at_first - wall, 8, at_last - wall))
         if not is_leaf:
-            parts.append(ball(1.1 * (thin - wall), end, 16))  # round enough to hide the ends of all three
+            parts.append(ball(1.1 * (thin - wall), end, 16))  # large enough to hide the ends of all three vessels
     return union(parts)
 
 
 @family(8)
 def vessel_trees(k: int, rng: np.random.Generator) -> Draft:
-    """Forking vessels: solid, hollow with open ends, or as a void that leaves a block."""
+    """Forking vessels: solid, hollow with open ends, or as a hole that opens at a face of a block."""
     levels, radius = 3 + k // 3, 0.1 * 0.8**k
     tree = branches(rng, levels, radius)
     if k % 3 == 1:
@@ -164,7 +164,7 @@ def vessel_trees(k: int, rng: np.random.Generator) -> Draft:
 
 
 def least_distance(one: np.ndarray, other: np.ndarray) -> float:
-    """Of two closed polygons, by points on their edges."""
+    """The distance of two closed polygons, approximated by points on their edges."""
     parts = np.arange(16)[:, None, None] / 16
     first, second = (((1 - parts) * a + parts * np.roll(a, -1, axis=0)).reshape(-1, 3) for a in (one, other))
     return float(cKDTree(first).query(second)[0].min())
@@ -172,7 +172,7 @@ def least_distance(one: np.ndarray, other: np.ndarray) -> float:
 
 @family(7)
 def chains(k: int, rng: np.random.Generator) -> Draft:
-    """Linked rings, close to each other: chains, pairs of threads wound around each other, Borromean rings."""
+    """Linked rings that nearly touch: chains, pairs of intertwined threads, Borromean rings."""
     gap = 0.1 * 0.2**k
     if k % 3 == 2:
         angles = 2 * np.pi * np.arange(48) / 48
@@ -201,7 +201,7 @@ def chains(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def knots(k: int, rng: np.random.Generator) -> Draft:
-    """Torus knots and the figure eight, thick and as thin as a hair; one as a tunnel in a block."""
+    """Torus knots and the figure eight, thick or hair-thin; one is a void in a block."""
     radius = (0.3, 0.1, 0.2, 0.01, 0.1, 1e-3, 0.15)[k]
     p, q = ((2, 3), (2, 3), (2, 5), (3, 4), (2, 3), (3, 5), (5, 2))[k]
     steps = 60 + 12 * p * q
@@ -219,15 +219,13 @@ def knots(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def springs(k: int, rng: np.random.Generator) -> Draft:
-    """Helices whose turns come near to each other."""
+    """Helices with turns that nearly touch."""
     turns, radius, gap = 3 + 2 * k, 0.2, 0.2 * 0.2**k
     steps = 24 * turns
     t = 2 * np.pi * turns * np.arange(steps + 1) / steps
     pitch = 2 * radius + gap
-    wide = 0.6 + 0.4 * t / t[-1] if k % 3 == 2 else np.ones_like(t)  # conical, or not
-    section = circle(
-        radius, 8 + 4 * (k % 2)
-    )  # in planes through the axis: with corners that face those of the next turn
+    wide = 0.6 + 0.4 * t / t[-1] if k % 3 == 2 else np.ones_like(t)  # conical or straight
+    section = circle(radius, 8 + 4 * (k % 2))  # in planes through the axis, so that corners face those of the next turn
     reach = wide[:, None] + section[:, 0]
     heights = pitch * t[:, None] / (2 * np.pi) + section[:, 1]
     rings = np.stack([reach * np.cos(t)[:, None], reach * np.sin(t)[:, None], heights], axis=2)
@@ -237,7 +235,7 @@ def springs(k: int, rng: np.random.Generator) -> Draft:
 
 @family(7)
 def bands(k: int, rng: np.random.Generator) -> Draft:
-    """Closed bands with any number of half twists, thick and thin; pairs of them."""
+    """Closed bands with any number of half twists, thick and thin."""
     half_twists, thickness = (1, 2, 3, 1, 5, 0, 7)[k], 0.1 * 0.25**k
     steps = 60 + 20 * k
     t = 2 * np.pi * np.arange(steps) / steps

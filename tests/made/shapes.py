@@ -1,4 +1,4 @@
-"""What the families of made solids share: solids placed in space, swept tubes, surfaces of voxels."""
+"""Tools that the families of made solids share: placed solids, swept tubes, surfaces of voxels."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ Arrays = tuple[np.ndarray, np.ndarray]  # vertices float64 [n, 3], triangles int
 
 @dataclass(frozen=True)
 class Draft:
-    """A solid as its family makes it."""
+    """A solid as its family constructs it."""
 
     body: Manifold | Arrays
-    thinnest: float  # the least wall, gap or hole that its generator was asked for; 0: it runs out to a point or edge
-    betti: tuple[int, int, int] | None = None  # where they follow from the construction
+    thinnest: float  # the requested thinnest wall, gap or hole; 0 if the solid tapers to a point or edge
+    betti: tuple[int, int, int] | None = None  # if they follow from the construction
 
 
 Maker = Callable[[int, np.random.Generator], Draft]
@@ -33,7 +33,7 @@ FAMILIES: dict[str, Family] = {}
 
 
 def family(count: int) -> Callable[[Maker], Maker]:
-    """Enters a maker of `count` solids, which it is asked for by number: severer ones later, mostly."""
+    """Registers a maker of `count` numbered solids; higher numbers are mostly harder."""
 
     def enter(make: Maker) -> Maker:
         FAMILIES[make.__name__] = Family(make, count)
@@ -43,12 +43,12 @@ def family(count: int) -> Callable[[Maker], Maker]:
 
 
 def box(size: Sequence[float], at: Sequence[float] = (0, 0, 0)) -> Manifold:
-    """`at` is its centre."""
+    """A box; `at` is its centre."""
     return Manifold.cube(tuple(map(float, size)), True).translate(tuple(map(float, at)))
 
 
 def block(lower: Sequence[float], upper: Sequence[float]) -> Manifold:
-    """Between two corners, which keep their coordinates exactly."""
+    """A box between two corners, which keep their exact coordinates."""
     x, y, z = np.array([lower, upper], dtype=float).T
     corners = np.array([[a, b, c] for c in z for b in y for a in x])
     sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
@@ -60,12 +60,12 @@ def ball(radius: float, at: Sequence[float] = (0, 0, 0), segments: int = 16) -> 
 
 
 def torus(major: float, minor: float, around: int = 32, sides: int = 16) -> Manifold:
-    """Around z."""
+    """A torus around the z axis."""
     return CrossSection.circle(float(minor), sides).translate((float(major), 0.0)).revolve(around)
 
 
 def frame(direction: np.ndarray) -> np.ndarray:
-    """A rotation that takes z to `direction`."""
+    """A rotation that maps z to `direction`."""
     z = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)
@@ -80,7 +80,7 @@ def placed(solid: Manifold, rotation: np.ndarray | None = None, at: Sequence[flo
 def rod(
     start: Sequence[float], end: Sequence[float], radius: float, sides: int = 8, tip: float | None = None
 ) -> Manifold:
-    """A prism from `start` to `end`; `tip`: its radius there, 0 makes a cone."""
+    """A prism from `start` to `end`; `tip` is the radius at the end, and 0 gives a cone."""
     a, b = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     last = radius if tip is None else tip
     straight = Manifold.cylinder(float(np.linalg.norm(b - a)), float(radius), float(last), sides)
@@ -117,7 +117,7 @@ def cut(solid: Manifold, parts: Sequence[Manifold]) -> Manifold:
 
 
 def extruded(polygons: Sequence[np.ndarray], height: float, **options: float) -> Manifold:
-    """Of polygons counter-clockwise, holes clockwise; from z = 0."""
+    """Extrudes counter-clockwise polygons with clockwise holes from z = 0."""
     section = CrossSection([np.asarray(polygon, dtype=float) for polygon in polygons])
     return Manifold.extrude(section, float(height), **options)
 
@@ -155,9 +155,10 @@ def joined(*bodies: Arrays) -> Arrays:
 
 
 def swept(rings: np.ndarray, closed: bool, shift: int = 0, other_diagonal: Sequence[int] = ()) -> Arrays:
-    """The surface through rings [n, sides, 3], counter-clockwise seen from ahead; `shift`: the last ring meets the
-    first that many corners on. Open ones get fans as ends, so rings must be convex there. `other_diagonal`: sides that
-    are split the other way, as where two sides of a thin band must bend alike."""
+    """The surface through rings [n, sides, 3], which are counter-clockwise when seen from ahead.
+
+    The last ring meets the first one `shift` corners further on. The ends of open surfaces are fans, so their rings
+    must be convex. Sides in `other_diagonal` are split the other way, so that both sides of a thin band bend alike."""
     count, sides, _ = rings.shape
     triangles = []
     for ring in range(count if closed else count - 1):
@@ -175,7 +176,7 @@ def swept(rings: np.ndarray, closed: bool, shift: int = 0, other_diagonal: Seque
 
 
 def tube(points: np.ndarray, radius: float | np.ndarray, sides: int = 8, closed: bool = False) -> Arrays:
-    """A round tube along a curve that does not come closer to itself than two radii; its frames hardly turn."""
+    """A round tube with little twist along a curve that stays two radii away from itself."""
     following = np.roll(points, -1, axis=0) - points
     before = points - np.roll(points, 1, axis=0)
     if not closed:
@@ -194,7 +195,7 @@ def tube(points: np.ndarray, radius: float | np.ndarray, sides: int = 8, closed:
         end = across[-1] - tangents[0] * (across[-1] @ tangents[0])
         off = np.arctan2(end @ other, end @ across[0])
         shift = round(off / (2 * np.pi / sides)) % sides
-        # What is left is less than half a corner: it spreads over the curve.
+        # The rest is less than half a corner and is spread over the curve.
         left = off - 2 * np.pi / sides * round(off / (2 * np.pi / sides))
         turn = -left * np.arange(len(points)) / len(points)
     else:
@@ -209,7 +210,7 @@ def tube(points: np.ndarray, radius: float | np.ndarray, sides: int = 8, closed:
 
 
 def voxel_surface(cells: np.ndarray, size: float = 1.0) -> Arrays:
-    """The surface of voxels [x, y, z] that touch through faces only."""
+    """The surface of voxels [x, y, z] that touch only through faces."""
     padded = np.pad(cells.astype(bool), 1)
     quads = []
     for axis in range(3):
@@ -227,7 +228,7 @@ def voxel_surface(cells: np.ndarray, size: float = 1.0) -> Arrays:
 
 
 def is_well_composed(cells: np.ndarray) -> bool:
-    """Whether voxels touch, and leave each other, through faces only, so that their surface is a manifold."""
+    """True if voxels, and the voxels around them, touch only through faces, so that their surface is a manifold."""
     padded = np.pad(cells.astype(bool), 1)
     for a, b in ((0, 1), (0, 2), (1, 2)):
         here, right = padded, np.roll(padded, -1, a)

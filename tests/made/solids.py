@@ -14,22 +14,22 @@ from . import grids, hollows, machines, needles, plates, rods
 from .shapes import FAMILIES, arrays_of
 
 Betti = tuple[int, int, int]
-GROUPS = (grids, hollows, machines, needles, plates, rods)  # each has entered its families into FAMILIES
+GROUPS = (grids, hollows, machines, needles, plates, rods)  # these modules register their families in FAMILIES
 
 
 @dataclass(frozen=True)
 class MadeSolid:
     name: str
     family: str
-    vertices: np.ndarray  # float64 [n, 3]
-    triangles: np.ndarray  # int64 [m, 3], facing outwards
-    betti: Betti  # components, tunnels, voids: counted from the shells
-    stated: Betti | None  # the same as its construction says, where that is known
-    thinnest: float  # the least wall, gap or hole that was asked for; 0: it runs out to a point or edge
+    vertices: np.ndarray  # float64 [n, 3].
+    triangles: np.ndarray  # Facing outwards, int64 [m, 3].
+    betti: Betti  # Components, tunnels and voids, counted from the shells.
+    stated: Betti | None  # The same from the construction, if known.
+    thinnest: float  # The requested thinnest wall, gap or hole; 0 if the solid tapers to a point or edge.
 
 
 def shells_of(triangles: np.ndarray, vertex_count: int) -> tuple[int, np.ndarray]:
-    """How many connected surfaces there are, and of which one each triangle is."""
+    """The number of connected surfaces, and the surface of each triangle."""
     starts, ends = triangles[:, [0, 1, 2]].ravel(), triangles[:, [1, 2, 0]].ravel()
     graph = coo_matrix((np.ones(len(starts), dtype=np.int8), (starts, ends)), shape=(vertex_count, vertex_count))
     labels = connected_components(graph, directed=False)[1][triangles[:, 0]]
@@ -38,8 +38,10 @@ def shells_of(triangles: np.ndarray, vertex_count: int) -> tuple[int, np.ndarray
 
 
 def counted_betti(vertices: np.ndarray, triangles: np.ndarray) -> Betti:
-    """Of the solid that embedded closed surfaces facing outwards bound: those of positive volume are outer shells,
-    those of negative volume voids, and each handle of either is a tunnel (Alexander duality)."""
+    """The Betti numbers of the solid that embedded closed surfaces bound, which face outwards.
+
+    Surfaces of positive volume are outer shells, surfaces of negative volume bound voids, and each handle of either is
+    a tunnel (Alexander duality)."""
     directed = np.sort(triangles[:, [0, 1, 2]].ravel() * len(vertices) + triangles[:, [1, 2, 0]].ravel())
     if (directed[1:] == directed[:-1]).any():
         raise ValueError("an edge is run through twice in one direction")
@@ -56,7 +58,7 @@ def counted_betti(vertices: np.ndarray, triangles: np.ndarray) -> Betti:
 
 
 def made_solid(family: str, variant: int) -> MadeSolid:
-    """The same mesh whenever it is called, for given versions of Manifold and NumPy."""
+    """The solid of a family by number; reproducible for given versions of Manifold and NumPy."""
     entry = FAMILIES[family]
     rng = np.random.default_rng([zlib.crc32(family.encode()), variant])
     draft = entry.make(variant, rng)
@@ -66,8 +68,7 @@ def made_solid(family: str, variant: int) -> MadeSolid:
 
 
 def names() -> list[tuple[str, int]]:
-    """Family and variant of all, in an order whose beginnings hold as many families as they can: first one of each, of
-    varying severity, then another of each."""
+    """Family and variant of all solids: first one of each family, of varying difficulty, then another one of each."""
     found = []
     for turn in range(max(entry.count for entry in FAMILIES.values())):
         for number, (name, entry) in enumerate(FAMILIES.items()):
@@ -77,6 +78,6 @@ def names() -> list[tuple[str, int]]:
 
 
 def made_solids(count: int | None = None) -> Iterator[MadeSolid]:
-    """The first `count` of the 300, made one after the other; from 40 on each family is among them."""
+    """Makes the first `count` of the 300 solids one by one; the first 40 contain each family."""
     for family, variant in names()[:count]:
         yield made_solid(family, variant)

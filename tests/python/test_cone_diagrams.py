@@ -1,7 +1,7 @@
-"""What is certified of Voronoi diagrams inside hostile solids is true: the volumes of regions are those of the points
-that are closest to their sites, by searches; the Euler number is that of the Betti numbers; medial axes are verified.
+"""Proves that certified Voronoi diagrams of hostile solids are correct, and that their medial axes are certified.
 
-A hundred solids where the environment variable BLUM_CONE_SOLIDS is 100."""
+The volume of a region agrees with searches of closest sites at random points. The Euler number agrees with the Betti
+numbers. The environment variable BLUM_CONE_SOLIDS sets the number of solids (default 50)."""
 
 import os
 
@@ -11,7 +11,7 @@ import pytest
 from made.cones import FAMILIES, WAYS, cone_solid
 
 CHOSEN = range(int(os.environ.get("BLUM_CONE_SOLIDS", "50")))
-#: Needles in single precision or far from the origin, which need smaller cubes than there are.
+#: Needles that need smaller cubes than the limits allow.
 MAY_FAIL = {("fine_pyramid", way) for way in WAYS} | {("fine_dent", way) for way in WAYS} | {("thin", way) for way in WAYS}
 
 
@@ -22,7 +22,7 @@ def euler_number(complex):
 
 
 def closest_sites(mesh, sites, points):
-    """The number of the closest site of each point, -1 where that is a vertex that is none."""
+    """The number of each point's closest site; -1 if a vertex is closest that is not a site of the diagram."""
     of = {}
     for number, site in enumerate(sites):
         of.update({("face", int(t)): number for t in site.triangles})
@@ -37,7 +37,7 @@ def closest_sites(mesh, sites, points):
         face = of["face", int(found.triangle[k])]
         if kind == "vertex":
             out[k] = of.get(("vertex", int(place)), -1)
-        elif kind == "edge":  # one within a face is no site
+        elif kind == "edge":  # an edge inside a flat face is not a site of the diagram
             out[k] = of.get(("edge", tuple(sorted(map(int, table.edges[place])))), face)
         else:
             out[k] = face
@@ -45,7 +45,7 @@ def closest_sites(mesh, sites, points):
 
 
 def valid_solid(seed):
-    """The next one of the same family that was cut into triangles and that rounding has not made cross itself."""
+    """The first solid of the seed's family, from the seed on, that was triangulated and does not cross itself."""
     for further in range(20):
         made = cone_solid(seed + 50 * further)
         mesh = made and blum.Mesh(made.vertices, made.triangles)
@@ -55,7 +55,7 @@ def valid_solid(seed):
 
 
 @pytest.mark.parametrize("seed", CHOSEN, ids=lambda s: f"{FAMILIES[s % 10]}-{WAYS[s // 10 % 5]}-{s}")
-def test_what_is_certified_is_true(seed):
+def test_certified_diagrams_are_correct(seed):
     made, mesh = valid_solid(seed)
     expected = blum.topology(mesh).betti
     found = blum.voronoi_complex(mesh, max_cubes=60_000)
@@ -70,7 +70,7 @@ def test_what_is_certified_is_true(seed):
     sites = found.sites()
     closest = closest_sites(mesh, sites, points)
     assert (closest < 0).mean() < 0.02
-    part = np.prod((high - low) / (high - low).max()) / 10_000  # of a point, where the largest side is 1
+    part = np.prod((high - low) / (high - low).max()) / 10_000  # volume for each point, if the largest side is 1
     size = (high - low).max()
     counts = np.bincount(closest[closest >= 0], minlength=len(sites))
     for region in found.regions():

@@ -1,7 +1,7 @@
-"""Proves that VTK reads the files that debug_dump() writes, without a word of its own.
+"""Proves that VTK reads the files of debug_dump() without errors or warnings.
 
-The program debug_dump_sample, found beside the command-line tool (environment variable BLUM) or in build/release/bin,
-writes them.
+The program debug_dump_sample writes the files. It lies beside the command-line tool (environment variable BLUM) or in
+build/release/bin.
 """
 
 import os
@@ -50,7 +50,7 @@ def corners(cells, count):
         ("complex", [], [[0, 4], [3, 4]], [[2, 1, 0]]),
     ],
 )
-def test_vtk_reads_what_is_dumped(folder, name, alone, edges, triangles):
+def test_vtk_reads_dumped_files(folder, name, alone, edges, triangles):
     data = read(folder / f"{name}.vtp")
     assert numpy.array_equal(vtk_to_numpy(data.GetPoints().GetData()), PLACES)
     assert corners(data.GetVerts(), 1) == alone

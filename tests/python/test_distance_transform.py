@@ -1,7 +1,7 @@
-"""Proves that the distance transform of images equals SciPy's: distances, and sites as far away as SciPy's.
+"""Proves that the distance transform of images equals SciPy's, and that its sites lie at these distances.
 
-Runs the program distance_transform_sample (tests/support), which BLUM_DISTANCE_TRANSFORM_SAMPLE names, or which is
-looked for below build/. Skips, saying why, where the program, NumPy or SciPy is missing.
+Runs the program distance_transform_sample (tests/support), from BLUM_DISTANCE_TRANSFORM_SAMPLE or below build/. Skips
+with a reason if the program, NumPy or SciPy is missing.
 """
 
 import os
@@ -29,7 +29,7 @@ def sample_program():
 
 
 def transform(mask, spacing, signed, threads=0):
-    """Distance and site of a [z, y, x] mask, for spacing in x, y, z order."""
+    """Distances and sites of a [z, y, x] mask; spacing is in x, y, z order."""
     with tempfile.TemporaryDirectory() as folder:
         source, result = os.path.join(folder, "in"), os.path.join(folder, "out")
         mask.astype(numpy.uint8).tofile(source)
@@ -44,7 +44,7 @@ def transform(mask, spacing, signed, threads=0):
 
 
 def site_distance(site, spacing):
-    """Distance from each voxel to the voxel that it names."""
+    """Distance from each voxel to its site."""
     z, y, x = numpy.indices(site.shape)
     sz, sy, sx = numpy.unravel_index(site, site.shape)
     return numpy.sqrt(

@@ -1,11 +1,10 @@
-"""Files of Blum in other programs, and files of other programs in Blum.
+"""Proves that other programs read Blum's field and image files, and that Blum reads theirs.
 
-Field and image files that Blum writes are opened by NumPy, VTK, pynrrd and SimpleITK; image files that pynrrd,
-SimpleITK, nibabel and NumPy write are read by Blum. Values, sizes, spacing, origin and direction are compared with what
-the program files_sample knows, which it writes down without Blum's writers.
+NumPy, VTK, pynrrd and SimpleITK open Blum's files. Blum reads image files of pynrrd, SimpleITK, nibabel and NumPy.
+The program files_sample writes the expected values, sizes, spacing, origin and direction without Blum's writers.
 
-The program is found beside the command-line tool (environment variable BLUM), or in build/release/bin; or the
-environment variable BLUM_FILES_SAMPLE names it.
+The program lies beside the command-line tool (environment variable BLUM) or in build/release/bin, or the environment
+variable BLUM_FILES_SAMPLE names it.
 """
 
 import gzip
@@ -52,7 +51,7 @@ def samples(tmp_path_factory):
 
 
 class Expected:
-    """What a sample holds: arrays [z, y, x], and geometry in x, y, z order."""
+    """Expected content of a sample: arrays [z, y, x], and geometry in x, y, z order."""
 
     def __init__(self, folder, name):
         known = json.loads((folder / f"{name}.expected.json").read_text())
@@ -81,7 +80,7 @@ def assert_same(actual, expected):
 
 
 def test_samples_have_something_to_compare(samples):
-    """Both signs, sites of all kinds, nodes beyond the band: else the comparisons below prove little."""
+    """The sample has both signs, several sites and nodes beyond the band, so that the comparisons are meaningful."""
     field = Expected(samples, "field")
     assert (field.distance < 0).any() and (field.distance > 0).any()
     assert (field.site == -1).any() and len(numpy.unique(field.site)) > 5
@@ -110,7 +109,7 @@ def test_npz_in_numpy(samples, name):
 
 @pytest.mark.parametrize("name", MESH_FIELDS)
 def test_npz_sites_lead_to_the_mesh(samples, name):
-    """The distance to the site that the file names, from the file alone, is the distance that it states."""
+    """The distance to the named site, computed from the file alone, equals the stored distance."""
     with numpy.load(samples / f"{name}.npz") as npz:
         vertices, corners = npz["vertices"], npz["site_vertices"]
         assert vertices.dtype == numpy.float64 and vertices.shape == (5, 3)
@@ -130,7 +129,7 @@ def test_npz_sites_lead_to_the_mesh(samples, name):
 
 
 def test_npz_opens_with_standard_unzip(samples):
-    """No tool reports damage: checksums, sizes and offsets agree."""
+    """Standard tools report no damage: checksums, sizes and offsets agree."""
     import zipfile
 
     with zipfile.ZipFile(samples / "field.npz") as archive:
@@ -185,7 +184,7 @@ def test_nrrd_in_pynrrd(samples, name):
     assert_nrrd_geometry(header, expected)
     assert header["sign_rule"] == "winding" and header["band"] == "0.6"
     assert header["site_file"] == f"{name}.site.nrrd"
-    assert header["source"] == "ttra.obj"  # pynrrd leaves out what is not ASCII
+    assert header["source"] == "ttra.obj"  # pynrrd drops characters outside ASCII
     site, header = nrrd.read(str(samples / f"{name}.site.nrrd"), index_order="C")
     assert_same(site, expected.site)
     assert_nrrd_geometry(header, expected)
@@ -221,7 +220,7 @@ def test_written_images(samples, dtype):
 
 
 class Read:
-    """What Blum reads from an image file."""
+    """The content of an image file as Blum reads it."""
 
     def __init__(self, path, folder):
         out = folder / "read"
@@ -340,7 +339,7 @@ def test_reads_nibabel_qform_alone(tmp_path):
 
 
 def test_reads_nibabel_scaled_values(tmp_path):
-    """Floats kept as int16 with a slope and an intercept, as nibabel chooses them."""
+    """Floats stored as int16 with the slope and intercept that nibabel chooses."""
     array = numpy.linspace(-3.7, 12.9, 60).reshape(3, 4, 5)
     image = nibabel.Nifti1Image(array.T, numpy.eye(4))
     image.set_data_dtype(numpy.int16)
@@ -422,7 +421,7 @@ def test_reads_gzip_of_the_standard_library(tmp_path):
 @pytest.mark.parametrize("name, space", [("a.nii.gz", "right-anterior-superior"), ("itk.nrrd", "left-posterior-superior"),
                                          ("ras.nrrd", "right-anterior-superior"), ("none.nrrd", None)])
 def test_fields_lie_where_their_images_do(tmp_path, name, space):
-    """The world axes go along: a program that turns RAS into LPS puts field and image in the same place."""
+    """A field keeps the world axes of its image, so programs that convert RAS to LPS place both alike."""
     labels = (array_of("uint8") % 3 == 0).astype(numpy.uint8)
     affine = numpy.eye(4)
     affine[:3, :3] = turned() * [0.5, 0.75, 2]

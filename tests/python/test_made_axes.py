@@ -1,6 +1,6 @@
-"""Medial axes of made solids are certified: walls, gaps and holes far narrower than a voxel, on which axes once failed.
+"""Proves that medial axes of made solids with walls, gaps and holes far narrower than a voxel are certified.
 
-All 300 solids where the environment variable BLUM_MADE_SOLIDS is 300."""
+All 300 solids if the environment variable BLUM_MADE_SOLIDS is 300, else the hard ones."""
 
 import os
 
@@ -8,11 +8,10 @@ import blum
 import pytest
 from made import made_solid, names
 
-#: Holes so thin and slanted that the model would have to split its cubes into millions of boxes: said, not certified.
+#: Holes so thin and slanted that the model would need millions of boxes. Their axes are reported as not certified.
 TOO_THIN = {("pinholes", 7)}
-#: Holes that triangles spanned; thin walls in which no path was found; plates that graze each other; a thin bent wall
-#: around a void, out of which flat triangles reach; thin folds, and rods and plates whose parts in a voxel are joined
-#: around corners only: each with the resolution at which it failed.
+#: Solids on which earlier versions failed, each with the resolution of the failure. They have thin holes, walls or
+#: folds, plates that graze, a void in a bent wall, or parts that connect within a voxel around corners.
 HARD = [
     ("drillings", 3, 48),
     ("pinholes", 1, 48),
@@ -25,9 +24,9 @@ HARD = [
     ("crossed_plates", 5, 64),
     ("drillings", 5, 64),
 ]
-#: Solids with a void far thinner than a voxel whose tip may come through a face of the grid: by the last bits of their
-#: vertices, in which the linear algebra behind NumPy differs from one kind of processor to another, an axis on that grid
-#: is around it or is not. What is certified is then the axis on a grid that is moved a little, as the tool does.
+#: Solids with a thin void whose tip may cross a face of the grid, so that no axis on this grid surrounds the void.
+#: The last bits of the vertices decide that, and NumPy's linear algebra rounds differently on other processors.
+#: The axis on a slightly moved grid is then certified, as in the tool.
 GRAZES_GRID = {("crossed_plates", 5)}
 ALL = [(*name, 48) for name in names() if name not in TOO_THIN]
 CHOSEN = ALL if os.environ.get("BLUM_MADE_SOLIDS") == "300" else HARD
@@ -48,7 +47,7 @@ def test_axes_of_made_solids_are_certified(family, variant, resolution):
 
 
 def test_discs_that_close_tubes_end_at_the_rim_of_their_wall():
-    """Walls far thinner than a voxel: the sheet in the middle of each ends where the tube's side begins."""
+    """The middle sheet of a wall far thinner than a voxel ends at the tube's side."""
     made = made_solid("membranes", 6)
     mesh = blum.Mesh(made.vertices, made.triangles)
     axis = blum.medial_axis(mesh, resolution=64)
@@ -56,13 +55,13 @@ def test_discs_that_close_tubes_end_at_the_rim_of_their_wall():
         complex_ = axis.simplify(theta, fit=True)
         found = blum.certify(complex_, mesh)
         assert found, found.mismatches
-    # Of the triangles that say 180 degrees, no corner sees less.
+    # Triangles at about 180 degrees have no corner with a much smaller angle.
     angles = complex_.separation_angle[complex_.triangles].min(axis=1)
     assert (angles[complex_.triangle_angle > 179] > 170).all()
 
 
-def test_a_grid_in_which_a_thin_void_lies_badly_is_moved():
-    """A void of a tenth of a voxel, whose tip comes through a face of the grid: no axis on that grid is around it."""
+def test_the_grid_is_moved_if_a_thin_void_crosses_a_face():
+    """The tip of a void, a tenth of a voxel wide, crosses a face of the grid, so no axis on that grid surrounds it."""
     made = made_solid("crossed_plates", 4)
     mesh = blum.Mesh(made.vertices, made.triangles)
     axis = blum.medial_axis(mesh, resolution=64)

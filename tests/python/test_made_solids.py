@@ -1,7 +1,7 @@
-"""The made solids (tests/made) are what they claim to be: embedded, and with the Betti numbers that Manifold, their
-shells, their construction and Blum all find.
+"""Proves that the made solids (tests/made) are embedded and have the stated Betti numbers.
 
-The first 40, one of each family; all 300 where the environment variable BLUM_MADE_SOLIDS is 300 (two minutes)."""
+Manifold, their shells, their construction and Blum agree on these numbers. Tests the first 40, one of each family, or
+all 300 if the environment variable BLUM_MADE_SOLIDS is 300 (two minutes)."""
 
 import json
 import os
@@ -27,7 +27,7 @@ def betti_of_manifold(vertices, triangles):
     return sum(v > 0 for v in volumes), sum(part.genus() for part in parts), sum(v < 0 for v in volumes)
 
 
-def test_three_hundred_of_all_families():
+def test_there_are_300_solids_of_all_families():
     assert len(names()) == len(set(names())) == 300
     assert {family for family, _ in names()[:40]} == set(FAMILIES)
     some = list(made_solids(5))
@@ -35,7 +35,7 @@ def test_three_hundred_of_all_families():
 
 
 @pytest.mark.parametrize("family, variant", CHOSEN, ids=[f"{family}-{variant}" for family, variant in CHOSEN])
-def test_betti_numbers_agree_however_they_are_found(family, variant):
+def test_betti_numbers_agree_between_all_methods(family, variant):
     made = made_solid(family, variant)
     assert made.vertices.dtype == np.float64 and np.isfinite(made.vertices).all()
     assert made.stated in (None, made.betti)
@@ -48,7 +48,7 @@ def test_betti_numbers_agree_however_they_are_found(family, variant):
 
 
 @pytest.mark.parametrize("family, variant", CHOSEN[::8])
-def test_made_again_they_are_the_same(family, variant):
+def test_solids_are_reproducible(family, variant):
     first, second = made_solid(family, variant), made_solid(family, variant)
     assert first.vertices.tobytes() == second.vertices.tobytes()
     assert first.triangles.tobytes() == second.triangles.tobytes()
@@ -63,15 +63,15 @@ def octahedron(at):
 @pytest.mark.parametrize(
     "other",
     [
-        octahedron((0, 0, 0.5)),  # a corner on a face, from within
-        octahedron((1.5, 0.5, 0.5)),  # from outside
-        octahedron((1, 0.1, 0.2)),  # across
-        arrays_of(block((1, 0, -0.5), (2, 2, 0.5))),  # face on face
-        arrays_of(block((1, 1, 0.5), (2, 2, 2))),  # edge across edge
-        arrays_of(block((1, 1, 1), (2, 2, 2))),  # corner on corner
+        octahedron((0, 0, 0.5)),  # A corner on a face, from inside.
+        octahedron((1.5, 0.5, 0.5)),  # A corner on a face, from outside.
+        octahedron((1, 0.1, 0.2)),  # A corner through a face.
+        arrays_of(block((1, 0, -0.5), (2, 2, 0.5))),  # Face on face.
+        arrays_of(block((1, 1, 0.5), (2, 2, 2))),  # Edge across edge.
+        arrays_of(block((1, 1, 1), (2, 2, 2))),  # Corner on corner.
     ],
 )
-def test_what_touches_is_not_embedded(other):
+def test_solids_that_touch_are_not_embedded(other):
     one = arrays_of(block((-1, -1, -1), (1, 1, 1)))
     assert bad_pairs(*one) == []
     apart = joined(one, (other[0] + [3, 3, 3], other[1]))
@@ -79,12 +79,12 @@ def test_what_touches_is_not_embedded(other):
     assert bad_pairs(*joined(one, other)) != []
 
 
-def test_blum_finds_what_touches_itself_where_the_exact_test_does():
+def test_blum_and_the_exact_test_agree_on_contacts():
     rng = np.random.default_rng(7)
     found = []
     for _ in range(300):
         vertices, triangles = octahedron((0, 0, 0))
-        vertices = 4 * vertices + rng.integers(-2, 3, vertices.shape)  # small integers: much in one plane or line
+        vertices = 4 * vertices + rng.integers(-2, 3, vertices.shape)  # small integers give coplanar points
         if len(np.unique(vertices, axis=0)) == len(vertices):
             solid = blum.Solid(vertices, triangles)
             found.append((bad_pairs(vertices, triangles) == [], solid.rule == "polyhedron" and solid.resolved is None))
@@ -92,7 +92,7 @@ def test_blum_finds_what_touches_itself_where_the_exact_test_does():
     assert 0.1 < np.mean([ours for ours, _ in found]) < 0.9
 
 
-def test_the_program_writes_them_as_they_are(tmp_path):
+def test_the_program_writes_the_solids_exactly(tmp_path):
     command = [sys.executable, "-m", "made", str(tmp_path), "--count", "3"]
     paths = os.pathsep.join([str(Path(blum.__file__).parents[1]), str(TESTS)])
     done = subprocess.run(command, env={**os.environ, "PYTHONPATH": paths}, capture_output=True, text=True, check=True)

@@ -1,11 +1,10 @@
-"""Medial axes of Blum in other programs, and medial axes of other programs in Blum.
+"""Proves that other programs read Blum's files of medial axes, and that Blum reads theirs.
 
-Files that Blum writes are opened by VTK and NumPy, and by short readers of the text forms that are written here from
-their descriptions; every number is compared with what the program medial_files_sample knows, which it writes down
-without Blum's writers. Files that VTK and NumPy write are read by Blum.
+VTK, NumPy and short readers in this file open Blum's files; Blum reads files of VTK and NumPy. The program
+medial_files_sample writes the expected numbers without Blum's writers, and every number is compared.
 
-The program is found beside the command-line tool (environment variable BLUM), or in build/release/bin; or the
-environment variable BLUM_MEDIAL_FILES_SAMPLE names it.
+The program lies beside the command-line tool (environment variable BLUM) or in build/release/bin, or the environment
+variable BLUM_MEDIAL_FILES_SAMPLE names it.
 """
 
 import json
@@ -64,7 +63,7 @@ def samples(tmp_path_factory):
 
 
 class Axis:
-    """What an axis holds, as arrays."""
+    """The content of an axis as arrays."""
 
     def __init__(self, path):
         known = json.loads(path.read_text())
@@ -184,7 +183,7 @@ def test_npz_in_numpy(samples, expected):
         for name, values in known.items():
             assert_same(npz[name], values)
         assert_metadata(json.loads(str(npz["metadata"])))
-        middle = npz["vertices"][npz["edges"]].mean(axis=1)  # indices index
+        middle = npz["vertices"][npz["edges"]].mean(axis=1)  # the indices are valid
         assert middle.shape == (len(expected.edge), 3)
     with numpy.load(samples / "empty.npz", allow_pickle=False) as npz:
         assert npz["vertices"].shape == (0, 3) and npz["footprint_0"].shape == (0, 3)
@@ -194,7 +193,7 @@ PLY_TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "uchar": "u1"}
 
 
 def ply_dtype(properties):
-    """The type of one element; a list has three entries here."""
+    """The type of one element; lists have three entries."""
     fields = []
     for words in properties:
         if words[0] == "list":
@@ -276,7 +275,7 @@ def test_obj_by_hand(samples, expected):
 
 
 def test_ma_by_hand(samples, expected):
-    """As the Blender add-on blender-mat-addon reads it: counts, then as many lines of each kind, in this order."""
+    """The format of the Blender add-on blender-mat-addon: counts, then the lines of each kind, in this order."""
     lines = iter((samples / "axis.ma").read_text().splitlines())
     counts = [int(word) for word in next(lines).split()]
     rows = []
@@ -294,7 +293,7 @@ def test_ma_by_hand(samples, expected):
 
 @pytest.mark.parametrize("extension", ["obj", "ma"])
 def test_no_long_numbers_in_text(samples, extension):
-    """17 digits say everything that there is to say about a double."""
+    """17 digits determine a double."""
     words = (samples / f"axis.{extension}").read_text().split()
     assert max(len(re.sub(r"e.*|\D", "", word).lstrip("0")) for word in words) <= 17
 
@@ -359,7 +358,7 @@ def test_reads_npz_of_numpy(tmp_path, expected, save):
 
 
 @pytest.mark.parametrize("extension", ["vtp", "ply", "npz"])
-def test_blum_reads_what_it_wrote(samples, expected, extension, tmp_path):
+def test_blum_reads_its_own_files(samples, expected, extension, tmp_path):
     copy = tmp_path / f"axis.{extension}"
     copy.write_bytes((samples / copy.name).read_bytes())
     axis = read_by_blum(copy)

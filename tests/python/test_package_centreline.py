@@ -1,4 +1,4 @@
-"""Proves that blum.centreline gives the graphs of labels as arrays, in every way that labels can be chosen."""
+"""Proves that blum.centreline() returns the graphs of labels as arrays, for every way to choose labels."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def capsule(shape, begin, end, radius, spacing=(1, 1, 1)):
 
 @pytest.fixture(scope="module")
 def labels():
-    """3: a Y; 8: a tube."""
+    """An image: label 3 is a Y, label 8 a tube."""
     shape = (40, 40, 60)
     values = np.zeros(shape, dtype=np.uint16)
     for begin, end in [((15, 6, 20), (15, 20, 20)), ((15, 20, 20), (6, 33, 20)), ((15, 20, 20), (24, 33, 20))]:

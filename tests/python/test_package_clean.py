@@ -1,4 +1,4 @@
-"""blum.clean_mesh() makes what the library does: a mesh within the tolerance, with numbers of its vertices."""
+"""Proves that blum.clean_mesh() keeps the topology and the tolerance, and returns the numbers of kept vertices."""
 
 import subprocess
 import sys
@@ -24,7 +24,7 @@ def test_a_cleaned_mesh_and_its_report():
     assert np.array_equal(again.mesh.triangles, found.mesh.triangles)
 
 
-# One of each family of hostile solids: plates, slits, needles, screws, lattices, chains.
+# One solid of every second family: plates, slits, needles, screws, lattices, chains.
 @pytest.mark.parametrize("family, variant", names()[:40:2], ids=[f"{f}-{v}" for f, v in names()[:40:2]])
 def test_made_solids_keep_their_topology_and_stay_near(family, variant):
     made = made_solid(family, variant)
@@ -45,7 +45,7 @@ def test_made_solids_keep_their_topology_and_stay_near(family, variant):
         assert apart.lower <= found.report.deviation * (1 + 1e-9) + 1e-14 * size
 
 
-def test_what_is_wrong_is_said():
+def test_wrong_meshes_and_options_are_rejected():
     box = blum.generate("box")
     with pytest.raises(blum.InvalidMesh, match="closed"):
         blum.clean_mesh((box.vertices, box.triangles[1:]), 0.1)
@@ -60,12 +60,12 @@ def test_what_is_wrong_is_said():
     assert len(blum.clean_mesh(seams, 0.1, weld=0).mesh.vertices) == 8
 
 
-def test_progress_is_told():
+def test_progress_is_shown():
     code = "import blum; blum.clean_mesh(blum.subdivided(blum.generate('box'), 5), 1e-6, progress=True)"
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 
 
-def test_what_faces_the_wrong_way_is_turned():
+def test_parts_that_face_the_wrong_way_are_reversed():
     part = blum.generate("bracket")
     triangles = part.triangles.copy()
     triangles[5] = triangles[5, ::-1]

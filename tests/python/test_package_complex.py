@@ -1,4 +1,4 @@
-"""Proves that complexes of Python hold any columns, show them without copies, and say what is wrong with them."""
+"""Proves that complexes in Python hold any columns, share them without copies, and reject wrong arrays by name."""
 
 import copy
 import pickle
@@ -61,7 +61,7 @@ def test_topology_and_pickling():
         ({"vertex_columns": {"deep": np.zeros((4, 2, 2))}}, "axes"),
     ],
 )
-def test_what_is_wrong_is_said(arguments, told):
+def test_wrong_arrays_are_rejected_by_name(arguments, told):
     with pytest.raises(ValueError, match=told):
         blum.Complex(SQUARE, **arguments)
     with pytest.raises(TypeError, match="numbers"):
@@ -109,7 +109,7 @@ def test_copies_of_medial_axes_keep_all_columns_and_all_angles(tmp_path):
 
 
 @pytest.mark.parametrize("ending", ["vtp", "ply", "npz"])
-def test_files_give_back_what_was_written(ending, tmp_path):
+def test_files_return_the_written_complex(ending, tmp_path):
     made = sample()
     about = {"made by": "hand", "Größe": "β ≤ 3"}
     blum.write_complex(tmp_path / f"a.{ending}", made, metadata=about)
@@ -125,7 +125,7 @@ def test_files_give_back_what_was_written(ending, tmp_path):
         assert all(np.array_equal(read[name], columns[name]) for name in columns)
 
 
-def test_files_that_cannot_be(tmp_path):
+def test_impossible_files_are_rejected(tmp_path):
     made = sample()
     with pytest.raises(blum.InvalidOption, match="obj"):
         blum.write_complex(tmp_path / "a.obj", made)
@@ -159,7 +159,7 @@ def test_npz_files_hold_further_complexes(tmp_path):
             blum.read_complex(tmp_path / "b.npz")
 
 
-def test_what_is_no_text_or_no_plain_complex_is_refused(tmp_path):
+def test_metadata_must_be_text_and_complexes_plain(tmp_path):
     made, path = sample(), tmp_path / "a.vtp"
     for metadata in (None, [("a", "b")], {"a": 1}, {1: "a"}):
         with pytest.raises(TypeError, match="metadata"):
@@ -176,7 +176,7 @@ def test_what_is_no_text_or_no_plain_complex_is_refused(tmp_path):
     blum.write_complex(path, diagram.with_failing_cells(), metadata={"certified": "false"})
 
 
-def test_diagrams_are_complexes_of_files(tmp_path):
+def test_files_of_diagrams_read_back_as_complexes(tmp_path):
     found = blum.voronoi_complex(blum.generate("box"))
     found.write(tmp_path / "box.vtp")
     file = blum.read_complex(tmp_path / "box.vtp")

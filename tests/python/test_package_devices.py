@@ -1,4 +1,4 @@
-"""Where fields are computed: the CPU, or a device where there is one; never another than was asked for."""
+"""Proves that fields are computed on the requested device, or fail if this device does not exist."""
 
 import os
 import pathlib
@@ -35,7 +35,7 @@ def test_fields_say_where_they_were_computed(gear):
 
 
 @pytest.mark.skipif(CUDA, reason="there is a CUDA device")
-def test_a_device_that_is_not_there_is_an_error(gear):
+def test_a_missing_device_is_an_error(gear):
     mask = np.zeros((3, 3, 3), bool)
     mask[1] = True
     grid = blum.Grid.around(gear, resolution=8)
@@ -51,7 +51,7 @@ def test_a_device_that_is_not_there_is_an_error(gear):
 
 
 @pytest.mark.parametrize("wrong", ["gpu", "cuda:", "cuda:-1", "cuda:x", "cuda:1 ", "CUDA", ""])
-def test_devices_that_no_name_stands_for(gear, wrong):
+def test_wrong_names_of_devices_are_rejected(gear, wrong):
     with pytest.raises(blum.InvalidOption, match="device"):
         blum.distance_field(gear, resolution=8, device=wrong)
 
@@ -78,7 +78,7 @@ def test_a_cuda_device_agrees_with_the_cpu(gear):
 
 
 def test_memory_of_a_device():
-    """tests/python/on_device, with a module whose device is the host."""
+    """Runs tests/python/on_device with a module whose device is the host."""
     here = pathlib.Path(__file__).resolve().parent
     module = pathlib.Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so"
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(here / "on_device")]
@@ -90,7 +90,7 @@ def test_memory_of_a_device():
     assert "skipped" not in done.stdout
 
 
-def test_arrays_on_a_device_are_told_where_to_go(gear):
+def test_arrays_on_a_device_get_a_hint_for_the_device_solver(gear):
     class OnDevice:
         @property
         def __cuda_array_interface__(self):

@@ -83,7 +83,7 @@ def test_examples_run(example, tmp_path):
         ),
     ],
 )
-def test_examples_say_what_was_wrong(example, arguments, message, tmp_path):
+def test_examples_report_wrong_arguments(example, arguments, message, tmp_path):
     command = [sys.executable, ROOT / "examples/python" / example, *arguments]
     package = {**os.environ, "PYTHONPATH": str(pathlib.Path(blum.__file__).parents[1].resolve())}
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path, env=package)
@@ -101,7 +101,7 @@ def test_the_code_of_the_guide_runs(tmp_path, monkeypatch, capsys):
     assert "triangles[0, 2] is 7, but must be 0 to 3" in capsys.readouterr().out
 
 
-def test_the_table_of_verbs_names_what_there_is():
+def test_the_table_of_verbs_is_complete():
     text = (ROOT / "docs/guide/verbs.md").read_text()
     named = set(re.findall(r"`blum\.(\w+)", text))
     assert not {name for name in named if not hasattr(blum, name)}

@@ -1,5 +1,6 @@
-"""Proves that wrong arguments raise the exception that Python users expect, with the argument's name, and never crash;
-and that Ctrl-C, progress callbacks and cancelled calls leave everything usable."""
+"""Proves that wrong arguments raise the exception that Python users expect, with the argument's name, and never crash.
+
+Ctrl-C, progress callbacks and cancelled calls leave everything usable."""
 
 import os
 import signal
@@ -161,7 +162,7 @@ def extrusion_of_many_holes():
 
 @pytest.mark.parametrize("slow_call", [slow_call, winding_numbers, extrusion_of_many_holes], ids=lambda f: f.__name__)
 def test_ctrl_c_cancels_soon_and_leaves_everything_usable(slow_call):
-    # Shells let their background jobs ignore Ctrl-C, and Python then leaves it so.
+    # Background jobs of a shell ignore Ctrl-C, and Python keeps this setting.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def interrupt():
@@ -180,7 +181,7 @@ def test_ctrl_c_cancels_soon_and_leaves_everything_usable(slow_call):
     assert blum.distance_field(VERTICES, TRIANGLES, resolution=8).distance.shape
 
 
-def test_what_a_progress_callback_raises_ends_the_call():
+def test_an_exception_of_a_progress_callback_ends_the_call():
     class Enough(Exception):
         pass
 

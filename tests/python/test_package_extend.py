@@ -1,4 +1,4 @@
-"""Proves that the package extends axes as the library does, with its options, and writes what it holds."""
+"""Proves that the package extends axes with the library's options and writes the extended surface."""
 
 import pickle
 
@@ -34,7 +34,7 @@ def test_the_surface_spans_the_plate(plate, axis):
     assert np.array_equal(by_function.triangles, shell.triangles)
 
 
-def test_options_and_what_is_refused(axis):
+def test_options_apply_and_wrong_ones_are_rejected(axis):
     with pytest.warns(blum.InputWarning, match="^rims .* are not extended") as told:
         short = axis.extend(max_length=0.3)
     assert told[0].message.code == "not-extended"
@@ -49,7 +49,7 @@ def test_options_and_what_is_refused(axis):
         blum.extend_axis(blum.Complex(axis.vertices, triangles=axis.triangles))
 
 
-def test_files_hold_it(axis, tmp_path):
+def test_files_hold_the_extended_surface(axis, tmp_path):
     shell = axis.extend()
     for extension in ("vtp", "ply", "obj", "npz", "stl"):
         shell.write(tmp_path / f"s.{extension}")
@@ -63,7 +63,7 @@ def test_files_hold_it(axis, tmp_path):
         shell.write(tmp_path / "s.ma")
 
 
-def test_it_is_pickled_whole(axis):
+def test_the_extended_surface_pickles(axis):
     shell = axis.extend()
     copy = pickle.loads(pickle.dumps(shell))
     assert copy.report == shell.report and np.array_equal(copy.triangle_sheet, shell.triangle_sheet)

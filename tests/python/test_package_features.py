@@ -1,5 +1,4 @@
-"""Proves that the close features of a mesh are those that comparing all pairs tells, and that wrong arguments are
-refused."""
+"""Proves that the close features of a mesh equal a comparison of all pairs, and that wrong arguments are rejected."""
 
 import numpy as np
 import pytest
@@ -8,7 +7,7 @@ blum = pytest.importorskip("blum")
 
 
 def corners_of(vertices, rows):
-    """(n, 3, 3): rows of one, two or three vertices as triangles that may have lost their area."""
+    """(n, 3, 3): rows of one, two or three vertices as triangles, of which some are degenerate."""
     rows = np.array(rows).reshape(len(rows), -1)
     return vertices[np.column_stack([rows, np.repeat(rows[:, -1:], 3 - rows.shape[1], axis=1)])]
 
@@ -19,14 +18,14 @@ def all_edges(triangles, segments=()):
 
 
 def compared(vertices, first, second, numbers, distance):
-    """The pairs (of `numbers`) that are no further apart than this, and how far they are."""
+    """The pairs of `numbers` within `distance`, and their distances."""
     apart = blum.triangle_distances(corners_of(vertices, first), corners_of(vertices, second)).distance
     near = apart <= distance
     return np.array(numbers)[near].tolist(), apart[near].tolist()
 
 
 def slow_features(mesh, distance):
-    """All pairs, one by one."""
+    """The close features by comparing all pairs one by one."""
     vertices, triangles = np.array(mesh.vertices), mesh.triangles.tolist()
     edges = all_edges(triangles, mesh.segments.tolist())
     named = sorted({*np.ravel(triangles).astype(int), *mesh.segments.ravel().tolist(), *mesh.points.tolist()})
@@ -39,7 +38,7 @@ def slow_features(mesh, distance):
 
 
 def crumpled(seed):
-    """A sheet whose vertices lie anywhere, with segments and a point beside it."""
+    """A sheet with random vertices, with segments and a point."""
     random = np.random.default_rng(seed)
     grid = np.arange(20).reshape(4, 5)
     a, b, c, d = (part.ravel() for part in (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]))
@@ -49,7 +48,7 @@ def crumpled(seed):
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("distance", [0, 0.1, 0.5, 10])
-def test_they_are_those_of_comparing_all_pairs(seed, distance):
+def test_close_features_equal_a_comparison_of_all_pairs(seed, distance):
     mesh = crumpled(seed)
     found = blum.close_features(mesh, distance)
     wanted = slow_features(mesh, distance)
@@ -63,8 +62,8 @@ def test_they_are_those_of_comparing_all_pairs(seed, distance):
     assert found.vertex_face.dtype == found.edge_edge.dtype == found.edges.dtype == np.int32
 
 
-def test_neighbours_are_told_where_they_share_no_vertex():
-    """Three triangles side by side: the outer vertices and edges are close to what is beside them."""
+def test_neighbours_without_a_common_vertex_are_found():
+    """In a strip of three triangles, the outer vertices and edges are close to the next triangle."""
     vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]]
     found = blum.close_features((vertices, [[0, 1, 2], [1, 3, 2], [1, 4, 3]]), 1)
     assert [0, 1] in found.vertex_face.tolist() and [4, 1] in found.vertex_face.tolist()
@@ -88,7 +87,7 @@ def test_vertices_in_one_place_are_one_vertex():
         assert [len(pairs) > 0 for pairs in told[0]] == [distance > 0.7, distance > 0]
 
 
-def test_a_vertex_that_touches_a_face_is_told():
+def test_a_vertex_that_touches_a_face_is_found():
     floor, above = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 0], [2, 1, 2], [1, 2, 2]]
     found = blum.close_features((floor + above, [[0, 1, 2], [3, 4, 5]]), 0)
     assert found.vertex_face.tolist() == [[3, 0]] and found.vertex_face_distance.tolist() == [0]
@@ -103,7 +102,7 @@ def test_meshes_without_faces_or_edges():
     assert cloud.edges.shape == (0, 2) and cloud.edge_edge.shape == (0, 2) and cloud.min_distance is None
 
 
-def test_they_do_not_depend_on_threads():
+def test_close_features_do_not_depend_on_threads():
     mesh = blum.generate("torus", ring_segments=24, tube_segments=12)
     one, many = (blum.close_features(mesh, 0.3, threads=threads) for threads in (1, 4))
     assert len(one.edge_edge) > 0
@@ -111,7 +110,7 @@ def test_they_do_not_depend_on_threads():
         assert getattr(one, name).tobytes() == getattr(many, name).tobytes()
 
 
-def test_what_makes_no_sense_is_refused():
+def test_wrong_arguments_are_rejected():
     box = blum.generate("box")
     for distance, error, message in [
         (-1, blum.InvalidOption, "distance is -1"),

@@ -1,5 +1,6 @@
-"""Proves that the Python package's fields, closest points and transforms are those of brute force, SciPy and the
-command-line tool, for any kind of input, and that arrays are shared where that is promised."""
+"""Proves that the package's fields, closest points and transforms equal brute force, SciPy and the command-line tool.
+
+Every kind of input gives the same result, and arrays are shared as documented."""
 
 import subprocess
 import sys
@@ -33,7 +34,7 @@ def test_a_field_equals_brute_force(seed):
     expected, _ = blum.reference.nearest((vertices, triangles), field.grid.positions())
     extent = np.linalg.norm(np.ptp(vertices, axis=0))
     assert np.abs(field.distance - expected).max() <= 1e-6 * 2 * extent
-    # The site that is named is as close as the closest one.
+    # Sites are vertices, edges or faces.
     sites = blum.Sites(vertices, triangles)
     assert set(sites.kind(np.unique(field.site))) <= {"vertex", "edge", "face"}
 
@@ -94,7 +95,7 @@ def test_second_sites_of_other_objects_are_those_of_the_other_mesh():
     field = blum.distance_field(vertices, triangles, resolution=24, sign="none", order=2, second="other-object")
     near = [blum.distance_field(mesh, grid=field.grid, sign="none").distance for mesh in (one, other)]
     assert np.abs(field.distance2 - np.maximum(*near)).max() < 1e-5
-    # The same objects, by labels of any numbers; and no others.
+    # Objects given by any labels give the same result; one object alone has no second site.
     labels = np.where(np.arange(len(vertices)) < len(one.vertices), -7, 1000)
     given = blum.distance_field(
         vertices, triangles, grid=field.grid, sign="none", order=2, second="other-object", objects=labels
@@ -106,7 +107,7 @@ def test_second_sites_of_other_objects_are_those_of_the_other_mesh():
     assert np.array_equal(one_object.compute(vertices, triangles).distance2, field.distance2)
 
 
-def test_what_order_2_refuses(torus):
+def test_wrong_arguments_of_order_2_are_rejected(torus):
     with pytest.raises(blum.InvalidOption, match="order"):
         blum.distance_field(torus, resolution=8, order=3)
     with pytest.raises(blum.InvalidOption, match="objects"):
@@ -161,7 +162,7 @@ def test_objects_of_other_packages(torus, tmp_path):
         'blum.medial_axis(blum.generate("torus"), resolution=32).simplify(60)',
     ],
 )
-def test_what_vtk_holds_until_python_ends_is_no_leak(shape):
+def test_arrays_that_vtk_holds_until_exit_cause_no_leak_report(shape):
     pytest.importorskip("pyvista")
     code = f"import blum; held = {shape}.to_pyvista()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -293,7 +294,7 @@ def test_level_surfaces_and_topology(torus):
     assert crossing.pairs.tolist() == [[0, 1]] and crossing.crosses.tolist() == [True]
 
 
-def test_image_names_that_types_know_are_those_that_there_are():
+def test_typed_image_names_are_complete():
     from typing import get_args
 
     from blum._shapes import _ImageName

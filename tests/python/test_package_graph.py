@@ -1,5 +1,6 @@
-"""Proves that graphs of medial axes hold every sheet, seam, curve and junction once, that networkx reads the same from
-files as it is given, and that an engineer's question gets the right answer."""
+"""Proves that graphs of medial axes hold every sheet, seam, curve and junction once, and answer an engineer's question.
+
+networkx reads the same graph from files as to_networkx() returns."""
 
 import json
 import pathlib
@@ -21,7 +22,7 @@ def pairs(vertices):
 
 
 def check_whole(axis, graph):
-    """What holds of every axis and its graph."""
+    """Checks the facts that hold for every axis and its graph."""
     corners = axis.vertices[axis.triangles]
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     assert np.isclose(graph.area, areas.sum(), rtol=1e-12)
@@ -76,7 +77,7 @@ def test_graphs_hold_everything_once(bracket, theta):
     check_whole(pruned, pruned.graph())
 
 
-def test_membranes_around_voids_are_there_for_homotopy(tmp_path):
+def test_membranes_around_voids_count_as_kept_for_homotopy(tmp_path):
     axis = blum.medial_axis(blum.generate("void_cube"), resolution=32).simplify(150)
     check_whole(axis, axis.graph())
     assert axis.graph().homotopy_area > 0.2 * axis.graph().area
@@ -91,7 +92,7 @@ def test_membranes_around_voids_are_there_for_homotopy(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["box", "torus", "cylinder", "bodies", "plate", "ellipsoid"])
-def test_graphs_of_other_shapes_do(name):
+def test_graphs_of_other_shapes_hold_everything_once(name):
     axis = blum.medial_axis(blum.generate(name), resolution=48)
     for theta in (20, 60, 175):
         check_whole(axis.simplify(theta), axis.graph(theta))
@@ -105,7 +106,7 @@ def test_curves_of_images_have_no_patches():
     assert all(sheet.patch_pairs == () for sheet in graph.sheets)
 
 
-def test_a_closed_curve_is_one():
+def test_a_closed_curve_is_one_curve():
     vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [9, 9, 9]]
     axis = blum.MedialComplex(vertices, radius=[1, 2, 1, 2, 3], edges=[[2, 3], [0, 1], [1, 2], [3, 0]])
     graph = blum.axis_graph(axis)
@@ -143,7 +144,7 @@ def test_the_guide_answers_its_questions(capsys):
 
 
 @pytest.mark.parametrize("theta", [60, 120])
-def test_networkx_reads_from_files_what_it_is_given(bracket, tmp_path, theta):
+def test_networkx_reads_the_same_graph_from_files(bracket, tmp_path, theta):
     networkx = pytest.importorskip("networkx")
     axis = bracket.simplify(theta)
     axis.write_graph(tmp_path / "g.graphml")
@@ -200,13 +201,13 @@ def test_results_are_read_only_and_pickle(bracket):
         graph.curves[0].radii[0] = 1
 
 
-def test_axes_of_all_angles_have_the_graph_at_the_least():
+def test_the_graph_of_nested_axes_is_that_of_the_smallest_angle():
     axis = blum.medial_axis(blum.generate("box"), resolution=32, least_theta=60)
     nested, least = axis.nested().graph(), axis.graph(60)
     assert np.isclose(nested.area, least.area) and len(nested.sheets) == len(least.sheets) == 13
 
 
-def test_without_networkx_it_is_said(bracket, monkeypatch):
+def test_missing_networkx_is_reported(bracket, monkeypatch):
     monkeypatch.setitem(sys.modules, "networkx", None)
     with pytest.raises(ImportError, match="needs networkx: pip install networkx"):
         bracket.graph(120).to_networkx()

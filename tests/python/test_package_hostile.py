@@ -1,5 +1,7 @@
-"""Proves, by its smallest case each, that what once broke the package does not: masked arrays, processes that end while
-threads compute, pickles, arrays that change, solvers that are asked again, and names that are not UTF-8."""
+"""Proves that inputs that once broke the package do not, by the smallest case of each.
+
+The cases are masked arrays, processes that end while threads compute, pickles, arrays that change, solvers that are
+called again, and names that are not UTF-8."""
 
 import copy
 import pickle
@@ -40,7 +42,7 @@ def test_masked_arrays_are_refused_everywhere(box):
             call()
 
 
-def test_subclasses_cannot_answer_for_their_numbers():
+def test_overridden_methods_of_subclasses_are_ignored():
     class Liar(np.ndarray):
         def min(self, *_args, **_kwargs):
             return 0
@@ -61,13 +63,13 @@ def test_sheets_and_sites_of_an_axis_are_checked():
 
 
 @pytest.mark.parametrize("beta", [1.0, 0.0, -2.0, float("inf"), float("nan")])
-def test_winding_numbers_refuse_a_beta_that_is_none(box, beta):
+def test_winding_numbers_refuse_an_invalid_beta(box, beta):
     for mesh in (box, blum.generate("sphere")):
         with pytest.raises(ValueError, match="approximate"):
             blum.WindingNumber(mesh)([[0, 0, 0.0]], approximate=beta)
 
 
-def test_fields_are_not_written_with_a_mesh_that_is_not_theirs(tmp_path, box):
+def test_fields_are_not_written_with_another_mesh(tmp_path, box):
     vertices, triangles = box.vertices.copy(), box.triangles.copy()
     field = blum.distance_field(vertices, triangles, resolution=8)
     kept = triangles[0, 0]
@@ -82,7 +84,7 @@ def test_fields_are_not_written_with_a_mesh_that_is_not_theirs(tmp_path, box):
     assert not (tmp_path / "other.npz").exists()
 
 
-def test_arrays_are_changed_in_place_or_not_at_all(box):
+def test_arrays_change_only_in_place(box):
     mesh = blum.Mesh(box.vertices.copy(), box.triangles)
     image = blum.Image(np.zeros((2, 2, 2), dtype=np.uint8))
     field = blum.distance_field(mesh, resolution=8)
@@ -100,7 +102,7 @@ def test_arrays_are_changed_in_place_or_not_at_all(box):
     assert blum.selected_voxels(image).sum() == 4
 
 
-def test_what_holds_numbers_can_be_pickled_and_copied(box):
+def test_meshes_images_fields_and_axes_pickle_and_copy(box):
     named = copy.copy(box)
     named.source = "box.ply"
     image = blum.Image(np.arange(8).reshape(2, 2, 2), (1, 2, 3), (4, 5, 6), [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
@@ -120,7 +122,7 @@ def test_what_holds_numbers_can_be_pickled_and_copied(box):
             assert np.array_equal(getattr(axis, name), getattr(piece, name)), name
 
 
-def test_processes_hand_over_meshes_and_fields(box):
+def test_processes_exchange_meshes_and_fields(box):
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         field = pool.submit(blum.distance_field, box, resolution=8).result(timeout=120)
     assert np.array_equal(field.distance, blum.distance_field(box, resolution=8).distance)
@@ -173,14 +175,14 @@ def test_the_child_of_a_fork_computes_and_ends():
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
-def test_a_solver_that_computes_cannot_be_asked_again(box):
+def test_a_solver_cannot_be_called_while_it_computes(box):
     solver = blum.FieldSolver(blum.Grid.around(box, resolution=64))
     with pytest.raises(RuntimeError, match="computing"):
         solver.compute(box, progress=lambda _fraction, _phase: solver.compute(box))
     assert solver.compute(box).distance.min() < 0
 
 
-def test_facts_of_a_frame_stay_while_the_next_is_computed(box):
+def test_facts_of_a_frame_stay_during_the_next_computation(box):
     solver = blum.FieldSolver(blum.Grid.around(box, resolution=24), reuse=True)
     frame = solver.compute(box)
     facts = (frame.seconds, frame.sign_reason, frame.grid)
@@ -226,7 +228,7 @@ def test_names_of_files_may_be_any_bytes(tmp_path, box):
     assert blum.read_medial(tmp_path / "axis.npz").theta == 60
 
 
-def test_numbers_that_are_too_large_and_lists_that_are_ragged_are_named(box):
+def test_too_large_numbers_and_ragged_lists_are_rejected_by_name(box):
     for call, name in (
         (lambda: blum.distance_field(box, padding=10**400), "padding"),
         (lambda: blum.Grid([[1, 2], [3]], 1, (2, 2, 2)), "origin"),
@@ -241,7 +243,7 @@ def test_numbers_that_are_too_large_and_lists_that_are_ragged_are_named(box):
             call()
 
 
-def test_what_looks_wrong_is_warned_of(box):
+def test_suspicious_input_causes_warnings(box):
     def code_of(call, *arguments, match, **options):
         with pytest.warns(blum.InputWarning, match=match) as told:
             call(*arguments, **options)
@@ -272,7 +274,7 @@ def test_what_looks_wrong_is_warned_of(box):
         blum.medial_axis(box, resolution=16)
 
 
-def test_representations_tell_what_matters(box):
+def test_representations_show_the_main_facts(box):
     turned = blum.Grid((0.1 + 0.2, 0, 0), 1, (2, 2, 2), [[-1, 0, 0], [0, -1, 0], [0, 0, 1]])
     assert repr(turned) == (
         "Grid(origin=(0.3, 0, 0), spacing=(1, 1, 1), size=(2, 2, 2), "

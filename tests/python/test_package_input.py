@@ -1,4 +1,4 @@
-"""Proves that meshes of many kinds are taken, welded where that is asked for."""
+"""Proves that meshes of other packages are accepted, and welded on request."""
 
 from types import SimpleNamespace
 
@@ -30,7 +30,7 @@ def test_tensors_of_open3d_are_meshes():
         blum.topology(SimpleNamespace(vertex={}, triangle={}))
 
 
-def test_seams_are_welded_wherever_a_mesh_is_taken():
+def test_every_function_of_a_mesh_welds_seams_on_request():
     box = blum.generate("box")
     seams = blum.Mesh(box.vertices[box.triangles.ravel()], np.arange(3 * len(box.triangles)).reshape(-1, 3))
     assert not blum.topology(seams).closed and blum.topology(seams, weld=0).betti == (1, 0, 0)
@@ -49,7 +49,7 @@ def test_seams_are_welded_wherever_a_mesh_is_taken():
     assert abs(blum.reference.winding_number(seams, points, weld=0)[0]) < 1e-9
 
 
-def test_meshes_of_others_that_are_open_only_along_seams_are_told(recwarn):
+def test_meshes_that_are_open_only_along_seams_cause_a_warning(recwarn):
     box = blum.generate("box")
     corners = box.triangles.ravel()
     apart = SimpleNamespace(vertices=box.vertices[corners], faces=np.arange(len(corners)).reshape(-1, 3))

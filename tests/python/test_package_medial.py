@@ -1,4 +1,4 @@
-"""Proves that medial axes of the Python package are those of the tool, are certified, and that a wrong axis is not."""
+"""Proves that medial axes of the package equal the tool's and are certified, and that wrong axes are rejected."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_roles_are_named_as_the_library_numbers_them(axis):
     assert np.array_equal(piece.edge_role == blum.ROLES.index("curve"), on_no_triangle)
 
 
-def test_what_is_not_asked_for_is_as_the_library_has_it(plate):
+def test_options_have_the_defaults_of_the_library(plate):
     assert blum.medial_axis(plate, resolution=16).least_theta == 0
     axis = blum.medial_axis(plate, resolution=16, least_theta=np.float32(20), lambda_=0.125)
     assert (axis.least_theta, axis.nested().least_theta, axis._origin.lambda_) == (20, 20, 0.125)
@@ -52,7 +52,7 @@ def test_larger_angles_give_parts_of_smaller_ones(axis):
     assert keys(axis.simplify(120)) <= keys(axis.simplify(60)) <= keys(axis.simplify(20))
 
 
-def test_sheets_keep_their_numbers_when_a_part_is_turned_or_the_grid_is_moved(plate):
+def test_sheets_keep_their_numbers_if_the_part_or_grid_moves(plate):
     def sheets(axis, turn):
         corners = axis.vertices[axis.triangles] @ turn
         sides = corners[:, 1:] - corners[:, :1]
@@ -104,7 +104,7 @@ def test_certified_axes_have_a_certificate_that_holds(axis, plate):
 
 
 def block_with_needle():
-    """A cube with a square hole through it, far too narrow for its slant: no model opens it."""
+    """A cube with a slanted square hole, so narrow that the cellular model closes it."""
     square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
     rings = [(square, z) for z in (0, 1)]
     rings += [((0.37 + 0.2 * z, 0.41 + 0.3 * z) + 1e-9 * (square - 0.5), z) for z in (0, 1)]
@@ -117,7 +117,7 @@ def block_with_needle():
     return blum.Mesh(vertices, [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
 
 
-def test_an_axis_that_is_not_certified_is_refused_unless_allowed():
+def test_an_uncertified_axis_is_refused_unless_allowed():
     axis = blum.medial_axis(block_with_needle(), resolution=8, max_resolution=8)
     assert not axis.report.topology_matches
     with pytest.raises(blum.NotCertified, match=r"NOT certified: the model of the solid .* at theta 60: ") as refused:
@@ -128,7 +128,7 @@ def test_an_axis_that_is_not_certified_is_refused_unless_allowed():
     assert not found.certificate.holds and len(found.vertices) > 0
 
 
-def test_one_verifier_certifies_many_axes_as_each_alone(axis, plate, tmp_path):
+def test_one_verifier_certifies_many_axes_as_certify_does(axis, plate, tmp_path):
     plate.write(tmp_path / "plate.ply")
     of_mesh = blum.AxisVerifier(plate)
     of_file = blum.AxisVerifier(tmp_path / "plate.ply")
@@ -212,7 +212,7 @@ def test_columns_that_an_axis_lacks_are_not_invented(axis, plate, tmp_path):
         assert len(again.to_pyvista().point_data) == len(has)
 
 
-def test_arrays_of_an_axis_are_looked_at():
+def test_arrays_of_an_axis_are_checked():
     for wrong, given in (("radius", {"radius": [1, float("nan")]}), ("twice", {"edges": [[0, 0]]})):
         with pytest.raises(ValueError, match=wrong):
             blum.MedialComplex([[0, 0, 0], [1, 0, 0]], **given)
@@ -250,7 +250,7 @@ def test_skeletons_of_scikit_image_agree_in_topology():
     assert theirs == blum.medial_axis(tubes).simplify(60).certificate.axis_betti
 
 
-def test_the_axes_of_all_angles_are_those_of_each(axis):
+def test_nested_axes_contain_the_axis_of_each_angle(axis):
     def corners(vertices, cells):
         return {cell.tobytes() for cell in np.sort(vertices[cells].view("f8,f8,f8")[..., 0], axis=1)}
 
@@ -264,7 +264,7 @@ def test_the_axes_of_all_angles_are_those_of_each(axis):
             corners(piece.vertices, piece.triangles),
         )
         assert ours <= theirs
-        # What is left out has no area: two corners at one place.
+        # Omitted triangles have no area, because two of their corners coincide.
         assert all(len(set(np.frombuffer(cell, dtype="V24"))) < 3 for cell in theirs - ours)
         assert there.vertices[np.unique(nested.triangles[there.triangles])].all()
         curves = nested.edges[there.edges & (nested.edge_role == blum.ROLES.index("curve"))]
@@ -277,7 +277,7 @@ def test_the_axes_of_all_angles_are_those_of_each(axis):
 
 
 @pytest.mark.parametrize("least", [0, 30])
-def test_files_of_all_angles_are_those_of_the_tool(plate, tmp_path, least):
+def test_files_of_nested_axes_equal_those_of_the_tool(plate, tmp_path, least):
     import tool
 
     plate.write(tmp_path / "plate.ply")
@@ -296,7 +296,7 @@ def test_files_of_all_angles_are_those_of_the_tool(plate, tmp_path, least):
         axis.write(tmp_path / "axis.vtp")
 
 
-def test_the_tool_certifies_the_voxels_of_a_mesh_as_python_does(tmp_path):
+def test_the_tool_and_python_certify_voxels_of_a_mesh_alike(tmp_path):
     import tool
 
     box = blum.generate("box")
@@ -304,7 +304,7 @@ def test_the_tool_certifies_the_voxels_of_a_mesh_as_python_does(tmp_path):
     piece = blum.medial_axis(tmp_path / "open.ply", resolution=24).simplify(60)
     piece.write(tmp_path / "axis.npz")
     told = tool.run("verify", tmp_path / "open.ply", tmp_path / "axis.npz")[0]
-    assert "topology of the voxels of the winding number of side" in told
+    assert "topology of the voxels inside by winding number, side" in told
     elsewhere = blum.Grid(np.array(piece.grid.origin) + 5, piece.grid.spacing, piece.grid.size)
     with pytest.raises(ValueError, match="no voxel"):
         blum.certify(piece, tmp_path / "open.ply", grid=elsewhere)
@@ -315,12 +315,12 @@ def test_the_tool_certifies_the_voxels_of_a_mesh_as_python_does(tmp_path):
     [
         ({"solid_rule": "winding"}, (), "its solid is 'winding', but it is 'polyhedron'"),
         ({"solid_rule": "nonsense"}, (), "its solid is 'nonsense', but it is 'polyhedron'"),
-        ({}, ("radius",), "holds no radii"),
-        ({}, ("separation_angle",), "holds no separation angles"),
-        ({"site_ids": "voxels"}, (), "holds no sites of this kind of solid"),
+        ({}, ("radius",), "contains no radii"),
+        ({}, ("separation_angle",), "contains no separation angles"),
+        ({"site_ids": "voxels"}, (), "contains no sites of this kind of solid"),
     ],
 )
-def test_false_claims_of_a_file_are_refused_in_python_as_by_the_tool(axis, plate, tmp_path, changes, dropped, reason):
+def test_the_tool_and_python_refuse_false_claims_alike(axis, plate, tmp_path, changes, dropped, reason):
     import json
 
     import tool
@@ -338,7 +338,7 @@ def test_false_claims_of_a_file_are_refused_in_python_as_by_the_tool(axis, plate
     assert tuple(json.loads(told)["certificate"]["mismatches"]) == certificate.mismatches
 
 
-def test_a_file_says_which_voxels_its_axis_is_of(tmp_path):
+def test_a_file_records_the_voxels_of_its_axis(tmp_path):
     labels = np.zeros((12, 12, 12), dtype=np.uint8)
     labels[2:5, 2:10, 2:10] = 1
     labels[7:10, 2:10, 2:10] = 2

@@ -1,6 +1,6 @@
-"""Cellular models in Python: their report, their homology, also of made solids, and what is refused.
+"""Proves that cellular models in Python have the Betti numbers of their solids, and that wrong input is rejected.
 
-Of made solids the first 40, one of each family; all 300 where the environment variable BLUM_MADE_SOLIDS is 300."""
+Tests the first 40 made solids, one of each family, or all 300 if the environment variable BLUM_MADE_SOLIDS is 300."""
 
 import os
 
@@ -28,7 +28,7 @@ def test_the_complex_lies_in_the_solid():
     assert type(complex_) is blum.Complex and complex_.homology() == solid.betti
     lower, upper = np.array(solid.bounds)
     assert (complex_.vertices >= lower).all() and (complex_.vertices <= upper).all()
-    assert solid.inside(complex_.vertices).mean() > 0.9  # others lie on the surface, up to rounding
+    assert solid.inside(complex_.vertices).mean() > 0.9  # the others lie on the surface, up to rounding
 
 
 def test_places_that_do_not_pass_are_named():
@@ -50,7 +50,7 @@ def test_moving_and_scaling_grids_leaves_the_numbers():
     assert blum.Solid(mesh).model(spacing=0.25).report.grid.spacing == (0.25, 0.25, 0.25)
 
 
-def test_what_is_no_polyhedron_has_no_model():
+def test_only_polyhedra_have_a_model():
     with pytest.raises(blum.InvalidMesh, match=r"no cellular model: .*open"):
         blum.Solid(blum.generate("organic", holes=2)).model()
     with pytest.raises(blum.InvalidOption, match="union of voxels"):
@@ -62,13 +62,13 @@ def test_what_is_no_polyhedron_has_no_model():
     tiny = blum.generate("box")
     vertices = tiny.vertices.copy()
     vertices[vertices == vertices.max()] = 1e-60
-    with pytest.raises(blum.InvalidMesh, match="too small next to the others"):
+    with pytest.raises(blum.InvalidMesh, match="too small next to the other coordinates"):
         blum.Solid(vertices, tiny.triangles).model()
 
 
-#: Slanted pinholes, thousands of boxes each, take seconds.
+#: Models with slanted pinholes need thousands of boxes and seconds.
 SLOW = {"pinholes-3", "pinholes-5", "drillings-6", "hairs-5"}
-TOO_SLOW = {"pinholes-7"}  # 2e-6 cubes wide: minutes
+TOO_SLOW = {"pinholes-7"}  # a hole 2e-6 cubes wide takes minutes
 COUNT = int(os.environ.get("BLUM_MADE_SOLIDS", "40"))
 LEFT_OUT = TOO_SLOW if COUNT == 300 else SLOW | TOO_SLOW
 CHOSEN = [(family, k) for family, k in names()[:COUNT] if f"{family}-{k}" not in LEFT_OUT]

@@ -1,4 +1,4 @@
-"""Signed distances with gradients, and samples, through the package."""
+"""Proves the package's signed distances with gradients, winding numbers, near primitives and surface samples."""
 
 import blum
 import numpy as np
@@ -15,14 +15,14 @@ def test_signed_distances_are_those_of_closest_points():
     assert found.gradient.shape == (40, 100, 3)
     assert np.allclose(np.linalg.norm(found.gradient, axis=-1), 1)
     assert np.allclose(found.closest + found.gradient * found.distance[..., None], queries)
-    # The distance grows along the gradient, by as much as one goes.
+    # A step along the gradient increases the distance by its length.
     step = 1e-6
     there = blum.signed_distance(mesh, queries + step * found.gradient)
     grown = (there.distance - found.distance) / step
     assert np.mean(np.abs(grown - 1) < 1e-3) > 0.99
 
 
-def test_gradients_are_no_numbers_where_they_are_not_defined():
+def test_undefined_gradients_are_nan():
     box = blum.generate("box")
     found = blum.signed_distance(box, [[0, 0, 0.5], [0, 0, 2], [0, 0, 9]], max_distance=3)
     assert np.isnan(found.gradient[0]).all() and found.distance[0] == 0
@@ -33,7 +33,7 @@ def test_gradients_are_no_numbers_where_they_are_not_defined():
     assert blum.signed_distance(box, np.zeros((0, 3))).distance.shape == (0,)
 
 
-def test_many_queries_get_what_few_get():
+def test_many_queries_equal_few_queries():
     mesh = blum.generate("organic", frequency=20)
     queries = np.random.default_rng(2).normal(size=(30000, 3))
     many = blum.closest_points(mesh, queries)
@@ -157,7 +157,7 @@ def test_bad_input_is_refused():
         blum.sample_surface(box, 5, colour="red")
 
 
-def test_distances_of_a_mesh_inside_out_are_warned_of():
+def test_distances_of_a_reversed_mesh_cause_a_warning():
     ball = blum.generate("sphere", frequency=4)
     inside_out = blum.Mesh(ball.vertices, ball.triangles[:, ::-1])
     with pytest.warns(blum.InputWarning, match="inside out") as told:

@@ -1,5 +1,6 @@
-"""Proves that the package's collisions are those of single questions, that arrays go in and out as they are, and that
-wrong arguments are refused by name."""
+"""Proves that the package's continuous collisions equal those of single queries, for every kind of array.
+
+Wrong arguments are rejected by name."""
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ def questions(count, seed):
     return np.random.default_rng(seed).integers(-3, 4, (2, count, 4, 3)).astype(np.float64)
 
 
-def test_all_pairs_are_those_of_single_questions():
+def test_all_pairs_equal_those_of_single_queries():
     random = np.random.default_rng(1)
     vertices = random.uniform(size=(40, 1, 3)).repeat(3, axis=1) + random.normal(scale=0.3, size=(40, 3, 3))
     vertices = vertices.reshape(-1, 3)
@@ -39,7 +40,7 @@ def test_all_pairs_are_those_of_single_questions():
     )
 
 
-def test_nothing_meets_nothing():
+def test_meshes_without_contact_give_empty_results():
     found = blum.continuous_collisions((TRIANGLE, [[0, 1, 2]]), TRIANGLE)
     assert found.vertex_face.shape == (0, 4) == found.edge_edge.shape and found.earliest is None
     assert blum.vertex_face_impacts(np.zeros((0, 4, 3)), np.zeros((0, 4, 3))).shape == (0,)

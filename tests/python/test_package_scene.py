@@ -1,5 +1,6 @@
-"""Proves that what the package says of scenes is what comparing all pairs of triangles says, through updates and in any
-kind of array, and that wrong arguments are refused by name."""
+"""Proves that the package's answers about scenes equal a comparison of all pairs of triangles, also after updates.
+
+Every kind of array gives the same answers, and wrong arguments are rejected by name."""
 
 import dataclasses
 import threading
@@ -13,14 +14,14 @@ IDENTITY = np.eye(3)
 
 
 def soup(count, seed, size=0.3):
-    """(vertices, triangles): triangles that share nothing."""
+    """(vertices, triangles): random triangles without common vertices."""
     random = np.random.default_rng(seed)
     corners = random.uniform(-1, 1, (count, 1, 3)) + random.normal(scale=size, size=(count, 3, 3))
     return corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)
 
 
 def turned(seed):
-    """A rotation."""
+    """A random rotation."""
     rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
     return rotation * np.sign(np.linalg.det(rotation))
 
@@ -36,14 +37,14 @@ def dot(a, b):
 
 
 def edges_apart(p, u, q, v):
-    """How far the segments from p along u, and from q along v, are apart: at the ends, or where both are closest."""
+    """The distance between the segments from p along u and from q along v."""
 
     def clipped(x):
         return np.clip(x, 0, 1)[..., None]
 
     w = q - p
     best = np.full(p.shape[:-1], np.inf)
-    for t in (0, 1):  # an end of one, and the point of the other that is closest to it
+    for t in (0, 1):  # an end of one segment and the closest point of the other
         s = clipped(dot(w + t * v, u) / dot(u, u))
         best = np.minimum(best, np.linalg.norm(w + t * v - s * u, axis=-1))
         s = clipped(dot(t * u - w, v) / dot(v, v))
@@ -56,7 +57,7 @@ def edges_apart(p, u, q, v):
 
 
 def corner_and_face_apart(p, q, triangle):
-    """How far p is above the face of a triangle, infinite beside it; and whether the segment pq passes the face."""
+    """The distance of p above a triangle, infinite beside it; and True if the segment pq crosses the triangle."""
     a, b, c = triangle[:, 0], triangle[:, 1], triangle[:, 2]
     normal = np.cross(b - a, c - a)
 
@@ -70,9 +71,9 @@ def corner_and_face_apart(p, q, triangle):
     return np.where(inside(foot), apart, np.inf), (height * end <= 0) & inside(through)
 
 
-@np.errstate(divide="ignore", invalid="ignore")  # of parallel edges and planes: what is no number is not inside
+@np.errstate(divide="ignore", invalid="ignore")  # NaN of parallel edges and planes counts as outside
 def slow_distances(a, b):
-    """(n,): of pairs of triangles that do not lie in one plane where they meet; shares nothing with the library."""
+    """(n,): distances of pairs of triangles, not of coplanar ones that meet. Shares no code with the library."""
     best = np.full(len(a), np.inf)
     for i in range(3):
         for j in range(3):
@@ -91,12 +92,12 @@ def pairs_of(a, b):
 
 
 def all_distances(a, b):
-    """(n, m)"""
+    """(n, m): the distances of all pairs."""
     return slow_distances(*pairs_of(a, b)).reshape(len(a), len(b))
 
 
 def on_feature(point, triangle, feature):
-    """Whether a point lies in the hull of some of the corners."""
+    """True if a point lies in the hull of the corners of a feature."""
     own = triangle[[k for k in feature if k >= 0]]
     if len(own) == 1:
         return np.allclose(point, own[0], atol=1e-9)
@@ -108,7 +109,7 @@ def on_feature(point, triangle, feature):
     )
 
 
-def test_distances_of_triangles_are_those_of_their_edges_and_faces():
+def test_distances_of_triangles_equal_those_of_edges_and_faces():
     a, b = pairs_of(corners(soup(60, 1, 0.5)), corners(soup(60, 2, 0.5)))
     found, wanted = blum.triangle_distances(a, b).distance, slow_distances(a, b)
     assert 100 < (wanted == 0).sum() < 3000 and np.array_equal(found == 0, wanted == 0)
@@ -132,7 +133,7 @@ def test_closest_points_of_triangles_lie_on_their_features():
 
 
 def check_scene(scene, meshes, places, numbers):
-    """All answers of a scene of soups are those of comparing all pairs."""
+    """Checks all answers of a scene of soups against a comparison of all pairs."""
     shown = {n: corners(mesh, place) for n, mesh, place in zip(numbers, meshes, places, strict=True)}
     every = {(i, j): all_distances(shown[i], shown[j]) for i in numbers for j in numbers if i < j}
     apart = scene.separation()
@@ -158,7 +159,7 @@ def check_scene(scene, meshes, places, numbers):
         }
 
 
-def test_scenes_are_what_all_pairs_say_through_all_updates():
+def test_scenes_equal_a_comparison_of_all_pairs_after_updates():
     meshes = [soup(25, seed) for seed in (5, 6, 7)]
     places = [None] * 3
     scene = blum.ProximityScene()
@@ -232,7 +233,7 @@ def test_self_comparison_leaves_neighbours_out():
     assert len(blum.collisions(folded, max_distance=1)) == 0, "they share vertices"
 
 
-def test_what_a_mesh_has_in_common_with_itself_is_where_it_crosses_or_touches_itself():
+def test_collisions_of_a_mesh_with_itself_are_its_self_intersections():
     wide = blum.noisy(blum.generate("torus", ring_segments=24, tube_segments=12), 0.4)
     wanted = blum.self_intersections(wide).pairs
     assert len(wanted) > 100 and np.array_equal(blum.collisions(wide).primitive, wanted)
@@ -257,7 +258,7 @@ def test_verbs_in_one_call_are_those_of_scenes():
     assert len(blum.closest_primitives([a])) == 20 and len(blum.closest_primitives(a, compare_self=False)) == 0
 
 
-def test_segments_and_points_come_behind_triangles():
+def test_segments_and_points_are_numbered_after_triangles():
     mesh = blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [3, 0, 0], [4, 0, 0], [9, 9, 9]], [[0, 1, 2]], [[4, 3]], [5])
     scene = blum.ProximityScene()
     scene.add(mesh, compare_self=True)
@@ -285,7 +286,7 @@ def test_arrays_of_other_kinds_are_taken():
         assert scene.separation(0, 1).distance == wanted.distance
 
 
-def test_results_stay_when_the_scene_goes():
+def test_results_outlive_the_scene():
     scene = blum.ProximityScene()
     scene.add(soup(20, 41)), scene.add(soup(20, 42))
     found = scene.closest_primitives()
@@ -305,7 +306,7 @@ def test_pairs_are_a_sequence():
     assert not blum.collisions(blum.generate("sphere")) and blum.collisions(blum.generate("sphere")).closest is None
 
 
-def test_what_is_refused_changes_nothing():
+def test_refused_changes_leave_the_scene_as_it_was():
     a, b = soup(20, 61), soup(20, 62)
     scene = blum.ProximityScene()
     scene.add(a), scene.add(b)
@@ -466,7 +467,7 @@ def test_signed_separation_changes_its_sign_at_contact():
 
 
 def scene_of_solids():
-    """Boxes and balls of which some overlap, one of them in two parts with itself."""
+    """Boxes and balls, some of which overlap; one object overlaps itself in two parts."""
     scene, (box, ball) = blum.ProximityScene(), (blum.generate("box"), blum.generate("sphere", radius=0.5, frequency=4))
     two = np.vstack([box.vertices, box.vertices + np.array([0.4, 0.2, 0.3])])
     twice = two, np.vstack([box.triangles, np.asarray(box.triangles) + len(box.vertices)])
@@ -475,7 +476,7 @@ def scene_of_solids():
     return scene, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3), (3, 3)]
 
 
-def test_all_solids_are_told_as_pair_by_pair():
+def test_penetrations_of_all_solids_equal_those_of_each_pair():
     scene, pairs = scene_of_solids()
     wanted = [part for pair in pairs for part in scene.penetration(*pair, depth_tolerance=0.1)]
     found = scene.penetrations(depth_tolerance=0.1)
@@ -499,18 +500,18 @@ def test_all_solids_are_told_as_pair_by_pair():
         part = next(part for part in wanted if part.object == pair.object)
         points = [part.deep_point, part.surface_point]
         assert np.array_equal(pair.point, points if part.is_first_deep else points[::-1])
-        assert (pair.feature >= 0).all()  # inside of triangles
+        assert (pair.feature >= 0).all()  # both features are triangles
     assert signed.closest.distance == -max(part.depth for part in found)
 
 
-def test_all_solids_take_what_pairs_take():
+def test_penetrations_of_all_solids_take_the_options_of_pairs():
     scene, _ = scene_of_solids()
     told = []
     scene.penetrations(progress=lambda fraction, phase: told.append((fraction, phase)))
     assert told[-1] == (1, "penetration") and told == sorted(told)
     box = blum.generate("box")
     cup = scene.add((box.vertices + np.array([0, 30, 0]), np.asarray(box.triangles)[1:]), name="cup")
-    assert len(scene.signed_separations()) == 11  # its box is apart from all
+    assert len(scene.signed_separations()) == 11  # the box of the cup is apart from all others
     for call in (scene.penetrations, lambda: scene.penetration(0, cup)):
         with pytest.raises(blum.InvalidMesh, match=r"^'cup' is not closed"):
             call()
@@ -539,7 +540,7 @@ def test_continuous_collisions_of_objects():
     assert len(found.vertex_face_time) == len(found.vertex_face)
     moved = {"vertices": box.vertices, "transform": (IDENTITY, [0.25, 0.25, -1])}
     assert scene.continuous({1: moved}).earliest == 0.5
-    # The scene was not changed; and what does not move does not meet.
+    # The scene has not changed, and objects at rest have no first contact.
     assert scene.separation(0, 1).distance == 2
     assert scene.continuous({}).earliest is None
     for empty in ([], np.zeros((0, 3)), {"vertices": []}):
@@ -548,11 +549,11 @@ def test_continuous_collisions_of_objects():
     assert scene.continuous({1: {"transform": (IDENTITY, [0, 0, -1.5])}}, min_separation=0.6).earliest is not None
     matrix = np.eye(4)
     matrix[2, 3] = -1.5
-    for place in [(IDENTITY, [0, 0, -1.5]), matrix, matrix[:3]]:  # as update() takes them
+    for place in [(IDENTITY, [0, 0, -1.5]), matrix, matrix[:3]]:  # the forms that update() accepts
         assert scene.continuous({1: place}).earliest == scene.continuous({1: {"transform": place}}).earliest
 
 
-def test_motions_and_penetrations_say_what_was_wrong():
+def test_wrong_motions_and_penetrations_are_rejected():
     scene, box = two_boxes([0, 0, 3])
     open_mesh = scene.add((box.vertices, np.asarray(box.triangles)[1:]))
     with pytest.raises(blum.InvalidMesh, match="closed"):
@@ -570,7 +571,7 @@ def test_motions_and_penetrations_say_what_was_wrong():
         scene.continuous({1: {"transform": np.diag([1, 1, -1, 1.0])}})
 
 
-def test_pairs_can_be_cut_and_say_what_is_not_there():
+def test_pairs_can_be_sliced_and_reject_wrong_numbers():
     torus = blum.generate("torus")
     pairs = blum.closest_primitives(torus)
     few = pairs[1:7:2]
@@ -584,7 +585,7 @@ def test_pairs_can_be_cut_and_say_what_is_not_there():
         pairs["first"]
 
 
-def test_motions_that_are_no_dict_say_what_they_must_be():
+def test_motions_must_be_a_dict():
     box = blum.generate("box")
     scene = blum.ProximityScene()
     scene.add(box, compare_self=True)
@@ -609,7 +610,7 @@ def test_ends_may_be_meshes(tmp_path):
         blum.continuous_collisions(cloth, blum.Mesh(end.vertices, cloth.triangles[::-1]))
 
 
-def test_poses_in_single_precision_can_be_made_rotations():
+def test_closest_rotation_repairs_poses_in_single_precision():
     angle = 0.3
     turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
     pose = np.eye(4, dtype=np.float32)

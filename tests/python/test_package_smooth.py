@@ -1,5 +1,5 @@
-# Proves that smooth_surface makes meshes with the topology of the voxels, in the world of the image, and that medial
-# axes of them and of the tool's files are certified.
+# Proves that smooth_surface() keeps the topology of the voxels and the place of the image.
+# Medial axes of smooth surfaces, also from the tool's files, are certified.
 import blum
 import numpy as np
 import pytest
@@ -49,12 +49,12 @@ def test_medial_axes_of_smooth_surfaces():
     assert np.linalg.norm(axis.vertices - [11.3, 11.6, 11.8], axis=1).max() < 1
 
 
-def test_files_tell_that_they_are_of_a_smooth_surface(tmp_path):
+def test_files_record_that_their_solid_is_a_smooth_surface(tmp_path):
     image = ball(6).astype(np.uint8)
     axis = blum.medial_axis(blum.smooth_surface(image), spacing=1).simplify(60)
     axis.write(tmp_path / "a.npz")
     arrays = dict(np.load(tmp_path / "a.npz"))
-    # As the tool writes it: the solid is that of the image.
+    # The tool writes this metadata: the solid is the smooth surface of the image.
     arrays["metadata"] = np.array(str(arrays["metadata"]).replace('"roles"', '"smooth": "60", "roles"'))
     np.savez(tmp_path / "b.npz", **arrays)
     assert blum.certify(blum.read_medial(tmp_path / "b.npz"), image).holds

@@ -1,4 +1,4 @@
-"""blum.Solid says of meshes and images what the library does; certificates warn where another solid is asked for."""
+"""Proves that blum.Solid finds the bodies and the inside of meshes and images, and that certificates use them."""
 
 import warnings
 
@@ -38,7 +38,7 @@ def test_bodies_shells_and_points_of_a_polyhedron():
     assert solid.bounds == ((0, 0, 0), (9, 9, 9))
 
 
-def test_what_faces_the_wrong_way_is_reversed():
+def test_parts_that_face_the_wrong_way_are_reversed():
     solid = blum.Solid(*box((0, 0, 0), (1, 2, 3), True))
     assert solid.reversed_shells == 1 and solid.shells[0].is_reversed
     assert solid.inside([0.5, 1, 1.5])
@@ -47,7 +47,7 @@ def test_what_faces_the_wrong_way_is_reversed():
     assert blum.Solid(vertices, triangles).reversed_triangles == 1
 
 
-def test_other_meshes_are_where_the_winding_number_says():
+def test_open_meshes_are_decided_by_winding_numbers():
     vertices, triangles = box((0, 0, 0), (1, 1, 1))
     solid = blum.Solid(vertices, triangles[1:])
     assert (solid.rule, solid.betti) == ("winding", None)
@@ -72,7 +72,7 @@ def test_images_are_their_selected_voxels():
         solid.inside([np.nan, 0, 0])
 
 
-def test_a_certificate_against_another_selection_is_warned_of(tmp_path):
+def test_a_certificate_against_another_selection_causes_a_warning(tmp_path):
     image = np.zeros((12, 12, 12), dtype=np.uint8)
     image[2:5, 2:9, 2:5], image[7:10, 2:9, 7:10] = 1, 2
     blum.medial_axis(image, label=1).simplify(60).write(tmp_path / "axis.npz")
@@ -85,7 +85,7 @@ def test_a_certificate_against_another_selection_is_warned_of(tmp_path):
         assert not blum.certify(axis, image, label=2)
 
 
-def test_a_certificate_reads_a_file_as_the_axis_was_made(tmp_path):
+def test_a_certificate_repeats_the_weld_of_the_axis(tmp_path):
     vertices, triangles = box((0, 0, 0), (1, 2, 3))
     loose = vertices[triangles].reshape(-1, 3)
     blum.Mesh(loose, np.arange(len(loose)).reshape(-1, 3)).write(tmp_path / "loose.ply")

@@ -1,5 +1,6 @@
-"""Proves that options and results of Python are those that the library describes: names, types, defaults,
-documentation, one message for what is wrong, and the keys of the tool's JSON."""
+"""Proves that Python's options and results match the library's description: names, types, defaults and documentation.
+
+Messages and the keys of the tool's JSON match, too."""
 
 import copy
 import dataclasses
@@ -28,12 +29,12 @@ def tool_json(*words):
 
 
 @pytest.mark.parametrize("name", _structs.__all__)
-def test_types_are_what_the_library_describes(name):
+def test_types_match_the_library(name):
     told = _core.described[name]
     made = getattr(blum, name)
     assert made is getattr(_structs, name) and made.__doc__ == told["doc"] + "."
     kinds = {key: getattr(kind, "__forward_arg__", kind) for key, kind in made.__annotations__.items()}
-    named = {"MedialAxisOptions": {"spacing"}}.get(name, ())  # by the functions themselves
+    named = {"MedialAxisOptions": {"spacing"}}.get(name, ())  # the functions take these by name
     assert kinds == {member[0]: member[1] for member in told["members"] if member[0] not in named}
     assert dataclasses.is_dataclass(made) != told["is_options"]
     for member, _, _, _, doc in told["members"]:
@@ -145,7 +146,7 @@ def test_labels_are_listed_and_missing_ones_named(tmp_path):
     }
     text = subprocess.run([TOOL, "info", tmp_path / "image.nrrd"], capture_output=True, text=True, check=True).stdout
     assert "2 voxels, volume 1: 1 component, 0 tunnels, 0 voids" in text
-    message = "no voxel of the image has the label 7: there are 1 and 2"
+    message = "no voxel of the image has the label 7: its labels are 1 and 2"
     for call in (blum.distance_transform, blum.medial_axis):
         with pytest.raises(blum.InvalidImage, match=message):
             call(image, label=7)
@@ -155,7 +156,7 @@ def test_labels_are_listed_and_missing_ones_named(tmp_path):
     assert done.returncode == 1 and message in done.stderr
 
 
-def test_auto_says_why_it_is_the_cpu():
+def test_auto_states_the_reason_for_the_cpu():
     field = blum.distance_field(blum.generate("box"), resolution=8, device="auto")
     mask = np.zeros((3, 3, 3), bool)
     mask[1] = True
@@ -165,7 +166,7 @@ def test_auto_says_why_it_is_the_cpu():
     assert blum.distance_field(blum.generate("box"), resolution=8).device_reason == ""
 
 
-def test_devices_are_listed_or_it_is_said_why_there_are_none():
+def test_devices_are_listed_or_their_absence_has_a_reason():
     found = blum.cuda_devices()
     assert bool(found.devices) != bool(found.reason)
     told = tool_json("info", "--devices")

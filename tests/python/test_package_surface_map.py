@@ -1,4 +1,4 @@
-"""Surface maps, thickness, Hausdorff distances and deviations of the package: known values, shapes, errors."""
+"""Proves known values, shapes and errors of surface maps, thickness, Hausdorff distances and deviations."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_maps_hold_exact_distances(organic, torus):
     assert np.array_equal(np.isnan(found.distance), found.triangle < 0)
     known = found.triangle >= 0
     assert np.allclose(np.linalg.norm(found.vector[known], axis=1), found.distance[known], rtol=1e-5, atol=1e-6)
-    # The middle of a texel within a triangle, by its corners.
+    # Barycentric coordinates of the centre of each texel in its triangle.
     t = found.triangle[known]
     rows, columns = np.nonzero(known)
     middle = np.stack([columns + 0.5, rows + 0.5], axis=1)
@@ -94,7 +94,7 @@ def test_given_texture_coordinates(torus):
         blum.SurfaceMapper(square, torus, texture_coordinates=places[0])
 
 
-def test_several_others_are_told_apart(organic):
+def test_several_others_are_distinguished(organic):
     left = blum.generate("sphere", frequency=3)
     right = blum.Mesh(left.vertices + np.array([6, 0, 0]), left.triangles)
     wide = blum.Mesh(organic.vertices * [4, 1, 1] + np.array([3, 0, 0]), organic.triangles)
@@ -157,7 +157,7 @@ def test_deviations_are_by_area():
     assert np.allclose(found.percentiles, [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99], atol=found.percentile_error)
 
 
-def test_what_is_wrong_is_said(organic):
+def test_wrong_arguments_are_rejected(organic):
     with pytest.raises(TypeError, match="self_distance_map"):
         blum.surface_distance_map(organic)
     with pytest.raises(blum.InvalidOption, match="16384"):

@@ -1,4 +1,4 @@
-"""Proves that blum.view makes the page that the tool makes, and says which argument it cannot show."""
+"""Proves that blum.view() writes the page of the tool and names arguments that it cannot show."""
 
 import webbrowser
 
@@ -14,7 +14,7 @@ def part():
 
 
 def items(page):
-    """What a page says that it shows."""
+    """Names and kinds of the items of a page."""
     import scene
 
     return [(item["name"], item["kind"]) for item in scene.scene_of_page(page).header["items"]]
@@ -45,7 +45,7 @@ def test_a_page_shows_everything_that_blum_makes(part, tmp_path):
     ]
 
 
-def test_a_page_shows_maps_of_surfaces_as_they_are(part, tmp_path):
+def test_a_page_shows_surface_maps_exactly(part, tmp_path):
     import scene
 
     ball = blum.generate("sphere")
@@ -61,7 +61,7 @@ def test_a_page_shows_maps_of_surfaces_as_they_are(part, tmp_path):
         assert ("errors" in item) == (made.error is not None)
 
 
-def test_a_page_is_opened_only_where_that_is_meant(part, tmp_path, monkeypatch):
+def test_a_page_opens_without_an_output_or_on_request(part, tmp_path, monkeypatch):
     opened = []
     monkeypatch.setattr(webbrowser, "open", opened.append)
     blum.view(part, output=tmp_path / "page.html")
@@ -80,13 +80,13 @@ def test_a_page_is_opened_only_where_that_is_meant(part, tmp_path, monkeypatch):
         ((np.full((2, 2, 2), "a"),), TypeError, "image"),
     ],
 )
-def test_what_cannot_be_shown_is_named(things, error, text, tmp_path):
+def test_unsupported_arguments_are_named(things, error, text, tmp_path):
     with pytest.raises(error, match=text):
         blum.view(*things, output=tmp_path / "page.html")
     assert not (tmp_path / "page.html").exists()
 
 
-def test_a_broken_file_is_named_and_a_page_replaced_by_a_whole_one_only(part, tmp_path):
+def test_a_broken_file_is_named_and_leaves_the_page_as_it_was(part, tmp_path):
     (tmp_path / "broken.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
     page = tmp_path / "page.html"
     page.write_text("mine")
@@ -101,7 +101,7 @@ def test_a_broken_file_is_named_and_a_page_replaced_by_a_whole_one_only(part, tm
         blum.view(part, output=tmp_path / "no folder" / "page.html")
 
 
-def test_things_have_the_names_that_they_are_given(part, tmp_path):
+def test_keywords_name_the_items(part, tmp_path):
     page = blum.view(part, part=part, distance=blum.distance_field(part, resolution=16), output=tmp_path / "page.html")
     assert items(page) == [("mesh.ply", "mesh"), ("part.ply", "mesh"), ("distance.npz", "field")]
     with pytest.raises(TypeError, match="wrong is a int"):
@@ -110,7 +110,7 @@ def test_things_have_the_names_that_they_are_given(part, tmp_path):
         blum.view(blum.medial_axis(part, resolution=16).nested(), output=page)
 
 
-def test_a_tool_that_is_killed_is_told(part, tmp_path, monkeypatch):
+def test_a_killed_tool_is_reported(part, tmp_path, monkeypatch):
     import blum._view
 
     killed = tmp_path / "blum"

@@ -1,4 +1,4 @@
-"""Proves that the package makes Voronoi complexes as the library does, and what it refuses."""
+"""Proves that the package computes the library's Voronoi complexes and rejects wrong input."""
 
 import json
 import pickle
@@ -27,7 +27,7 @@ def test_a_box_has_six_regions(box):
     assert "VoronoiComplex" in repr(found)
 
 
-def test_options_and_what_is_refused(box):
+def test_options_apply_and_wrong_input_is_rejected(box):
     coarse = blum.voronoi_complex(box, resolution=1)
     fine = blum.voronoi_complex(box, resolution=32)
     assert coarse.report.cubes < fine.report.cubes and fine.report.certified
@@ -100,7 +100,7 @@ def test_medial_axes(tmp_path):
 
 
 def test_axes_at_corners_of_three_convex_and_three_reflex_edges():
-    """Walls that meet there are a cone about the corner: a vertex next to it lies on the seam of all of them."""
+    """The walls that meet at such a corner form a cone; a vertex near the corner lies on the seam of all of them."""
     sponge = blum.generate("menger", level=2)
     c, s = np.cos([0.3, 0.5]), np.sin([0.3, 0.5])
     turn = np.array([[1, 0, 0], [0, c[1], -s[1]], [0, s[1], c[1]]]) @ [[c[0], -s[0], 0], [s[0], c[0], 0], [0, 0, 1]]
@@ -109,13 +109,13 @@ def test_axes_at_corners_of_three_convex_and_three_reflex_edges():
 
 
 @pytest.mark.parametrize("size", [1e-120, 1e-75, 1e60, 1e120])
-def test_sizes_that_exact_signs_are_not_for(box, size):
-    with pytest.raises(blum.InvalidMesh, match="1e-45 to 1e45"):
+def test_sizes_beyond_exact_signs_are_rejected(box, size):
+    with pytest.raises(blum.InvalidMesh, match="at least 1e-45 and coordinates up to 1e45"):
         blum.voronoi_complex(blum.Mesh(box.vertices * size, box.triangles))
 
 
 def test_sites():
-    """A bracket's faces lie in one plane each; its sites are as many as the report says."""
+    """Each face of a bracket is planar, and the number of sites equals the report's."""
     mesh = blum.generate("bracket")
     found = blum.voronoi_complex(mesh)
     sites = found.sites()
@@ -172,7 +172,7 @@ def test_networkx_reads_graphs_of_diagrams(box, tmp_path):
         found.write_graph(tmp_path / "g.gml")
 
 
-def test_where_a_mesh_crosses_itself_the_diagram_is_that_of_its_solid():
+def test_the_diagram_of_a_mesh_that_crosses_itself_is_that_of_its_solid():
     box = blum.generate("box")
     vertices = np.concatenate([box.vertices, box.vertices + np.array([0.5, 0.25, 0.125])])
     triangles = np.concatenate([box.triangles, box.triangles + len(box.vertices)])

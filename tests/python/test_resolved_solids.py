@@ -1,4 +1,4 @@
-"""Meshes that cross themselves against Manifold's unions of their parts, and against winding numbers."""
+"""Proves that resolved self-crossing meshes equal Manifold's unions of their parts, and agree with winding numbers."""
 
 import manifold3d
 import numpy as np
@@ -89,7 +89,7 @@ def test_unions_of_parts_are_those_of_manifold(name):
         assert model.passes and model.betti() == betti
 
 
-def test_what_is_resolved_is_counted_and_names_the_input():
+def test_resolved_meshes_count_crossings_and_map_to_the_input():
     vertices, triangles = together(CASES["boxes, turned"])
     solid = blum.Solid(vertices, triangles)
     assert solid.resolved.crossing == len(blum.self_intersections(vertices, triangles).pairs)

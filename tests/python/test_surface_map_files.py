@@ -1,8 +1,8 @@
-"""Surface maps of Blum, and its glTF files, in other programs.
+"""Proves that other programs read Blum's surface maps and glTF files.
 
-The program surface_map_files_sample writes a map whose values are a linear function of the place on a box:
-3 + x + 2 y + 3 z. NumPy, VTK and trimesh open its files, and each number is compared with that function. The program is
-found beside the command-line tool (environment variable BLUM), or in build/release/bin.
+The program surface_map_files_sample writes a map of the linear function 3 + x + 2 y + 3 z over a box. NumPy, VTK and
+trimesh open the files, and each number is compared with the function. The program lies beside the command-line tool
+(environment variable BLUM) or in build/release/bin.
 """
 
 import json
@@ -45,7 +45,7 @@ def test_numpy_finds_the_place_and_value_of_every_texel(maps):
     assert numpy.allclose(arrays["vertex_distance"], value_at(arrays["vertices"]))
     rows, columns = numpy.nonzero(triangle >= 0)
     of = triangle[rows, columns]
-    # Barycentric coordinates of the texels' middles in their triangles, from the corners in texels.
+    # Barycentric coordinates of the centre of each texel in its triangle, from corners in texels.
     corners = arrays["corners"][of]
     steps = numpy.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
     middles = numpy.stack([columns + 0.5, rows + 0.5], axis=1) - corners[:, 0]
@@ -67,15 +67,15 @@ def test_trimesh_draws_the_texture(maps):
     with numpy.load(maps / "map.npz") as file:
         distance = file["distance"]
     assert image.size == distance.shape[::-1]
-    # Equal values have equal colours, and larger ones are darker (by more than bytes round).
+    # Larger values are darker, up to rounding to bytes.
     pixels = numpy.asarray(image.convert("RGB")).astype(float) @ [0.2126, 0.7152, 0.0722]
     known = numpy.isfinite(distance)
     order = numpy.argsort(distance[known])
     assert (numpy.diff(pixels[known][order][::50]) < 2).all()
-    # trimesh has v up: at a corner of the mesh the texture has the colour of its value.
+    # trimesh's v points up. The texel at each corner of the mesh holds the corner's value.
     x, y = (mesh.visual.uv * [1, -1] + [0, 1]).T * numpy.array(image.size)[:, None]
     nearest = [distance[int(numpy.clip(j, 0, 63)), int(numpy.clip(i, 0, 95))] for i, j in zip(x, y, strict=True)]
-    assert numpy.allclose(nearest, value_at(mesh.vertices), atol=0.13)  # half a texel along both axes
+    assert numpy.allclose(nearest, value_at(mesh.vertices), atol=0.13)  # the change over half a texel along both axes
 
 
 def test_vtk_and_trimesh_read_columns(maps):
@@ -96,7 +96,7 @@ def test_vtk_and_trimesh_read_columns(maps):
 
 def test_gltf_keeps_meshes_far_from_the_origin(tmp_path):
     part = blum.generate("gear")
-    far = part.vertices + [4.5e6, -1.2e6, 250]  # where numbers of single precision are half a unit apart
+    far = part.vertices + [4.5e6, -1.2e6, 250]  # numbers in single precision are half a unit apart there
     blum.Mesh(far, part.triangles).write(tmp_path / "far.glb")
     scene = trimesh.load(tmp_path / "far.glb", process=False)
     mesh = scene.to_geometry()

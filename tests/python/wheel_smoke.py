@@ -1,4 +1,4 @@
-"""Run by tools/check_wheel.sh where only NumPy and the wheel are installed: python wheel_smoke.py torus.ply."""
+"""Proves that an installed wheel works with NumPy alone: python wheel_smoke.py torus.ply (tools/check_wheel.sh)."""
 
 import pathlib
 import sys
@@ -14,7 +14,7 @@ assert field.sign_rule == "normals"
 assert field.distance.min() < 0 < field.distance.max()
 axis = blum.medial_axis(mesh, resolution=32).simplify(60)
 assert axis.certificate.axis_betti == (1, 1, 0)
-# Without the packages that conversions go to, arrays come back.
+# Conversions to packages that are not installed return arrays.
 assert isinstance(mesh.to_trimesh(), tuple)
 assert isinstance(field.to_pyvista(), dict)
 assert isinstance(axis.to_pyvista()["vertices"], np.ndarray)
@@ -22,7 +22,7 @@ try:
     blum.distance_field(mesh, resolution=8, progress=True)
 except ImportError as error:
     assert "tqdm" in str(error)
-# What the package loads lies in the wheel.
+# The libraries that the package loads lie in the wheel.
 for line in pathlib.Path("/proc/self/maps").read_text().splitlines():
     library = pathlib.Path(line.split(maxsplit=5)[-1])
     if any(name in library.name for name in ("libtbb", "libhwy")):

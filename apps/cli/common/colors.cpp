@@ -23,7 +23,7 @@ Color region_color_of(std::uint32_t row, double hue) {
 }  // namespace
 
 Color region_color(std::uint32_t id) {
-  const std::uint32_t bits = scramble(id + 0x9e3779b9U);  // as in the shaders of the viewer's page
+  const std::uint32_t bits = scramble(id + 0x9e3779b9U);  // the same as in the shaders of the viewer's page
   return region_color_of(bits & 15, static_cast<double>(bits >> 8) * (360.0 / 16777216.0));
 }
 

@@ -76,13 +76,14 @@ void Command::footer(const std::string& text) const {
 
 namespace {
 
-/// Replaces names of members in a message of the library, for example "max_cubes", by the options that set them.
+/// Replaces names of members in a message of the library, for example "max_cubes", by the names of the options that set
+/// them.
 std::string with_option_names(std::string text, const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) {
       std::string member = name;
       std::replace(member.begin(), member.end(), '-', '_');
-      if (member == name) continue;  // One word may mean something else.
+      if (member == name) continue;  // A name that is a single word may have another meaning in the message.
       text = std::regex_replace(text, std::regex("\\b" + member + "\\b"), "--" + name);
     }
   }
@@ -103,13 +104,13 @@ void Command::callback(std::function<void()> run) const {
 
 namespace {
 
-/// Rejects a word that is neither an option nor a command if a command is expected there.
+/// If a subcommand is expected, rejects a word that is neither an option nor a subcommand.
 void check_command(const CLI::App& app, std::span<const std::string> arguments) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   const bool is_tool = app.get_parent() == nullptr;
   if (names.empty() || (arguments.empty() && is_tool)) return;
-  // Only the tool itself and commands with queries have subcommands.
+  // Only the tool itself, and commands with queries, have subcommands.
   const std::string kind = is_tool ? "command" : "query";
   const std::string all = std::string("the ") + (is_tool ? "commands" : "queries") + " are " + join_words(names);
   if (arguments.empty()) throw UsageError("a " + kind + " is missing; " + all);
@@ -121,7 +122,7 @@ void check_command(const CLI::App& app, std::span<const std::string> arguments) 
                    all);
 }
 
-/// Returns the command that was given. Appends its name and those of its parents to `name`.
+/// Returns the subcommand that was given on the command line. Appends its name and the names of its parents to `name`.
 const CLI::App* used_command(const CLI::App* app, std::string& name) {
   for (auto used = app->get_subcommands(); !used.empty(); used = app->get_subcommands()) {
     app = used.front();
@@ -130,7 +131,8 @@ const CLI::App* used_command(const CLI::App* app, std::string& name) {
   return app;
 }
 
-/// Describes the first argument that CLI11 did not accept, with a hint for a misspelt option. Empty if none is left.
+/// Describes the first argument that CLI11 did not accept. For a misspelt option, adds similar options. Returns an
+/// empty text if all were accepted.
 std::string leftover_text(const CLI::App& command) {
   const std::vector<std::string> left = command.remaining(true);
   if (left.empty()) return {};
@@ -145,14 +147,14 @@ std::string leftover_text(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
-  if (word.size() == 2) {  // one letter: options that begin with it
+  if (word.size() == 2) {  // a single letter: suggest options that start with it
     std::erase_if(names, [&](const std::string& name) { return name[2] != word[1]; });
     return "there is no option " + word + hint(names);
   }
   return "there is no option " + word + hint(similar_words(word, names));
 }
 
-/// Prints help or version if CLI11 ended for these. Throws UsageError for all other errors.
+/// If CLI11 ended to print help or version, prints it. Throws UsageError for all other errors.
 void finish(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     app.exit(error);
@@ -161,9 +163,11 @@ void finish(const CLI::App& app, const CLI::ParseError& error) {
   }
   std::string message = error.what();
   while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
+  message = std::regex_replace(message, std::regex("^(\\S+): At Most 1 required but received \\d+$"),
+                               "$1 may be given only once");
   std::string name = "blum";
   const CLI::App& command = *used_command(&app, name);
-  // A misspelt option also causes the error that its option is missing. So the misspelling is reported first.
+  // If an option is misspelt, CLI11 may report that the option is missing. So misspelt options are reported first.
   const std::string leftover = leftover_text(command);
   const bool only_leftover = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   if (!leftover.empty()) message = only_leftover ? leftover : leftover + "; also: " + message;
@@ -183,7 +187,7 @@ void run_command_line(const ToolTexts& texts, const std::function<void(const Com
   add_commands(Command(app));
   check_command(app, arguments);
   if (arguments.empty()) arguments.emplace_back("--help");
-  std::reverse(arguments.begin(), arguments.end());  // CLI11 reads them from the back
+  std::reverse(arguments.begin(), arguments.end());  // CLI11 reads arguments starting from the last one
   try {
     app.parse(arguments);
   } catch (const CLI::ParseError& error) {

@@ -1,4 +1,4 @@
-// Blum: the command line as the commands see it. SPDX-License-Identifier: Apache-2.0
+// Blum: the parsed command line, as commands read it. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -13,15 +13,15 @@ class Option;
 
 namespace blum::cli {
 
-/// An option that was added to a command. CLI11 holds it. Only command_line.cpp includes CLI11, because its header
+/// Handle of an option of a command. CLI11 owns the option. Only command_line.cpp includes CLI11, because its header
 /// takes longer to compile than a command.
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option& option) : option_(&option) {}
   CommandOption required() const;
-  /// Sets the name of the value in the help.
+  /// Sets the name that the help shows for the value.
   CommandOption type_name(const std::string& name) const;
-  /// Makes an option that may be repeated take one value each time.
+  /// Allows the option to be repeated, with one value each time.
   CommandOption one_value_each() const;
 
  private:
@@ -33,19 +33,19 @@ class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
   [[nodiscard]] Command add_subcommand(const std::string& name, const std::string& help) const;
-  /// @param value  is set when the command line is read. It must live until then.
+  /// @param value  receives the value when the command line is read. It must live until then.
   CommandOption add_option(const std::string& name, std::string& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::optional<std::string>& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
-  /// @param set  is called with the value.
+  /// @param set  called with the value.
   CommandOption add_option_function(const std::string& name, const std::function<void(const std::string&)>& set,
                                     const std::string& help) const;
   void add_flag(const std::string& name, bool& value, const std::string& help) const;
-  /// @param set  is called if the flag is given.
+  /// @param set  called if the flag is given.
   void add_flag_function(const std::string& name, std::function<void()> set, const std::string& help) const;
   /// Returns true if the command has an option or flag of this name, with dashes.
   [[nodiscard]] bool has_option(const std::string& name) const;
-  /// Makes one of its subcommands mandatory.
+  /// Requires that one of the command's subcommands is given.
   void require_subcommand() const;
   /// Sets the text at the end of the help.
   void footer(const std::string& text) const;
@@ -61,7 +61,7 @@ struct ToolTexts {
   std::string name, about, version, footer;
 };
 
-/// Reads a command line and runs its command. Prints help or version if they are requested.
+/// Reads a command line and runs the command that it requests. Prints help or version if requested.
 /// @param add_commands  adds the subcommands. It may change the arguments, because they are read afterwards.
 /// @throws UsageError for an invalid command line, and all exceptions of the command.
 void run_command_line(const ToolTexts& texts, const std::function<void(const Command&)>& add_commands,

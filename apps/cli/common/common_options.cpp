@@ -20,7 +20,8 @@ void add_threads_option(const Command& command, std::optional<std::string>& thre
 }
 
 void add_device_option(const Command& command, std::optional<std::string>& device) {
-  add_text_option(command, "--device", device, "DEV", "Device for distances: cpu, auto, cuda or cuda:K (default cpu)");
+  add_text_option(command, "--device", device, "DEV",
+                  "Device that computes distances: cpu, auto, cuda, or cuda:K for device number K (default cpu)");
 }
 
 void add_report_options(const Command& command, ReportOptions& report, const char* json_help) {

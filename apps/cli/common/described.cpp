@@ -39,7 +39,7 @@ std::string option_name(std::string_view member) {
 
 namespace {
 
-/// "The doc, unit (default x)".
+/// Returns the help of an option, in the form "The doc (in unit; default x)".
 std::string option_help(std::string_view prefix, std::string_view doc, std::string_view unit,
                         std::string_view fallback) {
   std::string text(doc);
@@ -47,9 +47,9 @@ std::string option_help(std::string_view prefix, std::string_view doc, std::stri
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   }
   text = std::string(prefix) + text;
-  if (!unit.empty()) text += ", in " + std::string(unit);
-  if (!fallback.empty()) text += " (" + std::string(fallback) + ")";
-  return text;
+  std::string note = unit.empty() ? std::string() : "in " + std::string(unit);
+  if (!fallback.empty()) note += (note.empty() ? "" : "; ") + std::string(fallback);
+  return note.empty() ? text : text + " (" + note + ")";
 }
 
 std::string type_text(std::string_view member) {
@@ -102,7 +102,7 @@ double number_in(const std::string& option, const std::string& text, const Range
 }
 
 std::int64_t integer_in(const std::string& option, const std::string& text, const Range& range) {
-  constexpr double widest = 1e9;  // if the description has no range
+  constexpr double widest = 1e9;  // used if the description has no range
   return parse_integer(option, text, static_cast<std::int64_t>(std::isfinite(range.least) ? range.least : -widest),
                        static_cast<std::int64_t>(std::isfinite(range.most) ? range.most : widest));
 }
@@ -112,7 +112,7 @@ double length_in(const std::string& option, const std::string& text, const Range
   if (!in_steps) return number_in(option, text, range);
   const std::string count = text.substr(0, text.size() - 1);
   if (!looks_like_number(count))
-    throw UsageError(option + " '" + text + "': is not a number of grid steps, for example 3v");
+    throw UsageError(option + " '" + text + "': must be a number of grid steps followed by v, for example 3v");
   return number_in(option, count, range) * *step;
 }
 

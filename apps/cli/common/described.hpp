@@ -26,7 +26,7 @@
 
 namespace blum::cli {
 
-/// Returns seconds by phase. Phases of one name are added.
+/// Returns an object with the seconds of each phase. Durations of phases with the same name are added.
 [[nodiscard]] Json to_json(const std::vector<PhaseTime>& phases);
 [[nodiscard]] Json to_json(const Vec3d& v);
 /// Returns null if the box is empty.
@@ -38,7 +38,7 @@ template <class Tag>
   return id.to_file();
 }
 
-/// Converts values of described structs and of their members. An empty optional becomes null.
+/// Converts values and described structs, including nested ones. An empty optional becomes null.
 template <class T>
   requires(DescribedStruct<T> || DescribedEnum<T> || std::is_arithmetic_v<T> || std::same_as<T, std::string>)
 [[nodiscard]] Json to_json(const T& value);
@@ -79,39 +79,39 @@ Json to_json(const std::array<T, count>& values) {
   return json;
 }
 
-/// Returns the option of a member: --site-ids for site_ids.
+/// Returns the name of the option for a member: --site-ids for site_ids.
 [[nodiscard]] std::string option_name(std::string_view member);
-/// Reads the number of an option. @throws UsageError if it is outside the range of the description.
+/// Parses the number of an option. @throws UsageError if it is outside of the described range.
 [[nodiscard]] double number_in(const std::string& option, const std::string& text, const Range& range);
 [[nodiscard]] std::int64_t integer_in(const std::string& option, const std::string& text, const Range& range);
-/// Reads `3v` as three steps if `step` is given, other texts as number_in(). @throws UsageError.
+/// If `step` is given, a text like `3v` means three steps. Other texts are parsed by number_in(). @throws UsageError.
 [[nodiscard]] double length_in(const std::string& option, const std::string& text, const Range& range,
                                std::optional<double> step);
 
-/// A member of a described struct as an option.
+/// Option for a member of a described struct.
 struct OptionMember {
   std::string_view name, unit, doc;
   bool is_flag = false;
-  bool is_on = false;    ///< default of a flag
-  std::string fallback;  ///< default of other options, for the help
+  bool is_on = false;    ///< for a flag: its default
+  std::string fallback;  ///< for other options: the default, as shown in the help
 };
 
-/// The part of OptionTexts<T> that does not depend on T.
+/// Part of OptionTexts<T> that does not depend on T.
 class OptionTable {
  public:
-  /// Adds the members as options of a command. The object must keep its address until the command line is read.
-  /// @param prefix  starts all help texts.  @param left_out  members without an option.
+  /// Adds an option for each member to a command. This object must not be moved until the command line has been read.
+  /// @param prefix  text at the start of all help texts. @param left_out members without an option.
   /// @param in_steps  true if lengths may also be given in grid steps.
   void add_to(const Command& command, std::string_view prefix = {},
               std::initializer_list<std::string_view> left_out = {}, bool in_steps = false);
 
   [[nodiscard]] bool has(std::string_view member) const { return text_of(member) != nullptr; }
-  /// Returns the names of the given options, in the order of the members.
+  /// Returns the names of the options on the command line, in the order of the members.
   [[nodiscard]] std::vector<std::string> given() const;
 
  protected:
   explicit OptionTable(std::vector<OptionMember> members) : members_(std::move(members)) {}
-  /// Returns nullptr if the option is not given.
+  /// Returns the text of a member's option; nullptr if the option is not given.
   [[nodiscard]] const std::string* text_of(std::string_view member) const;
 
  private:
@@ -119,15 +119,15 @@ class OptionTable {
   std::map<std::string, std::string, std::less<>> texts_;
 };
 
-/// The members of a described struct as options of a command: words for enumerations, and numbers in their range. A
-/// boolean is a flag, called `--no-NAME` if its default is true. A selection of voxels gets no option.
+/// Options for the members of a described struct. Enumerations are given as words, and numbers must be in their range.
+/// A boolean is a flag, called `--no-NAME` if its default is true. A selection of voxels has no option.
 template <DescribedStruct T>
 class OptionTexts : public OptionTable {
  public:
   OptionTexts() : OptionTable(members()) {}
 
-  /// Returns the struct. Members without a given option keep their default.
-  /// @param step  grid step, if lengths may be given in steps.
+  /// Returns the struct. Members whose option is not given have their default.
+  /// @param step  length of a grid step, if lengths may be given in steps.
   /// @throws UsageError, InvalidOption.
   [[nodiscard]] T read(std::optional<double> step = {}) const {
     T out;

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the last `parts` parts of a path.
+/// Returns the last `parts` components of a path.
 std::string tail_of(const fs::path& path, std::size_t parts) {
   const std::vector<fs::path> all(path.begin(), path.end());
   fs::path out;
@@ -54,7 +54,8 @@ void check_writable(const fs::path& path) {
   }
 }
 
-/// Reads the number after `key` in a file of lines like "MemAvailable:  123 kB". An empty key reads the first number.
+/// Reads a number from a file. It is the number after `key`, in lines like "MemAvailable: 123 kB". If the key is empty,
+/// it is the first number.
 std::optional<double> number_in(const char* file, std::string_view key) {
   std::ifstream stream(file);
   std::string line;
@@ -121,7 +122,7 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (const fs::path& input : inputs) {
       if (same_file(outputs[i], input)) {
-        throw UsageError("the output '" + outputs[i].string() + "' is the input; choose another name");
+        throw UsageError("the output '" + outputs[i].string() + "' is also the input; choose another name for it");
       }
     }
     for (std::size_t j = 0; j < i; ++j) {
@@ -160,7 +161,7 @@ std::vector<std::string> distinct_names(const std::vector<std::string>& files) {
       const auto is_other = [&](std::size_t k) { return files[k] != files[same.second.front()]; };
       if (std::none_of(same.second.begin(), same.second.end(), is_other)) continue;
       for (const std::size_t k : same.second) {
-        if (names[k] == fs::path(files[k]).string()) continue;  // already the whole path
+        if (names[k] == fs::path(files[k]).string()) continue;  // the name is already the whole path
         ++parts[k];
         is_longer = true;
       }

@@ -42,7 +42,7 @@ bool is_welded_away(const MeshFile& file) {
 }
 
 std::string welded_away_text(const MeshFile& file) {
-  return "welding left no triangle of " + plural(file.info.faces, "face", "faces") +
+  return "welding removed all triangles of " + plural(file.info.faces, "face", "faces") +
          "; give --weld a tolerance below " + "the edge lengths of the mesh";
 }
 

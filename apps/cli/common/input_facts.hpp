@@ -15,21 +15,21 @@
 
 namespace blum::cli {
 
-/// Returns file, format and counts of a mesh.
+/// Returns the file, format and counts of a mesh as JSON.
 [[nodiscard]] Json file_json(const std::filesystem::path& path, const MeshFile& file);
 [[nodiscard]] std::string file_text(const MeshFile& file);
 
-/// Returns true if welding removed all triangles of a mesh, and the text of its warning.
+/// Returns true if the mesh lost all its triangles by welding. The next function returns the text of the warning.
 [[nodiscard]] bool is_welded_away(const MeshFile& file);
 [[nodiscard]] std::string welded_away_text(const MeshFile& file);
 
-/// Returns these with the properties of its surface that are cheap to compute.
+/// Returns the result of file_json(), and properties of the mesh's surface that are cheap to compute.
 [[nodiscard]] Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                              const Orientation& facts);
 [[nodiscard]] TextTable mesh_table(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                                    const Orientation& facts);
 
-/// Returns file, format, type and grid of an image.
+/// Returns the file, format, value type and grid of an image as JSON.
 [[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image);
 [[nodiscard]] TextTable image_table(const std::filesystem::path& path, const VoxelImage& image);
 /// Returns true if every voxel is NaN.

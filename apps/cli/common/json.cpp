@@ -135,7 +135,7 @@ void Json::erase(std::string_view name) {
   std::erase_if(std::get<Object>(value_), [&](const auto& member) { return member.first == name; });
 }
 
-/// Converts to a value of nlohmann/json and writes it.
+/// Converts a value to one of nlohmann/json, and writes it as text.
 struct JsonWriter {
   using Written = nlohmann::ordered_json;
 
@@ -160,7 +160,7 @@ struct JsonWriter {
   }
   static Written of_value(const Json::Object& members) {
     Written out = Written::object();
-    // Names are unique already.
+    // push_back without a search, because names are already unique.
     for (const auto& [name, value] : members) out.get_ref<Written::object_t&>().push_back({name, of(value)});
     return out;
   }

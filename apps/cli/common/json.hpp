@@ -16,10 +16,12 @@ namespace blum::cli {
 
 class JsonItem;
 
-/// A value of JSON: null, true or false, a number, a text, an array, or an object whose members keep their order.
-/// nlohmann/json writes them. Only json.cpp includes it, because its header takes longer to compile than a command.
+/// JSON value: null, true or false, a number, a text, an array, or an object whose members keep their order. It is
+/// written with nlohmann/json. Only json.cpp includes nlohmann/json, because its header takes longer to compile than a
+/// command.
 ///
-/// Braces make an object if each item is a pair of a text and a value, {{"a", 1}, {"b", 2}}; else an array.
+/// Values in braces form an object if each of them is a pair of a text and a value: {{"a", 1}, {"b", 2}}. Otherwise
+/// they form an array.
 // NOLINTBEGIN(google-explicit-constructor): values of JSON are made of what they hold, within braces too
 class Json {
  public:
@@ -55,17 +57,17 @@ class Json {
   ~Json();
 
   [[nodiscard]] static Json array();
-  /// Makes an array even if all items are pairs.
+  /// Makes an array, even if all items are pairs.
   [[nodiscard]] static Json array(std::initializer_list<JsonItem> items);
   [[nodiscard]] static Json object();
 
   [[nodiscard]] bool is_null() const;
   [[nodiscard]] bool is_true() const;
-  /// @throws std::bad_variant_access if the value has another kind, here and below.
+  /// @throws std::bad_variant_access if the value is not a number. The functions below throw it likewise.
   [[nodiscard]] double number() const;
   [[nodiscard]] const std::string& text() const;
 
-  // Arrays and objects. Writing to null turns it into an array or an object.
+  // Functions for arrays and objects. Writing to null turns it into an array or an object.
   [[nodiscard]] bool empty() const { return size() == 0; }
   [[nodiscard]] std::size_t size() const;
   void push_back(Json value);
@@ -74,17 +76,17 @@ class Json {
   [[nodiscard]] Array::const_iterator begin() const;
   [[nodiscard]] Array::const_iterator end() const;
   [[nodiscard]] const Object& members() const;
-  /// Returns the member of that name, or nullptr if it does not exist.
+  /// Returns the member with this name, or nullptr if there is none.
   [[nodiscard]] const Json* find(std::string_view name) const;
   [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
-  /// Returns the member of that name. Adds it as null if it does not exist.
+  /// Returns the member with this name. If there is none, adds it as null.
   [[nodiscard]] Json& operator[](std::string_view name);
   [[nodiscard]] const Json& operator[](std::string_view name) const;
-  /// Sets all members of another object.
+  /// Sets members: adds or replaces all members of another object.
   void update(const Json& other);
   void erase(std::string_view name);
 
-  /// Returns the text, in one line or with indented lines. Invalid UTF-8 is replaced.
+  /// Returns the value as text, on one line or on several indented lines. Invalid UTF-8 is replaced.
   [[nodiscard]] std::string dump() const;
   [[nodiscard]] std::string dump(int indent) const;
 
@@ -99,8 +101,8 @@ class Json {
   std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array, Object> value_;
 };
 
-/// An item within braces: a value, or braces again. Values are moved out of it; initializer lists alone do not allow
-/// that.
+/// Item in braces: a value, or nested braces. The value can be moved out of it, which initializer lists do not allow
+/// for their elements.
 class JsonItem {
  public:
   JsonItem(const char* text) : value_(text) {}

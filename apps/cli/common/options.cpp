@@ -86,7 +86,7 @@ double parse_angle(std::string_view name, std::string_view text) {
 
 namespace {
 
-/// Reads texts like 1e6 or 2.5e3 as a whole number that a double holds exactly.
+/// Parses a text like 1e6 or 2.5e3 as an integer. It must be one that a double represents exactly.
 std::optional<std::int64_t> scientific_integer(std::string_view digits) {
   constexpr double largest_exact = 9007199254740992;  // 2^53
   double value = 0;
@@ -128,7 +128,7 @@ Box3 parse_bounds(std::string_view name, std::string_view text) {
   for (std::size_t i = 0; i < 6; ++i) n[i] = parse_number(name, parts[i]);
   const Box3 box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
   if (box.is_empty()) refuse(name, text, "the first corner must not lie above the second on any axis");
-  if (box.lower == box.upper) refuse(name, text, "is a single point; at least one side must have a length");
+  if (box.lower == box.upper) refuse(name, text, "is a single point; at least one side must be longer than 0");
   return box;
 }
 
@@ -190,7 +190,7 @@ void check_spacing(double spacing, const Box3& box) {
   const Vec3d size = box.size();
   const double nodes = (size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1);
   if (box.is_empty() || nodes <= most) return;
-  throw UsageError("--spacing " + rounded_text(spacing) + " is too small for a box of " + vector_text(size) +
+  throw UsageError("--spacing " + rounded_text(spacing) + " is too small for a box of size " + vector_text(size) +
                    ": the grid would have more than 2^40 nodes; increase --spacing");
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// State for the signal handler: lock-free atomics, and a pipe to a thread that may do more.
+// State that the signal handler may use: lock-free atomics, and a pipe to a thread, which may call any function.
 std::atomic<int> signals_seen = 0;
 std::atomic<int> last_signal = 0;
 std::atomic<bool> unattended = false;
@@ -33,7 +33,7 @@ void send(char message) {
   }
 }
 
-/// Ends the process by a signal, so that its parent sees the signal. A shell then also leaves its loop.
+/// Ends the process by a signal, so that its parent process sees the signal. A shell then also ends its loop.
 [[noreturn]] void end_by(int number) {
   signal(number, SIG_DFL);
   sigset_t own;
@@ -41,7 +41,7 @@ void send(char message) {
   sigaddset(&own, number);
   pthread_sigmask(SIG_UNBLOCK, &own, nullptr);
   raise(number);
-  _exit(128 + number);  // reached if the signal is ignored
+  _exit(128 + number);  // reached only if the signal is ignored
 }
 
 extern "C" void on_signal(int number) {
@@ -66,7 +66,7 @@ void watch(std::stop_source& source) {
   }
 }
 
-/// Keeps ignored signals ignored, because shells start background jobs of scripts that way.
+/// Sets a handler, except for signals that are ignored: shells ignore signals for background jobs of scripts.
 void set_handler(void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;

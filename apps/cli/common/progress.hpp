@@ -11,7 +11,7 @@
 
 namespace blum::cli {
 
-/// A progress bar on stderr, only if stderr is a terminal. It appears after 0.4 s and disappears at the end.
+/// Progress bar on stderr. It is shown only if stderr is a terminal. It appears after 0.4 s and is removed at the end.
 class Progress {
  public:
   explicit Progress(bool wanted);
@@ -31,9 +31,9 @@ class Progress {
   Clock::time_point last_ = {};
 };
 
-/// Turns the first Ctrl-C (SIGINT) or SIGTERM into a request to stop, and the second into the end of the process. If no
-/// code polls the request, for example while files are read, Unattended makes the first signal end the process. A
-/// signal that was ignored when the process started stays ignored. At most one object may exist.
+/// Handles SIGINT (Ctrl-C) and SIGTERM. The first signal requests a stop, and the second one ends the process. Some
+/// code does not poll the request, for example while files are read. There, Unattended makes the first signal end the
+/// process. A signal that was ignored when the process started stays ignored. At most one object may exist.
 class Interrupt {
  public:
   Interrupt();
@@ -48,8 +48,8 @@ class Interrupt {
   std::thread watcher_;
 };
 
-/// Ends the process by the signal that was caught last, so that its parent sees SIGINT or SIGTERM. Returns if none was
-/// caught. Call it after all cleaning up.
+/// If a signal was caught, ends the process by the last one, so that its parent process sees SIGINT or SIGTERM.
+/// Otherwise returns. Call it after all clean-up.
 void end_by_last_signal();
 
 /// During its lifetime, a signal ends the process at once. Use it only while no output file is open.
@@ -61,7 +61,8 @@ class Unattended {
   Unattended& operator=(const Unattended&) = delete;
 };
 
-/// Returns the context of a command: threads, progress bar and cancellation. Both references must outlive it.
+/// Returns the context of a command: threads, progress bar and cancellation. `progress` and `interrupt` must outlive
+/// it.
 [[nodiscard]] Context make_context(int threads, Progress& progress, const Interrupt& interrupt);
 
 }  // namespace blum::cli

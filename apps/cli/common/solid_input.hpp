@@ -16,21 +16,22 @@
 
 namespace blum::cli {
 
-/// A mesh or an image that bounds a solid.
+/// Mesh or image that bounds a solid.
 struct SolidInput {
   InputKind kind = InputKind::mesh;
   MeshFile mesh;
   VoxelImage image;
-  std::optional<WeldFacts> weld;  ///< if vertices within a tolerance above 0 were merged
+  std::optional<WeldFacts> weld;  ///< set if vertices were welded within a tolerance above 0
   Json json;
   TextTable table;
 };
 
-/// @param weld  welding tolerance of meshes, in mesh units; 0 merges equal vertices.
-/// @throws FileError for fields, unreadable files and images with only NaN; InvalidMesh, InvalidImage.
+/// @param weld  welding tolerance of meshes, in mesh units; 0 welds only vertices at equal positions.
+/// @throws FileError if the file is a field, cannot be read, or is an image that contains only NaN; InvalidMesh,
+/// InvalidImage.
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
 
-/// Returns the warnings of an input: a weld tolerance that changed components or Euler number.
+/// Returns the warnings about an input: a weld tolerance changed its number of components or its Euler number.
 [[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);
 
 /// Returns the result of make(), and adds the file's name to its errors. @throws InvalidMesh.
@@ -43,7 +44,7 @@ template <class Make>
   }
 }
 
-/// The voxels that --label and --threshold select. Without either, all voxels that are not 0.
+/// Voxels that --label and --threshold select. If neither is given, all voxels with a value other than 0 are selected.
 struct Selections {
   std::vector<std::int64_t> labels;
   std::optional<double> threshold;

@@ -92,7 +92,7 @@ void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& conte
 
 void report(const ReportOptions& options, const Json& json, const std::string& text) {
   if (options.json) {
-    // File names may be invalid UTF-8; dump() replaces it.
+    // File names may contain invalid UTF-8, which dump() replaces.
     const std::string dump = json.dump(2) + "\n";
     if (options.json_to_stdout()) {
       print(dump);

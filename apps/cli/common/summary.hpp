@@ -20,7 +20,7 @@
 
 namespace blum::cli {
 
-/// Measures the seconds since it was made or since the last lap.
+/// Measures seconds since its construction or the last lap().
 class Stopwatch {
  public:
   [[nodiscard]] double lap() {
@@ -34,14 +34,14 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-/// Returns for example "1.5 GiB".
+/// Returns a number of bytes as text, for example "1.5 GiB".
 [[nodiscard]] std::string bytes_text(double bytes);
 [[nodiscard]] std::string vector_text(const Vec3d& v);
 [[nodiscard]] std::string size_text(const GridSpec& grid);
-/// Returns for example "1 % below 0.2, 5 % below 0.3".
+/// Returns a text like "1 % below 0.2, 5 % below 0.3".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);
 
-/// Lines of text in two columns, label and content. Details appear only with --verbose.
+/// Text with two columns, label and content. Rows added as details are shown only with --verbose.
 class TextTable {
  public:
   void add(std::string label, std::string content) { rows_.push_back({std::move(label), std::move(content), false}); }
@@ -57,14 +57,14 @@ class TextTable {
   std::vector<Row> rows_;
 };
 
-/// Durations of the phases of a run. Phases of one name are added.
+/// Durations of the phases of a run. Durations of phases with the same name are added.
 struct PhaseSummary {
-  Json seconds = Json::object();  ///< by phase
+  Json seconds = Json::object();  ///< seconds of each phase
   double total = 0;
-  std::string text;    ///< "1.5 s"
-  std::string phases;  ///< "read 0.5, write 1", seconds
+  std::string text;    ///< total, for example "1.5 s"
+  std::string phases;  ///< seconds of each phase, for example "read 0.5, write 1"
 
-  /// Adds the duration and the peak memory as a line, and the phases as a detail.
+  /// Adds a row with the total duration and the peak memory, and the phases as a detail.
   void add_to(TextTable& table) const;
 };
 [[nodiscard]] PhaseSummary summarize(const std::vector<PhaseTime>& phases);
@@ -72,34 +72,36 @@ struct PhaseSummary {
 /// Returns the peak memory of the process, in bytes.
 [[nodiscard]] std::uint64_t peak_memory();
 
-/// Returns the JSON of a command: Blum's version, the command, then these facts.
+/// Returns the JSON of a command's result: the version of Blum, the command, and the given facts.
 [[nodiscard]] Json answer_json(std::string_view command, const Json& facts);
 
-/// Adds the end of the JSON: durations, peak memory, threads, warnings and written files.
+/// Adds the last members of the JSON: durations, peak memory, threads, warnings and written files.
 void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
                    const std::vector<Warning>& warnings, const Json& outputs);
 
 /// Destinations of a command's summary.
 struct ReportOptions {
-  std::optional<std::string> json;  ///< a file, or "-" for stdout
+  std::optional<std::string> json;  ///< path of a file, or "-" for stdout
   bool quiet = false;
-  bool verbose = false;  ///< also prints the details of the summary
+  bool verbose = false;  ///< if true, the details of the summary are printed, too
   [[nodiscard]] bool json_to_stdout() const { return json && *json == "-"; }
-  /// Returns the path of the JSON file, for checks of the outputs; empty if none is written.
+  /// Returns the path of the JSON file, so that it is checked like other outputs. Returns none if no JSON file is
+  /// written.
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
 };
 
-/// Writes the JSON if requested. Prints the text to stdout unless `quiet` is set or stdout gets the JSON.
+/// Writes the JSON if it is requested. Prints the text to stdout, unless `quiet` is set or the JSON is written to
+/// stdout.
 /// @throws FileError.
 void report(const ReportOptions& options, const Json& json, const std::string& text);
 void report(const ReportOptions& options, const Json& json, const TextTable& table);
 
-/// Writes each text to stderr as a line "blum: warning: ...".
+/// Writes each warning to stderr, as a line "blum: warning: ...".
 void warn(const std::vector<Warning>& warnings);
-/// Writes a warning that is not part of a result.
+/// Writes a warning that is not stored with a result.
 void warn_of(const std::string& text);
 
-/// @throws FileError if stdout cannot be written.
+/// @throws FileError if writing to stdout fails.
 void print(std::string_view text);
 
 }  // namespace blum::cli

@@ -31,7 +31,7 @@ std::string weld_text(const WeldFacts& facts) {
   std::string text = "welding within " + rounded_text(facts.tolerance) + " removed " + count_text(facts.lost) + " of " +
                      plural(facts.vertices, "vertex", "vertices");
   if (facts.before == facts.after) return text;
-  return text + ": the surface has " + surface_text(facts.after) + " instead of " + surface_text(facts.before);
+  return text + ": the surface now has " + surface_text(facts.after) + " instead of " + surface_text(facts.before);
 }
 
 Json weld_json(const WeldFacts& facts) {

@@ -11,7 +11,7 @@
 
 namespace blum::cli {
 
-/// Counts of a surface, from its triangles.
+/// Counts of a surface of triangles.
 struct SurfaceFacts {
   std::size_t components = 0;     ///< sets of triangles connected through edges
   std::int64_t euler_number = 0;  ///< vertices - edges + triangles
@@ -19,14 +19,15 @@ struct SurfaceFacts {
 };
 [[nodiscard]] SurfaceFacts surface_facts(const MeshView& mesh);
 
-/// Compares a mesh that was welded within a tolerance to the same mesh with only equal vertices merged.
+/// Effects of a weld tolerance. The mesh welded within the tolerance is compared with the same mesh in which only
+/// vertices at equal positions are welded.
 struct WeldFacts {
   double tolerance = 0;      ///< mesh units
-  std::size_t vertices = 0;  ///< after merging equal ones
-  std::size_t lost = 0;      ///< vertices that the tolerance removed
+  std::size_t vertices = 0;  ///< number of vertices after welding equal positions
+  std::size_t lost = 0;      ///< number of further vertices that the tolerance removed
   SurfaceFacts before, after;
 };
-/// @param exact  the mesh with only equal vertices merged.
+/// @param exact  the mesh in which only vertices at equal positions are welded.
 [[nodiscard]] WeldFacts weld_facts(const MeshView& exact, double tolerance, const MeshView& welded);
 
 /// Returns the facts as one sentence.

@@ -38,7 +38,7 @@ constexpr const char* examples = R"(Examples:
   blum field scan.nii.gz -o organ.nrrd --label 1,3            writes organ-label1.nrrd and organ-label3.nrrd
   blum field scan.nrrd -o bone.npz --threshold 300)";
 
-/// The command line as text. parse() reads and checks the values.
+/// Command line as texts. parse() parses and checks the values.
 struct Arguments {
   std::string input;
   std::string output;
@@ -56,7 +56,7 @@ struct Request {
   std::optional<Box3> bounds;
   double padding = 0.1;
   OptionTexts<FieldOptions> option_texts;
-  FieldOptions options;  ///< lengths in grid steps are final once the grid is known
+  FieldOptions options;  ///< lengths that are given in grid steps are set when the grid is known
   Selections selections;
   std::optional<double> weld;
   int threads = 0;
@@ -110,7 +110,7 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
                r.input, "an image", "meshes");
 }
 
-/// Facts of a run, for its summary.
+/// Facts about a run, for its summary.
 struct Run {
   Json input;
   TextTable input_table;
@@ -118,11 +118,11 @@ struct Run {
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
   std::vector<fs::path> outputs;
-  std::optional<fs::path> removed;       ///< sites of the replaced field, if the new one has none
-  std::vector<fs::path> removed_second;  ///< files of order 2 of the replaced field, if the new one has order 1
+  std::optional<fs::path> removed;       ///< sites file of the replaced field, if the new field has none
+  std::vector<fs::path> removed_second;  ///< second-order files of the replaced field, if the new field has order 1
   std::vector<Warning> warnings;
   TextTable table;
-  bool names_device = false;  ///< --device is not cpu; `auto` may still choose the CPU
+  bool names_device = false;  ///< --device is not `cpu`; with `auto`, the CPU may still be used
   void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
 };
 
@@ -152,7 +152,8 @@ std::string sites_text(const Field& field, const FieldStatistics& s) {
         s.all.nodes == 0 ? 0 : 100.0 * static_cast<double>(s.kinds[kind].nodes) / static_cast<double>(s.all.nodes);
     return count_text(s.kinds[kind].sites) + " " + name + " (" + rounded_text(std::round(share * 10) / 10) + " %)";
   };
-  return part(0, "vertices") + ", " + part(1, "edges") + ", " + part(2, "faces") + " of the nodes' closest";
+  return part(0, "vertices") + ", " + part(1, "edges") + ", " + part(2, "faces") +
+         "; shares of the nodes that are closest to them";
 }
 
 Json second_json(const Field& field, const FieldStatistics& s) {
@@ -167,7 +168,7 @@ std::string second_text(const Field& field, const SecondStatistics& s) {
   std::string text = "no node has a second site";
   if (s.minimum && s.maximum) text = "distance " + rounded_text(*s.minimum) + " to " + rounded_text(*s.maximum);
   if (field.second) text += ", " + std::string(to_string(*field.second));
-  if (s.nodes_without > 0) text += "; " + count_text(s.nodes_without) + " nodes have none";
+  if (s.nodes_without > 0) text += "; " + count_text(s.nodes_without) + " nodes have no second site";
   return text;
 }
 
@@ -203,7 +204,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   if (s.second) run.table.add("second", second_text(field, *s.second));
 }
 
-/// Returns the largest spacing over the axes with several layers.
+/// Returns the largest spacing among the axes with more than one layer.
 double coarsest_step(const GridSpec& grid) {
   double step = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -295,7 +296,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("input facts", watch.lap());
 
   const GridSpec grid = make_grid(r, bounds(mesh));
-  // Order 2 needs the sites of both orders during the computation.
+  // For order 2, the sites of both orders are in memory during the computation.
   check_field_memory(grid, 1, r.options.order == 2 ? 16 : r.options.sites ? 8 : 4);
   add_grid_text(run, grid);
   static_cast<void>(watch.lap());
@@ -376,7 +377,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
 void run(const Arguments& arguments) {
   const Request request = parse(arguments);
   const InputKind kind = input_kind(request.input);
-  // The distances of a .nrrd field can also be read as an image, but only --threshold can select their voxels.
+  // A .nrrd field can also be read as an image of its distances. Then only --threshold can select voxels.
   const bool is_image = file_extension(request.input) == ".nrrd";
   if (kind == InputKind::field && !(is_image && arguments.threshold)) {
     throw FileError("'" + request.input.string() + "' is a field; a mesh or a voxel image is needed here" +
@@ -396,22 +397,24 @@ void add_field_command(const CommandLine& line) {
   command.add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       .required();
   command
-      .add_option(
-          "-o,--output", a->output,
-          "Field file: .nrrd (with OUT.site.nrrd; for order 2 OUT.distance2.nrrd, OUT.site2.nrrd), .npz or .vti")
+      .add_option("-o,--output", a->output,
+                  "Field file: .npz, .vti or .nrrd (then also OUT.site.nrrd; for order 2 also OUT.distance2.nrrd and "
+                  "OUT.site2.nrrd)")
       .required()
       .type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
     add_text_option(command, name, value, type, help);
   };
-  text("--resolution", a->resolution, "N", "Mesh: nodes along the longest side of the grid, 2 to 65536 (default 256)");
-  text("--spacing", a->spacing, "H", "Mesh: distance between nodes, in mesh units, instead of --resolution");
+  text("--resolution", a->resolution, "N",
+       "Mesh: number of nodes along the longest side of the grid, 2 to 65536 (default 256)");
+  text("--spacing", a->spacing, "H", "Mesh: distance between neighbouring nodes, in mesh units; replaces --resolution");
   text("--bounds", a->bounds, "BOX",
        "Mesh: box of the grid x0,y0,z0,x1,y1,z1, enlarged to whole steps; a side of length 0 gives a 2D field");
   text("--padding", a->padding, "F", "Mesh: margin around the shape, as a fraction of its longest side (default 0.1)");
   a->options.add_to(command, "", {}, true);
-  add_label_option(command, a->labels,
-                   "Image: select the voxels of value L; several values (1,3 or repeated) give one field each");
+  add_label_option(
+      command, a->labels,
+      "Image: select the voxels of value L; several values (1,3 or --label 1 --label 3) give one field each");
   text("--threshold", a->threshold, "T",
        "Image: select the voxels of value T or more (default: all voxels that are not 0)");
   add_weld_option(command, a->weld);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t grain = std::size_t{1} << 18;
 
-/// A set of ids that several threads may add to.
+/// Set of ids. Several threads may add ids at the same time.
 class IdSet {
  public:
   explicit IdSet(std::size_t size) : words_((size + 63) / 64) {}
@@ -49,7 +49,8 @@ struct Partial {
   std::array<std::uint64_t, 3> kinds{};
 };
 
-/// Ids below `edges` are vertices, ids below `faces` are edges, and the rest are faces.
+/// Borders between kinds of site ids: ids below `edges` are vertices, ids from `edges` to below `faces` are edges,
+/// others are faces.
 struct Borders {
   std::size_t edges = std::numeric_limits<std::size_t>::max();
   std::size_t faces = std::numeric_limits<std::size_t>::max();
@@ -89,7 +90,7 @@ void add_range(const Field& field, const WorkRange& range, const Borders& border
   }
 }
 
-/// Returns true if a node has a second site. In fields without sites, its distance decides.
+/// Returns true if a node has a second site. If the field has no sites, the node's distance decides.
 bool has_second(const Field& field, std::size_t node) {
   if (!field.site2.empty()) return field.site2[node].has_value();
   return field.distance2[node] < (field.band ? static_cast<float>(*field.band) : HUGE_VALF);

@@ -41,22 +41,24 @@ std::size_t parse_axis(const std::string& text) {
   throw UsageError("--axis '" + text + "': must be x, y or z");
 }
 
-/// Returns the axis with a single layer if exactly one axis has one, else z.
+/// If exactly one axis has a single layer, returns that axis; otherwise z.
 std::size_t default_axis(const GridSpec& grid) {
   if (std::count(grid.size.begin(), grid.size.end(), 1) != 1) return 2;
   return static_cast<std::size_t>(std::find(grid.size.begin(), grid.size.end(), 1) - grid.size.begin());
 }
 
-/// Returns the layer nearest to a place along a world axis. The grid's axis must be parallel to it.
+/// Returns the layer closest to a position along a world axis. The grid's axis must be parallel to the world axis.
 std::int64_t layer_at(const GridSpec& grid, std::size_t axis, double position) {
   const std::optional<double> along = along_world(grid, axis);
   if (!along)
-    throw UsageError("--position needs layers perpendicular to a world axis, but these are oblique; use --index");
+    throw UsageError(
+        "--position needs layers perpendicular to a world axis, but this field's layers are oblique; use --index");
   const double first = grid.origin[axis];
   const double last = first + *along * static_cast<double>(grid.size[axis] - 1) * grid.spacing[axis];
   const double layer = std::round((position - first) / (*along * grid.spacing[axis]));
   if (!(layer >= 0 && layer < static_cast<double>(grid.size[axis]))) {
-    throw UsageError("--position: the field's layers lie from " + rounded_text(first) + " to " + rounded_text(last));
+    throw UsageError("--position lies outside the field, whose layers lie from " + rounded_text(first) + " to " +
+                     rounded_text(last));
   }
   return static_cast<std::int64_t>(layer);
 }
@@ -118,16 +120,20 @@ void add_slice_command(const CommandLine& line) {
       .required();
   command.add_option("-o,--output", a->output, "Picture").required().type_name("PNG");
   command
-      .add_option("--axis", a->axis, "Axis perpendicular to the layer: x, y or z (default: that of a 2D field, else z)")
+      .add_option("--axis", a->axis,
+                  "Axis perpendicular to the layer: x, y or z (default z; for a 2D field, the axis with one layer)")
       .type_name("AXIS");
-  command.add_option("--index", a->index, "Number of the layer, from 0 (default: the middle one)").type_name("K");
+  command.add_option("--index", a->index, "Number of the layer, counted from 0 (default: the middle layer)")
+      .type_name("K");
   command.add_option("--position", a->position, "Position along the axis, in mesh units; the nearest layer is drawn")
       .type_name("P");
   command
       .add_option("--show", a->show,
                   "Values to draw: distance (with contour lines) or sites (Voronoi regions) (default distance)")
       .type_name("WHAT");
-  command.add_option("--scale", a->scale, "Pixels per grid step (default: 800 to 4096 along the longer side)")
+  command
+      .add_option("--scale", a->scale,
+                  "Pixels per grid step (default: a number that gives the longer side 800 to 4096 pixels)")
       .type_name("PIXELS");
   command.add_flag("--quiet", a->quiet, "Print errors only");
   command.footer(examples);

@@ -25,13 +25,13 @@ constexpr int caption_height = 34;
 
 /// Positions of the parts of a picture, in pixels.
 struct Layout {
-  int width = 0;  ///< of the slice
+  int width = 0;  ///< width of the slice
   int height = 0;
-  double per_u = 1;  ///< pixels for each node step
+  double per_u = 1;  ///< number of pixels per grid step
   double per_v = 1;
   int canvas_width = 0;
   int canvas_height = 0;
-  /// Returns the node coordinate of a pixel's centre.
+  /// Returns the position of a pixel's centre, in grid steps from the first node.
   [[nodiscard]] double u(int x) const { return (x + 0.5) / per_u - 0.5; }
   [[nodiscard]] double v(int y) const { return (height - y - 0.5) / per_v - 0.5; }
 };
@@ -56,7 +56,7 @@ Layout make_layout(const Slice& slice, double scale, int legend_width) {
   return layout;
 }
 
-/// Maps distances to colours and lines.
+/// Style that maps distances to colours and contour lines.
 class DistanceStyle {
  public:
   explicit DistanceStyle(const Slice& slice)
@@ -75,7 +75,7 @@ class DistanceStyle {
   [[nodiscard]] double step() const { return step_; }
   [[nodiscard]] bool has_surface() const { return signed_; }
 
-  /// Draws contours over a colour, except that of the surface. `slope` is the change of the value per pixel.
+  /// Draws contour lines over a colour, except the line of the surface. `slope` is the change of the value per pixel.
   [[nodiscard]] Color with_contours(const Color& color, double value, double slope) const {
     if (step_ <= 0 || beyond(value)) return color;
     const double level = std::round(value / step_);
@@ -83,7 +83,7 @@ class DistanceStyle {
     const bool strong = std::fmod(std::abs(level), 5) == 0;
     const double pixels = std::abs(value - level * step_) / slope;
     const double cover = std::clamp((strong ? 0.75 : 0.5) + 0.5 - pixels, 0.0, 1.0);
-    // Lines closer together than 3 pixels would only darken the picture.
+    // Lines less than 3 pixels apart would only darken the picture, so they fade out.
     const double room = std::clamp(step_ / slope / 3 - 1, 0.0, 1.0);
     return mix(color, ink_color, static_cast<float>(cover * room * steepness(slope) * (strong ? 0.55 : 0.28)));
   }
@@ -94,8 +94,8 @@ class DistanceStyle {
   }
 
  private:
-  /// Returns 0 on a plateau and 1 on slopes. A plateau at a level must not become a line, and rounding would add noise
-  /// within it. Its steep border gets a line.
+  /// Returns a factor for the strength of a line: 0 on a plateau, 1 on slopes. A plateau at a contour's level must not
+  /// become a line, and rounding would add noise to it. Its steep border gets a line.
   [[nodiscard]] double steepness(double slope) const {
     return step_ <= 0 ? 1 : std::clamp(slope / step_ * 500 - 0.25, 0.0, 1.0);
   }
@@ -110,8 +110,8 @@ double slope_per_pixel(const Sample& sample, const Layout& layout) {
   return std::hypot(sample.slope_u / layout.per_u, sample.slope_v / layout.per_v);
 }
 
-/// Returns true if the distance reaches 0 where its slope predicts. Beside a kink it may turn around before that, and a
-/// line there would be wrong.
+/// Returns true if the distance becomes 0 at the place that its slope predicts. Near a kink the distance may increase
+/// again before that place, and a line there would be wrong.
 bool reaches_surface(const DistanceSampler& sampler, const Layout& layout, double u, double v, const Sample& sample) {
   const double squared = sample.slope_u * sample.slope_u + sample.slope_v * sample.slope_v;
   if (!(squared > 0)) return false;
@@ -144,7 +144,7 @@ ColorBar legend_of(const Slice& slice, const DistanceStyle& style) {
           }};
 }
 
-/// Strength of the borders of a region. Regions of a few pixels get no border.
+/// Sizes of regions, which determine the strength of their borders. Regions of a few pixels get no border.
 class RegionSizes {
  public:
   RegionSizes(const Slice& slice, double pixels_per_node) {
@@ -174,13 +174,13 @@ Color region_pixel(const Slice& slice, const RegionSizes& sizes, const Layout& l
   return mix(color, ink_color, static_cast<float>(cover * 0.6 * sizes.border_strength(sample.site, sample.rival)));
 }
 
-/// Changes the values of nodes beyond the band, which all equal its half-width. Nodes next to the band get values
-/// extrapolated from within it, the others a larger one. The edge of the band is then drawn at its true place, not
-/// along nodes.
+/// Changes the values of nodes beyond the band, which are all equal to its half-width. Nodes next to the band get
+/// values that are extrapolated from inside the band. Other nodes get a larger value. So the edge of the band is drawn
+/// at its true position, not along grid lines.
 void continue_beyond_band(Slice& slice) {
   const std::vector<float> given = slice.distance;
   const auto limit = static_cast<float>(slice.band * (1 - 1e-6));
-  // High enough that a smooth curve through it stays above the band.
+  // This value is so large that a smooth curve through it stays above the band's half-width.
   const double plateau = slice.band + 1.5 * std::min(slice.u_step, slice.v_step);
   const auto at = [&](std::int64_t i, std::int64_t j) { return given[static_cast<std::size_t>(j * slice.width + i)]; };
   const auto within = [&](std::int64_t i, std::int64_t j) {
@@ -245,7 +245,7 @@ Slice take_slice(const Field& field, std::size_t axis, std::int64_t index) {
     }
   }
   if (slice.minimum > slice.maximum) slice.minimum = slice.maximum = 0;
-  if (slice.minimum < 0) slice.is_signed = true;  // files of other programs do not record the sign rule
+  if (slice.minimum < 0) slice.is_signed = true;  // files of other programs do not record if distances are signed
   const char* const names[] = {"x", "y", "z"};
   if (slice.band > 0) continue_beyond_band(slice);
   const std::int64_t layers = field.grid.size[axis];

@@ -13,7 +13,7 @@ std::size_t node_index(const Slice& slice, std::int64_t i, std::int64_t j) {
   return static_cast<std::size_t>(j * slice.width + i);
 }
 
-std::array<double, 3> quadratic_weights(double t) {  // t in [-0.5, 0.5] from the middle node
+std::array<double, 3> quadratic_weights(double t) {  // t is the distance from the middle node, in [-0.5, 0.5] steps
   return {0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)};
 }
 
@@ -21,8 +21,8 @@ std::array<double, 3> quadratic_weights(double t) {  // t in [-0.5, 0.5] from th
 
 DistanceSampler::DistanceSampler(const Slice& slice)
     : slice_(slice), smooth_(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height)) {
-  // Between neighbours, a distance changes by at most the step. Between voxels of two kinds it changes by two steps,
-  // from -1 to +1.
+  // Checks the change between neighbouring nodes. A distance changes by at most the step. Only between voxels of two
+  // kinds it changes by two steps, from -1 to +1.
   const auto close = [](double a, double b, double step) { return std::abs(a - b) <= 2.01 * step; };
   for (std::int64_t j = 0; j < slice.height; ++j) {
     for (std::int64_t i = 0; i < slice.width; ++i) {
@@ -37,7 +37,7 @@ DistanceSampler::DistanceSampler(const Slice& slice)
 }
 
 double DistanceSampler::node(std::int64_t i, std::int64_t j) const {
-  // Values beyond the border are extrapolated linearly, so that contours continue as straight lines.
+  // Values beyond the border are extrapolated linearly, so that contours reach the border as straight lines.
   if (i < 0) return 2 * node(0, j) - node(1, j);
   if (i >= slice_.width) return 2 * node(slice_.width - 1, j) - node(std::max<std::int64_t>(slice_.width - 2, 0), j);
   if (j < 0) return 2 * node(i, 0) - node(i, 1);
@@ -59,7 +59,7 @@ DistanceSampler::Cell DistanceSampler::cell_at(double u, double v) const {
 }
 
 bool DistanceSampler::is_smooth_around(const Cell& cell) const {
-  // The half step beyond the last nodes is extrapolated linearly.
+  // In the half step beyond the last nodes, values are extrapolated linearly.
   bool smooth = cell.s >= 0 && cell.s <= 1 && cell.t >= 0 && cell.t <= 1;
   for (std::int64_t dj = -1; dj <= 1; ++dj) {
     for (std::int64_t di = -1; di <= 1; ++di) smooth = smooth && is_smooth(cell.i + di, cell.j + dj);

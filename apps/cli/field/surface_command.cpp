@@ -39,13 +39,14 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// Returns the reason why the level may be wrong for this field; empty if it is valid.
+/// Returns the reason why the level may be unsuitable for this field. Returns an empty text if there is none.
 std::string doubt(const Field& field, double level) {
   if (field.band && std::abs(level) >= *field.band) {
-    return "the field contains distances up to " + rounded_text(*field.band) + " only, and the level is beyond them";
+    return "the band of the field contains distances up to " + rounded_text(*field.band) +
+           " only, and the level lies outside it";
   }
   if (field.sign_rule == SignRule::none && level <= 0) {
-    return "the field is unsigned and has no surface at a level of 0 or less; give a positive --level";
+    return "the distances of the field are unsigned, so only levels above 0 have a surface; give a positive --level";
   }
   return {};
 }
@@ -57,7 +58,7 @@ void run_smooth(const Arguments& a) {
   refuse_given({{a.level.has_value(), "--level"}}, input, "an image (--smooth)", "fields");
   const SmoothSurfaceOptions options = a.options.read();
   const Selections selections = parse_selections(a.labels, a.threshold);
-  if (selections.labels.size() > 1) throw UsageError("--label: a smooth surface takes only one label");
+  if (selections.labels.size() > 1) throw UsageError("--label: a smooth surface belongs to one label; give only one");
   const int threads = parse_threads(a.threads);
   if (input_kind(input) != InputKind::image) {
     throw FileError("'" + input.string() + "' is not a voxel image; --smooth needs one");
@@ -91,8 +92,8 @@ void run_smooth(const Arguments& a) {
        {"outputs", {output.string()}}});
   TextTable table;
   table.add("surface", count_text(surface.mesh.vertices.size()) + " vertices, " +
-                           count_text(surface.mesh.triangles.size()) + " triangles; at most " +
-                           rounded_text(surface.largest_move) + " voxels from the boxes");
+                           count_text(surface.mesh.triangles.size()) + " triangles; moved by at most " +
+                           rounded_text(surface.largest_move) + " voxels from the surface of the boxes");
   table.add(image.table);
   table.add("wrote", output.string());
   report(a.report, json, table);
@@ -122,7 +123,7 @@ void run_level(const Arguments& a) {
   const std::string reason = doubt(field, level);
   if (surface.triangles.empty()) {
     throw FileError("'" + input.string() + "' has no surface at the level " + rounded_text(level) +
-                    (reason.empty() ? ": all its distances are on one side of it" : ": " + reason));
+                    (reason.empty() ? ": all its distances are above the level, or all are below" : ": " + reason));
   }
   write_mesh(output, surface);
   progress.clear();
@@ -163,16 +164,17 @@ void run(const Arguments& a) {
 
 void add_surface_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  const Command command =
-      line.app.add_subcommand("surface", "Mesh of a level surface of a field, or of the smooth surface of an image");
+  const Command command = line.app.add_subcommand(
+      "surface", "Write a level surface of a field, or the smooth surface of an image, as a mesh");
   command.add_option("INPUT", a->input, extensions_help({FileContent::field, FileContent::image}, FileAccess::read))
       .required();
   command.add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::write))
       .required()
       .type_name("FILE");
-  add_text_option(command, "--level", a->level, "L",
-                  "Signed distance of the surface from the shape, in mesh units; negative lies inside (default 0)");
-  command.add_flag("--smooth", a->smooth, "Image: the smooth surface between the selected voxels and all others");
+  add_text_option(
+      command, "--level", a->level, "L",
+      "Signed distance of the surface from the shape, in mesh units; negative values lie inside (default 0)");
+  command.add_flag("--smooth", a->smooth, "Image: write the smooth surface between the selected voxels and all others");
   add_label_option(command, a->labels, "Image: select the voxels of value L");
   add_text_option(command, "--threshold", a->threshold, "T",
                   "Image: select the voxels of value T or more (default: all voxels that are not 0)");

@@ -8,9 +8,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double least_share = 0.01;  // of the area
+constexpr double least_share = 0.01;  // smallest share of the axis's area
 
-/// Returns the sheet with the smallest low thickness among those between walls that face each other; nullptr if none.
+/// Among sheets with walls (parts between surfaces that face each other), returns the sheet with the smallest low
+/// thickness; nullptr if there is none.
 const AxisSheet* thinnest_wall(const AxisGraph& graph) {
   const AxisSheet* thinnest = nullptr;
   for (const AxisSheet& sheet : graph.sheets) {

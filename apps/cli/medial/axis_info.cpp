@@ -22,7 +22,7 @@ Json or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-/// Returns theta and other parameters of the axis that the file records.
+/// Returns theta and the other parameters of the axis, as recorded in its file.
 std::string made_text(const MedialMetadata& m) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };

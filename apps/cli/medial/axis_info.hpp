@@ -8,7 +8,8 @@
 
 namespace blum::cli {
 
-/// Reads an axis. Reports its counts, topology and recorded origin. Writes its graph if a file is given.
+/// Reads an axis. Reports its counts, its topology and its recorded origin. If `graph` is set, also writes its graph to
+/// that file.
 /// @throws FileError, FormatError; InvalidOption if the file lacks columns that the graph needs.
 void report_axis(const std::filesystem::path& path, const std::optional<std::filesystem::path>& graph,
                  const ReportOptions& options);

@@ -5,7 +5,7 @@
 namespace blum::cli {
 namespace {
 
-/// Returns true if a file records its solid. Files .obj, .ma and those of other programs do not.
+/// Returns true if a file records its solid. Files with the extension .obj or .ma, and those of other programs, do not.
 bool states_its_solid(const MedialMetadata& metadata) {
   return !metadata.solid_rule.empty();
 }
@@ -42,13 +42,14 @@ std::string missing_options(const SolidSelection& given, InputKind kind, const M
                             bool topology_holds) {
   if (states_its_solid(metadata)) return {};
   if (kind == InputKind::mesh) {
-    // Welding moves vertices only slightly, so a wrong --weld shows in the topology.
+    // Welding moves vertices only slightly. So a wrong --weld can make only the topology wrong.
     if (given.weld || topology_holds) return {};
-    return "; the file of the axis does not record how the mesh was read; repeat --weld if that run had it";
+    return "; the file of the axis does not record how the mesh was welded; if the axis was made with --weld, repeat "
+           "it";
   }
   if (given.label || given.threshold) return {};
-  return "; the file of the axis does not record its voxels; repeat --label, --threshold or --smooth if that run "
-         "had it";
+  return "; the file of the axis does not record the selection of voxels; if the axis was made with --label, "
+         "--threshold or --smooth, repeat it";
 }
 
 }  // namespace blum::cli

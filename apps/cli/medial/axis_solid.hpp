@@ -17,15 +17,16 @@ namespace blum::cli {
                                          const std::optional<std::string>& threshold,
                                          const std::optional<std::string>& weld);
 
-/// Calls blum::solid_of_axis() with option names of the command line in messages. @param axis  its file.
+/// Calls blum::solid_of_axis(). In its messages, uses the names of the command line's options. @param axis file of the
+/// axis.
 [[nodiscard]] AxisSolid solid_of_axis(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                                       const std::filesystem::path& axis);
 
-/// Records the selection or the weld tolerance of the input in the metadata of an axis.
+/// Records the input's selection of voxels or its weld tolerance in the metadata of an axis.
 void record(const LabelSelection& selection, std::optional<double> weld, InputKind kind, MedialMetadata& metadata);
 
-/// Returns advice on options that may be missing if a certificate fails. Empty if the axis's file records its solid, or
-/// an option is given.
+/// For a failed certificate, returns advice on options that may be missing. Returns an empty text if the axis's file
+/// records its solid, or if an option is given.
 [[nodiscard]] std::string missing_options(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                                           bool topology_holds);
 

@@ -41,13 +41,13 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// The requested labels.
+/// Labels that the command line requests.
 struct Labels {
   std::vector<std::int64_t> all;
-  std::set<std::int64_t> of_ranges;  ///< from ranges like `7-9`, where absent labels are skipped
+  std::set<std::int64_t> of_ranges;  ///< labels from ranges like `7-9`; absent ones are skipped
 };
 
-/// Adds one label, or a range: three labels for `7-9`. @throws UsageError.
+/// Adds a label, or all labels of a range: `7-9` adds three. @throws UsageError.
 void add_labels(std::string_view text, std::set<std::int64_t>& known, Labels& labels) {
   const std::size_t dash = text.find('-', 1);
   constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
@@ -70,7 +70,7 @@ void add_labels(std::string_view text, std::set<std::int64_t>& known, Labels& la
   }
 }
 
-/// Returns the labels; unset for `all`. @throws UsageError.
+/// Returns the requested labels; unset for `all`. @throws UsageError.
 std::optional<Labels> labels_of(const std::vector<std::string>& texts) {
   if (texts.empty() || (texts.size() == 1 && texts[0] == "all")) return std::nullopt;
   Labels labels;
@@ -101,7 +101,7 @@ double length_of(const Centreline& line) {
   return length;
 }
 
-/// Returns the properties of a label except its points.
+/// Returns the properties of a label's centreline, without its points.
 Json brief_json(const Centreline& line) {
   return {{"label", to_json(line.label)},
           {"voxels", line.voxels},
@@ -198,8 +198,8 @@ void add_centreline_command(const CommandLine& line) {
       .required()
       .type_name("FILE");
   add_label_option(command, a->labels,
-                   "Select the voxels of value L or of a range; several values (1,3-5 or repeated) give one graph each "
-                   "(default: all)");
+                   "Select the voxels of value L; several values (1,3-5 or repeated) give one graph each (default: all "
+                   "values except 0)");
   add_text_option(command, "--threshold", a->threshold, "T", "Select the voxels of value T or more, as one graph");
   a->options.add_to(command);
   add_threads_option(command, a->threads);

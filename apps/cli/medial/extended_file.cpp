@@ -17,9 +17,10 @@ void add_extend_options(const Command& command, std::optional<std::string>& exte
                         std::optional<std::string>& length) {
   const std::string names = extension_list(FileContent::extended_axis, FileAccess::write);
   add_text_option(command, "--extend", extend, "FILE",
-                  "Write its sheets extended to the surface, for shell meshes (" + names + "); best with --theta 110");
+                  "Also write the sheets, extended from their rims to the surface, as a mesh for shell elements (" +
+                      names + "); best with --theta 110");
   add_text_option(command, "--extend-length", length, "N",
-                  "With --extend: extend a rim by at most N of its radii, above 0 (default 4)");
+                  "With --extend: extend a rim by at most N times its radius; N is above 0 (default 4)");
 }
 
 std::optional<fs::path> parse_extend(const std::optional<std::string>& text) {
@@ -40,10 +41,10 @@ std::string extended_text(const ExtendReport& report) {
   if (report.rim_vertices == 0) return "nothing: the axis has no rims";
   std::string text = "area from " + rounded_text(report.axis_area) + " to " + rounded_text(report.area) + " by " +
                      plural(report.triangles, "triangle", "triangles") + "; of " +
-                     plural(report.rim_vertices, "rim vertex", "rim vertices") + " " +
-                     count_text(report.reached_border) + " reach the surface";
-  if (report.reached_sheet > 0) text += ", " + count_text(report.reached_sheet) + " another sheet";
-  if (report.at_border > 0) text += ", " + count_text(report.at_border) + " were there already";
+                     plural(report.rim_vertices, "rim vertex", "rim vertices") + ", " +
+                     count_text(report.reached_border) + " now reach the surface";
+  if (report.reached_sheet > 0) text += ", " + count_text(report.reached_sheet) + " now reach another sheet";
+  if (report.at_border > 0) text += ", " + count_text(report.at_border) + " already were on the surface or a sheet";
   if (report.not_reached > 0) text += ", " + count_text(report.not_reached) + " reach nothing";
   return text;
 }

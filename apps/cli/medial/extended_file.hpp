@@ -14,17 +14,18 @@ namespace blum::cli {
 /// Adds --extend and --extend-length.
 void add_extend_options(const Command& command, std::optional<std::string>& extend, std::optional<std::string>& length);
 
-/// Returns the value of --extend. @throws UsageError for an extension that write_extended() does not write.
+/// Returns the value of --extend. @throws UsageError if write_extended() cannot write files with its extension.
 [[nodiscard]] std::optional<std::filesystem::path> parse_extend(const std::optional<std::string>& text);
-/// @throws UsageError for a length without --extend, or one that is not above 0.
+/// @throws UsageError if a length is given without --extend, or is not above 0.
 [[nodiscard]] ExtendOptions parse_extend_length(const std::optional<std::string>& text, bool has_extend);
 
-/// Returns for example "area from 4671 to 5000 by 13 triangles; of 12 rim vertices 10 reach the surface".
+/// Returns a text like "area from 4671 to 5000 by 13 triangles; of 12 rim vertices 10 reach the surface".
 [[nodiscard]] std::string extended_text(const ExtendReport& report);
-/// Returns the report as JSON. @param file  its name.
+/// Returns the report as JSON. @param file name of the extended file.
 [[nodiscard]] Json extended_json(const ExtendReport& report, const std::filesystem::path& file);
 
-/// Returns the name of a further file of an axis: FILE-theta20.json for FILE.json if OUT.vtp became OUT-theta20.vtp.
+/// Returns the name of a file that belongs to one of several axes. If the axis OUT.vtp is written as OUT-theta20.vtp,
+/// it is FILE-theta20.json for FILE.json.
 [[nodiscard]] std::filesystem::path beside_axis(const std::filesystem::path& file, const std::filesystem::path& output,
                                                 const std::filesystem::path& name);
 

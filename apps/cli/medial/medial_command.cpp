@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
   blum medial part.stl -o part.vtp                        all columns, for ParaView
-  blum medial part.stl -o part.vtp --theta 20,60,120      writes part-theta20.vtp and so on
+  blum medial part.stl -o part.vtp --theta 20,60,120      writes part-theta20.vtp, part-theta60.vtp, ...
   blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
   blum medial part.stl -o part.vtp --graph part.json      also sheets with thickness, seams, curves, junctions
   blum medial part.stl -o part.vtp --theta 110 --extend shell.ply   also its sheets extended to the surface
@@ -68,15 +68,15 @@ struct Request {
   std::optional<fs::path> extend;
   ExtendOptions extending;
   MedialAxisOptions options;
-  std::vector<double> thetas{60};  ///< ascending if sheets are pruned
+  std::vector<double> thetas{60};  ///< requested angles; in ascending order if whole sheets are pruned
   bool prunes_sheets = false;
-  std::optional<double> decimate;  ///< mesh units; a quarter of a voxel if unset
+  std::optional<double> decimate;  ///< tolerance in mesh units; if unset, a quarter of a voxel
   Selections selections;
   std::optional<double> weld;
   bool allow_uncertified = false;
   bool nested = false;
-  bool smooth = false;          ///< images: use their smooth surface
-  bool has_resolution = false;  ///< or a spacing; voxels may differ from those of the image
+  bool smooth = false;          ///< for images: use the smooth surface of the selected voxels
+  bool has_resolution = false;  ///< true also if a spacing is given; the voxels may then differ from those of the image
   int threads = 0;
   ReportOptions report;
 };
@@ -114,19 +114,22 @@ Request parse(const Arguments& a) {
   r.smooth = a.smooth;
   r.has_resolution = a.options.has("resolution") || a.options.has("spacing");
   if (r.nested && !may_hold_further(r.output)) {
-    throw UsageError("--nested needs an output with the extension .npz; other formats store the axis of one angle");
+    throw UsageError(
+        "--nested needs an output with the extension .npz; other formats store the axis of only one angle");
   }
   if (r.nested && r.thetas.size() > 1) {
-    throw UsageError("--nested stores the axes of all angles from --theta upwards in one file; give one angle");
+    throw UsageError(
+        "--nested stores the axes of all angles from --theta upwards in one file; give --theta only one angle");
   }
   if (a.decimate) r.decimate = parse_non_negative("--decimate", *a.decimate);
   if (r.nested && r.decimate.value_or(0) > 0) {
     throw UsageError("--nested keeps all vertices, because its axes share them; remove --decimate");
   }
   if (r.nested) r.decimate = 0;
-  exclude(r.nested, "--nested", r.prunes_sheets, "--prune", "cells of sheets that are removed whole have no order");
+  exclude(r.nested, "--nested", r.prunes_sheets, "--prune",
+          "--nested stores the order in which single cells are removed, but --prune removes whole sheets");
   if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
-  // Sheets are pruned as a whole, so they must be whole first.
+  // Sheets are pruned as a whole. So the axis must first contain whole sheets (angles from 0 degrees).
   r.options.least_theta = r.prunes_sheets ? 0 : *std::min_element(r.thetas.begin(), r.thetas.end());
   if (!r.prunes_sheets && !r.nested) r.options.greatest_theta = *std::max_element(r.thetas.begin(), r.thetas.end());
   r.selections = parse_selections(a.labels, a.threshold);
@@ -153,7 +156,7 @@ void check_applicable(const Arguments& a, const fs::path& input, InputKind kind)
                input, "an image", "meshes and images with --smooth");
 }
 
-/// Returns OUT-theta20.vtp for OUT.vtp.
+/// Returns the file name for one of several angles: OUT-theta20.vtp for OUT.vtp.
 fs::path with_theta(const fs::path& path, double theta) {
   fs::path name = path.parent_path() / path.stem();
   name += "-theta" + rounded_text(theta);
@@ -161,13 +164,13 @@ fs::path with_theta(const fs::path& path, double theta) {
   return name;
 }
 
-/// Returns the requested side of a mesh's voxels.
+/// Returns the requested side of the voxels for a mesh.
 double asked_spacing(const SolidInput& input, const MedialAxisOptions& options) {
   const Vec3d size = bounds(input.mesh.mesh).size();
   return options.spacing.value_or(std::max({size.x, size.y, size.z}) / options.resolution);
 }
 
-/// Describes the bodies with finer voxels than requested, and the reason; empty if there are none.
+/// Describes the bodies whose voxels are finer than requested, and the reason. Returns an empty text if there are none.
 std::string refined_text(const MedialAxisReport& report, double asked) {
   std::size_t finer = 0;
   double finest = asked;
@@ -180,11 +183,12 @@ std::string refined_text(const MedialAxisReport& report, double asked) {
       report.bodies.size() == 1 ? ""
                                 : " for " + count_text(finer) + " of " + count_text(report.bodies.size()) + " bodies";
   return "voxels from side " + rounded_text(asked) + " to " + rounded_text(finest) + of_bodies +
-         (report.rule == SolidRule::polyhedron ? ": the model does not pass with larger ones"
-                                               : ": no larger voxel lies inside");
+         (report.rule == SolidRule::polyhedron ? ": with larger voxels, the topology of the model is not proven"
+                                               : ": no larger voxel has its centre inside");
 }
 
-/// Returns " 0.5", " 0.25 to 0.5" for bodies that differ, "s (0.5, 1, 2.5)" for an image of unequal sides.
+/// Returns the sides of voxels as text, for example " 0.5". If bodies differ, it is " 0.25 to 0.5". For an image with
+/// unequal sides it is "s (0.5, 1, 2.5)".
 std::string sides_text(const MedialAxisReport& report) {
   const Vec3d& sides = report.grid.spacing;
   if (report.rule == SolidRule::voxels && (sides.x != sides.y || sides.y != sides.z)) return "s " + vector_text(sides);
@@ -205,15 +209,15 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
   json.update(to_json(report));
   json.erase("seconds");   // reported once for all solids
-  json.erase("warnings");  // likewise
+  json.erase("warnings");  // reported once for all solids, too
   run.table.detail("solid", betti_text(report.betti) + " (" + report.reason + ")");
   run.table.detail("voxels", count_text(voxels) + " of side" + sides_text(report) +
-                                 (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts" : ""));
+                                 (extra > 0 ? "; " + count_text(extra) + " further cells for thinner parts" : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
   run.warnings.insert(run.warnings.end(), report.warnings.begin(), report.warnings.end());
 }
 
-/// Writes the graph of an axis if --graph is given; else returns null.
+/// If --graph is given, writes the graph of an axis and returns its JSON; else returns null.
 Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
                const MedialMetadata& metadata, const fs::path& name, const Context& context) {
   if (!r.graph) return nullptr;
@@ -229,7 +233,7 @@ Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const 
   return graph_json(graph, run.graphs.back().name());
 }
 
-/// Writes the extended surface of an axis if --extend is given; else returns null.
+/// If --extend is given, writes the extended surface of an axis and returns its JSON; else returns null.
 Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
                   const MedialMetadata& metadata, const fs::path& name, const Context& context) {
   if (!r.extend) return nullptr;
@@ -246,7 +250,7 @@ Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, con
   return extended_json(made.report, run.extended.back().name());
 }
 
-/// Adds the input and the version to the metadata of the construction.
+/// Returns the metadata of the construction, with the input and the version added.
 MedialMetadata for_file(MedialMetadata metadata, const Request& r, const SolidInput& input,
                         const LabelSelection& selection) {
   metadata.source = r.input.filename().string();
@@ -256,23 +260,23 @@ MedialMetadata for_file(MedialMetadata metadata, const Request& r, const SolidIn
   return metadata;
 }
 
-/// A solid whose axes are computed.
+/// Solid whose axes are requested.
 struct AskedSolid {
   const SolidInput& input;
   const SolidVerifier& verifier;
   const LabelSelection& selection;
   std::optional<std::int64_t> label;
   const fs::path& output;
-  Json smooth;  ///< report on its smooth surface; null without one
+  Json smooth;  ///< report on the solid's smooth surface; null if it is not used
 };
 
-/// Axes in draft files. Each grid position has its own drafts, because the best one may not be the last.
+/// Axes in draft files. Each grid position has separate drafts, because the best position may not be the last one.
 class AxisDrafts {
  public:
   AxisDrafts(const Request& r, const AskedSolid& solid, const Context& context)
       : r_(r), solid_(solid), context_(context) {}
 
-  /// Writes an axis, reads it back and certifies that.
+  /// Writes an axis to a file, reads the file, and certifies the axis that it contains.
   Certificate certify(const AxisCandidate& axis) {
     Stopwatch watch;
     const MedialMetadata metadata = for_file(axis.metadata, r_, solid_.input, solid_.selection);
@@ -288,7 +292,7 @@ class AxisDrafts {
     return certificate;
   }
 
-  /// Returns the draft of the axis that was certified last for this position and angle.
+  /// Returns the draft with the axis that was certified last for this grid position and angle.
   Draft& draft_of(double grid_shift, double theta) {
     const fs::path name = r_.thetas.size() == 1 ? solid_.output : with_theta(solid_.output, theta);
     return drafts_.try_emplace({grid_shift, theta}, name).first->second;
@@ -301,7 +305,7 @@ class AxisDrafts {
   std::map<std::pair<double, double>, Draft> drafts_;
 };
 
-/// Adds an axis at one angle.
+/// Adds the axis for one angle to the results.
 void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const CertifiedAxis& made, bool model_passes,
               Draft&& draft, Json& axes, const Context& context) {
   const SolidInput& input = solid.input;
@@ -332,14 +336,14 @@ MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, 
   return medial_axis(input.mesh.mesh, options, context);
 }
 
-/// Makes the smooth surface of an image, as the input.
+/// Replaces an image by its smooth surface, as the input.
 SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSelection& selection,
                         const Context& context) {
   Stopwatch watch;
   SmoothSurface surface = smooth_surface(image.image, selection, {}, context);
   run.phases.push_back({"surface", watch.lap()});
   run.table.add("smooth", count_text(surface.mesh.triangles.size()) + " triangles; moved by at most " +
-                              rounded_text(surface.largest_move) + " voxels from the boxes");
+                              rounded_text(surface.largest_move) + " voxels from the surface of the boxes");
   SolidInput out;
   out.json = {{"iterations", SmoothSurfaceOptions{}.iterations},
               {"triangles", surface.mesh.triangles.size()},
@@ -349,7 +353,7 @@ SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSele
   return out;
 }
 
-/// Adds the axes of a solid for all requested angles.
+/// Adds the axes of a solid for all requested angles to the results.
 void add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
               const Context& context) {
   const bool is_mesh = solid.input.kind == InputKind::mesh;
@@ -387,7 +391,7 @@ void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const 
   options.selection = selection;
   const SolidInput surface = r.smooth ? smooth_input(run, given, selection, context) : SolidInput{};
   if (r.smooth && !r.has_resolution) {
-    // As fine as the image, within limits: the surface may be smaller than a voxel, or flat.
+    // The spacing is that of the image, within limits: the surface may be smaller than a voxel, or flat.
     const Vec3d& sides = given.image.grid.spacing;
     const Vec3d size = bounds(surface.mesh.mesh).size();
     const double longest = std::max({size.x, size.y, size.z});
@@ -454,7 +458,7 @@ void finish(const Request& r, MedialRun& run, const SolidInput& input, bool is_c
   if (!r.report.quiet) warn(run.warnings);
 }
 
-/// Describes the written files of a run in which an axis is not certified.
+/// If an axis is not certified, describes the files that were written.
 std::string written_text(const Request& r, const MedialRun& run) {
   if (r.allow_uncertified) return {};
   const auto kept = std::count(run.is_kept.begin(), run.is_kept.end(), true);
@@ -508,19 +512,21 @@ void add_medial_command(const CommandLine& line) {
     add_text_option(command, name, value, type, help);
   };
   text("--theta", a->theta, "DEG",
-       "Keep separation angles above DEG degrees (default 60), and connecting cells; several angles (20,60) give one "
-       "file each, nested apart from --decimate");
+       "Keep cells with separation angles above DEG degrees (default 60), and cells that connect them; several angles "
+       "(20,60) give one file each. With --decimate 0, the axis of a larger angle is part of that of a smaller one");
   text("--decimate", a->decimate, "TOL",
-       "Reduce triangles, moving the axis by at most TOL mesh units (default: a quarter of a voxel); 0 keeps all");
-  text("--prune", a->prune, "sheets", "Remove only whole sheets, namely those with angles of at most --theta");
+       "Reduce the number of triangles; the axis moves by at most TOL mesh units (default: a quarter of a voxel; 0 "
+       "keeps all)");
+  text("--prune", a->prune, "sheets",
+       "Remove only whole sheets, namely those whose largest separation angle is at most --theta");
   a->options.add_to(command, "", {"least_theta", "greatest_theta"});
   add_label_option(command, a->labels,
                    "Image: select the voxels of value L; several values (1,3 or repeated) give one axis each");
   text("--threshold", a->threshold, "T",
        "Image: select the voxels of value T or more (default: all voxels that are not 0)");
   command.add_flag("--smooth", a->smooth,
-                   "Image: use the solid inside the smooth surface of the voxels, instead of their boxes");
-  add_graph_option(command, a->graph, "Write its sheets, seams, curves and junctions as a graph");
+                   "Image: use the solid inside the smooth surface of the voxels, instead of the boxes of the voxels");
+  add_graph_option(command, a->graph, "Also write the sheets, seams, curves and junctions of the axis as a graph");
   add_extend_options(command, a->extend, a->extend_length);
   command.add_flag("--nested", a->nested,
                    "Also store the axes of all angles from --theta upwards (.npz), for `blum view`");

@@ -17,11 +17,11 @@ namespace {
 std::string against_text(const Certificate& c) {
   if (c.against == SolidRule::polyhedron) return "the solid";
   const std::string voxels =
-      c.against == SolidRule::winding ? "the voxels of the winding number" : "the voxels of the image";
-  return c.voxel ? voxels + " of side " + rounded_text(*c.voxel) : voxels;
+      c.against == SolidRule::winding ? "the voxels inside by winding number" : "the voxels of the image";
+  return c.voxel ? voxels + ", side " + rounded_text(*c.voxel) : voxels;
 }
 
-/// Returns the parameters that a file claims for its axis.
+/// Returns the parameters that a file states for its axis.
 std::string claims_text(const CertificateOptions& said) {
   std::string text;
   const auto add = [&](const std::optional<double>& value, const char* before, const char* after) {
@@ -33,30 +33,31 @@ std::string claims_text(const CertificateOptions& said) {
   return text;
 }
 
-/// For a mesh that bounds no polyhedron and a file without metadata.
+/// Advice for a mesh that does not bound a polyhedron, if the axis's file has no metadata.
 constexpr const char* missing_rule =
-    "; its axis belongs to voxels that the file does not record (.obj and .ma store neither rule nor grid). "
-    "Verify the .vtp, .ply or .npz file of the same run, or repeat --weld if that run had it";
+    "; its axis belongs to voxels that the file of the axis does not record (.obj and .ma store neither rule nor "
+    "grid). Verify the .vtp, .ply or .npz file of the same axis; if the axis was made with --weld, repeat it";
 
 std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";
 }
 
 std::string nothing_seen(const MedialCheck& check) {
-  return "random points show " + std::string(check.balls == 0 ? "nothing" : "too little") + " above " +
+  return "random points of the solid show " +
+         std::string(check.balls == 0 ? "no medial ball" : "too few medial balls") + " with an angle above " +
          rounded_text(check.sought_angle) + " degrees";
 }
 
 std::string medial_text(const MedialCheck& check) {
   std::string text;
   if (check.samples == 0) {
-    text = "no part of the axis claims two footprints more than theta apart";
+    text = "no part of the axis has a separation angle above theta";
   } else {
     text = percent(check.medial_share) + " of the samples are in the middle (tolerance " +
            rounded_text(check.allowance) + "), " + percent(check.close_share) + " within " +
-           rounded_text(check.close_allowance);
+           rounded_text(check.close_allowance) + " of it";
   }
-  if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of the area serves homotopy only";
+  if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of the area exists for homotopy alone";
   if (check.sought_angle == 0) return text + "; missing parts not checked: theta is unknown";
   if (!check.judges_missing) return text + "; missing parts not checked: " + nothing_seen(check);
   return text + "; " + percent(check.missed_share) + " of the axis above " + rounded_text(check.sought_angle) +
@@ -77,7 +78,8 @@ std::string labels_text(const Certificate& c) {
          percent(c.angles.above_share) + " a larger one than their surroundings";
 }
 
-/// Describes the share of the axis that is in the middle, and the missing share; empty if neither was checked.
+/// Describes the share of the axis that lies in the middle of the solid, and the share that is missing. Returns an
+/// empty text if neither was checked.
 std::string medial_share_text(const Certificate& c) {
   if (!c.checked.medial || c.medial.samples == 0) return "";
   std::string text = "; " + percent(c.medial.medial_share) + " of samples in the middle";
@@ -100,7 +102,7 @@ std::string text_of(const FileMetadata& metadata, std::string_view name) {
   return at == metadata.end() ? "" : at->second;
 }
 
-/// Gives walls between the same two sites one sheet number.
+/// Gives each wall its sheet number: triangles between the same two sites get the same number.
 void number_walls(Complex& complex) {
   const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
   const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
@@ -125,7 +127,7 @@ std::string walls_text(const ShownAxis& shown) {
 
 namespace {
 
-/// Reads the certificate in the metadata of a Voronoi diagram.
+/// Reads the certificate from the metadata of a Voronoi diagram.
 void add_certified(const FileMetadata& metadata, ShownAxis& out) {
   const std::string certified = text_of(metadata, "certified");
   if (certified != "true" && certified != "false") return;
@@ -134,7 +136,7 @@ void add_certified(const FileMetadata& metadata, ShownAxis& out) {
   const std::string cubes = text_of(metadata, "failing_cubes");
   out.certified = *out.is_certified ? "yes" : "NO";
   if (!bound.empty()) out.certified += "; at most " + bound + " from the exact diagram, everywhere";
-  if (!cubes.empty()) out.certified += ": " + cubes + " cubes did not pass";
+  if (!cubes.empty()) out.certified += ": " + cubes + " cubes did not pass the local test";
 }
 
 }  // namespace
@@ -192,7 +194,7 @@ Certificate SolidVerifier::certificate_of(const std::filesystem::path& written, 
 
 namespace {
 
-/// Lists the columns that a file may lack, with their names in texts, and whether they were checked.
+/// Lists the kinds of columns that a file may lack: true if the columns were checked, and their name for texts.
 std::vector<std::pair<bool, const char*>> what_files_may_lack(const Certificate& c) {
   return {{c.checked.radii, "radii"},
           {c.checked.footprints, "footprints"},
@@ -211,7 +213,7 @@ std::vector<std::string> not_looked_at(const Certificate& c, bool has_nested) {
     all.push_back("missing parts: " + nothing_seen(medial));
   } else if (c.checked.medial && c.bodies.size() > 1 && medial.bodies_unseen > 0) {
     all.push_back("missing parts in " + count_text(medial.bodies_unseen) + " of " + count_text(c.bodies.size()) +
-                  " bodies: points beside the surface show too little there");
+                  " bodies: points near their surface show too few medial balls");
   }
   if (has_nested) all.emplace_back("nested columns: the axes of other angles");
   return all;
@@ -238,9 +240,9 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 }  // namespace
 
 std::string balls_text(const BallUnionCheck& balls) {
-  return "the union of balls misses the solid by at most " + rounded_text(balls.solid_to_balls) + " (mean " +
-         rounded_text(balls.mean_solid_to_balls) + "); its surface is within " + rounded_text(balls.balls_to_surface) +
-         " of the solid's";
+  return "the solid's surface is at most " + rounded_text(balls.solid_to_balls) +
+         " from the union of the balls (mean " + rounded_text(balls.mean_solid_to_balls) +
+         "); the surface of the union is at most " + rounded_text(balls.balls_to_surface) + " from the solid's";
 }
 
 void add_decimated(TextTable& table, const CertifiedAxis& made) {
@@ -270,7 +272,7 @@ Json certificate_json(const Certificate& c, bool has_nested) {
   const auto wrong =
       std::count_if(c.bodies.begin(), c.bodies.end(), [](const BodyCheck& body) { return body.solid != body.axis; });
   json["bodies"] = {{"count", c.bodies.size()}, {"wrong", wrong}};
-  // Omit values that were not checked.
+  // Remove the values of checks that were not made.
   Json& geometry = json["geometry"];
   if (!c.checked.radii) geometry.erase("radius_error");
   if (!c.checked.footprints) geometry.erase("footprint_off_surface");
@@ -319,7 +321,7 @@ void add_axis_counts(TextTable& table, const std::string& before, const MedialCo
 }
 
 std::string angles_text(double least_theta) {
-  return "all from " + rounded_text(least_theta) + " degrees on";
+  return "all from " + rounded_text(least_theta) + " to 180 degrees";
 }
 
 void add_certificate(TextTable& table, const std::string& of, const Certificate& c, bool has_nested) {
@@ -328,7 +330,7 @@ void add_certificate(TextTable& table, const std::string& of, const Certificate&
                                (c.bodies.size() > 1 ? ", in each of " + count_text(c.bodies.size()) + " bodies" : "") +
                                "; inside the solid" + medial_share_text(c));
   } else {
-    // The error message gives the reasons.
+    // If the axis is not certified, the error message gives the reasons.
     table.add("certified", c.topology_holds
                                ? "NO" + of + ": the topology is that of the solid, but another check fails"
                                : "NO" + of + ": " + betti_text(c.axis) + "; the solid has " + betti_text(c.solid));

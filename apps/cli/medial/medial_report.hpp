@@ -15,36 +15,37 @@
 
 namespace blum::cli {
 
-/// Reads the axis of a file, and adds the columns of MedialView that it lacks (see MedialFile::has_radii and so on).
+/// Reads the axis of a file. Columns that MedialView requires and the file lacks are added (see MedialFile::has_radii
+/// and so on).
 [[nodiscard]] MedialFile read_axis(const std::filesystem::path& path);
 
 /// Content of a file with a medial axis, or with walls of a Voronoi diagram.
 struct ShownAxis {
-  MedialFile file;      ///< in diagrams, walls between the same two sites are one sheet
-  std::string content;  ///< name in metadata: "medial axis", "Voronoi diagram"
+  MedialFile file;      ///< for diagrams, walls between the same two sites form one sheet
+  std::string content;  ///< name of the content in the metadata: "medial axis" or "Voronoi diagram"
   bool is_axis = true;
-  std::optional<bool> is_certified;  ///< only for diagrams whose file records it
-  std::string certified;             ///< certificate as text; empty if the file has none
+  std::optional<bool> is_certified;  ///< set only for diagrams whose file records it
+  std::string certified;             ///< certificate as text; empty if the file records none
 };
-/// Reads a medial axis as read_axis(), or walls that `blum voronoi` wrote.
+/// Reads a medial axis as read_axis() does, or walls written by `blum voronoi`.
 [[nodiscard]] ShownAxis read_axis_or_walls(const std::filesystem::path& path);
 
 /// Returns the counts of the walls as text.
 [[nodiscard]] std::string walls_text(const ShownAxis& shown);
 
-/// Certifies axes as stored in files against one solid, which is prepared once.
+/// Certifies axes, as their files store them, against one solid. The solid is prepared once.
 class SolidVerifier {
  public:
-  /// @param input  must outlive this object unchanged. @throws InvalidMesh.
+  /// @param input  the solid. It must outlive this object and must not change. @throws InvalidMesh.
   explicit SolidVerifier(const SolidInput& input);
 
-  /// @param selection  selects the voxels of images.
-  /// @throws InvalidMesh if the solid is defined by voxels only, and the file does not record them.
+  /// @param selection  for images: selects the voxels of the solid.
+  /// @throws InvalidMesh if the solid is defined only by voxels, and the axis's file does not record these.
   [[nodiscard]] Certificate certificate_of(const MedialFile& file, const LabelSelection& selection,
                                            const Context& context) const;
 
-  /// Certifies an axis that was just written, as its file stores it.
-  /// @param metadata  of the axis, because .obj and .ma store none.
+  /// Certifies an axis that was just written. Reads it from its file.
+  /// @param metadata  metadata of the axis; given because .obj and .ma files store none.
   [[nodiscard]] Certificate certificate_of(const std::filesystem::path& written, const MedialMetadata& metadata,
                                            const LabelSelection& selection, const Context& context) const;
 
@@ -53,27 +54,29 @@ class SolidVerifier {
   std::optional<ImageAxisVerifier> image_;
 };
 
-/// Returns the checks of a certificate as JSON. Bodies are only counted: all, and those with wrong numbers.
-/// @param has_nested  true if the file also contains axes of other angles, which are not checked.
+/// Returns the checks of a certificate as JSON. For bodies it contains only two counts: all bodies, and those with
+/// wrong Betti numbers.
+/// @param has_nested  true if the file also contains axes for other angles. These are not checked.
 [[nodiscard]] Json certificate_json(const Certificate& certificate, bool has_nested);
-/// Returns counts as JSON. Without labels in the file, counts that need them are null, and edges are those without
-/// triangles.
+/// Returns counts as JSON. If the file has no labels (roles and sheets), counts that need them are null, and `edges`
+/// counts edges without triangles.
 [[nodiscard]] Json counts_json(const MedialCounts& counts, bool has_labels);
-/// Returns for example "1 component, 5 tunnels, 0 voids".
+/// Returns a text like "1 component, 5 tunnels, 0 voids".
 [[nodiscard]] std::string betti_text(const BettiNumbers& betti);
-/// Returns counts as text, without those that need missing labels.
+/// Returns counts as text. If the file has no labels, counts that need them are left out.
 [[nodiscard]] std::string counts_text(const MedialCounts& counts, bool has_labels);
-/// Returns the angles of the axes in a file with the axes of all angles.
+/// For a file with the axes of all angles, returns their range of angles as text.
 [[nodiscard]] std::string angles_text(double least_theta);
-/// Returns the distances between the solid and the union of the balls.
+/// Returns, as text, the distances between the surface of the solid and that of the union of the balls.
 [[nodiscard]] std::string balls_text(const BallUnionCheck& balls);
 
-/// Adds the number of vertices before decimation and the largest move, if the axis was decimated.
+/// If the axis was decimated, adds the number of vertices before decimation and the largest distance moved.
 void add_decimated(TextTable& table, const CertifiedAxis& made);
-/// Adds the counts of an axis; those of edges only for --verbose.
+/// Adds the counts of an axis. Counts of edges are details (shown with --verbose).
 /// @param before  text before the counts, for example the name of the file.
 void add_axis_counts(TextTable& table, const std::string& before, const MedialCounts& counts, bool has_labels);
-/// Adds the result of a certificate, its solid and its errors. The message of NotCertified gives reasons for failure.
+/// Adds the result of a certificate, the solid and the errors. If it failed, the message of NotCertified gives the
+/// reasons.
 /// @param of  text after "yes" or "NO", for example " at theta 60".
 void add_certificate(TextTable& table, const std::string& of, const Certificate& certificate, bool has_nested);
 

@@ -15,8 +15,8 @@ struct MedialRun {
   Json solids = Json::array();
   std::vector<PhaseTime> phases;
   std::vector<Draft> drafts;
-  std::vector<Draft> graphs;    ///< one for each draft if --graph is given
-  std::vector<Draft> extended;  ///< one for each draft if --extend is given
+  std::vector<Draft> graphs;    ///< if --graph is given: one for each draft
+  std::vector<Draft> extended;  ///< if --extend is given: one for each draft
   std::vector<bool> is_kept;    ///< for each draft: true if it becomes a file
   std::vector<Warning> warnings;
   std::vector<std::string> mismatches;

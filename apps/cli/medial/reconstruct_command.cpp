@@ -52,7 +52,7 @@ struct Request {
   int threads = 0;
 };
 
-/// Rejects fields. Users who pass a field here probably want its surface.
+/// Throws if the file is a field. Its user probably wants the surface of the field; the message says how to get it.
 void check_is_no_field(const fs::path& path) {
   if (!FieldFormat::by_name(path)) return;
   std::error_code ignored;
@@ -86,8 +86,8 @@ Request parse(const Arguments& a) {
   return r;
 }
 
-/// Returns the balls around points at most a step apart, and around all vertices.
-/// @param step  infinite for vertices only.
+/// Returns balls around points of the axis that are at most a step apart, and around all vertices.
+/// @param step  if infinite, only vertices get balls.
 std::vector<Ball> balls_of(const MedialFile& file, double step) {
   std::vector<Ball> balls;
   for (const AxisSample& sample : sample_axis(MedialView(file.complex), step)) {
@@ -128,7 +128,7 @@ void run(const Arguments& a) {
   const GridSpec grid = r.spacing ? grid_around_with_spacing(box, *r.spacing) : grid_around(box, r.resolution);
   check_memory(4.0 * static_cast<double>(grid.node_count()), "a grid of " + size_text(grid) + " nodes",
                "use a coarser grid");
-  // In a decimated axis, balls between vertices are interpolated at the spacing of the grid.
+  // In a decimated axis, vertices are far apart. So balls between them are interpolated, at the spacing of the grid.
   if (file.metadata.deviation) balls = balls_of(file, std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
   const Field field = ball_union_field(balls, grid, context);
   const double field_seconds = watch.lap();
@@ -139,7 +139,7 @@ void run(const Arguments& a) {
   Json json = answer_json("reconstruct",
                           {{"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}}, {"grid", to_json(grid)}});
   std::vector<Warning> warnings;
-  // This may fail, so it runs before anything is written.
+  // Reading the input may fail, so it is read before anything is written.
   if (r.input) {
     const InputKind kind = input_kind(*r.input);
     const auto [selection, found] = solid_of_axis(r.given, kind, file.metadata, r.axis);
@@ -161,7 +161,8 @@ void run(const Arguments& a) {
     json["removed"] = removed ? Json(removed->string()) : Json(nullptr);
   } else {
     const TriangleMesh surface = zero_surface(field, 0, context);
-    if (surface.triangles.empty()) throw FileError("the balls are smaller than the grid's spacing; use a finer grid");
+    if (surface.triangles.empty())
+      throw FileError("the balls are so small that no node of the grid lies in one; use a finer grid");
     write_mesh(r.output, surface);
     json["surface"] = {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}};
     table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
@@ -195,9 +196,11 @@ void add_reconstruct_command(const CommandLine& line) {
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
     add_text_option(command, name, value, type, help);
   };
-  text("--input", a->input, "FILE", "Mesh or image of the solid, to report its distance from the balls");
-  text("--resolution", a->resolution, "N", "Nodes along the longest side of the grid, 2 to 65536 (default 256)");
-  text("--spacing", a->spacing, "H", "Distance between nodes, in mesh units, instead of --resolution");
+  text("--input", a->input, "FILE",
+       "Mesh or image of the solid: also report the distances between the solid and the balls");
+  text("--resolution", a->resolution, "N",
+       "Number of nodes along the longest side of the grid, 2 to 65536 (default 256)");
+  text("--spacing", a->spacing, "H", "Distance between neighbouring nodes, in mesh units; replaces --resolution");
   add_label_option(command, a->labels, "Image: select the voxels of value L (default: as recorded in AXIS)");
   text("--threshold", a->threshold, "T", "Image: select the voxels of value T or more (default: as recorded in AXIS)");
   add_weld_option(command, a->weld, weld_of_axis_help);

@@ -28,7 +28,7 @@ constexpr const char* examples = R"(Examples:
   blum verify scan.nii.gz vessels.npz --json -
 
 The checking code is independent of the construction, except for shared parts that
-docs/decisions/0007-certificate.md lists. Exit status: 0 all axes are certified, 3 one is not.
+docs/decisions/0007-certificate.md lists. Exit status: 0 all axes are certified, 3 at least one is not.
 Several axes give a JSON array.)";
 
 struct Arguments {
@@ -51,12 +51,12 @@ SolidSelection solid_of_options(const Arguments& a, InputKind kind) {
   return given;
 }
 
-/// Returns the first message for an axis that is not certified: its file names another solid. This alone proves
+/// For an axis that is not certified, returns a message if its file names another solid as source. This alone proves
 /// nothing, because files may be renamed.
 std::vector<std::string> other_source(const fs::path& input, const MedialMetadata& metadata) {
   const fs::path source = fs::path(metadata.source).filename();
   if (source.empty() || source == input.filename()) return {};
-  return {"the file names '" + source.string() + "' as its solid"};
+  return {"the file of the axis states that the solid is '" + source.string() + "'"};
 }
 
 /// Certifies one axis after the other.
@@ -73,7 +73,7 @@ class Verifier {
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
     const Certificate certificate = verifier_->certificate_of(file, voxels, context_);
     if (solid.weld && solid.weld->lost > 0) {
-      // Without --weld, the tolerance comes from the file.
+      // If --weld is not given, the tolerance is the one that the file of the axis records.
       const std::string asked = given_.weld ? std::string() : "as '" + axis.string() + "' records, ";
       if (!given_.weld || solid.weld->before != solid.weld->after) {
         warnings.emplace_back(WarningCode::other_vertices, asked + weld_text(*solid.weld));
@@ -101,7 +101,7 @@ class Verifier {
     out.add(solid_->table);
     return out;
   }
-  /// Returns an object for one axis, an array for several.
+  /// Returns an object if there is one axis, or an array if there are several.
   [[nodiscard]] Json json() const { return results_.size() == 1 ? results_.front() : results_; }
   [[nodiscard]] const std::vector<Warning>& warnings() const { return warnings_; }
 
@@ -123,7 +123,7 @@ class Verifier {
     std::string advice;
   };
 
-  /// Returns the mesh or image. Reads it again only if an axis needs another weld tolerance.
+  /// Returns the mesh or image. Reads the file again only if an axis needs another weld tolerance.
   const SolidInput& load(const std::optional<double>& weld) {
     if (!solid_ || weld != weld_) {
       verifier_.reset();
@@ -140,7 +140,7 @@ class Verifier {
   bool smooth_;
   const Context& context_;
   std::optional<SolidInput> solid_;
-  std::optional<SolidVerifier> verifier_;  ///< verifier of solid_
+  std::optional<SolidVerifier> verifier_;  ///< verifier for solid_
   std::optional<double> weld_;
   TextTable table_;
   Json results_ = Json::array();

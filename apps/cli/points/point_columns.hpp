@@ -9,9 +9,9 @@
 
 namespace blum::cli {
 
-/// Returns the points with columns `distance`, `gradient`, `closest`, `site` and `triangle`. The gradient has length 1,
-/// and points away from the surface outside and towards it inside. It is NaN on the surface and if nothing was found.
-/// `site` and `triangle` are -1 if none was found.
+/// Returns the points with columns `distance`, `gradient`, `closest`, `site` and `triangle`. The gradient has length 1.
+/// Outside it points away from the surface, and inside towards it. It is NaN on the surface, and if nothing was found.
+/// `site` and `triangle` are -1 if nothing was found.
 [[nodiscard]] Complex points_with_distances(std::span<const Vec3d> points, std::span<const ClosestPoint> found);
 
 }  // namespace blum::cli

@@ -49,7 +49,7 @@ struct Facts {
   std::size_t inside = 0;
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();
-  double sum = 0;  ///< of magnitudes
+  double sum = 0;  ///< sum of the distances' magnitudes
   double squares = 0;
 
   void add(const std::vector<ClosestPoint>& all) {
@@ -83,7 +83,7 @@ struct Facts {
   }
   [[nodiscard]] std::string counts_text(SignRule rule) const {
     std::string text = plural(points, "point", "points");
-    if (found < points) text += ", " + count_text(found) + " within the distance";
+    if (found < points) text += ", " + count_text(found) + " within --max-distance";
     if (rule != SignRule::none) text += ", " + count_text(inside) + " inside";
     return text;
   }
@@ -93,13 +93,13 @@ struct Facts {
   }
 };
 
-/// A file of points with its output and statistics.
+/// File of points, with the path of its output and its statistics.
 struct PointFile {
   fs::path points, output;
   Facts facts;
 };
 
-/// Returns the files with their outputs: OUT for one file, OUT-NAME for several.
+/// Returns the files of points with their outputs. For one file the output is OUT, for several OUT-NAME.
 std::vector<PointFile> files_of(const Arguments& a) {
   const fs::path output = a.output;
   check_extension("--output", output, file_extensions(FileContent::points, FileAccess::write));
@@ -113,7 +113,7 @@ std::vector<PointFile> files_of(const Arguments& a) {
     file.output += "-";
     file.output += file.points.stem();
     file.output += output.extension();
-    // Checked first, because a later error would leave the outputs of the files before.
+    // All files are checked first. If an error came later, the outputs of earlier files would already exist.
     if (!fs::exists(file.points)) throw FileError("cannot read '" + name + "': there is no such file");
   }
   std::vector<fs::path> outputs = a.report.files();
@@ -126,7 +126,7 @@ std::vector<PointFile> files_of(const Arguments& a) {
   return files;
 }
 
-/// Returns the context of one of several files. The progress bar covers all files.
+/// Returns the context for one of several files. The progress bar covers all files.
 Context context_of(const Context& context, std::size_t file, std::size_t count) {
   Context out = context;
   if (count == 1 || !context.progress) return out;
@@ -136,7 +136,7 @@ Context context_of(const Context& context, std::size_t file, std::size_t count) 
   return out;
 }
 
-/// Seconds by phase, for all files.
+/// Seconds of each phase, summed over all files.
 struct Spent {
   double read = 0;
   double query = 0;
@@ -243,13 +243,13 @@ void add_query_command(const CommandLine& line) {
   command
       .add_option("POINTS", a->points,
                   join_words(file_extensions(FileContent::points, FileAccess::read), "or") +
-                      "; several files give one output each")
+                      "; each of several files has an output of its own")
       .required();
   command
       .add_option("-o,--output", a->output,
                   extension_list(FileContent::points, FileAccess::write) +
-                      ": points with columns distance, gradient, closest, site, triangle; several "
-                      "POINTS files give OUT-NAME each")
+                      ": points with columns distance, gradient, closest, site, triangle; for several POINTS files, "
+                      "the outputs are OUT-NAME, with the NAME of each file")
       .required()
       .type_name("FILE");
   a->options.add_to(command);

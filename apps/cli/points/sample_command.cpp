@@ -39,7 +39,8 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// @param parts_normals  true for columns nx, ny, nz, which programs expect in .ply files; else `normal`.
+/// @param parts_normals  true for columns nx, ny, nz, which other programs expect in .ply files; false for one column
+/// `normal`.
 Complex points_of_surface(const SurfaceSamples& samples, bool parts_normals) {
   Complex out;
   const std::size_t count = samples.points.size();
@@ -59,10 +60,10 @@ Complex points_of_surface(const SurfaceSamples& samples, bool parts_normals) {
   return out;
 }
 
-/// Rejects options of the other kind of points. `--seed` is for both kinds.
+/// Throws if an option is given that is only for the other kind of points. `--seed` is for both kinds.
 void refuse_others(const Arguments& a) {
   if (a.near && a.options.has("blue_noise"))
-    throw UsageError("--blue-noise is for points on the surface, not for --near");
+    throw UsageError("--blue-noise is for points on the surface; remove it, or --near");
   for (const char* member : {"sigma", "in_box", "sign"}) {
     if (!a.near && a.near_options.has(member)) {
       throw UsageError(option_name(member) + " is for points near the surface; add --near");
@@ -70,7 +71,7 @@ void refuse_others(const Arguments& a) {
   }
 }
 
-/// The checked options.
+/// Options after all checks.
 struct Request {
   std::size_t count = 0;
   SampleOptions options;
@@ -146,7 +147,7 @@ void add_sample_command(const CommandLine& line) {
   command
       .add_option("-o,--output", a->output,
                   extension_list(FileContent::points, FileAccess::write) +
-                      ": points with columns normal (nx, ny, nz in .ply) and triangle; with --near distance, "
+                      ": points with columns normal (nx, ny, nz in .ply) and triangle; with --near instead distance, "
                       "gradient, closest, site and triangle")
       .required()
       .type_name("FILE");

@@ -22,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
-  blum ccd unit-tests/vertex-face/data_0_0.csv        compare results with the file's last column
+  blum ccd unit-tests/vertex-face/data_0_0.csv        compare results with the last column of the file
   blum ccd */*/*.csv --json -                         many files in one summary
-  blum ccd queries.csv --kind edge-edge               if no name of file or folder contains the kind
+  blum ccd queries.csv --kind edge-edge               for a file whose name and folder do not contain the kind
 
 A file has eight rows for each query: the four points at the start, then at the end. A row has
 x, y and z as integer numerators and denominators, then the correct answer, 0 or 1.)";
@@ -38,7 +38,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// Returns the given kind, or the one in the name of the file or its folder. @throws UsageError.
+/// Returns the given kind of queries, or the kind that the name of the file or its folder contains. @throws UsageError.
 Kind kind_of(const fs::path& path, const std::optional<std::string>& given) {
   const auto named = [](const std::string& name) -> std::optional<Kind> {
     const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
@@ -59,11 +59,11 @@ Kind kind_of(const fs::path& path, const std::optional<std::string>& given) {
 
 struct Counts {
   std::size_t queries = 0;
-  std::size_t colliding = 0;  ///< found to collide
+  std::size_t colliding = 0;  ///< number of queries with a collision
   std::size_t without_truth = 0;
   std::size_t false_negatives = 0;
   std::size_t false_positives = 0;
-  std::vector<double> microseconds;  ///< per query
+  std::vector<double> microseconds;  ///< one per query
 };
 
 void ask(const ImpactQueries& queries, Kind kind, const ImpactOptions& options, Counts& counts) {

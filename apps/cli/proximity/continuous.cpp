@@ -32,7 +32,7 @@ void check(const ProximityArguments& a) {
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
-/// Collisions of a mesh between two frames.
+/// Collisions of one mesh between two frames.
 struct Answer {
   MovingMesh mesh;
   ImpactOptions options;
@@ -120,8 +120,9 @@ MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end, std::opt
   if (end == start) return mesh;
   TriangleMesh last = read_mesh(end, {weld});
   if (const std::string what = difference(mesh.start, last); !what.empty()) {
-    throw FormatError("'" + end.string() + "': " + what + " '" + start.string() +
-                      "': frames of one motion need the same vertices and triangles, in the same order");
+    throw FormatError(
+        "'" + end.string() + "': " + what + " '" + start.string() +
+        "': frames of one motion need equal numbers of vertices, and the same triangles in the same order");
   }
   mesh.end = std::move(last.vertices);
   return mesh;

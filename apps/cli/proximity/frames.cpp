@@ -30,12 +30,12 @@ Json pair_json(const std::string& kind, const Vec3d& first, const Vec3d& second,
   return {{"kind", kind}, {"points", {to_json(first), to_json(second)}}, {"distance", distance}};
 }
 
-/// Results of a frame, and their durations.
+/// Results of one frame, and their durations.
 struct Frame {
   Json pairs = Json::array();
-  std::size_t count = 0;  ///< all pairs, including those beyond --limit
+  std::size_t count = 0;  ///< number of all pairs, including those beyond --limit
   std::optional<double> earliest;
-  std::string skipped;  ///< why the step to the next frame was skipped; empty if it was not
+  std::string skipped;  ///< reason why the step to the next frame was skipped; empty if it was not skipped
   std::vector<PhaseTime> phases;
 
   void add(Json pair, std::size_t limit) {
@@ -58,7 +58,8 @@ void add_result(const SceneFound& found, std::size_t limit, Frame& out) {
   out.phases.insert(out.phases.end(), phases.begin(), phases.end());
 }
 
-/// Adds the features that meet before the next frame. Each pair is the path of one of their vertices until they meet.
+/// Adds the features that collide before the next frame. They are written as pairs: the path of one of their vertices
+/// until the collision.
 void add_result(const SceneCollisions& found, const TriangleMesh& from, std::span<const Vec3d> to, std::size_t limit,
                 Frame& out) {
   const auto add = [&](std::uint32_t vertex, double time) {
@@ -76,7 +77,7 @@ void add_result(const SceneCollisions& found, const TriangleMesh& from, std::spa
   out.phases.insert(out.phases.end(), found.phases.begin(), found.phases.end());
 }
 
-/// Runs a query for one object, frame by frame.
+/// Runs a query for one object, one frame after the other.
 class Sequence {
  public:
   Sequence(const ProximityArguments& a, const SceneQuery& query, const Context& context)
@@ -126,7 +127,7 @@ class Sequence {
     }
   }
 
-  /// @throws FormatError if the next frame is a different mesh, unless --skip-changed is given.
+  /// @throws FormatError if the mesh of the next frame is different, unless --skip-changed is given.
   void ask_continuous(std::size_t k, Frame& out) {
     const std::vector<std::string>& files = arguments_.scene;
     next_ = read_mesh(files[k + 1], {weld_});
@@ -134,7 +135,8 @@ class Sequence {
       out.skipped = "'" + files[k + 1] + "': " + what + " '" + files[k] + "'";
       if (arguments_.skip_changed) return;
       throw FormatError(out.skipped +
-                        ": frames of one motion need the same triangles and vertices; --skip-changed skips such steps");
+                        ": frames of one motion need the same triangles and equal numbers of vertices; --skip-changed "
+                        "skips steps between other frames");
     }
     ObjectMotion motion;
     motion.object = object_;
@@ -162,9 +164,9 @@ struct Answer {
   Json earliest = Json::array();
   Json skipped = Json::array();
   std::size_t pairs = 0;
-  std::optional<std::size_t> first;  ///< the first frame with collisions before the next one
+  std::optional<std::size_t> first;  ///< first frame with collisions before the next frame
   double first_time = 0;
-  std::size_t most = 0;  ///< largest number of pairs of a frame
+  std::size_t most = 0;  ///< largest number of pairs in a frame
   std::vector<PhaseTime> phases;
 
   void add(std::size_t k, Frame frame) {
@@ -194,7 +196,7 @@ std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
   }
   if (!a.output) return text;
   if (const std::size_t limit = read_limit(a); answer.most > limit) {
-    text += "; only the first " + count_text(limit) + " of each frame were written (--limit)";
+    text += "; only the first " + count_text(limit) + " pairs of each frame were written (--limit)";
   }
   return text + "; view them with: blum view FRAMES --frames --pairs " + *a.output;
 }

@@ -20,20 +20,21 @@ namespace fs = std::filesystem;
 
 void check(const ProximityArguments& a) {
   if (a.ends.size() != a.scene.size()) {
-    throw UsageError("--to has " + plural(a.ends.size(), "file", "files") + ", but " +
-                     plural(a.scene.size(), "object is", "objects are") +
-                     " given; give one file for each, in the same order, and repeat that of an object at rest");
+    throw UsageError(
+        "--to has " + plural(a.ends.size(), "file", "files") + ", but " +
+        plural(a.scene.size(), "object is", "objects are") +
+        " given; give one file for each object, in the same order, and for an object at rest repeat its first file");
   }
   check_objects(a);
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::collisions, FileAccess::write));
 }
 
-/// The objects of a scene, and their collisions.
+/// Objects of a scene, and their collisions.
 struct Answer {
   std::vector<MovingMesh> meshes;
   ImpactOptions options;
   SceneCollisions found;
-  std::vector<std::string> names;  ///< names of the objects
+  std::vector<std::string> names;  ///< one per object
   PhaseSummary spent;
   int threads = 0;
   std::size_t limit = 0;
@@ -74,7 +75,7 @@ std::vector<ObjectMotion> motions_of(const std::vector<MovingMesh>& meshes) {
   return motions;
 }
 
-/// Numbers of colliding pairs of features of two objects, and the time of the first collision.
+/// For two objects: the numbers of colliding pairs of their features, and the time of the first collision.
 struct PairSummary {
   std::size_t vertex_face = 0;
   std::size_t edge_edge = 0;
@@ -87,7 +88,7 @@ PairSummary summary_of(const ObjectCollisions& pair) {
   return {pair.vertex_face.size() + pair.face_vertex.size(), pair.edge_edge.size(), pair.earliest()};
 }
 
-/// Sums over all pairs of objects.
+/// Adds up the collisions of all pairs of objects.
 PairSummary summary_of(const SceneCollisions& found) {
   PairSummary out{0, 0, found.earliest()};
   for (const ObjectCollisions& pair : found.objects) {

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   blum proximity separation arm.ply table.ply            distance and closest points
   blum proximity collide a.ply b.ply -o pairs.npz        all pairs of triangles that meet
-  blum proximity penetration a.ply b.ply --json -        overlap of two solids, part by part
+  blum proximity penetration a.ply b.ply --json -        each connected part of the overlap of two solids
   blum proximity continuous start.ply end.ply --self     collisions between two frames
 
 `blum proximity QUERY --help` lists the options of a query.)";
@@ -37,14 +37,16 @@ void add_query(const Command& parent, const SceneQuery& query) {
   command
       .add_option(
           "SCENE", a->scene,
-          (moves ? "Two frames of one mesh; with --to one file for each object: " : "One file for each object: ") +
+          (moves
+               ? "Two files: one mesh at the start and at the end of its motion. With --to, one file for each object: "
+               : "One file for each object: ") +
               files)
       .required();
   if (moves) {
     command
         .add_option("--to", a->ends,
-                    "Positions of the objects at the end: one file for each SCENE, in the same order. Repeat the file "
-                    "of an object at rest")
+                    "Objects at the end of the motion: one file for each SCENE, in the same order. For an object at "
+                    "rest, repeat its file")
         .type_name("END");
   }
   command.add_flag("--self", a->self, "Also compare each object with itself: primitives without a common vertex");
@@ -56,8 +58,8 @@ void add_query(const Command& parent, const SceneQuery& query) {
   }
   if (moves) {
     command.add_flag("--skip-changed", a->skip_changed,
-                     "With --frames: skip and list steps between frames of different triangles or vertex counts "
-                     "(default: an error)");
+                     "With --frames: skip and list steps between frames that differ in triangles or numbers of "
+                     "vertices (default: report an error)");
   }
   if (!query.max_distance.empty()) {
     add_text_option(command, "--max-distance", a->max_distance, "D", std::string(query.max_distance));

@@ -22,23 +22,23 @@ namespace blum::cli {
 
 struct ProximityArguments {
   std::vector<std::string> scene;
-  std::vector<std::string> ends;  ///< only for continuous: one file for each object at the end
-  std::string query;              ///< SceneQuery::name
+  std::vector<std::string> ends;  ///< for `continuous` only: for each object, its file at the end of the motion
+  std::string query;              ///< name of the query, see SceneQuery::name
   bool self = false;
   bool frames = false;        ///< true if the files are frames of one object
-  bool skip_changed = false;  ///< for frames and continuous: skips steps between different meshes
+  bool skip_changed = false;  ///< for frames and `continuous`: true to skip steps between different meshes
   std::optional<std::string> max_distance;
-  std::optional<std::string> limit;  ///< largest number of pairs to write
+  std::optional<std::string> limit;  ///< largest number of pairs that are written
   std::optional<std::string> weld;
   std::optional<std::string> output;
   std::optional<std::string> threads;
-  OptionTexts<ImpactOptions> impact;            ///< only for continuous collisions
-  OptionTexts<SceneOptions> culling;            ///< for queries with takes_culling
-  OptionTexts<PenetrationOptions> penetration;  ///< for queries with takes_depth
+  OptionTexts<ImpactOptions> impact;            ///< for `continuous` only
+  OptionTexts<SceneOptions> culling;            ///< for queries with takes_culling set
+  OptionTexts<PenetrationOptions> penetration;  ///< for queries with takes_depth set
   ReportOptions report;
 };
 
-/// Parameters of any query of a scene.
+/// Parameters of a query of a scene, for all queries.
 struct SceneQuestion {
   std::optional<double> max_distance;
   PenetrationOptions penetration;
@@ -47,87 +47,91 @@ struct SceneQuestion {
 /// Result of a query of a scene.
 struct SceneFound {
   ProximityPairs pairs = {};
-  std::vector<Penetration> parts = {};  ///< for penetration: one part for each pair
-  std::string_view kind = "closest";    ///< name of the pairs in the viewer
+  std::vector<Penetration> parts = {};  ///< for the query of penetrations: one entry for each pair
+  std::string_view kind = "closest";    ///< name for the pairs in the viewer
 };
 
-/// A query, which is a subcommand of `blum proximity`. A row of scene_queries.cpp adds a query.
+/// Query: a subcommand of `blum proximity`. To add a query, add a row in scene_queries.cpp.
 struct SceneQuery {
   std::string_view name;
-  std::string_view doc;                ///< for --help
-  std::string_view output;             ///< help of --output
-  std::string_view method;             ///< of ProximityScene, in C++ and Python; for --help
+  std::string_view doc;                ///< description for --help
+  std::string_view output;             ///< help text of --output
+  std::string_view method;             ///< method of ProximityScene in C++ and Python, for --help
   std::string_view examples;           ///< for --help, one per line
-  std::string_view max_distance = {};  ///< help of --max-distance; empty if it does not take one
+  std::string_view max_distance = {};  ///< help text of --max-distance; empty if the query does not take it
   bool takes_culling = false;
-  bool takes_depth = false;  ///< true if it takes the options of penetration
+  bool takes_depth = false;  ///< true if the query takes the options of penetration
   bool takes_frames = true;
-  bool has_rows = false;  ///< true if the summary has a row for each pair
-  /// Runs the query. nullptr for continuous, whose objects move and whose results are not pairs.
+  bool has_rows = false;  ///< True if the summary has a row for each pair.
+  /// Runs the query. nullptr for `continuous`, because its objects move and its results are not pairs.
   SceneFound (*ask)(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) = nullptr;
 };
 
 [[nodiscard]] std::span<const SceneQuery> scene_queries();
 
-/// Runs `continuous` for two files: a mesh at the start and at the end of a motion. With --to, calls
+/// Runs `continuous` for two files: one mesh at the start and at the end of its motion. If --to is given, calls
 /// run_moving_scene().
 void run_continuous_query(const ProximityArguments& a);
 
-/// Runs `continuous` with --to: each object has a file at the start and one at the end of a motion.
+/// Runs `continuous` with --to. Each object has two files: at the start and at the end of its motion.
 void run_moving_scene(const ProximityArguments& a);
 
-/// A mesh at the start and the end of a motion.
+/// Mesh at the start and at the end of a motion.
 struct MovingMesh {
   TriangleMesh start;
-  std::vector<Vec3d> end;  ///< empty if it rests
+  std::vector<Vec3d> end;  ///< vertices at the end; empty if the mesh rests
 };
 
-/// Reads a moving mesh. It rests if both paths are equal. @throws FileError; FormatError if difference() is not empty.
+/// Reads a moving mesh. It rests if both paths are equal. @throws FileError; FormatError if difference() returns a
+/// text.
 [[nodiscard]] MovingMesh read_moving_mesh(const std::filesystem::path& start, const std::filesystem::path& end,
                                           std::optional<double> weld);
 
-/// Describes how two frames are different meshes: "it has 3 vertices, not 4 like". Empty if only coordinates differ.
+/// If two frames are different meshes, describes the difference: "it has 3 vertices, not 4 like". Returns an empty text
+/// if only coordinates differ.
 [[nodiscard]] std::string difference(const MeshView& start, const MeshView& end);
 
-/// Runs any query except continuous. Each file is an object.
+/// Runs any query except `continuous`. Each file is one object.
 void run_scene_query(const ProximityArguments& a, const SceneQuery& query);
 
-/// Runs any query with --frames. The files are frames of one object, in their order.
+/// Runs any query with --frames. The files are the frames of one object, in the given order.
 void run_frames(const ProximityArguments& a, const SceneQuery& query);
 
-/// Returns the columns that files of pairs have for parts: depth_bound, direction, area, volume, deep_object.
+/// Returns the columns for penetrations in files of pairs: depth_bound, direction, area, volume, deep_object.
 [[nodiscard]] Columns columns_of(std::span<const Penetration> penetrations);
 
 [[nodiscard]] Json penetration_json(const Penetration& part);
 
-/// Returns the names of two objects; "name, itself" if they are the same.
+/// Returns the names of two objects as text. If both are the same object, it is "name, itself".
 [[nodiscard]] std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second);
 
-/// Returns a point as text. Coordinates below rounding errors at a size (mesh units) are printed as 0.
+/// Returns a point as text. `size` is the size of the scene in mesh units. Coordinates within its rounding error are
+/// printed as 0.
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
 
-/// Largest number of rows for pairs, parts or steps in a summary.
+/// Largest number of rows in a summary for pairs, parts or steps.
 inline constexpr std::size_t most_rows = 6;
 
-/// Requires something that objects can meet. @throws UsageError for one object without --self.
+/// Checks that there is something to query. @throws UsageError if there is only one object and --self is not given.
 void check_objects(const ProximityArguments& a);
 
-/// Returns the largest number of pairs to write: --limit, or a number above any count. @throws UsageError.
+/// Returns the largest number of pairs to write: --limit, or a number that no count exceeds. @throws UsageError.
 [[nodiscard]] std::size_t read_limit(const ProximityArguments& a);
 
-/// Returns the text after a count of pairs if not all are written; else nothing.
+/// If not all pairs are written, returns the text that follows their number; otherwise an empty text.
 [[nodiscard]] std::string limit_text(std::size_t pairs, std::size_t limit);
 
-/// Returns the first collisions in the order of files: of a vertex and a face, then of two edges.
+/// Returns the first `limit` collisions in the order of files: first those of a vertex and a face, then those of two
+/// edges.
 [[nodiscard]] ContinuousCollisions first_of(ContinuousCollisions found, std::size_t limit);
 [[nodiscard]] SceneCollisions first_of(SceneCollisions found, std::size_t limit);
 
-/// Returns --limit for --json; null if it is not given.
+/// Returns the value of --limit for --json; null if the option is not given.
 [[nodiscard]] inline Json limit_json(const ProximityArguments& a) {
   return a.limit ? Json(read_limit(a)) : Json(nullptr);
 }
 
-/// Returns the written files for --json.
+/// Returns the paths of the written files for --json.
 [[nodiscard]] inline Json outputs_json(const ProximityArguments& a) {
   return a.output ? Json::array({*a.output}) : Json::array();
 }

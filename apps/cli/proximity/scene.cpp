@@ -30,20 +30,21 @@ void check(const ProximityArguments& a) {
   if (a.output) check_extension("--output", *a.output, file_extensions(FileContent::pairs, FileAccess::write));
 }
 
-/// The objects of a scene, the query and its results.
+/// Objects of a scene, the query and its results.
 struct Answer {
   std::vector<TriangleMesh> meshes;
   SceneQuestion asked;
   ProximityPairs found;
-  std::vector<Penetration> parts;  ///< for `penetration`, one for each pair of `found`
-  std::string_view kind;           ///< of the pairs
-  std::vector<std::string> names;  ///< of the objects
+  std::vector<Penetration> parts;  ///< for penetrations: one for each pair of `found`
+  std::string_view kind;           ///< name of the kind of pairs
+  std::vector<std::string> names;  ///< names of the objects
   PhaseSummary spent;
   int threads = 0;
   std::size_t limit = 0;
 
   [[nodiscard]] std::vector<MeshView> views() const { return {meshes.begin(), meshes.end()}; }
-  /// Returns the closest pair, the first one of equally close pairs; nullptr if no pair was found.
+  /// Returns the closest pair. If several are equally close, it is the first one. Returns nullptr if there are no
+  /// pairs.
   [[nodiscard]] const PrimitivePair* closest() const {
     const auto& pairs = found.pairs;
     const auto first = std::min_element(pairs.begin(), pairs.end(), [](const PrimitivePair& p, const PrimitivePair& q) {
@@ -134,7 +135,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"outputs", outputs_json(a)}});
 }
 
-/// Returns the largest magnitude of a coordinate, mesh units.
+/// Returns the largest magnitude of all coordinates, mesh units.
 double largest(const std::vector<TriangleMesh>& meshes) {
   double out = 0;
   for (const TriangleMesh& mesh : meshes) {
@@ -155,7 +156,7 @@ std::string distance_text(const PrimitivePair& pair, double size) {
 }
 
 std::string penetration_text(const Penetration& part, double size) {
-  // The direction is the difference of two rounded points, divided by their distance.
+  // Error of the direction: it is the difference of two rounded points, divided by their distance.
   const double blur = std::clamp(size / part.depth, 1.0, 1e6);
   return "depth " + rounded_text(part.depth) + " to " + rounded_text(part.depth_bound) + ", deepest point " +
          point_text(part.deep_point, size) + ", direction " + point_text(part.direction, blur) + "; volume " +
@@ -166,7 +167,7 @@ std::string object_text(const Answer& answer, const PrimitivePair& pair) {
   return objects_text(answer.names, pair.first_object, pair.second_object);
 }
 
-/// Adds a row for each common part of two objects.
+/// Adds a row for each region that two objects have in common.
 void add_penetrations(const Answer& answer, TextTable& table) {
   const double size = largest(answer.meshes);
   for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Keeps at most `left` first entries, and subtracts their number from `left`.
+/// Keeps at most the first `left` entries, and subtracts the number kept from `left`.
 template <class T>
 void cut(std::vector<T>& entries, std::size_t& left) {
   if (entries.size() > left) entries.resize(left);
@@ -50,7 +50,7 @@ std::size_t read_limit(const ProximityArguments& a) {
 }
 
 std::string limit_text(std::size_t pairs, std::size_t limit) {
-  return pairs > limit ? "; only the first " + count_text(limit) + " were written (--limit)" : "";
+  return pairs > limit ? "; only the first " + count_text(limit) + " pairs were written (--limit)" : "";
 }
 
 ContinuousCollisions first_of(ContinuousCollisions found, std::size_t limit) {

@@ -79,7 +79,7 @@ void run(const Arguments& a) {
 void add_clean_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command = line.app.add_subcommand(
-      "clean", "Remove needles and unnecessary vertices from a closed mesh, within a guaranteed tolerance");
+      "clean", "Orient a closed mesh, and remove its needles and unnecessary vertices within a guaranteed tolerance");
   command.add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read)).required();
   command.add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::both))
       .required()

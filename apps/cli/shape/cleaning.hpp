@@ -10,13 +10,13 @@
 
 namespace blum::cli {
 
-/// Adds the report to a table.
+/// Adds the report of cleaning to a table.
 void add_cleaning(const CleanReport& done, double tolerance, TextTable& table);
 
 /// Returns the report as JSON.
 [[nodiscard]] Json cleaning_json(const CleanReport& done, double tolerance);
 
-/// Adds a warning if a file of single precision (.stl) rounds the vertices of the checked mesh.
+/// Adds a warning if the file's format has single precision (.stl), so that it rounds the vertices of the checked mesh.
 void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh, std::vector<Warning>& warnings);
 
 }  // namespace blum::cli

@@ -21,7 +21,8 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Returns "read, written", "read", "written", or the extensions that are written.
+/// Returns "read, written", "read" or "written". If only some extensions are written, returns for example "read; .ply
+/// written".
 std::string access_text(const FileFormat& format) {
   if (format.written.empty()) return "read";
   if (format.extensions.empty()) return "written";

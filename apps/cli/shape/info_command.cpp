@@ -42,10 +42,11 @@ constexpr const char* examples = R"(Examples:
   blum info bunny.vtp                              a medial axis
   blum info bunny.vtp --graph bunny.graphml        also write its sheets, seams, curves, junctions)";
 
-constexpr std::size_t contact_limit = 100000;  // largest number that the search returns
-constexpr std::size_t pair_limit = 20;         // shown in JSON
-constexpr std::size_t failure_limit = 10;      // shown as text for a model
-constexpr std::size_t label_limit = 20;        // shown in detail; each takes a pass over the image
+constexpr std::size_t contact_limit = 100000;  // largest number of contacts that the search returns
+constexpr std::size_t pair_limit = 20;         // largest number of pairs in the JSON
+constexpr std::size_t failure_limit = 10;      // largest number of failures in the text, for a model
+// Largest number of labels with details; each needs a pass over the image.
+constexpr std::size_t label_limit = 20;
 
 struct Arguments {
   std::string input;
@@ -62,12 +63,12 @@ const char* yes_no(bool value) {
 
 // ---- Meshes ----
 
-// topology() and find_self_intersections() describe the mesh as it is. Solid::of() calls both, but repairs the mesh
-// first and copies the bodies. It reports neither boundaries nor crossings. For a million triangles it would add 1.75 s
-// of processor time to the 1.35 s of `blum info`. So it runs only if the Betti numbers are unknown and a repair may
-// work.
+// topology() and find_self_intersections() describe the mesh as it is. Solid::of() calls both, but first repairs the
+// mesh and copies its bodies. It does not report boundaries or crossings. For a million triangles it would add 1.75 s
+// to the 1.35 s of processor time of `blum info`. So it runs only if the Betti numbers are still unknown and a repair
+// may help.
 
-/// Returns the repaired solid of a mesh without boundary, if the mesh itself does not bound a solid.
+/// If a mesh without boundary does not bound a solid, returns the solid of the repaired mesh, if there is one.
 std::optional<Solid> repaired_solid(const MeshView& mesh, const Topology& t, const SelfIntersections& contacts,
                                     const Context& context) {
   const bool is_solid = t.betti && contacts.pairs.empty();
@@ -83,7 +84,7 @@ Json repaired_json(const std::optional<Solid>& solid) {
           {"resolved", solid->resolved() ? to_json(*solid->resolved()) : Json(nullptr)}};
 }
 
-/// Orientation, volume and genus of a mesh without a solid are null.
+/// If the mesh does not bound a solid, its orientation, volume and genus are null.
 Json topology_json(const Topology& t, const SelfIntersections& contacts) {
   Json json = to_json(t);
   const bool whole = t.closed && t.oriented;
@@ -154,7 +155,7 @@ std::string cells_text(const Topology& t) {
   return text + "; " + plural(t.pieces, "component", "components");
 }
 
-/// Lists the defects of a mesh: everything that a clean closed surface does not have.
+/// Lists the defects of a mesh: all properties that a clean closed surface does not have.
 std::string defects_text(const Topology& t, const SelfIntersections& contacts) {
   std::string text;
   const auto add = [&](std::uint64_t count, const char* one, const char* many) {
@@ -208,7 +209,7 @@ TextTable topology_table(const fs::path& path, const MeshFile& file, const Topol
   return table;
 }
 
-/// Makes the cellular model of the solid that a mesh bounds. Returns its JSON, and adds its lines.
+/// Builds the cellular model of the solid that a mesh bounds. Adds its rows to the table, and returns its JSON.
 Json add_model(const Arguments& a, const MeshView& mesh, const Context& context, TextTable& table) {
   const Solid solid = Solid::of(mesh, context);
   const CellularModel model = solid.model(a.model_options.read(), context);
@@ -234,7 +235,7 @@ Json add_model(const Arguments& a, const MeshView& mesh, const Context& context,
                       vector_text(failure.high) +
                       (failure.obstacle == ModelObstacle::slanted_needle
                            ? ": " + count_text(static_cast<std::uint64_t>(failure.cuts)) + " splits would resolve it"
-                           : ": another --shift may pass"));
+                           : ": another --shift may avoid it"));
   }
   if (facts.failures.size() > failure_limit) {
     table.add("", "and at " + count_text(facts.failures.size() - failure_limit) + " more places");
@@ -268,11 +269,12 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
 // ---- Images ----
 
 std::string labels_text(const ImageValues& values) {
-  if (!values.distinct) return "too many, or values outside the range of labels (at most 2^63 - 1); use --threshold";
+  if (!values.distinct)
+    return "too many values for labels, or values outside the range of labels (at most 2^63 - 1); use --threshold";
   return plural(*values.distinct, "value", "values");
 }
 
-/// Adds a line for each label, and one for the labels that are not shown.
+/// Adds a row for each label, and one row for all labels that are left out.
 void add_labels(TextTable& table, const ImageValues& values) {
   table.add("labels", labels_text(values));
   for (const LabelFacts& facts : values.labels) {

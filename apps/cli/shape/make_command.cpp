@@ -38,11 +38,11 @@ struct Arguments {
   std::string shape;
   std::string output;
   bool list = false;
-  std::vector<std::pair<std::string, std::string>> parameters;  ///< name without dashes, value as text
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< (name without dashes, value as text)
   ReportOptions report;
 };
 
-/// Returns the name of a shape in the catalog: torus_knot for `torus-knot` and `Torus_Knot`.
+/// Returns the catalogue's name of a shape: torus_knot for `torus-knot` and `Torus_Knot`.
 std::string plain_name(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(), [](char c) {
     if (c == '-') return '_';
@@ -51,13 +51,14 @@ std::string plain_name(std::string name) {
   return name;
 }
 
-/// Returns the option of a parameter: --ring-radius for `ring_radius`.
+/// Returns the option for a parameter: --ring-radius for `ring_radius`.
 std::string option_name(std::string name) {
   std::replace(name.begin(), name.end(), '_', '-');
   return "--" + name;
 }
 
-/// Removes `--name value` and `--name=value` from the arguments, unless they are the command's own options.
+/// Removes `--name value` and `--name=value` from the arguments and returns them, except for options of the command
+/// itself.
 std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std::string>& arguments,
                                                                  const Command& command) {
   std::vector<std::pair<std::string, std::string>> parameters;
@@ -82,16 +83,16 @@ std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std
   return parameters;
 }
 
-/// A shape of the catalog of meshes or of images.
+/// Shape from the catalogue of meshes or that of images.
 struct Recipe {
   std::string name;
   std::string description;
   std::vector<Parameter> parameters;
   const ShapeInfo* mesh = nullptr;
-  const ImageInfo* image = nullptr;  ///< exactly one of the two is set
+  const ImageInfo* image = nullptr;  ///< exactly one of these two pointers is set
 };
 
-/// Every mesh has two further parameters for noise.
+/// Names of two additional parameters that every mesh has: they add noise.
 constexpr const char* noise_name = "noise";
 constexpr const char* noise_seed_name = "noise_seed";
 std::vector<Parameter> noise_parameters() {
@@ -111,7 +112,7 @@ std::vector<Recipe> recipes() {
   return all;
 }
 
-/// Finds a shape by name. The suffix of images may be omitted: `ball` for `ball_image`. @throws UsageError.
+/// Finds a shape by its name. The suffix `_image` may be omitted: `ball` finds `ball_image`. @throws UsageError.
 Recipe find(const std::string& given) {
   const std::string name = plain_name(given);
   std::vector<std::string> names;

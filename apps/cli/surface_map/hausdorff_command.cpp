@@ -44,7 +44,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// Results for one direction.
+/// Results for one direction (from one surface to the other).
 struct Side {
   DirectedHausdorff distance;
   std::optional<SurfaceDeviation> deviation;
@@ -63,11 +63,11 @@ std::string interval_text(double lower, double upper) {
   if (rounded_text(lower) == rounded_text(upper)) {
     return rounded_text(upper) + " (interval " + rounded_text(upper - lower) + " wide)";
   }
-  return rounded_text(lower) + " to " + rounded_text(upper);
+  return "between " + rounded_text(lower) + " and " + rounded_text(upper);
 }
 
 void add_side(TextTable& table, const std::string& label, const Side& side) {
-  table.add(label, interval_text(side.distance.lower, side.distance.upper));
+  table.add(label, "largest distance " + interval_text(side.distance.lower, side.distance.upper));
   if (!side.deviation) return;
   if (side.deviation->sign_rule != SignRule::none) {
     table.detail("",
@@ -81,7 +81,7 @@ void add_side(TextTable& table, const std::string& label, const Side& side) {
                        rounded_text(by_area.percentile_error) + ")");
 }
 
-/// Returns the witnesses as one segment for each direction.
+/// Returns the witnesses of the distances: one segment for each direction.
 Complex witnesses(const std::vector<Side>& sides) {
   Complex out;
   for (const Side& side : sides) {
@@ -121,7 +121,7 @@ TriangleMesh read_surface(const fs::path& path, std::optional<double> weld) {
   return out;
 }
 
-/// Returns the number of triangles of a mesh, or of points of a cloud.
+/// Returns the number of triangles of a mesh, or the number of points of a cloud, as text.
 std::string size_text(const MeshView& mesh) {
   if (mesh.triangles.empty() && !mesh.points.empty()) return plural(mesh.points.size(), "point", "points");
   return plural(mesh.triangles.size(), "triangle", "triangles");
@@ -195,8 +195,8 @@ void run(const Arguments& a) {
   const std::vector<std::string> names = distinct_names({paths[0].string(), paths[1].string()});
   const std::string there = names[0] + " to " + names[1];
   table.add("distance", interval_text(both.lower, both.upper) + (a.one_sided ? ", from " + there : ""));
-  table.add("between", vector_text(both.points[0]) + " of " + names[0] + " and " + vector_text(both.points[1]) +
-                           " of " + names[1]);
+  table.add("points", vector_text(both.points[0]) + " of " + names[0] + " and " + vector_text(both.points[1]) + " of " +
+                          names[1]);
   add_side(table, there, sides[0]);
   if (!a.one_sided) add_side(table, names[1] + " to " + names[0], sides[1]);
   for (std::size_t k = 0; k < sides.size() && !a.only_distance; ++k) {
@@ -213,13 +213,14 @@ void run(const Arguments& a) {
 void add_hausdorff_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   const Command command = line.app.add_subcommand(
-      "hausdorff", "Guaranteed interval of the Hausdorff distance of two meshes, with means by area");
+      "hausdorff", "Guaranteed interval of the Hausdorff distance of two meshes, and means weighted by area");
   const std::string help = extensions_help({FileContent::mesh}, FileAccess::read) + ", or points (" +
                            join_words(cloud_extensions(), "or") + ")";
   command.add_option("A", a->a, help).required();
   command.add_option("B", a->b, help).required();
   add_text_option(command, "-o,--output", a->output, "FILE",
-                  "Complex with the witnesses, one segment for each direction: for example .vtp or .ply");
+                  "Write the witnesses: for each direction a segment from a point that is furthest away to its closest "
+                  "point (.vtp, .ply, ...)");
   command.add_flag("--one-sided", a->one_sided, "Only the directed distance from A to B");
   command.add_flag("--only-distance", a->only_distance, "Omit means and percentiles by area");
   a->options.add_to(command);

@@ -33,7 +33,7 @@ constexpr const char* examples = R"(Examples:
   blum surface-map part.stl housing.stl -o clearance.glb --units mm      clearance between parts, as a texture
   blum surface-map scan.ply design.stl -o deviation.png --sign auto      deviation, negative inside the design
   blum surface-map part.stl -o thickness.vtp --thickness ray             thickness of a solid, straight inwards
-  blum surface-map cloth.obj -o close.npz --self --max-distance 2        to triangles without a common vertex)";
+  blum surface-map cloth.obj -o close.npz --self --max-distance 2        distances to triangles that share no vertex)";
 
 struct Arguments {
   std::string target;
@@ -44,7 +44,7 @@ struct Arguments {
   ReportOptions report;
 };
 
-/// The checked options.
+/// Options after all checks.
 struct Request {
   SurfaceMapOptions map;
   std::optional<ThicknessOptions> thickness;
@@ -95,10 +95,10 @@ Request read(const Arguments& a) {
   return out;
 }
 
-/// The other meshes, joined into one.
+/// All other meshes, joined into one mesh.
 struct Joined {
   TriangleMesh mesh;
-  std::vector<std::size_t> ends;  ///< ends of their vertex ranges
+  std::vector<std::size_t> ends;  ///< for each of these meshes: end of its range of vertices
 
   [[nodiscard]] std::size_t object_of(std::size_t vertex) const {
     return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), vertex) - ends.begin());
@@ -111,7 +111,7 @@ SurfaceMap map_of(const Request& asked, const MeshView& target, const Joined& ot
   return surface_distance_map(target, others.mesh, asked.map, context);
 }
 
-/// Returns a texel as JSON.
+/// Returns the position of a texel, and what was found there, as JSON.
 Json place_json(const SurfaceMap& map, const MeshView& target, std::size_t texel) {
   const Vec3d point = surface_point(target, *map.atlas, texel);
   const Vec3f way = map.vector[texel];
@@ -130,7 +130,7 @@ std::optional<std::size_t> furthest_texel(const SurfaceMap& map) {
   return best;
 }
 
-/// Returns for example "0.25 at (1, 2, 3)".
+/// Returns a text like "0.25 at (1, 2, 3)".
 std::string quantity_text(SurfaceQuantity quantity) {
   switch (quantity) {
     case SurfaceQuantity::distance:
@@ -150,10 +150,10 @@ std::string place_text(const Json& place) {
   return rounded_text(place["distance"].number()) + " at " + vector_text({p[0].number(), p[1].number(), p[2].number()});
 }
 
-/// Facts of a map, for JSON and for the table.
+/// Facts about a map, for the JSON and the table.
 struct Facts {
   std::size_t texels = 0;
-  std::size_t without = 0;  ///< texels without a value
+  std::size_t without = 0;  ///< number of texels without a value
   double largest_error = 0;
   Json smallest = nullptr, largest = nullptr;
 
@@ -262,29 +262,31 @@ void add_surface_map_command(const CommandLine& line) {
   const Command command = line.app.add_subcommand(
       "surface-map", "Texture of distances over a surface: to other meshes, to itself, or the thickness of a solid");
   const std::string help = extensions_help({FileContent::mesh}, FileAccess::read);
-  command.add_option("TARGET", a->target, help).required();
-  command.add_option("OTHER", a->others, "Meshes to which distances are measured");
+  command.add_option("TARGET", a->target, "Mesh whose surface gets the values: " + help).required();
+  command.add_option("OTHER", a->others,
+                     "Meshes to which distances are measured, for example the design of a scanned TARGET");
   command
       .add_option("-o,--output", a->outputs,
-                  ".npz: all data; .png: texture with a colour bar; .glb: for viewers; .ply, .vtp: values of "
-                  "vertices and triangles. May be repeated")
+                  ".npz: all data; .glb: coloured mesh; .png: texture, triangle by triangle, and a colour bar; "
+                  ".ply, .vtp: values of vertices and triangles. May be repeated")
       .required()
       .type_name("FILE");
   command.add_flag("--self", a->self, "Distances to other triangles of TARGET without a common vertex");
-  add_text_option(
-      command, "--thickness", a->thickness, "KIND",
-      "Thickness of TARGET: ray (straight inwards to the far side) or ball (diameter of the largest inner ball "
-      "that touches)");
+  add_text_option(command, "--thickness", a->thickness, "KIND",
+                  "Thickness of TARGET at each point: ray (straight inwards to the far side) or ball (diameter of the "
+                  "largest ball inside that touches the point)");
   add_text_option(command, "--separation", a->separation, "DEGREES",
-                  "For balls: ignore triangles whose normals differ by less than this, 0 to 180 degrees (default 30)");
+                  "With --thickness ball: ignore triangles whose normal differs from the point's by less than DEGREES, "
+                  "0 to 180 (default 30)");
   add_text_option(command, "--texel", a->texel, "H",
-                  "Side of a texel on the surface, in mesh units (default: about a million texels)");
+                  "Side of a texel on the surface, in mesh units (default: a side that gives about a million texels)");
   add_text_option(command, "--max-distance", a->max_distance, "D",
                   "Largest distance that is searched, in mesh units (default: no limit)");
   add_text_option(command, "--sign", a->sign, "SIGN",
                   "Sign rule: auto, normals, winding or none (default none); negative inside OTHER");
   add_text_option(command, "--range", a->range, "LOW,HIGH",
-                  "Range of the colours (default: the values of the map; for distances also 0)");
+                  "Distances at the two ends of the colour scale (default: smallest and largest value of the map; for "
+                  "distances, 0 is included)");
   command.add_option("--units", a->units, "Unit of the mesh, for example mm, for the colour bar and metadata")
       .type_name("TEXT");
   add_weld_option(command, a->weld);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float always = std::numeric_limits<float>::infinity();
 
-/// Adds `count` rows of numbers, with get(row, component) for each number.
+/// Adds `count` rows of numbers. get(row, component) returns each number.
 template <class T, class Get>
 Json column(SceneBlob& blob, std::size_t count, std::size_t components, Get get) {
   std::vector<T> values;
@@ -50,7 +50,7 @@ Json add_vertices(SceneBlob& blob, const MedialView& axis, const MedialFile& fil
   return json;
 }
 
-/// Adds the cells of an axis. @param levels  only for an axis of all angles.
+/// Adds the cells of an axis to a scene. @param levels set only for an axis of all angles.
 void add_cells(SceneBlob& blob, const MedialView& axis, const std::optional<MedialLevels>& levels, Json& json) {
   const std::size_t edges = axis.edges.size();
   const std::size_t triangles = axis.triangles.size();
@@ -110,7 +110,8 @@ Json axis_item(SceneBlob& blob, const std::filesystem::path& path, const Context
   const BettiNumbers betti = homology(file.complex.view(), context);
   item["betti"] = to_json(betti);
   add_facts(item, read, betti);
-  // In a file with the axes of all angles, `complex` is the axis of the least angle, with coincident vertices merged.
+  // In a file with the axes of all angles, `complex` is the axis of the smallest angle, with coincident vertices
+  // merged.
   const Complex& shown = file.nested ? *file.nested : file.complex;
   const MedialView axis(shown);
   item["vertices"] = add_vertices(blob, axis, file);

@@ -18,21 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_vertices = 40'000'000;  // of all frames: 480 MB, also in the browser's memory
+// Vertices of all frames together: 480 MB, in the browser's memory, too.
+constexpr std::size_t most_vertices = 40'000'000;
 
 struct Frame {
   std::string name;
   std::vector<Vec3d> vertices;
-  std::size_t mesh = 0;  ///< index of its triangles in Frames::meshes
+  std::size_t mesh = 0;  ///< index of the frame's triangles in Frames::meshes
 };
 
 struct Frames {
   std::vector<Frame> frames;
   std::vector<std::vector<Triangle>> meshes;
   Box3 box;
-  std::size_t vertices = 0;   ///< of all frames
-  std::size_t triangles = 0;  ///< of all meshes
-  std::size_t left_out = 0;   ///< free segments and points
+  std::size_t vertices = 0;   ///< number of vertices in all frames
+  std::size_t triangles = 0;  ///< number of triangles in all meshes
+  std::size_t left_out = 0;   ///< number of free segments and points, which are not shown
 };
 
 TriangleMesh read_frame(const fs::path& path, std::optional<double> weld) {
@@ -75,7 +76,7 @@ void add_frame(const fs::path& path, std::optional<double> weld, Frames& all) {
   all.frames.push_back({path.filename().string(), std::move(mesh.vertices), all.meshes.size() - 1});
 }
 
-/// Returns "1,234", or "12 to 1,234" if frames differ.
+/// Returns a number like "1,234", or a range like "12 to 1,234" if frames differ.
 template <class CountOf>
 std::string counts_text(const Frames& all, CountOf count_of) {
   std::size_t least = count_of(all.frames.front());
@@ -126,7 +127,8 @@ Json item_of(SceneBlob& blob, Frames& all, const FramePairs& pairs) {
   for (const std::vector<Triangle>& triangles : all.meshes) meshes.push_back(add_cells(blob, triangles));
   Json& frames = item["frames"] = Json::array();
   for (Frame& frame : all.frames) {
-    const std::vector<Vec3d> vertices = std::move(frame.vertices);  // frees them after this frame
+    // Moved here, so that the memory is freed after this frame.
+    const std::vector<Vec3d> vertices = std::move(frame.vertices);
     frames.push_back({{"name", frame.name}, {"mesh", frame.mesh}, {"positions", add_places(blob, vertices, origin)}});
   }
   if (!pairs.kinds.empty()) item["pairs"] = pairs_json(blob, pairs, origin);
@@ -138,7 +140,7 @@ Json item_of(SceneBlob& blob, Frames& all, const FramePairs& pairs) {
 
 Scene make_frames_scene(const std::vector<fs::path>& frames, const std::optional<fs::path>& pairs,
                         std::optional<double> weld, bool compresses, const Context& context) {
-  // Read first, because errors in it are found fastest.
+  // Pairs are read first, because their errors are found fastest.
   const FramePairs close = pairs ? read_frame_pairs(*pairs, frames.size()) : FramePairs{};
   Frames all;
   for (const fs::path& path : frames) {

@@ -12,9 +12,9 @@
 namespace blum::cli {
 namespace {
 
-/// A texel takes 24 bytes in the scene, 28 in the browser, and a few more while areas are summed.
+/// A texel needs 24 bytes in the scene, 28 in the browser, and a few more while areas are summed.
 constexpr std::size_t most_texels = std::size_t{1} << 25U;
-/// Triangles do not share corners, because each one has a chart.
+/// Triangles do not share corners in the scene, because each triangle has its own chart.
 constexpr std::size_t most_charts = 5'000'000;
 
 void check_size(const SurfaceMapFile& file, const std::filesystem::path& path) {

@@ -7,8 +7,8 @@
 
 namespace blum::cli {
 
-/// Reads a surface map and adds it to a scene, without its values at vertices and its means.
-/// @throws FileError (also if the map is too large for browsers), FormatError.
+/// Reads a surface map and adds it to a scene. The map's values at vertices and its means are left out.
+/// @throws FileError, also if the map is too large for browsers; FormatError.
 [[nodiscard]] Json map_item(SceneBlob& blob, const std::filesystem::path& path);
 
 }  // namespace blum::cli

@@ -20,7 +20,7 @@ namespace {
 
 using Read = nlohmann::ordered_json;
 
-constexpr double farthest = 1e30;  // largest coordinate that browsers draw
+constexpr double farthest = 1e30;  // largest magnitude of a coordinate that browsers can draw
 
 std::string text_of(const std::filesystem::path& path) {
   std::error_code error;
@@ -29,7 +29,7 @@ std::string text_of(const std::filesystem::path& path) {
   if (error || !file || std::filesystem::is_directory(path, error)) {
     throw FileError("cannot read '" + path.string() + "': not found, not a regular file, or not readable");
   }
-  constexpr double bytes_per_character = 6;  // memory for parsed numbers and names
+  constexpr double bytes_per_character = 6;  // estimate of the memory for parsed numbers and names
   check_memory(bytes_per_character * static_cast<double>(size), "reading '" + path.string() + "'",
                "give a file with fewer frames");
   std::string text(std::istreambuf_iterator<char>(file), {});
@@ -37,7 +37,7 @@ std::string text_of(const std::filesystem::path& path) {
   return text;
 }
 
-/// A value of the file with its path: "frames[3].pairs[2].kind".
+/// Value in the file, with its path for messages: "frames[3].pairs[2].kind".
 class Value {
  public:
   Value(const Read& json, const std::string& file, std::string place)
@@ -49,7 +49,7 @@ class Value {
   void check_object() const {
     if (!json_.is_object()) fail("must be an object");
   }
-  /// Returns nullptr if the object has no such member.
+  /// Returns the member with this name; nullptr if the object has none.
   [[nodiscard]] const Read* find(const char* name) const {
     const auto found = json_.find(name);
     return found == json_.end() ? nullptr : &*found;
@@ -133,7 +133,7 @@ void add_pairs(const Value& frame, FramePairs& out) {
   for (std::size_t i = 0; i < count; ++i) add_pair(pairs[i], out);
 }
 
-using StageSeconds = std::vector<std::pair<std::size_t, double>>;  ///< numbers of stages, and their seconds
+using StageSeconds = std::vector<std::pair<std::size_t, double>>;  ///< (index of a stage, its seconds)
 
 StageSeconds stages_of(const Value& frame, std::vector<std::string>& names) {
   StageSeconds out;
@@ -162,11 +162,11 @@ Read parsed(const std::filesystem::path& path) {
   try {
     return Read::parse(text_of(path));
   } catch (const Read::parse_error& error) {
-    // Skips the library's own mark: "[json.exception.parse_error.101] parse error at line 1, ..."
+    // Drops the library's prefix from messages like "[json.exception.parse_error.101] parse error at line 1, ..."
     const std::string text = error.what();
     const std::size_t mark = text.find("] ");
     throw FormatError("'" + path.string() + "' is not JSON: " + text.substr(mark == std::string::npos ? 0 : mark + 2));
-  } catch (const Read::exception& error) {  // numbers beyond double
+  } catch (const Read::exception& error) {  // thrown for numbers beyond the range of double
     throw FormatError("'" + path.string() + "' cannot be read: " + error.what());
   }
 }

@@ -14,14 +14,15 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "scenes are little endian");
 
 constexpr std::size_t alignment = 8;
-constexpr std::size_t worth_deflating = 256;  // bytes
+constexpr std::size_t worth_deflating = 256;  // bytes; smaller arrays are not compressed
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 std::size_t aligned(std::size_t size) {
   return (size + alignment - 1) / alignment * alignment;
 }
 
-/// Encodes differences, byte by byte. Neighbours differ little, so their bytes of one rank compress well.
+/// Encodes numbers as differences, and groups the bytes of equal rank. Neighbouring numbers differ little, so such
+/// bytes compress well.
 std::vector<std::byte> delta(std::span<const std::byte> bytes) {
   const std::size_t count = bytes.size() / 4;
   std::vector<std::byte> out(bytes.size());
@@ -36,7 +37,7 @@ std::vector<std::byte> delta(std::span<const std::byte> bytes) {
   return out;
 }
 
-/// Compresses bytes with zlib at its fastest level. Other levels take several times as long for a few per cent.
+/// Compresses bytes with zlib at its fastest level. Other levels need several times as long to save a few per cent.
 std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
   z_stream stream = {};
   if (deflateInit(&stream, Z_BEST_SPEED) != Z_OK) throw OutOfMemory("no memory to compress the scene");
@@ -47,7 +48,7 @@ std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
   while (status == Z_OK) {
     const std::size_t in_now = std::min(most_at_once, bytes.size() - read);
     const std::size_t out_now = std::min(most_at_once, out.size() - written);
-    // zlib only reads through this pointer.
+    // The cast is safe, because zlib only reads through this pointer.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data() + read));  // NOLINT(*-const-cast)
     stream.avail_in = static_cast<uInt>(in_now);
     stream.next_out = reinterpret_cast<Bytef*>(out.data() + written);

@@ -14,20 +14,21 @@
 
 namespace blum::cli {
 
-/// A header of JSON and arrays of numbers. All numbers are little endian.
+/// Binary form of a scene: a JSON header and arrays of numbers. All numbers are little-endian.
 ///
 /// Bytes 0-7: "BLUMVIEW".
-/// Bytes 8-11: version, 2.
-/// Bytes 12-15: length of the header, a multiple of 8.
-/// Then: the header, and the arrays, each at a multiple of 8 bytes after the header.
+/// Bytes 8-11: format version, which is 2.
+/// Bytes 12-15: length of the header in bytes, a multiple of 8.
+/// Then: the header, and the arrays. Each array starts at a multiple of 8 bytes after the header.
 ///
-/// The header describes an array by "type" (for example "f4"), "count", "offset" (bytes after the header), "bytes" (as
-/// stored) and "coding". Codings are "raw", "deflate" (zlib) and "delta". The coding "delta" stores numbers of 4 bytes
-/// as differences of their bit patterns, compressed by zlib. The first byte of each comes first, then the second and
-/// so on.
+/// The header describes an array by "type" (for example "f4"), "count", "offset" (bytes after the header), "bytes"
+/// (stored size) and "coding". Codings are "raw", "deflate" (zlib) and "delta". The coding "delta" is for numbers of 4
+/// bytes. It stores differences of their bit patterns, compressed by zlib: first the first bytes of all differences,
+/// then the second bytes, and so on.
 class SceneBlob {
  public:
-  /// @param compresses  true to compress arrays, for pages in files. A server on the same machine is faster without.
+  /// @param compresses  true to compress arrays, for pages that are written to files. For a server on the same machine,
+  /// false is faster.
   explicit SceneBlob(bool compresses) : compresses_(compresses) {}
 
   /// Adds an array, and returns its description for the header.
@@ -41,9 +42,9 @@ class SceneBlob {
     return add(std::span<const T>(values));
   }
 
-  /// Returns the first bytes of a scene, including the header.
+  /// Returns the first bytes of a scene, up to the end of the header.
   [[nodiscard]] static std::string head(const Json& header);
-  /// Returns the arrays that follow it, in order. Valid until an array is added.
+  /// Returns the bytes that follow the header: all arrays in order. Valid until another array is added.
   [[nodiscard]] std::vector<std::string_view> arrays() const;
 
  private:
@@ -56,7 +57,7 @@ class SceneBlob {
   Json add_bytes(std::span<const std::byte> bytes, const char* type, std::size_t count, std::size_t width);
 
   bool compresses_;
-  std::vector<std::vector<std::byte>> arrays_;  ///< each padded to a multiple of 8 bytes
+  std::vector<std::vector<std::byte>> arrays_;  ///< each is padded to a multiple of 8 bytes
   std::size_t size_ = 0;
 };
 

@@ -13,7 +13,7 @@
 namespace blum::cli {
 namespace {
 
-/// Adds a table of colours: red, green, blue and opacity, one byte each, as in textures.
+/// Adds a table of colours. Each has one byte for red, green, blue and opacity, as in textures.
 template <class ColorAt>
 Json add_colors(SceneBlob& blob, std::uint32_t count, ColorAt color_at) {
   std::vector<std::uint8_t> bytes;
@@ -25,7 +25,7 @@ Json add_colors(SceneBlob& blob, std::uint32_t count, ColorAt color_at) {
   return blob.add(bytes);
 }
 
-/// Adds the colours of the tool's pictures. Sequential ramps cover 0 to 1, diverging ones -1 to 1.
+/// Adds the colour tables of the tool's pictures. Sequential scales are for 0 to 1, diverging ones for -1 to 1.
 Json colors_json(SceneBlob& blob) {
   constexpr std::uint32_t ramp_colors = 512;
   constexpr std::uint32_t legend_regions = 12;
@@ -61,7 +61,7 @@ Json fact(const char* label, const std::string& text) {
   return Json::array({label, text});
 }
 
-/// Browsers draw in single precision.
+/// Browsers draw in single precision, so the extent is limited.
 void check_extent(const Json& item, std::string_view what) {
   if (item["bounds"].is_null()) return;
   double extent = 0;
@@ -75,10 +75,10 @@ void check_extent(const Json& item, std::string_view what) {
   constexpr double least = 1e-12;
   constexpr double most = 1e30;
   if ((extent == 0 || extent >= least) && farthest <= most) return;
-  throw FileError(
-      std::string(what) + " cannot be drawn: " +
-      (farthest > most ? "it reaches to " + rounded_text(farthest) : "its longest side is " + rounded_text(extent)) +
-      ", but browsers draw sizes from 1e-12 to 1e30; scale it");
+  throw FileError(std::string(what) + " cannot be drawn: " +
+                  (farthest > most ? "it has coordinates of up to " + rounded_text(farthest)
+                                   : "its longest side is " + rounded_text(extent)) +
+                  ", but browsers draw sizes from 1e-12 to 1e30; scale it");
 }
 
 Json scene_header(SceneBlob& blob, Json items) {

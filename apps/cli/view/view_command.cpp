@@ -55,7 +55,8 @@ void check(const Arguments& a) {
   check_outputs({*a.output}, inputs);
 }
 
-/// Opens a page in the desktop's browser. Without one, the address on the terminal remains.
+/// Opens a page in the desktop's browser. If there is no browser, users can still open the address printed on the
+/// terminal.
 void open_browser(const std::string& url) {
   std::string program = "xdg-open";
   std::string address = url;
@@ -91,7 +92,7 @@ void run(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(0, progress, interrupt);
   std::optional<ViewServer> server;
-  if (!a.output) server.emplace(port.value_or(0));  // before the work, because the port may be taken
+  if (!a.output) server.emplace(port.value_or(0));  // started before the work, because the port may be in use
   const Scene scene = [&] {
     const Unattended reading;
     const std::vector<std::filesystem::path> files(a.inputs.begin(), a.inputs.end());
@@ -121,9 +122,9 @@ void add_view_command(const CommandLine& line) {
       .required();
   add_text_option(command, "-o,--output", a->output, "HTML",
                   "Write the page with its data to a file, instead of serving it");
-  command.add_flag("--frames", a->frames, "The files are meshes, the frames of one moving scene in their order");
+  command.add_flag("--frames", a->frames, "The files are meshes, one for each frame of a moving scene, in their order");
   add_text_option(command, "--pairs", a->pairs, "JSON",
-                  "With --frames: close pairs and durations of each frame (docs/guide/viewer.md)");
+                  "With --frames: file with the close pairs and durations of each frame (docs/guide/viewer.md)");
   add_text_option(command, "--port", a->port, "P", "Port of the server, 0 to 65535 (default 0: a free port)");
   command.add_flag("--open", a->open, "Open the served page in the desktop's browser");
   add_weld_option(command, a->weld);

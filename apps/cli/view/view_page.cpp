@@ -11,19 +11,20 @@
 
 namespace blum::cli {
 
-// Defined in a file that cmake/embed.cmake generates.
+// Variables in a file that cmake/embed.cmake generates.
 extern const unsigned char viewer_page_bytes[];
 extern const std::size_t viewer_page_size;
 
 namespace {
 
-/// Mark in the page that the scene replaces.
+/// Text in the page that is replaced by the scene.
 constexpr std::string_view mark = "<!--scene-->";
 constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-/// Browsers limit texts to half a GiB, so a scene is split into smaller elements. A multiple of 3.
+/// Browsers limit texts to half a GiB, so a scene is divided into smaller elements. The size is a multiple of 3, as
+/// base64 requires.
 constexpr std::size_t most_in_element = std::size_t{48} << 20U;
 
-/// Writes bytes as base64 into elements of the page.
+/// Writes the bytes of a scene as base64 into elements of the page.
 class SceneElements {
  public:
   explicit SceneElements(AtomicFile& file) : file_(file) {}

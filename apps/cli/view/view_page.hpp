@@ -9,13 +9,14 @@
 
 namespace blum::cli {
 
-/// Returns the page that is built into the tool: apps/viewer/dist/viewer.html. It requests the scene from its server.
+/// Returns the page that is built into the tool (apps/viewer/dist/viewer.html). It requests the scene from the server
+/// that sent it.
 [[nodiscard]] std::string_view viewer_page();
 
-/// Returns the page with a title for the scene: "part.stl and 2 more - Blum".
+/// Returns the page with the scene's title, for example "part.stl and 2 more - Blum".
 [[nodiscard]] std::string titled_page(const Scene& scene);
 
-/// Writes the page with the scene inside. @throws FileError.
+/// Writes the page with the scene embedded. @throws FileError.
 void write_page(const std::filesystem::path& path, const Scene& scene);
 
 }  // namespace blum::cli

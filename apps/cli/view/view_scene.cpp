@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Largest number of nodes that a browser can store as one array and show in acceptable time: 512^3.
+/// Largest number of nodes that a browser can store in one array and show in acceptable time: 512^3.
 constexpr std::size_t most_nodes = std::size_t{1} << 27U;
 
 void check_size(std::size_t count, std::size_t most, const char* what, const fs::path& path, const char* advice) {
@@ -79,7 +79,7 @@ Json grid_json(const GridSpec& grid) {
           {"direction", directions}};
 }
 
-/// Returns the smallest and the largest finite number; null if there is none.
+/// Returns the smallest and the largest finite number; null if no number is finite.
 template <class Values>
 Json range_of(const Values& values) {
   double least = std::numeric_limits<double>::infinity();
@@ -106,7 +106,7 @@ Json field_item(SceneBlob& blob, const fs::path& path) {
   item["bounds"] = to_json(bounds(field.grid));
   item["distance"] = blob.add(field.distance.span());
   if (!field.site.empty()) {
-    // Ids have 32 bits; none() is -1.
+    // Ids have 32 bits, and none() is -1 as an int32.
     item["sites"] = blob.add(std::span(reinterpret_cast<const std::int32_t*>(field.site.data()), field.site.size()));
   }
   item["site_ids"] = to_string(field.site_ids);
@@ -122,8 +122,8 @@ Json field_item(SceneBlob& blob, const fs::path& path) {
   return item;
 }
 
-/// Returns true if whole numbers are labels and not measurements: few different values, or mostly equal neighbours
-/// outside of the background.
+/// Returns true if integer values are probably labels, not measurements: there are few different values, or outside of
+/// the background most neighbours are equal.
 template <class T>
 bool are_labels(const std::vector<T>& values, std::int64_t row) {
   if constexpr (!std::is_integral_v<T>) return false;
@@ -142,7 +142,7 @@ bool are_labels(const std::vector<T>& values, std::int64_t row) {
   return 2 * alike > pairs;
 }
 
-/// Rejects numbers that the viewer's doubles cannot represent.
+/// Throws if a number cannot be represented by a double, which the viewer uses.
 template <class T>
 void check_exact(const std::vector<T>& values, const fs::path& path) {
   constexpr std::int64_t most = std::int64_t{1} << 53U;
@@ -179,7 +179,7 @@ Json image_item(SceneBlob& blob, const fs::path& path) {
   return item;
 }
 
-/// Returns true for the sites of a field, OUT.site.nrrd. This file is shown as an image of labels.
+/// Returns true if a file contains the sites of a field (OUT.site.nrrd). It is shown as an image of labels.
 bool is_site_file(const fs::path& path) {
   return file_extension(path) == ".nrrd" && file_extension(path.stem()) == ".site";
 }

@@ -10,16 +10,16 @@
 
 namespace blum::cli {
 
-/// Files for the viewer: one item each, in their order.
+/// Scene for the viewer, made from files. Each file is one item, in the given order.
 struct Scene {
-  Json header;  ///< items, colours, and the numbers of roles
+  Json header;  ///< items, colours, and the numbers that stand for roles
   SceneBlob blob;
-  std::vector<std::string> problems;  ///< messages of files that could not be read
+  std::vector<std::string> problems;  ///< one message for each file that could not be read
 };
 
-/// Reads meshes, images, fields, medial axes and surface maps. A file that cannot be read becomes an item with its
+/// Reads meshes, images, fields, medial axes and surface maps. If a file cannot be read, its item contains the error
 /// message.
-/// @param weld  welding tolerance of meshes; 0 merges equal vertices.
+/// @param weld  welding tolerance of meshes; 0 welds only vertices at equal positions.
 /// @throws Cancelled.
 [[nodiscard]] Scene make_scene(const std::vector<std::filesystem::path>& files, std::optional<double> weld,
                                bool compresses, const Context& context);

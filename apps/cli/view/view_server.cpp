@@ -23,13 +23,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr std::size_t longest_request = 16384;  // bytes, without a body, because bodies are not read
+constexpr std::size_t longest_request = 16384;  // in bytes; only the head, because bodies are not read
 constexpr std::size_t most_connections = 64;
-constexpr auto patience = 10s;                                 // time for a request to arrive
-constexpr auto reading_patience = 30s;                         // time for the client to read a part of its answer
-constexpr std::size_t most_at_a_time = std::size_t{4} << 20U;  // bytes for one connection before it is the others' turn
-constexpr int poll_milliseconds = 200;                         // longest delay of Ctrl-C
-constexpr auto rest = 500ms;                                   // pause if no descriptor is left
+constexpr auto patience = 10s;  // time within which a request must arrive
+// Time within which the client must read a part of its answer.
+constexpr auto reading_patience = 30s;
+// Bytes sent on one connection before the other connections are served.
+constexpr std::size_t most_at_a_time = std::size_t{4} << 20U;
+constexpr int poll_milliseconds = 200;  // longest delay until Ctrl-C takes effect
+constexpr auto rest = 500ms;            // pause if the system has no descriptor left
 
 constexpr std::string_view policy =
     "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
@@ -53,11 +55,11 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// The parts of a request that the server uses.
+/// Parts of a request that the server uses.
 struct Request {
   std::string method;
-  std::string path;  ///< without a query after a question mark
-  std::string host;  ///< empty if missing or given more than once
+  std::string path;  ///< without the query after a question mark
+  std::string host;  ///< empty if the header is missing or given more than once
 };
 
 Request parse(std::string_view text) {
@@ -93,15 +95,16 @@ std::string head(std::string_view status, std::string_view type, std::size_t len
          std::string(policy) + "\r\n";
 }
 
-/// An incoming request, then its outgoing answer. The socket never blocks.
+/// Connection: first receives a request, then sends the answer. The socket never blocks.
 struct Connection {
   int socket;
-  Clock::time_point until;  ///< time at which it is closed if nothing is transferred
+  Clock::time_point until;  ///< if nothing is transferred until then, the connection is closed
   std::string received = {};
   std::string head = {};                      ///< head of the answer
-  std::vector<std::string_view> answer = {};  ///< parts after the head
-  std::size_t sent = 0;                       ///< bytes sent of the head, or of a part of the answer
-  std::size_t parts_sent = 0;                 ///< number of parts of the answer that were sent
+  std::vector<std::string_view> answer = {};  ///< parts of the answer after the head
+  /// Number of bytes sent of the current part (the head, or a part of the answer).
+  std::size_t sent = 0;
+  std::size_t parts_sent = 0;  ///< number of parts of the answer that were sent completely
 
   [[nodiscard]] bool is_answered() const { return !head.empty() || parts_sent < answer.size(); }
 };
@@ -120,7 +123,7 @@ class Session {
   Session& operator=(const Session&) = delete;
   ~Session() = default;
 
-  /// Reads or sends as much as possible now. Returns true if the connection is finished.
+  /// Receives or sends as much as possible without waiting. Returns true if the connection is finished.
   bool advance(Connection& connection) const {
     if (connection.is_answered()) return send_some(connection);
     std::string part(4096, '\0');
@@ -164,7 +167,7 @@ class Session {
     if (is_head) connection.answer.clear();
   }
 
-  /// Sends a part of the answer. Returns true if all is sent, or the client has closed.
+  /// Sends a part of the answer. Returns true if everything is sent, or if the client has closed the connection.
   static bool send_some(Connection& connection) {
     for (std::size_t budget = most_at_a_time; connection.is_answered() && budget > 0;) {
       const bool is_head = !connection.head.empty();
@@ -196,8 +199,8 @@ class Session {
   std::size_t scene_size_ = 0;
 };
 
-/// Closes a connection after reading the rest of the request. Unread bytes would reset it before the client has read
-/// its answer.
+/// Closes a connection after reading the rest of the request. Otherwise unread bytes would reset the connection before
+/// the client has read its answer.
 void close_connection(int socket) {
   shutdown(socket, SHUT_WR);
   std::string unread(longest_request, '\0');
@@ -206,7 +209,7 @@ void close_connection(int socket) {
   close(socket);
 }
 
-/// Closes one connection: first those that send no request, then those that read no answer.
+/// Closes one connection, to make room for another. Prefers those that send no request, then those that read no answer.
 void make_room(std::vector<Connection>& connections) {
   const auto is_worse = [](const Connection& a, const Connection& b) {
     return a.is_answered() != b.is_answered() ? b.is_answered() : a.until < b.until;
@@ -216,7 +219,7 @@ void make_room(std::vector<Connection>& connections) {
   connections.erase(worst);
 }
 
-/// Accepts a connection. Returns false if the system has no descriptor for another one.
+/// Accepts a connection. Returns false if the system has no descriptor left.
 bool accept_into(std::vector<Connection>& connections, int listener) {
   const int socket = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (socket < 0) return errno == EINTR || errno == EAGAIN || errno == ECONNABORTED;

@@ -10,11 +10,12 @@
 
 namespace blum::cli {
 
-/// Serves the viewer's page as `/` and a scene as `/scene.bin`, only on 127.0.0.1. Other paths do not exist. Requests
-/// that name another host are rejected, so that no web page reaches the server through its own domain name.
+/// Serves the viewer's page as `/` and a scene as `/scene.bin`, only on 127.0.0.1. All other paths are answered with an
+/// error. Requests with another host name are rejected, so that no web page can reach the server through its own domain
+/// name.
 class ViewServer {
  public:
-  /// @param port  0 for any free port.  @throws Error if the port is not available.
+  /// @param port  port number; 0 chooses any free port. @throws Error if the port is not available.
   explicit ViewServer(std::uint16_t port);
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;

@@ -18,14 +18,15 @@ namespace blum::cli {
 namespace fs = std::filesystem;
 
 void VoronoiAxisTexts::add_to(const Command& command) {
+  add_text_option(command, "--theta", theta, "DEG",
+                  "With --medial: keep cells with separation angles above DEG degrees, 0 to 180 (default 1), and cells "
+                  "that connect them");
   add_text_option(
-      command, "--theta", theta, "DEG",
-      "With --medial: keep separation angles above DEG degrees, 0 to 180 (default 1), and the cells that connect them");
-  add_text_option(command, "--decimate", decimate, "TOL",
-                  "With --medial: reduce triangles, moving the axis by at most TOL mesh units (default 0: keep all)");
+      command, "--decimate", decimate, "TOL",
+      "With --medial: reduce the number of triangles; the axis moves by at most TOL mesh units (default 0: keep all)");
   add_graph_option(command, graph,
-                   "Write regions, walls, seams and junctions as a graph; with --medial sheets, seams, curves and "
-                   "junctions");
+                   "Also write a graph of regions, walls, seams and junctions, or with --medial of sheets, seams, "
+                   "curves and junctions");
 }
 
 std::string VoronoiAxisTexts::given() const {

@@ -15,17 +15,17 @@
 
 namespace blum::cli {
 
-/// Texts of --theta and --decimate, and of --graph, which is for all parts.
+/// Texts of the options --theta and --decimate, and of --graph, which applies to all parts.
 struct VoronoiAxisTexts {
   std::optional<std::string> theta, decimate, graph;
 
   void add_to(const Command& command);
-  /// Returns the first given option that is only for medial axes; empty if none is given.
+  /// Returns the name of the first given option that is only for medial axes. Returns an empty text if none is given.
   [[nodiscard]] std::string given() const;
 };
 
 struct VoronoiAxisOptions {
-  double theta = 1;     ///< degrees, above the angles of faces that rounding to 32 bits bends
+  double theta = 1;     ///< degrees; the default is above the angles by which rounding to 32 bits bends faces
   double decimate = 0;  ///< mesh units; 0 keeps all vertices
   std::optional<std::filesystem::path> graph;
 };
@@ -33,18 +33,18 @@ struct VoronoiAxisOptions {
 /// @throws UsageError.
 [[nodiscard]] VoronoiAxisOptions parse_axis_options(const VoronoiAxisTexts& texts);
 
-/// An axis in a draft file, read back and certified as `blum verify` does.
+/// Axis in a draft file. It was read from the file and certified as `blum verify` does.
 struct VoronoiAxis {
-  std::vector<Draft> drafts;  ///< the axis, its graph
+  std::vector<Draft> drafts;  ///< files of the axis and of its graph
   Json json;                  ///< counts, deviation, graph, certificate
   TextTable table;
-  std::vector<std::string> mismatches;  ///< why it is not certified
+  std::vector<std::string> mismatches;  ///< reasons why it is not certified
   std::vector<Warning> warnings;
   std::vector<PhaseTime> phases;
 };
 
 /// @param walls   result of voronoi_complex() for VoronoiPart::medial_axis.
-/// @param source, weld  metadata of the file.
+/// @param source, weld  metadata of the file: name of the input and weld tolerance.
 [[nodiscard]] VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input,
                                             const VoronoiAxisOptions& options, const std::filesystem::path& source,
                                             const std::optional<double>& weld, const std::filesystem::path& output,

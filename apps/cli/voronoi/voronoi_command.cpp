@@ -73,20 +73,20 @@ SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
   return load_solid(path, weld);
 }
 
-/// Returns the name of the complex in messages.
+/// Returns the name of the part's complex, for messages.
 std::string subject_of(VoronoiPart part) {
   if (part == VoronoiPart::medial_axis) return "the medial axis";
   return part == VoronoiPart::walls ? "walls" : "walls and surface";
 }
 
-/// Returns advice that may let more cubes pass.
+/// Returns advice on options that may increase the number of certified cubes.
 std::string advice(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
   std::vector<std::string> all;
   if (options.depth < VoronoiOptions{}.depth) all.emplace_back("a larger --depth may help");
   if (report.stopped_at_max_cubes) {
     all.push_back("splitting stopped at --max-cubes " + count_text(static_cast<std::size_t>(options.max_cubes)) +
                   (options.tolerance || options.resolution > VoronoiOptions{}.resolution
-                       ? ", too few for this --resolution or --tolerance"
+                       ? ", which is too few for this --resolution or --tolerance"
                        : ""));
   }
   if (!is_cleaned && options.depth == VoronoiOptions{}.depth) {
@@ -97,7 +97,7 @@ std::string advice(const VoronoiReport& report, const VoronoiOptions& options, b
   return out;
 }
 
-/// Returns the reasons why a complex is not certified; empty if it is certified.
+/// Returns the reasons why a complex is not certified. Returns none if it is certified.
 std::vector<std::string> mismatches_of(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
   std::vector<std::string> all;
   if (report.certified) return all;
@@ -125,11 +125,11 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
   return all;
 }
 
-/// Counts of a complex, as JSON and as text.
+/// Counts of a complex, for JSON and for text.
 struct Counts {
   std::size_t vertices = 0;
-  std::size_t walls = 0;    ///< triangles
-  std::size_t surface = 0;  ///< triangles
+  std::size_t walls = 0;    ///< number of triangles
+  std::size_t surface = 0;  ///< number of triangles
 
   explicit Counts(const Complex& complex) : vertices(complex.positions.size()) {
     const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
@@ -167,11 +167,11 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
                             (report.found == report.expected ? "" : "; expected " + betti_text(report.expected)));
   table.add("sites", sites_text(report));
   table.detail("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
-                            plural(report.splits, "split", "splits") + ", the smallest " +
+                            plural(report.splits, "split", "splits") + ", the smallest cube split " +
                             std::to_string(report.depth) + " times; " + rounded_text(report.governors) +
-                            " labels in a cube, mean");
+                            " labels in a cube on average");
   table.detail("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
-                            count_text(report.exact_lines) + " by exact signs");
+                            count_text(report.exact_lines) + " of them decided by exact signs");
   table.add("complex", counts.text());
   if (report.certified) {
     table.add("geometry", "no point is more than " + rounded_text(report.hausdorff_bound) + " from the exact diagram");
@@ -181,12 +181,12 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
 struct Request {
   VoronoiOptions options;
   VoronoiAxisOptions axis;
-  std::optional<double> clean;  ///< mesh units
+  std::optional<double> clean;  ///< tolerance in mesh units
   std::optional<double> weld;
   int threads = 0;
 };
 
-/// Returns the mesh file to which ids of triangles, edges and vertices refer.
+/// Returns the path of the mesh to which the ids of triangles, edges and vertices refer.
 fs::path source_of(const Arguments& a) {
   return a.cleaned ? *a.cleaned : a.input;
 }
@@ -223,7 +223,8 @@ Request parse(const Arguments& a) {
         "--clean with --medial needs --cleaned FILE, because the axis is verified against the cleaned mesh");
   }
   if (a.output) {
-    const FileAccess access = a.medial ? FileAccess::both : FileAccess::write;  // axes are read back
+    // Axes are read again after they are written.
+    const FileAccess access = a.medial ? FileAccess::both : FileAccess::write;
     check_extension("--output", *a.output, file_extensions(FileContent::complex, access));
     outputs.emplace_back(*a.output);
   } else if (a.allow_uncertified) {
@@ -233,8 +234,8 @@ Request parse(const Arguments& a) {
   return r;
 }
 
-/// Makes and writes the graph of the diagram's parts if --graph requests it. Python's VoronoiComplex.graph() returns
-/// the same.
+/// If --graph is given, computes and writes the graph of the diagram's parts. VoronoiComplex.graph() in Python returns
+/// the same graph.
 std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, std::span<const VoronoiSite> sites,
                                        const VoronoiComplex& made, const Context& context) {
   if (a.medial || !r.axis.graph) return std::nullopt;
@@ -255,8 +256,8 @@ struct Prepared {
   std::optional<CleanReport> cleaning;
 };
 
-/// Makes the solid of the input mesh, cleaned if --clean is given. Its surface replaces the mesh, and --cleaned writes
-/// it.
+/// Returns the solid of the input mesh. If --clean is given, the mesh is cleaned first. The solid's surface replaces
+/// the input mesh, and is written if --cleaned is given.
 Prepared prepare(const Arguments& a, const Request& r, SolidInput& input, std::vector<Warning>& warnings,
                  const Context& context) {
   const auto make = [&]() -> Prepared {
@@ -325,7 +326,7 @@ void run(const Arguments& a) {
     warnings.insert(warnings.end(), axis->warnings.begin(), axis->warnings.end());
   } else if (is_written) {
     ComplexWriteOptions how;
-    how.allow_loss = true;  // as documented in the table of formats
+    how.allow_loss = true;  // the table of formats documents what is lost
     if (!mismatches.empty()) add_failing_cells(made.complex, found.failing);
     write_complex(*a.output, made.complex, metadata_of(a, r, found), how, context);
     phases.push_back({"write", watch.lap()});
@@ -384,7 +385,7 @@ void add_voronoi_command(const CommandLine& line) {
       "voronoi", "Certified Voronoi diagram of faces, reflex edges and reflex vertices inside a closed mesh");
   command.add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read)).required();
   add_text_option(command, "-o,--output", a->output, "FILE",
-                  "Complex of walls and surface: .vtp, .ply or .npz with columns, .obj without");
+                  "File of walls and surface: .vtp, .ply or .npz with columns, .obj without");
   command.add_flag("--walls", a->walls, "Only the walls between regions, without the surface");
   command.add_flag("--medial", a->medial,
                    "Only the medial axis: walls with two footprints, except those between a face and its own edge");
@@ -394,7 +395,7 @@ void add_voronoi_command(const CommandLine& line) {
                   "First remove needles and unnecessary vertices as `blum clean` does, within TOL "
                   "mesh units");
   add_text_option(command, "--cleaned", a->cleaned, "FILE",
-                  "Write the mesh to which ids refer: cleaned by --clean, and without crossings");
+                  "Write the mesh to which the ids of sites refer: cleaned by --clean, and without crossings");
   command.add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even if it is not certified");
   add_weld_option(command, a->weld);
   add_threads_option(command, a->threads);

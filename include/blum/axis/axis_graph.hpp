@@ -19,10 +19,12 @@
 namespace blum {
 
 struct AxisGraphOptions {
-  /// With the mesh: faces form one patch if they are joined through edges that bend by at most this angle, degrees.
+  /// Degrees. Faces of the mesh form one patch if they are connected through edges that bend by at most this angle.
+  /// Used only if a mesh is given.
   double patch_angle = 30;
-  /// Theta of the axis, degrees. Cells with at most this angle exist for homotopy alone. If unset, no cell counts as
-  /// such, for example because angles are not known.
+  /// Threshold of the separation angle (theta) at which the axis was made, degrees. Triangles and edges with at most
+  /// this separation angle count as existing for homotopy alone. Leave it unset if angles are unknown; then no triangle
+  /// or edge counts as existing for homotopy alone.
   std::optional<double> homotopy_angle = {};
 };
 
@@ -32,15 +34,17 @@ struct Description<AxisGraphOptions> {
   static constexpr std::string_view doc = "Options of the graph of a medial axis";
   static constexpr std::tuple members{
       Member{"patch_angle", &AxisGraphOptions::patch_angle, "degrees",
-             "with the mesh: largest bend of the edges that join faces to a patch", Range::between(0, 180)},
+             "if the mesh is given: largest bend at an edge between two faces of one patch", Range::between(0, 180)},
       Member{"homotopy_angle", &AxisGraphOptions::homotopy_angle, "degrees",
-             "theta of the axis: cells with at most this angle exist for homotopy alone; unset: none do",
+             "threshold theta of the axis: triangles and edges with at most this angle exist for homotopy alone; if "
+             "unset, none do",
              Range::between(0, 180)},
   };
 };
 
-/// Distribution of a number over a part of an axis. By area or length, 5 % of the part has at most the low value, and
-/// half has at most the median. Single vertices affect the minimum and the maximum, but not these two.
+/// Distribution of a number over a sheet, seam or curve of an axis. The number is at most `low` on 5 % of the area or
+/// length, and at most `median` on half of it. A single vertex can determine the minimum or the maximum, but hardly
+/// affects `low` and `median`.
 struct AxisSpread {
   double minimum = 0, low = 0, median = 0, maximum = 0;
 };
@@ -50,21 +54,21 @@ struct Description<AxisSpread> {
   static constexpr std::string_view name = "AxisSpread";
   static constexpr std::string_view doc = "Minimum, low value, median and maximum of a number over a part of an axis";
   static constexpr std::tuple members{
-      Member{"minimum", &AxisSpread::minimum, "", "minimum over its vertices"},
-      Member{"low", &AxisSpread::low, "", "value that 5 % of its area or length do not exceed"},
-      Member{"median", &AxisSpread::median, "", "value that half of its area or length do not exceed"},
-      Member{"maximum", &AxisSpread::maximum, "", "maximum over its vertices"},
+      Member{"minimum", &AxisSpread::minimum, "", "minimum over the vertices of the part"},
+      Member{"low", &AxisSpread::low, "", "value that is not exceeded on 5 % of the area or length of the part"},
+      Member{"median", &AxisSpread::median, "", "value that is not exceeded on half of the area or length of the part"},
+      Member{"maximum", &AxisSpread::maximum, "", "maximum over the vertices of the part"},
   };
 };
 
-/// Kind of a vertex at which lines of an axis begin, end or meet.
+/// Kind of an AxisJunction, by the seams, curves and sheets at its vertex.
 enum class JunctionKind : std::uint8_t {
-  junction,    ///< Seams or curves meet here.
-  seam_end,    ///< One seam ends here, and nothing else.
+  junction,    ///< Seams or curves meet here, or none of the other kinds applies.
+  seam_end,    ///< One seam ends here, and no other seam or curve meets the vertex.
   curve_end,   ///< Free end of a curve.
-  curve_foot,  ///< One curve ends on a sheet.
-  contact,     ///< No seam or curve: sheets touch only here, or along an edge that is not a seam.
-  point,       ///< Single vertex: the whole axis of a body.
+  curve_foot,  ///< One curve ends here, on a sheet.
+  contact,     ///< Sheets touch at the vertex, or along an edge that is not a seam. No seam or curve meets the vertex.
+  point,       ///< Vertex without edges and triangles: the whole axis of a body.
 };
 
 template <>
@@ -77,15 +81,17 @@ struct Description<JunctionKind> {
   };
 };
 
-/// Vertex at which seams or curves end, or whose surroundings are not just the middle of one sheet, rim, seam or curve.
+/// Vertex that does not lie in the middle of exactly one sheet, rim, seam or curve. Seams and curves begin and end at
+/// such vertices, unless they are closed.
 struct AxisJunction {
-  std::uint32_t vertex = 0;  ///< Number in the axis.
+  std::uint32_t vertex = 0;  ///< Index of the vertex in the axis.
   JunctionKind kind = JunctionKind::junction;
   Vec3d position;
   double radius = 0;
-  std::vector<std::uint32_t> seams;   ///< Seams that begin or end here, ascending; twice if they do both.
-  std::vector<std::uint32_t> curves;  ///< Curves that begin or end here, likewise.
-  std::vector<std::uint32_t> sheets;  ///< AxisSheet::sheet of the sheets that contain the vertex, ascending.
+  /// Seams that begin or end here, ascending; a seam that does both is listed twice.
+  std::vector<std::uint32_t> seams;
+  std::vector<std::uint32_t> curves;  ///< Curves that begin or end here, listed in the same way.
+  std::vector<std::uint32_t> sheets;  ///< Numbers (AxisSheet::sheet) of the sheets that contain the vertex, ascending.
 };
 
 template <>
@@ -94,28 +100,30 @@ struct Description<AxisJunction> {
   static constexpr std::string_view doc = "Vertex where seams and curves of an axis begin, end or meet";
   static constexpr std::tuple members{
       Member{"vertex", &AxisJunction::vertex, "", "vertex of the axis"},
-      Member{"kind", &AxisJunction::kind, "", "kind of the parts that meet there"},
+      Member{"kind", &AxisJunction::kind, "", "kind, by the seams, curves and sheets at the vertex"},
       Member{"position", &AxisJunction::position, "mesh units", "position of the vertex"},
       Member{"radius", &AxisJunction::radius, "mesh units", "distance to the surface"},
-      Member{"seams", &AxisJunction::seams, "", "seams that begin or end there; a seam that does both is listed twice"},
+      Member{"seams", &AxisJunction::seams, "",
+             "seams that begin or end at the vertex; a seam that does both is listed twice"},
       Member{"curves", &AxisJunction::curves, "",
-             "curves that begin or end there; a curve that does both is listed twice"},
-      Member{"sheets", &AxisJunction::sheets, "", "sheets that contain it"},
+             "curves that begin or end at the vertex; a curve that does both is listed twice"},
+      Member{"sheets", &AxisJunction::sheets, "", "sheets that contain the vertex"},
   };
 };
 
-/// Seam or curve: a longest chain of edges between junctions, or a closed loop without junctions.
+/// Seam or curve: a chain of edges from one junction to the next, or a closed loop without junctions.
 struct AxisLine {
   double length = 0;
   double homotopy_length = 0;  ///< Length of its edges that exist for homotopy alone.
-  bool closed = false;         ///< True for a loop without a junction. A loop with one begins and ends there.
-  std::optional<std::array<std::uint32_t, 2>> junctions;  ///< Its first and last junction; none for closed lines.
+  bool closed = false;         ///< True for a loop without junctions. A loop with one junction begins and ends at it.
+  std::optional<std::array<std::uint32_t, 2>> junctions;  ///< Indices of its first and last junction; unset if closed.
   AxisSpread radius;
-  std::vector<std::uint32_t> sheets;    ///< AxisSheet::sheet, ascending. Seams: along it. Curves: at its ends.
-  std::vector<std::uint32_t> vertices;  ///< Vertices of the axis, in order. Closed lines end with the first one.
-  std::vector<Vec3d> points;            ///< Positions of the vertices.
-  std::vector<double> radii;            ///< Radii at the vertices.
-  std::vector<double> arc_length;       ///< Length from the first vertex to each.
+  std::vector<std::uint32_t> sheets;  ///< Numbers of the sheets along a seam, or at the ends of a curve, ascending.
+  /// Vertices of the axis, in order. A closed line repeats its first vertex at the end.
+  std::vector<std::uint32_t> vertices;
+  std::vector<Vec3d> points;       ///< Positions of the vertices.
+  std::vector<double> radii;       ///< Radii at the vertices.
+  std::vector<double> arc_length;  ///< Length of the line from its first vertex to each vertex.
 };
 
 template <>
@@ -128,8 +136,9 @@ struct Description<AxisLine> {
              "length of its edges that exist for homotopy alone"},
       Member{"closed", &AxisLine::closed, "", "true if it is a loop without a junction"},
       Member{"junctions", &AxisLine::junctions, "", "junctions at its two ends; none if closed"},
-      Member{"radius", &AxisLine::radius, "mesh units", "distance to the surface along it"},
-      Member{"sheets", &AxisLine::sheets, "", "seams: sheets that meet along it; curves: sheets at its ends"},
+      Member{"radius", &AxisLine::radius, "mesh units", "distances from its points to the surface"},
+      Member{"sheets", &AxisLine::sheets, "",
+             "seams: sheets that meet along the seam; curves: sheets at the ends of the curve"},
       Member{"vertices", &AxisLine::vertices, "",
              "vertices of the axis, in order; if closed, the first one again at the end"},
       Member{"points", &AxisLine::points, "mesh units", "positions of the vertices"},
@@ -138,72 +147,75 @@ struct Description<AxisLine> {
   };
 };
 
-/// Smooth part of the input mesh's surface: faces joined through edges of two faces that bend by at most
-/// AxisGraphOptions::patch_angle. Faces without area belong to no patch.
+/// Smooth part of the surface of the input mesh. Its faces are connected through edges that have exactly two faces and
+/// bend by at most AxisGraphOptions::patch_angle. Faces without area belong to no patch.
 struct AxisPatch {
   std::size_t faces = 0;
   double area = 0;
   Vec3d centroid;  ///< Centroid of the area.
-  Vec3d normal;    ///< Mean over the area, of unit length; 0 if undefined, for example for a closed surface.
+  Vec3d normal;    ///< Mean normal over the area, scaled to unit length; 0 if undefined, as for a closed surface.
 };
 
 template <>
 struct Description<AxisPatch> {
   static constexpr std::string_view name = "AxisPatch";
-  static constexpr std::string_view doc = "Smooth part of the input mesh: faces joined through edges that bend little";
+  static constexpr std::string_view doc =
+      "Smooth part of the input mesh: faces connected through edges that bend little";
   static constexpr std::tuple members{
       Member{"faces", &AxisPatch::faces, "", "triangles of the mesh"},
       Member{"area", &AxisPatch::area, "square mesh units", "area of the faces"},
       Member{"centroid", &AxisPatch::centroid, "mesh units", "centroid of the area"},
-      Member{"normal", &AxisPatch::normal, "", "unit vector, mean normal over the area; 0 if there is none"},
+      Member{"normal", &AxisPatch::normal, "",
+             "unit vector in the direction of the mean normal over the area; 0 if undefined, as for a closed surface"},
   };
 };
 
-/// Two parts of the surface on either side of a sheet. A side is one patch, or several if the footprints lie on an edge
-/// or corner between them, for example on a reflex edge.
+/// Patches on the two sides of a part of a sheet. The footprints of the part's vertices lie on these patches. A side
+/// has several patches if its footprints lie on an edge or corner between patches, for example on a reflex edge.
 struct AxisPatchPair {
-  std::vector<std::uint32_t> first, second;  ///< Patches, ascending.
-  double share = 0;                          ///< Share of the sheet's area, 0 to 1.
+  std::vector<std::uint32_t> first, second;  ///< Patches on the first and on the second side, ascending.
+  double share = 0;                          ///< Share of the sheet's area that lies between these patches, 0 to 1.
 };
 
 template <>
 struct Description<AxisPatchPair> {
   static constexpr std::string_view name = "AxisPatchPair";
   static constexpr std::string_view doc =
-      "Two parts of the surface on both sides of a sheet; several patches stand for the edge or corner between them";
+      "Patches on the two sides of a part of a sheet; a side on an edge or corner has all patches that meet there";
   static constexpr std::tuple members{
       Member{"first", &AxisPatchPair::first, "", "patches with the footprints of one side"},
       Member{"second", &AxisPatchPair::second, "", "patches with the footprints of the other side"},
-      Member{"share", &AxisPatchPair::share, "", "share of the sheet's area, 0 to 1"},
+      Member{"share", &AxisPatchPair::share, "", "share of the sheet's area that lies between these patches, 0 to 1"},
   };
 };
 
-/// Sheet of an axis. Its border is that of the surface cut open along seams. If both sides of a seam belong to this
-/// sheet, the seam counts twice.
+/// Sheet of an axis. The border of a sheet is that of the sheet after cutting it open along seams. If the sheet lies on
+/// both sides of a seam, the seam counts twice as border.
 struct AxisSheet {
-  std::uint32_t sheet = 0;  ///< Its number in `medial_columns::sheet`.
+  std::uint32_t sheet = 0;  ///< Number of the sheet in the column `medial_columns::sheet`.
   std::size_t triangles = 0;
   double area = 0;
-  double homotopy_area = 0;     ///< Area of its triangles that exist for homotopy alone: angles of at most theta.
+  double homotopy_area = 0;     ///< Area of its triangles with angles of at most theta: they exist for homotopy alone.
   bool for_homotopy = false;    ///< True if all its triangles exist for homotopy alone.
-  AxisSpread thickness;         ///< Twice the radius.
-  AxisSpread separation_angle;  ///< Degrees, of its vertices. Near 180 between parallel walls.
-  double wall_area = 0;         ///< Area of triangles whose vertices have separation angles of 150 degrees or more.
-  AxisSpread wall_thickness;    ///< Twice the radius over these triangles; zeros if none exist.
-  Vec3d centroid;               ///< Centroid of the area.
-  double rim_length = 0;        ///< Length of its free border.
-  double seam_length = 0;       ///< Length of its border along seams.
-  double crease_length = 0;     ///< Length of its border along edges where it meets one other sheet.
+  AxisSpread thickness;         ///< Twice the radius of its vertices.
+  AxisSpread separation_angle;  ///< Separation angle of its vertices, degrees. It is near 180 between parallel walls.
+  /// Area of the triangles whose vertices all have separation angles of 150 degrees or more.
+  double wall_area = 0;
+  AxisSpread wall_thickness;  ///< Twice the radius over the triangles of `wall_area`; zeros if there are none.
+  Vec3d centroid;             ///< Centroid of the area.
+  double rim_length = 0;      ///< Length of its free border, the rim.
+  double seam_length = 0;     ///< Length of its border along seams.
+  double crease_length = 0;   ///< Length of its border along edges of two triangles, where another sheet begins.
   std::size_t boundary_loops = 0;
-  std::int64_t euler_characteristic = 0;   ///< For the surface cut open. A disc has 1, a ring 0, a sphere 2.
+  std::int64_t euler_characteristic = 0;   ///< After cutting along seams: 1 for a disc, 0 for a ring, 2 for a sphere.
   std::vector<std::uint32_t> seams;        ///< Seams along which it meets other sheets or itself, ascending.
-  std::vector<AxisPatchPair> patch_pairs;  ///< Patches on its two sides, by descending share; none without the mesh.
+  std::vector<AxisPatchPair> patch_pairs;  ///< Patches on its two sides, by descending share; empty without a mesh.
 };
 
 template <>
 struct Description<AxisSheet> {
   static constexpr std::string_view name = "AxisSheet";
-  static constexpr std::string_view doc = "Sheet of an axis; its border is that of the surface cut open along seams";
+  static constexpr std::string_view doc = "Sheet of an axis; for its border, the sheet is cut open along seams";
   static constexpr std::tuple members{
       Member{"sheet", &AxisSheet::sheet, "", "number of the sheet in the axis"},
       Member{"triangles", &AxisSheet::triangles, "", "number of triangles"},
@@ -215,35 +227,37 @@ struct Description<AxisSheet> {
       Member{"separation_angle", &AxisSheet::separation_angle, "degrees",
              "separation angle of its vertices: near 180 between parallel walls"},
       Member{"wall_area", &AxisSheet::wall_area, "square mesh units",
-             "area of the triangles between walls that face each other: at 150 degrees or more"},
+             "area of the triangles with separation angles of 150 degrees or more at all corners: between walls that "
+             "face each other"},
       Member{"wall_thickness", &AxisSheet::wall_thickness, "mesh units",
-             "twice the radius of these triangles; zeros if there are none"},
+             "twice the radius over the triangles of wall_area; zeros if there are none"},
       Member{"centroid", &AxisSheet::centroid, "mesh units", "centroid of the area"},
       Member{"rim_length", &AxisSheet::rim_length, "mesh units", "length of the border where the sheet ends freely"},
       Member{"seam_length", &AxisSheet::seam_length, "mesh units", "length of the border along seams"},
       Member{"crease_length", &AxisSheet::crease_length, "mesh units",
-             "length of the border along edges where it meets one other sheet"},
+             "length of the border along edges where the sheet meets exactly one other sheet"},
       Member{"boundary_loops", &AxisSheet::boundary_loops, "", "number of closed lines that form its border"},
       Member{"euler_characteristic", &AxisSheet::euler_characteristic, "",
-             "Euler characteristic of the surface cut open: 1 for a disc, 0 for a ring, 2 for a sphere"},
-      Member{"seams", &AxisSheet::seams, "", "seams along which it meets others or itself"},
+             "Euler characteristic of the sheet cut open along seams: 1 for a disc, 0 for a ring, 2 for a sphere"},
+      Member{"seams", &AxisSheet::seams, "", "seams along which the sheet meets other sheets or itself"},
       Member{"patch_pairs", &AxisSheet::patch_pairs, "",
-             "parts of the surface on both sides, by falling share; none without the mesh"},
+             "patches on both sides of the sheet, by descending share; none without the mesh"},
   };
 };
 
-/// Medial axis as a graph of parts that meet. Numbers of seams, curves, junctions and patches are indices into these
-/// lists. Sheets have the numbers of the axis.
+/// Medial axis as a graph of sheets, seams, curves and junctions. The number of a seam, curve, junction or patch is its
+/// index in these lists. The number of a sheet is AxisSheet::sheet, as in the axis.
 struct AxisGraph {
   std::vector<AxisSheet> sheets;        ///< Sheets with triangles, by ascending number.
   std::vector<AxisLine> seams;          ///< Lines along edges of three or more triangles.
-  std::vector<AxisLine> curves;         ///< Lines along edges of no triangle.
-  std::vector<AxisJunction> junctions;  ///< By ascending vertex.
-  std::vector<AxisPatch> patches;       ///< Patches of the mesh, by their first face; none without the mesh.
-  double area = 0;                      ///< Area of all triangles.
-  double homotopy_area = 0;             ///< Area of the triangles that exist for homotopy alone.
+  std::vector<AxisLine> curves;         ///< Lines along edges without triangles.
+  std::vector<AxisJunction> junctions;  ///< Junctions by ascending vertex.
+  /// Patches of the mesh, in the order of their first faces; empty without a mesh.
+  std::vector<AxisPatch> patches;
+  double area = 0;           ///< Area of all triangles.
+  double homotopy_area = 0;  ///< Area of the triangles that exist for homotopy alone.
   double seam_length = 0, curve_length = 0, rim_length = 0;
-  double homotopy_curve_length = 0;  ///< Length of curves that exist for homotopy alone.
+  double homotopy_curve_length = 0;  ///< Length of the curve edges that exist for homotopy alone.
 };
 
 template <>
@@ -255,7 +269,7 @@ struct Description<AxisGraph> {
       Member{"seams", &AxisGraph::seams, "", "lines where three or more triangles meet"},
       Member{"curves", &AxisGraph::curves, "", "lines of edges without triangles"},
       Member{"junctions", &AxisGraph::junctions, "", "junctions by rising vertex"},
-      Member{"patches", &AxisGraph::patches, "", "smooth parts of the mesh; none without it"},
+      Member{"patches", &AxisGraph::patches, "", "smooth parts of the mesh; none if no mesh is given"},
       Member{"area", &AxisGraph::area, "square mesh units", "area of all triangles"},
       Member{"homotopy_area", &AxisGraph::homotopy_area, "square mesh units",
              "area of the triangles that exist for homotopy alone"},
@@ -269,29 +283,31 @@ struct Description<AxisGraph> {
 
 /// Returns the sheets, seams, curves and junctions of a medial axis.
 ///
-/// The triangles decide the kind of an edge, as in the column `role`. A rim has one triangle, a seam three or more, a
-/// curve none. The column `sheet` decides the sheets. Every edge of a seam or a curve belongs to exactly one line. The
-/// junctions are all vertices with the role junction, and the ends of lines. Lines begin at the junction with the
-/// smaller number and are listed in the order of their beginnings; closed lines come last.
+/// The number of triangles at an edge decides its kind, as in the column `role`. An edge of a rim has one triangle, an
+/// edge of a seam three or more, an edge of a curve none. The column `sheet` decides which triangles form a sheet.
+/// Every edge of a seam or a curve belongs to exactly one line. The junctions are all vertices with the role junction,
+/// and all ends of lines. A line begins at the junction with the smaller number. Lines are listed in the order of the
+/// junctions at which they begin; closed lines come last.
 ///
-/// The angle of a triangle or an edge does not depend on theta; it is 0 if only homotopy keeps the cell. Cells with
-/// theta or less exist for homotopy alone, as MedialCheck::homotopy_share counts them. Some of them exist because
-/// another cell prevented their removal.
+/// The separation angle of a triangle or an edge does not depend on theta. It is 0 if the triangle or edge exists only
+/// to preserve the homotopy type. Triangles and edges with an angle of at most theta (AxisGraphOptions::homotopy_angle)
+/// count as existing for homotopy alone. MedialCheck::homotopy_share counts triangles in the same way. Some of these
+/// triangles and edges were kept only because another triangle or edge prevented their removal.
 ///
-/// @param axis  with radii and sheets, for example from MedialAxis::simplify(), prune_sheets() or a file. Missing
-///              angles count as 0.
-/// @return      the same bytes every time. Sums are computed in double, in the order of triangles and edges.
-/// @throws InvalidOption if an angle is out of range, radii or sheets are missing, or problem_of_medial() reports a
-/// problem in the columns that exist; Cancelled.
+/// @param axis  axis with radii and sheets, for example from MedialAxis::simplify(), prune_sheets() or a file. Missing
+/// angles count as 0.
+/// @return      the same bytes for equal arguments. Sums are computed in double, in the order of triangles and edges.
+/// @throws InvalidOption if an angle of the options is out of range, or if radii or sheets are missing. Also if
+/// problem_of_medial() reports a problem in the columns that exist. Cancelled.
 /// Cost: linear except for sorting; about 0.5 s for a million triangles, and 200 bytes per triangle.
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options = {},
                                    const Context& context = {});
 
-/// Also returns the patches of the mesh, and for every sheet the patches that contain the footprints of its vertices.
-/// Vertices whose two footprints coincide, or whose sites are not known, are left out. So shares may sum to less than
-/// 1.
-/// @param mesh  mesh that the axis was made from; sites are those of SiteTable(mesh).
-/// @throws InvalidOption also if the mesh does not have a site of the axis; InvalidMesh.
+/// Returns the same graph with the patches of the mesh. For every sheet, it lists the patches that contain the
+/// footprints of its vertices. Vertices are left out if their two footprints coincide, or their sites are not known. So
+/// the shares of a sheet (AxisPatchPair::share) may sum to less than 1.
+/// @param mesh  mesh from which the axis was made. The sites of the axis are numbered as in SiteTable(mesh).
+/// @throws InvalidOption as above, and if the axis has a site that the mesh lacks; InvalidMesh.
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const MeshView& mesh, const AxisGraphOptions& options = {},
                                    const Context& context = {});
 

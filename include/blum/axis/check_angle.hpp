@@ -9,9 +9,9 @@
 
 namespace blum::detail {
 
-/// Checks that an angle is 0 to 180 degrees.
+/// Checks that an angle lies between 0 and 180 degrees, inclusive.
 /// @param angle  degrees.
-/// @throws InvalidOption if it is not.
+/// @throws InvalidOption if the angle lies outside this range.
 inline void check_angle(std::string_view name, double angle) {
   if (angle >= 0 && angle <= 180) return;
   throw InvalidOption(std::string(name) + " is " + exact_text(angle) + " degrees, but must be 0 to 180");

@@ -7,24 +7,26 @@
 
 namespace blum {
 
-/// Returns the part of a medial axis with separation angles above theta, and the other cells that its homotopy type
-/// needs.
+/// Returns the triangles and edges of a medial axis whose separation angle is above theta. The result also contains the
+/// triangles and edges that are needed to preserve the homotopy type.
 ///
-/// Triangles of at most theta are removed by elementary collapses from free edges of at most theta, the smallest angle
-/// first. Then edges of no triangle are removed from free ends. Neither such an edge nor any triangle that was at it
-/// may have an angle above theta. The angle of an edge is the smaller one at its two ends. Along seams it is larger
-/// than that of the triangles beside them. The homotopy type is preserved, and the result for a larger theta is part of
-/// that for a smaller one. The order is that of Liu, Chambers, Letscher, Ju 2010, for complexes of triangles (see also
-/// Sud 2006, 5.6).
+/// Triangles are removed by elementary collapses, the triangle with the smallest angle first. A collapse removes a
+/// triangle together with a free edge: an edge that belongs to no other triangle. The angles of the triangle and of the
+/// edge must be at most theta. Then each edge without triangles is removed together with one of its vertices, if this
+/// vertex belongs to no other edge. The edge is kept if its angle, or the angle of a triangle that contained it, is
+/// above theta. The angle of an edge is the smaller angle of its two vertices. Along a seam, the angle of an edge is
+/// larger than the angles of the edge's triangles. The homotopy type is preserved. The result for a larger theta is
+/// part of the result for a smaller one. The order of removal is that of Liu, Chambers, Letscher, Ju 2010, applied to
+/// complexes of triangles (see also Sud 2006, 5.6).
 ///
-/// @param walls  triangles with the columns of voronoi_complex() for the part medial_axis: vertices `radius`,
-///               footprints, sites and `separation_angle`, triangles `separation_angle`. Other columns of vertices and
-///               triangles are kept. Listed edges are dropped.
-/// @param theta  degrees, 0 to 180. At 0, only cells with an angle of 0 are removed.
-/// @return       with the columns of MedialView; sheets are numbered by their first triangle.
+/// @param walls  triangles with the columns that voronoi_complex() computes for VoronoiPart::medial_axis. Vertices need
+///               `radius`, footprints, sites and `separation_angle`; triangles need `separation_angle`. Other columns
+///               of vertices and triangles are kept. Listed edges are ignored.
+/// @param theta  degrees, 0 to 180. At 0, only triangles and edges with an angle of 0 are removed.
+/// @return       complex with the columns of MedialView. Sheets are numbered in the order of their first triangles.
 /// @throws InvalidOption if theta is out of range or a column is missing; InvalidMesh with the text of
 /// problem_of(walls); Cancelled.
-/// Cost: O(n log n) in the triangles, about 1 us each.
+/// Cost: O(n log n) for n triangles, about 1 us per triangle.
 [[nodiscard]] Complex collapse_axis(const Complex& walls, double theta, const Context& context = {});
 
 }  // namespace blum

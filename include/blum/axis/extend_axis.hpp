@@ -17,13 +17,14 @@
 namespace blum {
 
 struct ExtendOptions {
-  /// A rim is extended by at most this many of its radii, > 0. The border of a plate is 1 radius away, a corner of a
-  /// plate 1.4.
+  /// Largest length by which a rim is extended, in radii of the rim's balls, > 0. In a plate, the border is 1 radius
+  /// away from the rim of the axis, and a corner is 1.4 radii away.
   double max_length = 4;
-  /// A rim stays if its radius is at most this part of the largest radius of its sheet, >= 0. Such a rim already runs
-  /// along an edge of the solid.
+  /// Rims are extended only where the radius is above this fraction, >= 0, of the largest radius of the sheet. Where
+  /// the radius is smaller, the rim already runs along an edge of the solid.
   double border_radius = 0.05;
-  /// Distance of the new border from the surface between its vertices, at most, as a part of the radius, > 0.
+  /// Largest distance of the new border from the surface, between the vertices of the border, as a fraction of the
+  /// radius, > 0.
   double tolerance = 0.01;
 };
 
@@ -33,30 +34,36 @@ struct Description<ExtendOptions> {
   static constexpr std::string_view doc = "Options of extending the sheets of a medial axis to the surface";
   static constexpr std::tuple members{
       Member{"max_length", &ExtendOptions::max_length, "radii",
-             "largest extension of a rim, in radii of the rim; in plates the border is 1 away", Range::positive()},
+             "largest extension of a rim, relative to the rim's radius: 1 reaches the border of a plate",
+             Range::positive()},
       Member{"border_radius", &ExtendOptions::border_radius, "",
-             "rims that stay: those with at most this fraction of the largest radius of their sheet",
+             "rims are not extended if their radius is at most this fraction of the largest radius of their sheet",
              Range::at_least(0)},
       Member{"tolerance", &ExtendOptions::tolerance, "radii",
-             "largest distance of the new border from the surface between its vertices", Range::positive()},
+             "largest distance of the new border from the surface, between the vertices of the border",
+             Range::positive()},
   };
 };
 
-/// Counts and lengths of rims by outcome. A rim vertex counts once for each group of sheets that are connected around
-/// it. `rim_vertices` is the sum of the four members after it.
+/// Counts and lengths of rims, by how they were extended. A rim vertex counts once for each group of triangles around
+/// it that are connected through edges. `rim_vertices` is the sum of `reached_border`, `reached_sheet`, `at_border` and
+/// `not_reached`.
 struct ExtendReport {
-  double rim_length = 0;           ///< Length of the rims of the axis, mesh units.
-  double open_length = 0;          ///< Length of the rims that got no triangle and are not at the border, mesh units.
+  double rim_length = 0;  ///< Length of the rims of the axis, mesh units.
+  /// Length of the rims that have no new triangle and are not at the border, mesh units.
+  double open_length = 0;
   std::size_t rim_vertices = 0;    ///< Rim vertices of the axis.
   std::size_t reached_border = 0;  ///< Rim vertices that were joined to the surface.
-  std::size_t reached_sheet = 0;   ///< Rim vertices that were joined to another sheet, which was met first.
-  std::size_t at_border = 0;       ///< Rim vertices already at the border (`border_radius`) or on another sheet.
-  std::size_t not_reached = 0;     ///< Rim vertices that stay: nothing was met within ExtendOptions::max_length.
-  std::size_t left_out = 0;        ///< Rim edges without triangles, because these would fold back or leave the solid.
-  std::size_t vertices = 0;        ///< New vertices.
-  std::size_t triangles = 0;       ///< New triangles.
-  double axis_area = 0;            ///< Area of all triangles of the axis, square mesh units.
-  double area = 0;                 ///< Area of all triangles of the extended surface, square mesh units.
+  /// Rim vertices that were joined to another sheet, because it is closer than the surface.
+  std::size_t reached_sheet = 0;
+  std::size_t at_border = 0;    ///< Rim vertices already at the border (`border_radius`) or on another sheet.
+  std::size_t not_reached = 0;  ///< Rim vertices without a surface or sheet within ExtendOptions::max_length.
+  /// Rim edges without new triangles, because such triangles would fold back or leave the solid.
+  std::size_t left_out = 0;
+  std::size_t vertices = 0;   ///< New vertices.
+  std::size_t triangles = 0;  ///< New triangles.
+  double axis_area = 0;       ///< Area of all triangles of the axis, square mesh units.
+  double area = 0;            ///< Area of all triangles of the extended surface, square mesh units.
 };
 
 template <>
@@ -67,14 +74,15 @@ struct Description<ExtendReport> {
       Member{"rim_length", &ExtendReport::rim_length, "mesh units", "length of the rims of the axis"},
       Member{"open_length", &ExtendReport::open_length, "mesh units",
              "length of the rims that got no triangle and are not at the border"},
-      Member{"rim_vertices", &ExtendReport::rim_vertices, "", "rim vertices of the axis; sum of the next four"},
+      Member{"rim_vertices", &ExtendReport::rim_vertices, "",
+             "rim vertices of the axis: the sum of the next four counts"},
       Member{"reached_border", &ExtendReport::reached_border, "", "rim vertices that were joined to the surface"},
       Member{"reached_sheet", &ExtendReport::reached_sheet, "", "rim vertices that were joined to another sheet"},
       Member{"at_border", &ExtendReport::at_border, "",
              "rim vertices that were already at the border or on another sheet"},
       Member{"not_reached", &ExtendReport::not_reached, "", "rim vertices that met nothing within the length"},
       Member{"left_out", &ExtendReport::left_out, "",
-             "rim edges without triangles, because these would fold back or leave the solid"},
+             "rim edges without new triangles, because the triangles would fold back or leave the solid"},
       Member{"vertices", &ExtendReport::vertices, "", "new vertices"},
       Member{"triangles", &ExtendReport::triangles, "", "new triangles"},
       Member{"axis_area", &ExtendReport::axis_area, "square mesh units", "area of all triangles of the axis"},
@@ -87,45 +95,48 @@ namespace extended_columns {
 
 /// Vertices, float64, mesh units: twice the radius of the axis. A new vertex has the value of the rim that it extends.
 inline constexpr std::string_view thickness = "thickness";
-/// Triangles, int32: the sheet of the axis that they belong to or extend.
+/// Triangles, int32: the number of the sheet of the axis that the triangle belongs to or extends.
 inline constexpr std::string_view sheet = "sheet";
-/// Vertices and triangles, int32: 1 for new ones, 0 for those of the axis.
+/// Vertices and triangles, int32: 1 for new vertices and triangles, 0 for those of the axis.
 inline constexpr std::string_view extended = "extended";
 
 }  // namespace extended_columns
 
 struct ExtendedAxis {
-  /// Vertices and triangles of the axis in their order, then the new ones. Edges are the curves of the axis, which have
-  /// no triangle. Columns are those of `extended_columns`.
+  /// The vertices and triangles of the axis in their order, then the new vertices and triangles. The edges are the
+  /// curves of the axis, which belong to no triangle. The columns are those of `extended_columns`.
   Complex surface;
   ExtendReport report;
-  std::vector<Warning> warnings;  ///< Reports rims that are not extended (WarningCode::not_extended).
+  std::vector<Warning> warnings;  ///< WarningCode::not_extended if some rims are not extended.
 };
 
-/// Returns the sheets of a medial axis, extended from their rims to the surface of the solid. The result is the middle
-/// surface of a part with thin walls, for meshes of shell elements. Use an axis of 100 to 120 degrees. A smaller angle
-/// adds sheets that run into edges; a larger one leaves gaps where walls meet.
+/// Returns the sheets of a medial axis, extended from their rims to the surface of the solid. For a solid with thin
+/// walls, the result is the middle surface, for example for meshes of shell elements. Use an axis with a theta of 100
+/// to 120 degrees. A smaller theta adds sheets that run into edges of the solid; a larger theta leaves gaps where walls
+/// meet.
 ///
 /// Each rim vertex is joined to the closest point of the surface in the tangent plane of its sheet. The direction to
-/// that point is within 65 degrees of straight ahead. Between these points, the new border follows edges and corners of
-/// the surface. If a rim meets another sheet or its extension first, it ends there, without shared vertices. Each new
-/// triangle has its middle and the middles of its sides in the solid, except sides on the new border. It is turned by
-/// less than 80 degrees from the rim's triangle, and faces the same way as the triangles that it extends. The homotopy
-/// type is that of the axis, because the new triangles can be pushed back into the rims. New triangles of different
-/// rims that meet at less than 15 degrees may overlap; this is not checked.
+/// the closest point differs by at most 65 degrees from the direction straight out of the rim. Between the closest
+/// points of neighbouring rim vertices, the new border follows edges and corners of the surface. If the way to the
+/// surface meets another sheet, or the extension of another sheet, the new triangles end there. They share no vertices
+/// with the sheet or extension that they meet. The middle of each new triangle lies in the solid, and so do the middles
+/// of its sides, except for sides on the new border. A new triangle is turned by less than 80 degrees relative to the
+/// axis's triangle at the rim edge. Both triangles face the same way. The homotopy type is that of the axis, because
+/// the new triangles can be pushed back into the rims. Extensions of different rims may overlap if they meet at less
+/// than 15 degrees; this is not checked.
 ///
-/// @param axis   with radii and sheets, for example from MedialAxis::simplify(), fitted(), decimate() or a file.
-/// @param solid  solid of a mesh, whose axis this is.
+/// @param axis   axis with radii and sheets, for example from MedialAxis::simplify(), fitted(), decimate() or a file.
+/// @param solid  solid of a mesh; the axis must be an axis of this solid.
 /// @return       the same bytes for any number of threads.
 /// @throws InvalidOption if an option is out of range, radii or sheets are missing, or the solid is that of an image.
 /// Also if problem_of_medial() reports a problem in the columns that exist. Cancelled.
-/// Cost: Solid::inside() and some ray casts per rim vertex, about 0.1 ms each; some ms in large bodies without thin
-/// walls.
+/// Cost: about 0.1 ms per rim vertex, for Solid::inside() and a few ray casts. In large bodies without thin walls, a
+/// few ms per rim vertex.
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const Solid& solid, const ExtendOptions& options = {},
                                        const Context& context = {});
 
 /// Extends an axis to the surface of Solid::of(mesh).
-/// @throws as both.
+/// @throws as extend_axis() above and Solid::of().
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const MeshView& mesh, const ExtendOptions& options = {},
                                        const Context& context = {});
 

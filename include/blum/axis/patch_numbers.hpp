@@ -15,22 +15,25 @@
 
 namespace blum::detail {
 
-/// Part of an input mesh, with references to the input.
+/// Mesh of one body of an input mesh, with references to the input mesh.
 struct PatchedMesh {
   static constexpr std::uint32_t no_vertex = 0xffffffffU;
 
   MeshView mesh;
-  std::span<const std::uint32_t> triangle_of;  ///< Triangle of the input, for each triangle.
-  std::span<const std::uint32_t> vertex_of;    ///< Vertex of the input, for each vertex; `no_vertex` for a new one.
-  FunctionRef<SiteId(SiteId own)> input_site;  ///< Returns the site of the input that a site of the part stands for.
+  std::span<const std::uint32_t> triangle_of;  ///< Index in the input mesh of each triangle of `mesh`.
+  /// Index in the input mesh of each vertex of `mesh`; `no_vertex` for a new vertex.
+  std::span<const std::uint32_t> vertex_of;
+  FunctionRef<SiteId(SiteId own)> input_site;  ///< Returns the site of the input mesh for a site of `mesh`.
 };
 
-/// Numbers of the patches of a mesh, and anchors to measure distances from. Both depend on the order of faces and
-/// vertices in the input and on its shape, but not on its position.
+/// Numbers of the patches of a mesh, and anchors: vertices from which distances are measured. Both depend on the shape
+/// of the mesh and on the order of its faces and vertices, but not on its position.
 ///
-/// A patch is a flat part if that has at least 0.437 % of the surface, else a smooth part. Edges bend by at most 1
-/// degree in flat parts, and 30 degrees in smooth ones. With fillets the whole surface may be one smooth part; its flat
-/// faces still distinguish the sheets. The patch with the smaller first face has the smaller number.
+/// A patch is a flat or a smooth part of the surface. The faces of a flat part are connected through edges that bend by
+/// at most 1 degree. In a smooth part, edges bend by at most 30 degrees. The patch of a face is its flat part if this
+/// part covers at least 0.437 % of the surface of the body. Otherwise, the patch is the face's smooth part. With
+/// fillets, the whole surface may be one smooth part; its flat parts still distinguish the sheets. The patch with the
+/// smaller first face has the smaller number.
 class PatchNumbers {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
@@ -41,11 +44,11 @@ class PatchNumbers {
   explicit PatchNumbers(const SiteTable& input) : number_of_(input.size(), none), is_shared_(input.size(), false) {}
 
   /// Adds a body.
-  /// @param own  sites of the part's mesh.
+  /// @param own  sites of `part.mesh`.
   /// @throws Cancelled.
   /// Cost: near-linear.
   void add(const PatchedMesh& part, const SiteTable& own, const Context& context);
-  /// Chooses the anchors. To be called after all bodies were added.
+  /// Chooses the anchors. Call this after all bodies were added.
   void choose_anchors();
 
   [[nodiscard]] bool is_empty() const { return number_of_.empty(); }
@@ -53,8 +56,8 @@ class PatchNumbers {
   [[nodiscard]] std::uint32_t at(SiteId site) const { return site.has_value() ? number_of_[site.value] : none; }
   /// Returns true if a site of the input lies on several patches, that is, on an edge or vertex between them.
   [[nodiscard]] bool is_shared(SiteId site) const { return site.has_value() && is_shared_[site.value]; }
-  /// Returns up to four vertices that do not lie on a line or in a plane, unless the mesh does. Distances from them
-  /// determine a position.
+  /// Returns the anchors: up to four vertices. They do not all lie on a line or in a plane, unless the whole mesh does.
+  /// The distances from them determine a position.
   [[nodiscard]] const std::vector<Vec3d>& anchors() const { return anchors_; }
   /// Returns the distance from the first anchor to the vertex furthest from it.
   [[nodiscard]] double reach() const { return reach_; }

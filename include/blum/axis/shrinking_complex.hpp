@@ -11,14 +11,14 @@
 
 namespace blum::detail {
 
-/// Vertices linked to the ends of an edge under examination. Kept, so that no new memory is needed each time: one per
-/// thread.
+/// Vertices linked to the ends of an edge that is examined. Each thread reuses one object, so that memory is allocated
+/// only once.
 struct LinkScratch {
   std::vector<std::uint32_t> linked, linked_to_edge;
 };
 
-/// Edges and triangles from which cells are removed, with the remaining ones at each vertex. Sides of triangles need
-/// not be listed as edges.
+/// Complex from which edges and triangles are removed. It lists the remaining edges and triangles at each vertex. Sides
+/// of triangles need not be listed as edges.
 class ShrinkingComplex {
  public:
   explicit ShrinkingComplex(const ComplexView& complex);
@@ -29,7 +29,8 @@ class ShrinkingComplex {
   [[nodiscard]] const std::array<std::uint32_t, 3>& triangle(std::uint32_t t) const { return triangles_[t]; }
   [[nodiscard]] const std::array<std::uint32_t, 2>& edge(std::uint32_t e) const { return edges_[e]; }
 
-  /// Calls visit(triangle, next, last) for each triangle at a vertex, with its other two corners in their order.
+  /// Calls visit(triangle, next, last) for each triangle at a vertex, where `next` and `last` are its other two corners
+  /// in their order.
   template <class Visit>
   void for_each_triangle(std::uint32_t v, const Visit& visit) const {
     for (std::uint32_t c = first_corner_[v]; c != none; c = next_corner_[c]) {
@@ -44,18 +45,19 @@ class ShrinkingComplex {
   }
 
   /// Returns true if contracting the edge between two vertices preserves the homotopy type. The link condition decides:
-  /// everything linked to both ends must be linked to the edge. (Dey, Edelsbrunner, Guha, Nekhayev, "Topology
-  /// preserving edge contraction", 1999; Attali, Lieutier, Salinas, "Efficient data structure for representing and
-  /// simplifying simplicial complexes in high dimensions", 2012.)
-  /// Cost: near-linear in the cells of both ends. Any number of threads may call it while nothing is contracted.
+  /// a vertex or edge that is in the links of both ends must also be in the link of the edge. (Dey, Edelsbrunner, Guha,
+  /// Nekhayev, "Topology preserving edge contraction", 1999; Attali, Lieutier, Salinas, "Efficient data structure for
+  /// representing and simplifying simplicial complexes in high dimensions", 2012.)
+  /// Cost: near-linear in the number of edges and triangles at both ends. Any number of threads may call it while no
+  /// edge is contracted.
   [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const;
 
   /// Removed triangle, and its corner that was not an end of the contracted edge.
   struct Gone {
     std::uint32_t triangle, third;
   };
-  /// Contracts an edge: moves all cells of one end to the other. Triangles and listed edges that have both ends are
-  /// removed.
+  /// Contracts an edge: in all edges and triangles at `from`, replaces `from` by `to`. Triangles and listed edges that
+  /// contain both vertices are removed.
   /// @return  the removed triangles, valid until the next call.
   std::span<const Gone> contract(std::uint32_t from, std::uint32_t to);
 
@@ -63,7 +65,7 @@ class ShrinkingComplex {
   void add_edge(const std::array<std::uint32_t, 2>& ends);
 
   /// Returns the remaining part of a complex, with its columns.
-  /// @param whole  complex from which this one was made; it may list fewer edges, namely the first ones.
+  /// @param whole  complex from which this object was made. It may lack the last edges of this object.
   [[nodiscard]] Complex rest_of(const Complex& whole) const;
 
  private:

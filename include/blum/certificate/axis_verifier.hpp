@@ -12,12 +12,15 @@
 
 namespace blum {
 
-/// Certifies axes of one solid, which it reads once. It keeps the shells, crossings, Betti numbers and searches of the
-/// solid, and the balls from random points that show missing parts of an axis. Each is computed when an axis first
-/// needs it. The certificates are those of certify() and certify_topology(), byte for byte, in any order of axes.
+/// Certifies many axes of one solid, and reads the solid only once. It stores the shells, crossings, Betti numbers and
+/// search trees of the solid. It also stores the balls from random points that reveal missing parts of an axis
+/// (MedialCheck). The verifier computes each of these data when an axis first needs them. The certificates equal those
+/// of certify() and certify_topology(), byte for byte. The order of the axes does not change a certificate.
 ///
-/// Many threads may use one verifier at once: one of them computes what is needed, and the others wait.
-/// Memory: about 400 bytes per triangle, or per 4 x 4 x 4 voxels at the boundary, and up to 30 MB.
+/// Many threads may use one verifier at the same time. If several threads need the same data, one thread computes them
+/// and the others wait.
+/// Memory: about 400 bytes per triangle of the mesh, or per block of 4 x 4 x 4 voxels at the boundary. In addition, up
+/// to 30 MB.
 class AxisVerifier {
  public:
   /// Constructs a verifier for the solid of a mesh.
@@ -25,9 +28,10 @@ class AxisVerifier {
   /// @throws InvalidMesh if validate() rejects the mesh.
   explicit AxisVerifier(const MeshView& mesh);
 
-  /// Constructs a verifier for the closed union of voxels, which it keeps.
-  /// @param grid  of the voxels' centres.
-  /// @param surface  mesh whose inside the voxels are, which must stay unchanged; nullptr for an image.
+  /// Constructs a verifier for the closed union of voxels. The verifier owns the voxels.
+  /// @param grid  grid whose nodes are the centres of the voxels.
+  /// @param surface  mesh whose solid the voxels represent; nullptr for an image. The mesh must stay unchanged while
+  /// the verifier exists.
   /// @throws InvalidGrid; InvalidMesh; InvalidOption if the sizes of the grid and the voxels differ, or no voxel
   /// exists.
   AxisVerifier(VoxelSet voxels, const GridSpec& grid, const MeshView* surface);
@@ -36,8 +40,8 @@ class AxisVerifier {
   AxisVerifier& operator=(AxisVerifier&&) noexcept;
   ~AxisVerifier();
 
-  /// Returns the rule of the solid. For a mesh it is that of solid_rule(mesh); certify() throws if it is not a
-  /// polyhedron. For voxels it follows from the constructor, and the reason is empty.
+  /// Returns the rule of the solid. For a mesh it equals solid_rule(mesh); certify() throws if the rule is not
+  /// SolidRule::polyhedron. For voxels, the arguments of the constructor decide the rule, and the reason is empty.
   /// @throws Cancelled.
   [[nodiscard]] MeshSolidRule rule(const Context& context = {}) const;
 

@@ -22,12 +22,12 @@
 
 namespace blum {
 
-/// Result that a certificate proves about the topology of an axis, in ascending order.
+/// Result that a certificate proves about the topology of an axis. Each result includes the results before it.
 enum class Proven : std::uint8_t {
-  nothing,            ///< Betti numbers of axis and solid differ, or positions were not checked.
+  nothing,            ///< The Betti numbers of axis and solid differ, or positions were not checked.
   betti_numbers,      ///< In each body, the axis has as many components, tunnels and voids as the solid.
-  homology_modulo_2,  ///< Its inclusion into the solid is an isomorphism of homology with coefficients in Z/2.
-  homology,           ///< Its inclusion into the solid is an isomorphism of integer homology.
+  homology_modulo_2,  ///< The inclusion of axis into solid is an isomorphism of homology over Z/2.
+  homology,           ///< The inclusion of axis into solid is an isomorphism of homology over the integers.
   homotopy_type       ///< The axis and the solid are homotopy equivalent.
 };
 
@@ -40,12 +40,14 @@ struct Description<Proven> {
       NamedValue{Proven::homology, "isomorphic homology"}, NamedValue{Proven::homotopy_type, "homotopy equivalent"}};
 };
 
-/// Components, tunnels and voids of one body of the solid, and of the parts of the axis in it.
+/// Components, tunnels and voids of one body of the solid, and of the parts of the axis in that body.
 struct BodyCheck {
   BettiNumbers solid{};
   BettiNumbers axis{};
-  std::int64_t tunnels_met = 0;  ///< Rank modulo 2 of the linking of the axis's loops with the tunnels.
-  std::int64_t voids_met = 0;    ///< Rank modulo 2 of the winding of its closed surfaces around the voids.
+  /// Number of tunnels that the axis's loops run around (rank modulo 2 of linking numbers).
+  std::int64_t tunnels_met = 0;
+  /// Number of voids that the axis's surfaces enclose (rank modulo 2 of winding numbers).
+  std::int64_t voids_met = 0;
   Proven proven = Proven::nothing;
 };
 
@@ -55,41 +57,44 @@ struct Description<BodyCheck> {
   static constexpr std::string_view doc = "Components, tunnels and voids of one body and of the axis in it";
   static constexpr std::tuple members{
       Member{"solid_betti", &BodyCheck::solid, "", "components, tunnels, voids of the body"},
-      Member{"axis_betti", &BodyCheck::axis, "", "components, tunnels, voids of the parts of the axis in it"},
+      Member{"axis_betti", &BodyCheck::axis, "", "components, tunnels, voids of the parts of the axis in the body"},
       Member{"tunnels_met", &BodyCheck::tunnels_met, "",
-             "rank modulo 2 of the linking of loops of the axis with the tunnels"},
+             "number of tunnels that loops of the axis run around (rank modulo 2 of linking numbers)"},
       Member{"voids_met", &BodyCheck::voids_met, "",
-             "rank modulo 2 of the winding of closed surfaces of the axis around the voids"},
-      Member{"proven", &BodyCheck::proven, "", "proven agreement of its topology"},
+             "number of voids that closed surfaces of the axis enclose (rank modulo 2 of winding numbers)"},
+      Member{"proven", &BodyCheck::proven, "", "strongest proven agreement of the body and the axis in it"},
   };
 };
 
-/// Errors of the vertices of an axis. Distances refer to the shells of the body that contains a vertex, or of the
-/// closest body. These are its outer shell and its voids. The tolerance is 1e-6 of the diagonal of that body's box, or
-/// twice the rounding of its coordinates if that is more. Against the voxels of a mesh (SolidRule::winding), a vertex
-/// up to the diagonal of a voxel away from them is not outside.
+/// Errors of the vertices of an axis. Distances are measured to the surface of the body that contains the vertex. If no
+/// body contains the vertex, they are measured to the surface of the closest body. The surface of a body consists of
+/// its outer shell and the shells of its voids. The tolerance is the larger of two lengths: 1e-6 of the diagonal of the
+/// body's box, and twice the rounding error of the body's coordinates. For the voxels of a mesh (SolidRule::winding), a
+/// vertex counts as outside only if it is more than a voxel's diagonal from the voxels.
 struct GeometryCheck {
-  std::size_t vertices = 0;          ///< Checked vertices.
-  std::size_t not_finite = 0;        ///< Vertices with a coordinate, radius, footprint or angle that is not finite.
-  std::size_t outside = 0;           ///< Vertices outside the solid by more than the tolerance.
-  double outside_by = 0;             ///< Largest distance of a vertex from the solid, mesh units (SolidRule::winding:
-                                     ///< less that diagonal).
+  std::size_t vertices = 0;    ///< Number of checked vertices.
+  std::size_t not_finite = 0;  ///< Vertices with a coordinate, radius, footprint or angle that is not finite.
+  std::size_t outside = 0;     ///< Vertices outside the solid by more than the tolerance.
+  /// Largest distance of a vertex from the solid, mesh units. For SolidRule::winding, it is this distance minus the
+  /// diagonal of a voxel.
+  double outside_by = 0;
   double radius_error = 0;           ///< Largest |radius - exact distance to the surface|, mesh units.
   double footprint_off_surface = 0;  ///< Largest distance of a footprint from the surface, mesh units.
-  double footprint_error = 0;        ///< Largest |distance to a footprint - radius|, mesh units.
-  double site_error = 0;             ///< Largest distance of a footprint from its named site, mesh units.
-  double angle_error = 0;            ///< Largest |separation angle - angle between the footprints|, degrees.
-  double tolerance = 0;              ///< Tolerance in the largest body, mesh units.
-  bool holds = false;                ///< True if all vertices are finite and inside, and no error exceeds its
-                                     ///< tolerance.
+  double footprint_error = 0;        ///< Largest |distance of vertex and footprint - radius|, mesh units.
+  /// Largest distance of a footprint from its site (`site_0`, `site_1`), mesh units.
+  double site_error = 0;
+  double angle_error = 0;  ///< Largest |separation angle - angle between the footprints|, degrees.
+  double tolerance = 0;    ///< Tolerance in the largest body, mesh units.
+  bool holds = false;      ///< True if all vertices are finite, none is outside, and no error exceeds its
+                           ///< tolerance.
 };
 
 template <>
 struct Description<GeometryCheck> {
   static constexpr std::string_view name = "GeometryCheck";
-  static constexpr std::string_view doc = "Errors of the vertices";
+  static constexpr std::string_view doc = "Check of the vertices of an axis, with the largest errors";
   static constexpr std::tuple members{
-      Member{"vertices", &GeometryCheck::vertices, "", "checked vertices"},
+      Member{"vertices", &GeometryCheck::vertices, "", "number of checked vertices"},
       Member{"not_finite", &GeometryCheck::not_finite, "",
              "vertices with a coordinate, radius, footprint or angle that is not finite"},
       Member{"outside", &GeometryCheck::outside, "", "vertices outside the solid by more than the tolerance"},
@@ -103,30 +108,34 @@ struct Description<GeometryCheck> {
       Member{"site_error", &GeometryCheck::site_error, "mesh units", "largest distance of a footprint from its site"},
       Member{"angle_error", &GeometryCheck::angle_error, "degrees",
              "largest |separation angle - angle between the footprints|"},
-      Member{"tolerance", &GeometryCheck::tolerance, "mesh units", "tolerance in the largest body"},
-      Member{"holds", &GeometryCheck::holds, "", "true if no vertex is outside, and no error exceeds its tolerance"},
+      Member{"tolerance", &GeometryCheck::tolerance, "mesh units", "tolerance for distances in the largest body"},
+      Member{"holds", &GeometryCheck::holds, "",
+             "true if no vertex is outside the solid, and no error exceeds its tolerance"},
   };
 };
 
 /// Result of the check that the edges of an axis, and the sides of its triangles, lie in the solid between their ends.
-/// Depths along each edge decide, so no point is left out.
+/// If a point of the solid is at distance r from the surface, the ball of radius r around it lies in the solid. The
+/// check covers each edge with such balls, so every point of the edge is checked.
 ///
-/// An edge may cut a corner by at most 1/64 of the diagonal of the body, if it can be pushed into the solid. In images
-/// the limit is half the diagonal of a voxel if that is more. To push an edge, its point furthest out is moved through
-/// the closest point of the surface. Both parts are then treated in the same way, until all lies in the solid, with at
-/// most 64 moves. This fails for an edge across a gap, however narrow. Against the voxels of a mesh, the tolerance
-/// includes the diagonal of a voxel, and no edge is pushed.
+/// An edge may cut a corner of its body if the edge can be pushed into the solid. Such an edge may leave the body by at
+/// most 1/64 of the diagonal of the body's box. For images, the limit is half the diagonal of a voxel if that is
+/// larger. To push an edge, the check moves the edge's outermost point into the solid, through the closest point of the
+/// surface. The two halves of the edge are then treated in the same way, until the whole edge lies in the solid. At
+/// most 64 points are moved. Pushing fails for an edge across a gap, however narrow the gap is. If the solid consists
+/// of the voxels of a mesh, the tolerance includes the diagonal of a voxel, and no edge is pushed.
 struct EdgeCheck {
-  std::size_t edges = 0;      ///< Checked edges, each counted once.
-  std::size_t pushed = 0;     ///< Edges that cut a corner of the body of their ends, and can be pushed into it.
-  double pushed_by = 0;       ///< Largest distance of these from the solid, mesh units.
-  std::size_t outside = 0;    ///< Edges that leave that body otherwise.
-  double outside_by = 0;      ///< Largest distance of these from the body, at least, mesh units.
-  Vec3d where;                ///< Place of that distance, mesh units.
-  std::size_t across = 0;     ///< Edges that leave the body only within the tolerance, but cross a gap there.
-  Vec3d across_at;            ///< Place of the first of these, mesh units.
-  std::size_t undecided = 0;  ///< Edges for which a crossing is undecided. Then only Betti numbers are proven.
-  double tolerance = 0;       ///< Ten times GeometryCheck::tolerance (SolidRule::winding: plus a voxel's diagonal).
+  std::size_t edges = 0;    ///< Checked edges, each counted once.
+  std::size_t pushed = 0;   ///< Edges that cut a corner of their body, but can be pushed into it.
+  double pushed_by = 0;     ///< Largest distance of a pushed edge from the solid, mesh units.
+  std::size_t outside = 0;  ///< Edges that leave their body and cannot be pushed into it.
+  /// Lower bound of the largest distance of the edges in `outside` from the body, mesh units.
+  double outside_by = 0;
+  Vec3d where;                ///< Point at the distance `outside_by`, mesh units.
+  std::size_t across = 0;     ///< Edges that cross a gap of the body, but leave the body by at most the tolerance.
+  Vec3d across_at;            ///< Position of the first crossing of a gap, mesh units.
+  std::size_t undecided = 0;  ///< Edges that may or may not cross a gap. If any exist, only Betti numbers are proven.
+  double tolerance = 0;       ///< Ten times GeometryCheck::tolerance. SolidRule::winding adds a voxel's diagonal.
   bool holds = false;         ///< True if no edge is outside or crosses a gap.
 };
 
@@ -135,39 +144,43 @@ struct Description<EdgeCheck> {
   static constexpr std::string_view name = "EdgeCheck";
   static constexpr std::string_view doc = "Check that edges lie in the solid between their ends";
   static constexpr std::tuple members{
-      Member{"edges", &EdgeCheck::edges, "", "checked edges, each counted once"},
+      Member{"edges", &EdgeCheck::edges, "", "number of checked edges; each edge counts once"},
       Member{"pushed", &EdgeCheck::pushed, "", "edges that cut a corner, and can be pushed into the solid"},
-      Member{"pushed_by", &EdgeCheck::pushed_by, "mesh units", "largest distance of these from the solid"},
-      Member{"outside", &EdgeCheck::outside, "", "edges that leave the solid otherwise"},
-      Member{"outside_by", &EdgeCheck::outside_by, "mesh units", "largest distance of these from the solid, at least"},
-      Member{"where", &EdgeCheck::where, "mesh units", "place of that distance"},
+      Member{"pushed_by", &EdgeCheck::pushed_by, "mesh units", "largest distance of a pushed edge from the solid"},
+      Member{"outside", &EdgeCheck::outside, "", "edges that leave the solid and cannot be pushed into it"},
+      Member{"outside_by", &EdgeCheck::outside_by, "mesh units",
+             "lower bound of the largest distance from the solid, over the edges that cannot be pushed"},
+      Member{"where", &EdgeCheck::where, "mesh units", "point at the distance outside_by"},
       Member{"across", &EdgeCheck::across, "",
-             "edges that leave the solid only within the tolerance, but cross a gap there"},
-      Member{"across_at", &EdgeCheck::across_at, "mesh units", "place of the first of these"},
+             "edges that cross a gap of the solid, although they leave the solid only within the tolerance"},
+      Member{"across_at", &EdgeCheck::across_at, "mesh units", "position of the first crossing of a gap"},
       Member{"undecided", &EdgeCheck::undecided, "",
-             "edges for which that is undecided; then only Betti numbers are proven"},
-      Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "tolerance"},
+             "edges that may cross a gap; if any exist, only Betti numbers are proven"},
+      Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "tolerance for the distance from the solid"},
       Member{"holds", &EdgeCheck::holds, "", "true if no edge is outside or crosses a gap"},
   };
 };
 
-/// Result of the check that the inclusion of an axis into its solid is an isomorphism of homology, and not only that
-/// numbers agree. It uses Alexander duality. Closed paths along the surface generate the homology of the complement.
-/// Their linking numbers with loops of the axis are exact, as are the winding numbers of its closed surfaces around
-/// points of each void.
+/// Result of the check that the inclusion of an axis into its solid is an isomorphism of homology. Isomorphic homology
+/// is a stronger result than equal Betti numbers. The check uses Alexander duality. Closed paths along the surface
+/// generate the homology of the complement of the solid. The check computes the exact linking numbers of these paths
+/// with loops of the axis. It also computes the exact winding numbers of closed surfaces of the axis around points in
+/// each void.
 ///
-/// The check refuses a loop that runs around nothing, or twice around one tunnel and never around another. It also
-/// refuses a triangle across a hole. It runs only if all Betti numbers agree, all vertices are finite, and edges lie in
-/// the solid. For tunnels and voids of voxels, only the numbers are compared.
+/// An axis fails the check if a loop runs around no tunnel. It also fails if two loops run around the same tunnel while
+/// another tunnel has no loop around it. It also fails if a triangle spans a hole of the solid. The check runs only if
+/// all Betti numbers agree, all vertices are finite, and all edges lie in the solid. If the solid consists of voxels,
+/// only the numbers of tunnels and voids are compared.
 struct HomologyCheck {
-  std::size_t paths = 0;            ///< Closed paths along the surface with which linking numbers were computed.
-  std::size_t triangles = 0;        ///< Triangles of the axis in bodies with tunnels.
-  std::size_t across = 0;           ///< Triangles whose border is linked with a path: they span a hole of the solid.
-  Vec3d where;                      ///< Place of the first of these, mesh units.
-  std::size_t doubtful = 0;         ///< Edges of the axis that touch the surface, so that linking cannot be decided.
+  std::size_t paths = 0;      ///< Closed paths along the surface with which linking numbers were computed.
+  std::size_t triangles = 0;  ///< Triangles of the axis in bodies with tunnels.
+  /// Triangles that span a hole of the solid: their border is linked with such a path.
+  std::size_t across = 0;
+  Vec3d where;                      ///< Centroid of the first triangle across a hole, mesh units.
+  std::size_t doubtful = 0;         ///< Edges that touch the surface, so that their linking numbers are undecided.
   Proven proven = Proven::nothing;  ///< Result that holds in every body.
-  bool holds = false;               ///< True if the check ran and refused nothing, proven or not.
-  std::string shown;                ///< One sentence: the proven result, and why it is not more.
+  bool holds = false;               ///< True if the check ran and found no mismatch, even if it proved little.
+  std::string shown;                ///< One sentence: the proven result, and why no more is proven.
 };
 
 template <>
@@ -176,210 +189,260 @@ struct Description<HomologyCheck> {
   static constexpr std::string_view doc =
       "Check that the inclusion of the axis into its solid is an isomorphism of homology";
   static constexpr std::tuple members{
-      Member{"paths", &HomologyCheck::paths, "", "closed paths along the surface with which loops were linked"},
+      Member{"paths", &HomologyCheck::paths, "",
+             "closed paths along the surface whose linking numbers with loops of the axis were computed"},
       Member{"triangles", &HomologyCheck::triangles, "", "triangles of the axis in bodies with tunnels"},
       Member{"across", &HomologyCheck::across, "", "triangles that span a hole of the solid"},
-      Member{"where", &HomologyCheck::where, "mesh units", "place of the first of these"},
-      Member{"doubtful", &HomologyCheck::doubtful, "", "edges that touch the surface, so that linking is undecided"},
-      Member{"proven", &HomologyCheck::proven, "", "result that holds in every body"},
-      Member{"holds", &HomologyCheck::holds, "", "true if nothing contradicts it, proven or not"},
-      Member{"shown", &HomologyCheck::shown, "", "proven result, and the reason why it is not more, in one sentence"},
+      Member{"where", &HomologyCheck::where, "mesh units", "centroid of the first triangle that spans a hole"},
+      Member{"doubtful", &HomologyCheck::doubtful, "",
+             "edges that touch the surface, so that their linking numbers are undecided"},
+      Member{"proven", &HomologyCheck::proven, "", "strongest result that is proven in every body"},
+      Member{"holds", &HomologyCheck::holds, "",
+             "true if the check ran and nothing contradicts equal homology, even if little is proven"},
+      Member{"shown", &HomologyCheck::shown, "",
+             "the proven result, and the reason why nothing stronger is proven, in one sentence"},
   };
 };
 
-/// Distances between a solid and the balls of its axis, reported and not judged. The balls are those around the
-/// vertices, and between these, with interpolated radii, along longer edges and over larger triangles (see
-/// sample_axis()). The step is 1/200 of the diagonal, or the root of a 50,000th of the axis's area if that is more.
+/// Distances between a solid and the balls of its axis. They are reported, but no limit applies to them. There is a
+/// ball around each vertex of the axis. Long edges and large triangles have further balls with interpolated radii (see
+/// sample_axis()). The spacing of these further balls is 1/200 of the solid's diagonal. If the square root of a
+/// 50,000th of the axis's area is larger, the spacing is this root.
 struct BallUnionCheck {
-  /// Largest distance of the surface of the solid from the union of the balls, over samples of the surface. The corners
-  /// of a mesh are among these. The diagonal of the solid if no balls exist.
+  /// Largest distance of a sample of the solid's surface from the union of the balls. The vertices of a mesh are among
+  /// the samples. If the axis has no balls, the value is the diagonal of the solid.
   double solid_to_balls = 0;
-  double mean_solid_to_balls = 0;  ///< Mean of that distance over the area of the surface.
-  /// Largest distance by which the balls reach out of the solid, that is, radius - exact distance. The distance is
-  /// negative outside the solid. 0 for exact radii.
+  double mean_solid_to_balls = 0;  ///< Mean of the distance in `solid_to_balls` over the surface's area.
+  /// Largest distance by which a ball around a vertex reaches out of the solid. For one ball, this is the radius minus
+  /// the vertex's exact distance from the surface. The distance counts as negative if the vertex is outside the solid.
+  /// The result is 0 if all radii are exact.
   double balls_beyond_solid = 0;
-  /// Largest distance of the surface of the union from that of the solid, over 32 points of each ball. From 3,125 balls
-  /// on, only every second or further ball counts, in all 1,563 to 3,125 of them.
+  /// Largest distance of the surface of the union of the balls from the surface of the solid. It is measured at 32
+  /// points of each ball. If there are 3,125 balls or more, only every n-th ball is measured. The number n is chosen so
+  /// that 1,563 to 3,125 balls are measured.
   double balls_to_surface = 0;
-  /// Each point of the surface is at most this far from a sample, mesh units. The step is the median edge of the axis,
-  /// or 1/256 of the diagonal if that is less. It is larger if over 50,000 samples of a mesh would be needed. Each face
-  /// of a voxel has one or four samples. Above 250,000 faces, each direction of faces in 4 x 4 x 4 voxels has one
-  /// sample.
+  /// Largest distance of a point of the surface from the closest sample, mesh units. For a mesh, the step is the
+  /// smaller of two lengths: the median length of the axis's edges, and 1/256 of the solid's diagonal. The step is
+  /// larger if too many samples would be needed: more than 50,000 and more than the mesh has triangles. For voxels,
+  /// each face between the solid and the background has one or four samples. If there are more than 250,000 faces, each
+  /// block of 4 x 4 x 4 voxels has one sample for each direction of faces.
   double step = 0;
 };
 
 template <>
 struct Description<BallUnionCheck> {
   static constexpr std::string_view name = "BallUnionCheck";
-  static constexpr std::string_view doc =
-      "Distances between the solid and the balls of an axis, reported and not judged";
+  static constexpr std::string_view doc = "Distances between the solid and the balls of an axis; they have no limit";
   static constexpr std::tuple members{
       Member{"solid_to_balls", &BallUnionCheck::solid_to_balls, "mesh units",
              "largest distance of the solid's surface from the union of the balls"},
-      Member{"mean_solid_to_balls", &BallUnionCheck::mean_solid_to_balls, "mesh units", "mean of that distance"},
+      Member{"mean_solid_to_balls", &BallUnionCheck::mean_solid_to_balls, "mesh units",
+             "mean distance of the solid's surface from the union of the balls"},
       Member{"balls_beyond_solid", &BallUnionCheck::balls_beyond_solid, "mesh units",
              "largest distance by which balls reach out of the solid"},
       Member{"balls_to_surface", &BallUnionCheck::balls_to_surface, "mesh units",
-             "largest distance of the union's surface from the solid's"},
+             "largest distance of the union's surface from the solid's surface"},
       Member{"sample_step", &BallUnionCheck::step, "mesh units",
-             "largest distance of a point of the surface from a sample"},
+             "largest distance of a point of the surface from the closest sample"},
   };
 };
 
-/// Result of the check that an axis lies in the middle of its solid, and that no part of it is missing.
+/// Result of the check that an axis lies in the middle of its solid, and that no part of the axis is missing.
 ///
-/// Sample points are the same in every run. There are at most 8,192 of sheets, 2,048 of curves, 4,096 vertices and
-/// 16,384 of the solid. Small sheets get up to 4,096 points more, and all bodies together up to 32,768.
+/// Judged cells are triangles and edges of curves. Their separation angle, as stored in the axis, is above theta. If
+/// the solid consists of voxels, a theta below 40 degrees (image) or 20 degrees (mesh) is raised to this value. All
+/// other cells exist only to preserve the homotopy type, and may lie anywhere in the solid.
 ///
-/// Lengths are measured in voxels, whose side the axis reports. It counts as an eighth of the longest side of the solid
-/// at most. If it is unknown, it is 1/32 of the diagonal. If the solid consists of voxels, it is at least half and at
-/// most the whole of their diagonal. A deviation counts as 1/64 of the diagonal of the solid at most.
+/// The check uses sample points, which are the same in every run. There are at most 8,192 points of sheets, 2,048
+/// points of curves, 4,096 vertices and 16,384 points of the solid. All small sheets together have up to 4,096 further
+/// points. All bodies together have up to 32,768 further points.
 ///
-/// Middle: at a point of the axis, the ball that touches the closest wall is grown until it touches another one. The
-/// point is off the middle by its distance from the bisector of both walls. Walls that the ball's centre sees at less
-/// than 10 degrees (images: 20) are one. Only cells that claim more than theta are judged. If the solid consists of
-/// voxels, theta counts as at least 40 degrees for an image and 20 degrees for a mesh. The other cells exist for
-/// homotopy alone, and may lie anywhere in the solid.
+/// The rules below measure lengths in voxels: one unit is the side of a voxel, as the axis reports it. If this side is
+/// above an eighth of the solid's longest side, the unit is that eighth. If the axis reports no side, the unit is 1/32
+/// of the diagonal of the solid. If the solid consists of voxels, the unit is at least half and at most the whole
+/// diagonal of a voxel. The axis also reports its deviation (DecimatedAxis::deviation), which counts as at most 1/64 of
+/// the diagonal of the solid.
 ///
-/// At least 95 % of the points must be within the allowance, which is 1.5 voxels plus the deviation. At least 90 % must
-/// also be within a quarter of the radius of their ball. Half must be within an eighth of it, and within a third of a
-/// voxel. The deviation plus a twelfth of a voxel replaces this third if it is more. A larger radius at a corner of the
-/// cell replaces that of the ball. Flat cells cut off bends, so a tenth of the cell's longest side replaces these
-/// shares of the radius if it is more. It counts as a quarter of a voxel at most. If the solid consists of voxels, the
-/// shares of the radius do not apply.
+/// The first rule judges how far the axis is from the middle. At a point of the axis, the ball that touches the closest
+/// wall is grown until it touches another wall. The distance of the point from the middle is its distance from the
+/// bisector of the two walls. Two walls count as one wall if the angle between their touching points, at the ball's
+/// centre, is below 10 degrees (images: 20).
 ///
-/// Unless the solid consists of voxels, sheets are also judged one by one. These are the sheets with 12 of the points,
-/// and the largest 341 others of at least 4 square voxels, with 12 points each. At most half of the points of each may
-/// be outside the allowance.
+/// Three limits apply to the distances of the points from the middle. For at least 95 % of the points, the distance
+/// must be at most the allowance: 1.5 voxels plus the deviation. For at least 90 %, it must also be at most a quarter
+/// of the radius of the point's ball. For at least half, it must be at most an eighth of this radius, and at most
+/// `close_allowance`. This last length is a third of a voxel, or the deviation plus a twelfth of a voxel if that is
+/// more.
 ///
-/// Single footprints: ends of sheets and thin walls have vertices with one footprint in judged cells. Such a vertex
-/// must be within the allowance and a quarter of the radius, too. Vertices of judged cells with a radius below one
-/// voxel are exempt. A tenth of the vertices of judged cells, or 16, may be further off.
+/// Two rules raise the limits that depend on the radius. If a corner of the point's cell has a larger radius than the
+/// ball, the radius of the corner is used. Flat cells cut off bends of the axis. So these limits are at least a tenth
+/// of the cell's longest side, or a quarter of a voxel if that is less. If the solid consists of voxels, the limits
+/// that depend on the radius do not apply.
 ///
-/// A stricter limit holds if a cell at the vertex surely sees two walls. Such a cell claims more than theta and 20
-/// degrees (images: 40), and all its other corners see as much. No such vertex may be off by more than 1.5 times the
-/// distance allowed to missed balls of its radius. If judged sheets are larger than 256 square voxels, at most three in
-/// five vertices deeper than the allowance may have one footprint.
+/// Unless the solid consists of voxels, sheets are also judged one by one. At most half of the points of a sheet may be
+/// further from the middle than the allowance. All sheets with at least 12 sample points are judged. Sheets with fewer
+/// sample points are judged only if their area is at least 4 square voxels. The 341 largest of these sheets get 12
+/// further points each; smaller ones are not judged.
 ///
-/// Missing parts: balls are grown from random points of the solid. They are also grown in each body, from points beside
-/// its surface, or in its box if it consists of voxels. Without a theta, this is not checked.
+/// The second rule judges vertices with one footprint. Vertices of judged cells should have two footprints, but some
+/// have only one, at ends of sheets and in thin walls. A vertex with one footprint must lie within the allowance from
+/// the middle, and within a quarter of its ball's radius from the middle. A vertex is exempt if one of its judged cells
+/// has a corner with a radius below one voxel. This limit may be exceeded by at most a tenth of the vertices of judged
+/// cells, or by 16 vertices if that is more.
 ///
-/// A ball counts if it sees two walls at 30 degrees more than theta, or half of the way to 180 if that is less. The
-/// walls must be at least lambda apart. Walls closer than 4 voxels plus lambda count only at 80 degrees or more, and
-/// not if the solid consists of voxels. The distance of the ball's centre from the axis must be at most
-/// `missing_allowance`, 2 voxels plus the deviation. Unless the solid consists of voxels, it must also be at most half
-/// of the ball's radius, or 2 voxels if that is more.
+/// A stricter limit applies to a vertex if one of its cells surely lies between two walls. The angle of such a cell,
+/// and the angles of its other corners, are above theta and above 20 degrees (images: 40). Let d be the distance that
+/// is allowed between the axis and the centre of a ball with the vertex's radius (see below). The distance of the
+/// vertex from the middle must be at most 1.5 d. A third limit applies if the total area of the judged sheets is above
+/// 256 square voxels. At most 60 % of the vertices with a radius above the allowance may then have only one footprint.
 ///
-/// This must hold for 95 % of the balls (voxels of a mesh: 90 %). In each body with 20 or more balls of 80 degrees or
-/// more, it must hold for half of these. If it fails for more than 10 % of these in all bodies together, it must hold
-/// for 90 % in each. Three balls may be missed in any case.
+/// The third rule finds missing parts of the axis. Balls are grown from random points of the solid. In each body,
+/// further balls are grown from points next to the body's surface. If the solid consists of voxels, these points lie in
+/// the body's box instead. If theta is unknown, missing parts are not checked.
 ///
-/// Against the voxels of a mesh, the shares in the middle and the vertices that are far off are reported and not
-/// judged.
+/// A ball counts if it touches two walls at points at least lambda apart, and the angle between these points, at its
+/// centre, is large. The angle must be at least theta plus 30 degrees, or halfway from theta to 180 degrees if that is
+/// less. In this rule, a theta below 10 degrees (images: 20) is raised to this value. If the distance between the two
+/// points is below 4 voxels plus lambda, the angle must also be at least 80 degrees. In solids of voxels, balls with
+/// such close points never count.
+///
+/// The distance of a ball's centre from the axis must be at most `missing_allowance`, which is 2 voxels plus the
+/// deviation. Unless the solid consists of voxels, the distance must also be at most half of the ball's radius, or 2
+/// voxels if that is more.
+///
+/// This condition must hold for 95 % of the balls from random points of the solid (voxels of a mesh: 90 %). The further
+/// balls of single bodies count only if their angle is 80 degrees or more. In each body with 20 or more further balls
+/// that count, the condition must hold for half of them. If it fails for more than 10 % of these balls in all bodies
+/// together, it must hold for 90 % of them in each body. In any case, the condition may fail for three balls.
+///
+/// For the voxels of a mesh, the shares of points near the middle, and the stricter limit for vertices, are reported
+/// but not judged.
 struct MedialCheck {
   double allowance = 0;              ///< Largest accepted distance from the middle, mesh units.
-  std::size_t one_wall = 0;          ///< Vertices with one footprint, or two seen at less than 5 degrees.
+  std::size_t one_wall = 0;          ///< Vertices with one footprint, or with two at an angle below 5 degrees.
   std::size_t claimed_vertices = 0;  ///< Vertices of judged cells.
-  std::size_t one_wall_off =
-      0;  ///< Vertices with one footprint, neither near the middle nor at a thin part; sampled if many.
-  std::size_t one_wall_far = 0;     ///< Those of these that are far off.
-  Vec3d far_at;                     ///< Position of the first of these, mesh units.
-  std::size_t deep_vertices = 0;    ///< Vertices of judged cells that are deeper than the allowance.
-  std::size_t deep_one_wall = 0;    ///< Those of these with one footprint.
-  double homotopy_share = 0;        ///< Share of the area of all triangles that is not judged.
+  /// Vertices of judged cells with one footprint that are further from the middle than allowed, and not exempt. If many
+  /// vertices have one footprint, only a sample of them is examined.
+  std::size_t one_wall_off = 0;
+  std::size_t one_wall_far = 0;   ///< Vertices among `one_wall_off` that violate the stricter limit.
+  Vec3d far_at;                   ///< Position of the first vertex of `one_wall_far`, mesh units.
+  std::size_t deep_vertices = 0;  ///< Vertices of judged cells with a radius above the allowance.
+  std::size_t deep_one_wall = 0;  ///< Vertices among `deep_vertices` with one footprint.
+  /// Area of the triangles that are not judged, as a share of the area of all triangles.
+  double homotopy_share = 0;
   std::size_t samples = 0;          ///< Examined points of sheets and curves.
-  double medial_share = 1;          ///< Share of these that is in the middle, by area. A curve counts as a voxel wide.
-  double near_share = 1;            ///< Share within the allowance and a quarter of the radius of the ball.
-  double close_share = 1;           ///< Share within `close_allowance` and an eighth of that radius.
-  double close_allowance = 0;       ///< A third of a voxel, or the deviation plus a twelfth of a voxel, mesh units.
-  double off_by = 0;                ///< Largest distance of these from the middle, where two walls exist, mesh units.
-  Vec3d off_at;                     ///< Place of that distance, mesh units.
+  double medial_share = 1;          ///< Share of samples within the allowance, by area. A curve counts as a voxel wide.
+  double near_share = 1;            ///< Share of samples within the allowance and a quarter of the ball's radius.
+  double close_share = 1;           ///< Share of samples within `close_allowance` and an eighth of the ball's radius.
+  double close_allowance = 0;       ///< A third of a voxel, or deviation plus a twelfth of a voxel if more, mesh units.
+  double off_by = 0;                ///< Largest distance of a sample from the middle of two walls, mesh units.
+  Vec3d off_at;                     ///< Position of the sample at that distance, mesh units.
   std::size_t sheets_judged = 0;    ///< Sheets that were judged one by one; 0 if the solid consists of voxels.
-  std::size_t sheets_off = 0;       ///< Those of these that are for the most part not in the middle.
-  Vec3d sheet_off_at;               ///< Point of the first of these, mesh units.
-  double sought_angle = 0;          ///< Degrees from which nothing may be missing; 0 if that was not checked.
+  std::size_t sheets_off = 0;       ///< Judged sheets with more than half of their points outside the allowance.
+  Vec3d sheet_off_at;               ///< Position of a point outside the allowance in the first such sheet, mesh units.
+  double sought_angle = 0;          ///< Least angle of balls that count, degrees; 0 if missing parts were not checked.
   double missing_allowance = 0;     ///< Largest accepted distance of a ball's centre from the axis, mesh units.
   std::size_t balls = 0;            ///< Balls from random points of the solid that count.
-  double missed_share = 0;          ///< Share of these without a point of the axis near their centres.
-  double missed_by = 0;             ///< Largest distance of these from the axis, mesh units.
-  Vec3d missed_at;                  ///< Place of that distance, mesh units.
-  std::size_t bodies_unseen = 0;    ///< Bodies with fewer than 20 such balls from points beside the surface.
-  std::size_t bodies_missed = 0;    ///< Other bodies in which too many balls have no point of the axis nearby.
-  double missed_share_of_body = 0;  ///< As `missed_share`, for the worst body.
-  double missed_in_body_by = 0;     ///< Largest distance of a ball of that body from the axis, mesh units.
-  Vec3d missed_in_body_at;          ///< Place of that distance, mesh units.
-  bool judges_missing = false;      ///< True if the whole solid or a body has enough balls to judge.
-  bool holds = false;               ///< True if enough is in the middle, and little is missed.
+  double missed_share = 0;          ///< Share of `balls` without a point of the axis near their centres.
+  double missed_by = 0;             ///< Largest distance of the centre of one of `balls` from the axis, mesh units.
+  Vec3d missed_at;                  ///< Centre of the ball at that distance, mesh units.
+  std::size_t bodies_unseen = 0;    ///< Bodies in which fewer than 20 balls count. They are not judged.
+  std::size_t bodies_missed = 0;    ///< Judged bodies in which too many balls have no point of the axis nearby.
+  double missed_share_of_body = 0;  ///< As `missed_share`, for the balls of the body with the largest share.
+  /// Largest distance of the centre of a ball of that body from the axis, mesh units.
+  double missed_in_body_by = 0;
+  Vec3d missed_in_body_at;      ///< Centre of the ball at that distance, mesh units.
+  bool judges_missing = false;  ///< True if at least 20 balls count, in the whole solid or in one body.
+  bool holds = false;           ///< True if no judged limit is exceeded.
 };
 
 template <>
 struct Description<MedialCheck> {
   static constexpr std::string_view name = "MedialCheck";
   static constexpr std::string_view doc =
-      "Check that an axis lies in the middle of its solid, and that no part is missing";
+      "Check that an axis lies midway between the walls of its solid, and that no part of the axis is missing";
   static constexpr std::tuple members{
       Member{"allowance", &MedialCheck::allowance, "mesh units",
-             "largest accepted distance of a point from the middle"},
-      Member{"one_wall", &MedialCheck::one_wall, "", "vertices that see only one wall"},
+             "largest accepted distance of a point of the axis from the middle of its two walls"},
+      Member{"one_wall", &MedialCheck::one_wall, "",
+             "vertices with one footprint, or with two at an angle below 5 degrees"},
       Member{"claimed_vertices", &MedialCheck::claimed_vertices, "",
-             "vertices of cells that should lie between two walls"},
+             "vertices of judged cells: triangles and edges of curves with an angle above theta"},
       Member{"one_wall_off", &MedialCheck::one_wall_off, "",
-             "vertices (sampled if many) that should see two walls, see one, and lie neither near the middle nor "
-             "beside a thin part"},
-      Member{"one_wall_far", &MedialCheck::one_wall_far, "", "those of these that are far off"},
-      Member{"far_at", &MedialCheck::far_at, "mesh units", "position of the first of these"},
+             "vertices of judged cells with one footprint that are too far from the middle, and not next to a thin "
+             "part (a sample if many)"},
+      Member{"one_wall_far", &MedialCheck::one_wall_far, "",
+             "vertices among one_wall_off that also violate a stricter limit"},
+      Member{"far_at", &MedialCheck::far_at, "mesh units", "position of the first vertex of one_wall_far"},
       Member{"deep_vertices", &MedialCheck::deep_vertices, "",
-             "vertices of cells that should lie between two walls, deeper than the allowance"},
-      Member{"deep_one_wall", &MedialCheck::deep_one_wall, "", "those of these that see only one wall"},
-      Member{"homotopy_share", &MedialCheck::homotopy_share, "", "share of the area that exists for homotopy alone"},
-      Member{"samples", &MedialCheck::samples, "", "examined points of sheets and curves"},
-      Member{"medial_share", &MedialCheck::medial_share, "", "share of these in the middle, by area"},
-      Member{"near_share", &MedialCheck::near_share, "", "share also within a quarter of the distance to the walls"},
-      Member{"close_share", &MedialCheck::close_share, "",
-             "share within close_allowance or an eighth of the distance to the walls"},
+             "vertices of judged cells with a radius above the allowance"},
+      Member{"deep_one_wall", &MedialCheck::deep_one_wall, "", "vertices among deep_vertices with one footprint"},
+      Member{"homotopy_share", &MedialCheck::homotopy_share, "",
+             "share of the area of triangles that exist for homotopy alone, and are not judged"},
+      Member{"samples", &MedialCheck::samples, "", "examined points of judged sheets and curves"},
+      Member{"medial_share", &MedialCheck::medial_share, "",
+             "share of the samples at most the allowance from the middle, by area"},
+      Member{"near_share", &MedialCheck::near_share, "",
+             "share of the samples that are also at most a quarter of the distance to the walls from the middle"},
+      Member{
+          "close_share", &MedialCheck::close_share, "",
+          "share of the samples at most close_allowance, and an eighth of the distance to the walls, from the middle"},
       Member{"close_allowance", &MedialCheck::close_allowance, "mesh units",
-             "a third of a voxel, or the deviation plus a twelfth of a voxel"},
-      Member{"off_by", &MedialCheck::off_by, "mesh units", "largest distance of these from the middle"},
-      Member{"off_at", &MedialCheck::off_at, "mesh units", "place of that distance"},
+             "a third of a voxel, or the deviation plus a twelfth of a voxel if that is more"},
+      Member{"off_by", &MedialCheck::off_by, "mesh units", "largest distance of a sample from the middle"},
+      Member{"off_at", &MedialCheck::off_at, "mesh units", "position of the sample at the distance off_by"},
       Member{"sheets_judged", &MedialCheck::sheets_judged, "", "sheets with enough samples to be judged one by one"},
-      Member{"sheets_off", &MedialCheck::sheets_off, "", "sheets that are mostly off the middle"},
-      Member{"sheet_off_at", &MedialCheck::sheet_off_at, "mesh units", "point of the first of these"},
+      Member{"sheets_off", &MedialCheck::sheets_off, "",
+             "judged sheets with more than half of their points outside the allowance"},
+      Member{"sheet_off_at", &MedialCheck::sheet_off_at, "mesh units",
+             "point outside the allowance in the first such sheet"},
       Member{"sought_angle", &MedialCheck::sought_angle, "degrees",
-             "angle from which nothing may be missing; 0 if that was not checked"},
+             "smallest angle of the medial balls that count; 0 if missing parts were not checked"},
       Member{"missing_allowance", &MedialCheck::missing_allowance, "mesh units",
              "largest accepted distance of a ball centre from the axis"},
-      Member{"balls", &MedialCheck::balls, "", "balls from random points of the solid that see at least that angle"},
-      Member{"missed_share", &MedialCheck::missed_share, "", "share of these without a point of the axis nearby"},
-      Member{"missed_by", &MedialCheck::missed_by, "mesh units", "largest distance of these from the axis"},
-      Member{"missed_at", &MedialCheck::missed_at, "mesh units", "place of that distance"},
+      Member{"balls", &MedialCheck::balls, "",
+             "medial balls from random points of the solid, with an angle of at least sought_angle"},
+      Member{"missed_share", &MedialCheck::missed_share, "",
+             "share of the counted balls without a point of the axis near their centre"},
+      Member{"missed_by", &MedialCheck::missed_by, "mesh units",
+             "largest distance of the centre of a counted ball from the axis"},
+      Member{"missed_at", &MedialCheck::missed_at, "mesh units", "centre of the ball at the distance missed_by"},
       Member{"bodies_unseen", &MedialCheck::bodies_unseen, "",
-             "bodies with too few such balls from points near the surface"},
-      Member{"bodies_missed", &MedialCheck::bodies_missed, "", "other bodies in which too many balls are missed"},
-      Member{"missed_share_of_body", &MedialCheck::missed_share_of_body, "", "share of missed balls in the worst body"},
+             "bodies that are not judged, because too few balls from points near their surface count"},
+      Member{"bodies_missed", &MedialCheck::bodies_missed, "",
+             "judged bodies in which too many balls have no point of the axis near their centre"},
+      Member{"missed_share_of_body", &MedialCheck::missed_share_of_body, "",
+             "missed_share of the balls of one body, for the body where it is largest"},
       Member{"missed_in_body_by", &MedialCheck::missed_in_body_by, "mesh units",
-             "largest distance of a ball of that body from the axis"},
-      Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units", "place of that distance"},
-      Member{"judges_missing", &MedialCheck::judges_missing, "", "true if there are enough balls to judge"},
-      Member{"holds", &MedialCheck::holds, "", "true if enough is in the middle, and little is missed"},
+             "largest distance of the centre of one of that body's balls from the axis"},
+      Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units",
+             "centre of the ball at the distance missed_in_body_by"},
+      Member{"judges_missing", &MedialCheck::judges_missing, "", "true if enough balls count to judge missing parts"},
+      Member{"holds", &MedialCheck::holds, "", "true if no limit is exceeded"},
   };
 };
 
-/// Result of the check that the triangles of an axis lie in the solid between their edges. Around a point of depth r, a
-/// ball of radius r lies in the body. The part of a triangle that the balls of its corners do not cover is cut up. This
-/// ends when balls cover it or one of its points is found outside.
+/// Result of the check that the triangles of an axis lie in the solid between their edges. If a point of the body is at
+/// distance r from the surface, the ball of radius r around it lies in the body. If the balls around the corners of a
+/// triangle do not cover it, the triangle is halved repeatedly. Halving ends when balls cover all parts of the
+/// triangle, or a point of it is found outside.
 ///
-/// Triangles are flat and the solid is not. So they may leave it by the tolerance, plus the limit for edges that cut a
-/// corner, plus the deviation. Those that leave it by less are reported.
+/// Triangles are flat, but the surface of the solid may be curved. So a triangle may leave the body by at most the
+/// allowance. The allowance is the sum of the tolerance, the limit for edges that cut a corner (EdgeCheck), and the
+/// deviation that the axis reports. Triangles that leave the body by more than the tolerance are counted in `leaving`,
+/// even if they leave it by less than the allowance.
 struct TriangleCheck {
   std::size_t triangles = 0;  ///< Checked triangles.
   std::size_t leaving = 0;    ///< Triangles that leave the body of their corners by more than the tolerance.
-  std::size_t outside = 0;    ///< Those of these that leave it by more than the allowance.
-  double outside_by = 0;      ///< Largest distance from the body, mesh units.
-  Vec3d where;                ///< Place of that distance, mesh units.
-  std::size_t undecided = 0;  ///< Triangles in very thin walls that 512 points (64 if hopeless) do not decide.
-  double tolerance = 0;       ///< Tolerance of edges, mesh units.
-  double allowance = 0;       ///< Allowance in the largest body, mesh units.
-  bool holds = false;         ///< True if no triangle is outside.
+  std::size_t outside = 0;    ///< Triangles that leave the body by more than the allowance.
+  double outside_by = 0;      ///< Largest distance of a point of triangles in `outside` from the body, mesh units.
+  Vec3d where;                ///< Point at the distance `outside_by`, mesh units.
+  /// Triangles in very thin walls for which 512 examined points give no decision. If 512 would not suffice, only 64
+  /// points are examined.
+  std::size_t undecided = 0;
+  double tolerance = 0;  ///< EdgeCheck::tolerance, mesh units.
+  double allowance = 0;  ///< Allowance in the largest body, mesh units.
+  bool holds = false;    ///< True if no triangle is outside.
 };
 
 template <>
@@ -387,35 +450,38 @@ struct Description<TriangleCheck> {
   static constexpr std::string_view name = "TriangleCheck";
   static constexpr std::string_view doc = "Check that triangles lie in the solid between their edges";
   static constexpr std::tuple members{
-      Member{"triangles", &TriangleCheck::triangles, "", "checked triangles"},
+      Member{"triangles", &TriangleCheck::triangles, "", "number of checked triangles"},
       Member{"leaving", &TriangleCheck::leaving, "", "triangles that leave the solid by more than the tolerance"},
-      Member{"outside", &TriangleCheck::outside, "", "those of these that leave it by more than the allowance"},
-      Member{"outside_by", &TriangleCheck::outside_by, "mesh units", "largest distance from the solid"},
-      Member{"where", &TriangleCheck::where, "mesh units", "place of that distance"},
-      Member{"undecided", &TriangleCheck::undecided, "", "triangles in walls so thin that the result is undecided"},
-      Member{"tolerance", &TriangleCheck::tolerance, "mesh units", "tolerance of edges"},
-      Member{"allowance", &TriangleCheck::allowance, "mesh units", "accepted distance from the solid"},
+      Member{"outside", &TriangleCheck::outside, "", "triangles that leave the solid by more than the allowance"},
+      Member{"outside_by", &TriangleCheck::outside_by, "mesh units",
+             "largest distance from the solid, over the points of triangles that exceed the allowance"},
+      Member{"where", &TriangleCheck::where, "mesh units", "point at the distance outside_by"},
+      Member{"undecided", &TriangleCheck::undecided, "", "triangles in walls that are too thin for a decision"},
+      Member{"tolerance", &TriangleCheck::tolerance, "mesh units", "tolerance of the check of edges"},
+      Member{"allowance", &TriangleCheck::allowance, "mesh units",
+             "largest accepted distance of a triangle from the solid"},
       Member{"holds", &TriangleCheck::holds, "", "true if no triangle is outside"},
   };
 };
 
-/// Result of the check that an axis lists and labels its cells as its triangles require. Edges of one triangle must be
-/// listed as rims, those of three or more as seams, those of none as curves, and no others. Roles of vertices follow
-/// from these and from sheets (MedialRole).
+/// Result of the check that an axis lists and labels its cells as its triangles require. An edge of one triangle must
+/// be listed as a rim, and an edge of three or more triangles as a seam. An edge without triangles must be listed as a
+/// curve, and an edge of two triangles must not be listed. The role of a vertex must fit its edges and sheets
+/// (MedialRole).
 ///
-/// Sheets must be numbered from 0, without gaps. Each must be connected through edges that exactly two triangles share.
-/// Two sheets may share such an edge only next to a seam. The file decides whether a sheet continues past a seam there.
-/// No exception is allowed.
+/// Sheets must be numbered from 0, without gaps. Each sheet must be connected through edges of exactly two triangles.
+/// Two sheets may share such an edge only if one of its ends lies on a seam. At these edges, the axis may label the two
+/// triangles as one sheet or as two. No violation is accepted.
 struct LabelCheck {
-  std::size_t doubled = 0;       ///< Cells with the same vertices as another cell.
-  std::size_t inner_listed = 0;  ///< Listed edges of two triangles.
+  std::size_t doubled = 0;       ///< Edges with the same vertices as another edge, and likewise triangles.
+  std::size_t inner_listed = 0;  ///< Listed edges that belong to two triangles.
   std::size_t unlisted = 0;      ///< Edges of one triangle, or of three or more, that are not listed.
   std::size_t edge_roles = 0;    ///< Edges with a wrong role.
   std::size_t vertex_roles = 0;  ///< Vertices with a wrong role.
-  std::size_t sheets = 0;        ///< Labels of triangles.
-  std::size_t gaps = 0;          ///< Numbers below the largest that no triangle has.
+  std::size_t sheets = 0;        ///< Number of sheets, by the labels of triangles.
+  std::size_t gaps = 0;          ///< Unused sheet numbers below the largest sheet number.
   std::size_t torn = 0;          ///< Sheets that are not connected.
-  std::size_t parted = 0;        ///< Edges between two sheets, away from seams.
+  std::size_t parted = 0;        ///< Edges between two sheets, if neither end of the edge lies on a seam.
   bool holds = false;            ///< True if nothing is wrong.
 };
 
@@ -424,37 +490,49 @@ struct Description<LabelCheck> {
   static constexpr std::string_view name = "LabelCheck";
   static constexpr std::string_view doc = "Check that roles and sheets fit the triangles";
   static constexpr std::tuple members{
-      Member{"doubled", &LabelCheck::doubled, "", "cells with the same vertices as another one"},
-      Member{"inner_listed", &LabelCheck::inner_listed, "", "listed edges of two triangles"},
-      Member{"unlisted", &LabelCheck::unlisted, "", "rims and seams that are not listed"},
+      Member{"doubled", &LabelCheck::doubled, "",
+             "edges with the same vertices as another edge, and likewise triangles"},
+      Member{"inner_listed", &LabelCheck::inner_listed, "", "listed edges that belong to exactly two triangles"},
+      Member{"unlisted", &LabelCheck::unlisted, "", "edges of rims and seams that are not listed"},
       Member{"edge_roles", &LabelCheck::edge_roles, "", "edges with a wrong role"},
       Member{"vertex_roles", &LabelCheck::vertex_roles, "", "vertices with a wrong role"},
-      Member{"sheets", &LabelCheck::sheets, "", "labels of triangles"},
-      Member{"gaps", &LabelCheck::gaps, "", "numbers below the largest that no triangle has"},
+      Member{"sheets", &LabelCheck::sheets, "", "number of sheets, by the labels of triangles"},
+      Member{"gaps", &LabelCheck::gaps, "", "unused sheet numbers below the largest sheet number"},
       Member{"torn", &LabelCheck::torn, "", "sheets that are not connected"},
-      Member{"parted", &LabelCheck::parted, "", "edges between two sheets, away from seams"},
+      Member{"parted", &LabelCheck::parted, "", "edges between two sheets, if neither end of the edge lies on a seam"},
       Member{"holds", &LabelCheck::holds, "", "true if nothing is wrong"},
   };
 };
 
-/// Result of the check that the separation angles of triangles and edges fit their positions. A triangle has the
-/// largest angle within half a voxel of it, and of triangles removed for it. So only shares are judged, from 64 cells
-/// on. Against voxels, of images or meshes, the shares that depend on corners and positions are reported and not
-/// judged.
+/// Result of the check that the separation angles of triangles and edges fit their positions. The angle of a triangle
+/// is the largest separation angle within half a voxel of the triangle. After decimation, it may also be the angle of a
+/// removed triangle next to the remaining one. So single triangles are not judged. Limits on shares apply only if at
+/// least 64 triangles or edges were examined. If the solid consists of voxels, of an image or a mesh, `below_share`,
+/// `above_share` and `curves_above_share` are reported, but not judged.
 struct AngleCheck {
-  std::size_t triangles = 0;      ///< Triangles whose corners all have 10 degrees or more.
-  double below_share = 0;         ///< Share of their area over 10 degrees below each corner. At most 0.8 is accepted.
-  std::size_t samples = 0;        ///< Examined triangles.
-  double above_share = 0;         ///< Share over 20 degrees above all seen within a voxel. At most 0.2 is accepted.
-  std::size_t curve_samples = 0;  ///< Examined edges of curves.
-  double curves_above_share = 0;  ///< Share of these with such an angle. At most 0.6 is accepted.
-  std::size_t borders = 0;        ///< Rims and seams.
-  std::size_t borders_above = 0;  ///< Those with an angle above those of all their triangles. None is accepted.
-  std::size_t borders_below = 0;  ///< Those with an angle over 20 degrees below. At most half are accepted.
-  std::size_t rims = 0;           ///< Examined rims; none if theta is not known.
-  double low_rims_share = 0;  ///< Share of the length of rims and curves in rims of sheets of at most theta: at most
-                              ///< 0.25.
-  bool holds = false;         ///< True if all shares are small enough.
+  std::size_t triangles = 0;  ///< Triangles whose corners all have an angle of 10 degrees or more.
+  /// Share of the area of `triangles` that belongs to triangles with an angle more than 10 degrees below the angles of
+  /// all their corners. At most 0.8 is accepted.
+  double below_share = 0;
+  std::size_t samples = 0;  ///< Sampled triangles.
+  /// Share of the sampled triangles whose angle is more than 20 degrees above all angles found within one voxel of
+  /// them. At most 0.2 is accepted.
+  double above_share = 0;
+  std::size_t curve_samples = 0;  ///< Sampled edges of curves.
+  /// Share of the sampled edges of curves whose angle is more than 20 degrees above all angles found within one voxel
+  /// of them. At most 0.6 is accepted.
+  double curves_above_share = 0;
+  std::size_t borders = 0;  ///< Edges of rims and seams.
+  /// Edges of rims and seams with an angle above the angles of all their triangles. None is accepted.
+  std::size_t borders_above = 0;
+  /// Edges of rims and seams with an angle more than 20 degrees below the largest angle of their triangles. At most
+  /// half of `borders` are accepted.
+  std::size_t borders_below = 0;
+  std::size_t rims = 0;  ///< Examined edges of rims; 0 if theta is unknown.
+  /// Length of the rims of sheets without an angle above theta, as a share of the length of all rims and curves. At
+  /// most 0.25 is accepted.
+  double low_rims_share = 0;
+  bool holds = false;  ///< True if no judged limit is exceeded.
 };
 
 template <>
@@ -462,27 +540,34 @@ struct Description<AngleCheck> {
   static constexpr std::string_view name = "AngleCheck";
   static constexpr std::string_view doc = "Check that separation angles of triangles and edges fit their positions";
   static constexpr std::tuple members{
-      Member{"triangles", &AngleCheck::triangles, "", "triangles whose corners all see two walls"},
+      Member{"triangles", &AngleCheck::triangles, "",
+             "triangles whose corners all have an angle of 10 degrees or more"},
       Member{"below_share", &AngleCheck::below_share, "",
-             "share of their area with an angle below those of all corners"},
-      Member{"samples", &AngleCheck::samples, "", "examined triangles"},
+             "share of the area of the counted triangles that belongs to triangles with a smaller angle than each of "
+             "their corners"},
+      Member{"samples", &AngleCheck::samples, "", "sampled triangles"},
       Member{"above_share", &AngleCheck::above_share, "",
-             "share of these with an angle above all found within a voxel"},
-      Member{"curve_samples", &AngleCheck::curve_samples, "", "examined edges of curves"},
-      Member{"curves_above_share", &AngleCheck::curves_above_share, "", "share of these with such an angle"},
-      Member{"borders", &AngleCheck::borders, "", "rims and seams"},
-      Member{"borders_above", &AngleCheck::borders_above, "", "those with an angle above those of all their triangles"},
-      Member{"borders_below", &AngleCheck::borders_below, "", "those with an angle 20 degrees below"},
-      Member{"rims", &AngleCheck::rims, "", "examined rims; none if theta is unknown"},
-      Member{"low_rims_share", &AngleCheck::low_rims_share, "",
-             "share of the length of rims and curves in rims of sheets without an angle above theta"},
-      Member{"holds", &AngleCheck::holds, "", "true if all shares are small enough"},
+             "share of the sampled triangles with a larger angle than any angle found within a voxel"},
+      Member{"curve_samples", &AngleCheck::curve_samples, "", "sampled edges of curves"},
+      Member{"curves_above_share", &AngleCheck::curves_above_share, "",
+             "share of the sampled edges of curves with a larger angle than any angle found within a voxel"},
+      Member{"borders", &AngleCheck::borders, "", "edges of rims and seams"},
+      Member{"borders_above", &AngleCheck::borders_above, "",
+             "edges of rims and seams with a larger angle than each of their triangles"},
+      Member{"borders_below", &AngleCheck::borders_below, "",
+             "edges of rims and seams with an angle more than 20 degrees below the largest angle of their triangles"},
+      Member{"rims", &AngleCheck::rims, "", "examined edges of rims; 0 if theta is unknown"},
+      Member{
+          "low_rims_share", &AngleCheck::low_rims_share, "",
+          "length of the rims of sheets without an angle above theta, as a share of the length of all rims and curves"},
+      Member{"holds", &AngleCheck::holds, "", "true if no limit is exceeded"},
   };
 };
 
-/// Parts that a certificate checks besides numbers of components, tunnels and voids, for files without some data.
+/// Parts that a certificate checks besides the numbers of components, tunnels and voids. A part should be off if the
+/// file of the axis lacks its data. If a part is off, parts that need it are not checked either.
 struct CertificateOptions {
-  /// Positions of vertices and edges. Without them, the Betti numbers of the whole solid and the whole axis are
+  /// Positions of vertices and edges. If this is off, only the Betti numbers of the whole solid and the whole axis are
   /// compared.
   bool positions = true;
   bool radii = true;       ///< Needs positions.
@@ -490,10 +575,10 @@ struct CertificateOptions {
   bool angles = true;      ///< Angles of vertices, triangles and edges. Needs footprints.
   bool sites = true;       ///< Needs footprints. Sites that are none() are not checked.
   bool labels = true;      ///< Roles of vertices and edges, and sheets. Needs positions.
-  bool balls = true;       ///< Distances between solid and balls. Needs radii.
-  bool medial = true;      ///< Middle and missing parts. Needs radii, and angles for sheets and curves.
-  // Parameters that the axis reports, for the medial check; unset if not known.
-  std::optional<double> theta = {};      ///< Degrees.
+  bool balls = true;       ///< BallUnionCheck. Needs radii.
+  bool medial = true;      ///< MedialCheck. Needs radii; sheets and curves are judged only with `angles`.
+  // Parameters that the axis reports; unset if unknown. The checks of angles, triangles and the middle use them.
+  std::optional<double> theta = {};      ///< Smallest separation angle of the axis, degrees.
   std::optional<double> lambda = {};     ///< Mesh units.
   std::optional<double> spacing = {};    ///< Side of a voxel, mesh units.
   std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units.
@@ -503,7 +588,7 @@ template <>
 struct Description<CertificateOptions> {
   static constexpr std::string_view name = "CertificateOptions";
   static constexpr std::string_view doc =
-      "Parts that a certificate checks besides numbers of components, tunnels and voids";
+      "Parts that a certificate checks, besides the numbers of components, tunnels and voids";
   static constexpr std::tuple members{
       Member{"positions", &CertificateOptions::positions, "", "positions of vertices and edges"},
       Member{"radii", &CertificateOptions::radii, "", "radii of vertices"},
@@ -512,33 +597,35 @@ struct Description<CertificateOptions> {
       Member{"sites", &CertificateOptions::sites, "", "sites of vertices; needs footprints"},
       Member{"labels", &CertificateOptions::labels, "", "roles and sheets; needs positions"},
       Member{"balls", &CertificateOptions::balls, "", "distances between solid and balls; needs radii"},
-      Member{"medial", &CertificateOptions::medial, "", "middle of the solid and missing parts; needs radii"},
-      Member{"theta", &CertificateOptions::theta, "degrees", "angle that the axis reports"},
+      Member{"medial", &CertificateOptions::medial, "",
+             "distances of the axis from the middle between walls, and missing parts; needs radii"},
+      Member{"theta", &CertificateOptions::theta, "degrees", "theta that the axis reports"},
       Member{"lambda", &CertificateOptions::lambda, "mesh units", "lambda that the axis reports", Range::at_least(0)},
       Member{"spacing", &CertificateOptions::spacing, "mesh units", "side of a voxel that the axis reports",
              Range::positive()},
       Member{"deviation", &CertificateOptions::deviation, "mesh units",
-             "deviation by removed vertices that the axis reports", Range::at_least(0)},
+             "largest change by removed vertices that the axis reports", Range::at_least(0)},
   };
 };
 
 struct Certificate {
   SolidRule against = SolidRule::polyhedron;
   CertificateOptions checked;
-  BettiNumbers solid{};           ///< Sum over the bodies, from the boundary of the solid or its voxels.
-  BettiNumbers axis{};            ///< Betti numbers of the complex, by homology().
-  std::optional<double> voxel;    ///< Shortest side of a voxel, mesh units, if the solid consists of voxels.
-  std::vector<BodyCheck> bodies;  ///< Each must agree. One for the whole solid without CertificateOptions::positions.
+  BettiNumbers solid{};         ///< Sum over all bodies, computed from the solid's boundary or voxels.
+  BettiNumbers axis{};          ///< Betti numbers of the complex, by homology().
+  std::optional<double> voxel;  ///< Shortest side of a voxel, mesh units; unset unless the solid consists of voxels.
+  /// One check for each body; all must agree. Without CertificateOptions::positions, one check for the whole solid.
+  std::vector<BodyCheck> bodies;
   bool topology_holds = false;
   GeometryCheck geometry;
   EdgeCheck edges;
   TriangleCheck triangles;
-  LabelCheck labels;  ///< Computed with CertificateOptions::labels.
-  AngleCheck angles;  ///< Computed with CertificateOptions::angles.
+  LabelCheck labels;  ///< Computed if CertificateOptions::labels is true.
+  AngleCheck angles;  ///< Computed if CertificateOptions::angles is true.
   HomologyCheck homology;
   BallUnionCheck balls;
   MedialCheck medial;
-  std::vector<std::string> mismatches;  ///< One sentence per mismatch; empty if all holds.
+  std::vector<std::string> mismatches;  ///< One sentence per mismatch; empty if all checks hold.
 
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
 };
@@ -549,14 +636,16 @@ struct Description<Certificate> {
   static constexpr std::string_view doc =
       "Result of checking the topology and the geometry of an axis against its solid";
   static constexpr std::tuple members{
-      Member{"against", &Certificate::against, "", "rule for the solid"},
+      Member{"against", &Certificate::against, "", "rule that defines the solid"},
       Member{"checked", &Certificate::checked, "", "checked parts"},
       Member{"solid_betti", &Certificate::solid, "", "components, tunnels, voids of the solid: the sum of its bodies"},
       Member{"axis_betti", &Certificate::axis, "", "components, tunnels, voids of the axis"},
       Member{"voxel", &Certificate::voxel, "mesh units", "shortest side of a voxel if the solid is made of voxels"},
-      Member{"bodies", &Certificate::bodies, "",
-             "bodies, which must all agree; one for the whole if positions were not checked"},
-      Member{"topology_holds", &Certificate::topology_holds, "", "true if all bodies agree"},
+      Member{
+          "bodies", &Certificate::bodies, "",
+          "one check for each body, and all must agree; one check for the whole solid if positions were not checked"},
+      Member{"topology_holds", &Certificate::topology_holds, "",
+             "true if components, tunnels and voids agree in all bodies"},
       Member{"geometry", &Certificate::geometry, "", "check of the vertices"},
       Member{"edges", &Certificate::edges, "", "check of the edges"},
       Member{"triangles", &Certificate::triangles, "", "check of the triangles between their edges"},
@@ -564,71 +653,75 @@ struct Description<Certificate> {
       Member{"angles", &Certificate::angles, "", "check of the separation angles of triangles and edges"},
       Member{"homology", &Certificate::homology, "", "check of tunnels and voids"},
       Member{"balls", &Certificate::balls, "", "distances between solid and balls"},
-      Member{"medial", &Certificate::medial, "", "check of the middle and of missing parts"},
+      Member{"medial", &Certificate::medial, "", "check of the middle between walls, and of missing parts"},
       Member{"mismatches", &Certificate::mismatches, "", "one sentence for each mismatch; empty if all holds"},
       Fact{"holds", &Certificate::holds, "", "true if there is no mismatch"},
   };
 };
 
-/// Rule for the solid of a mesh. SolidRule::polyhedron requires that the mesh is closed, manifold and orientable. Its
-/// triangles must not cross or, within one body, touch. A mesh that resolve_crossings() turns into such a mesh, with
-/// the same inside, counts, too. The rule of all other meshes is SolidRule::winding.
+/// Rule that defines the solid of a mesh. The rule is SolidRule::polyhedron if the mesh is closed, manifold and
+/// orientable, and its triangles do not cross. Triangles of one body must not touch each other either, except at shared
+/// edges and vertices. The rule is also SolidRule::polyhedron if resolve_crossings() turns the mesh into such a mesh,
+/// and this mesh bounds the same solid. The rule of all other meshes is SolidRule::winding.
 struct MeshSolidRule {
   SolidRule rule = SolidRule::polyhedron;
-  std::string reason;  ///< One sentence.
+  std::string reason;  ///< Reason for the rule, one sentence.
 };
 template <>
 struct Description<MeshSolidRule> {
   static constexpr std::string_view name = "MeshSolidRule";
-  static constexpr std::string_view doc = "Rule for the solid of a mesh";
+  static constexpr std::string_view doc = "Rule that defines the solid of a mesh";
   static constexpr std::tuple members{
       Member{"rule", &MeshSolidRule::rule, "", "volume bounded by the shells, or winding number above 1/2"},
-      Member{"reason", &MeshSolidRule::reason, "", "reason in one sentence"},
+      Member{"reason", &MeshSolidRule::reason, "", "reason for this rule, in one sentence"},
   };
 };
 
-/// Returns the rule for the solid of a mesh. The verifier reads the mesh itself and calls find_self_intersections(). If
-/// the mesh crosses itself, the result of resolve_crossings() is read in the same way.
+/// Returns the rule that defines the solid of a mesh. The verifier analyses the mesh with its own code and
+/// find_self_intersections(). If the mesh crosses itself, the verifier analyses the result of resolve_crossings() in
+/// the same way.
 /// @throws InvalidMesh if validate() rejects the mesh; Cancelled.
 [[nodiscard]] MeshSolidRule solid_rule(const MeshView& mesh, const Context& context = {});
 
 /// Checks an axis against the solid that a closed, manifold mesh bounds.
 ///
-/// The check uses no field, no voxels and no record of the construction. Betti numbers come from the homology of the
-/// surface and the nesting of its components, by counting crossings of lines. Distances come from separate searches.
-/// Shared with the construction are the search for crossings of triangles, their resolution, signs of determinants and
-/// the numbering of sites. Shells may face either way, and touch. Triangles that name a vertex twice are left out. If
-/// the mesh crosses itself, the solid is that of resolve_crossings().
+/// The check uses no field, no voxels and no record of the construction. The Betti numbers of the solid follow from the
+/// homology of its shells and their nesting. The nesting is found by counting how often lines cross the shells. The
+/// verifier has its own code for distances. It shares four parts with the construction: the search for crossings of
+/// triangles, the resolution of crossings, signs of determinants and the numbering of sites. Shells may face either
+/// way, and may touch each other. Triangles with the same vertex twice are ignored. If the mesh crosses itself, the
+/// result of resolve_crossings() bounds the solid.
 ///
 /// Betti numbers are compared body by body. A connected part of the axis belongs to the body that contains its deepest
-/// vertex. Linking numbers prove that its loops and closed surfaces go around the tunnels and voids of that body
-/// (HomologyCheck).
-/// @throws InvalidMesh if the mesh is not closed and manifold, or crosses itself and this is not resolved. Also if a
-/// shell encloses nothing, or exactly what another one does. InvalidOption if the complex is invalid (see homology())
-/// or lacks a column of MedialView; Cancelled.
-/// Cost: on one core about 2 s for 100,000 vertices and as many triangles.
+/// vertex. Linking and winding numbers prove that loops and closed surfaces of the axis go around the tunnels and voids
+/// of their body (HomologyCheck).
+/// @throws InvalidMesh if the mesh is not closed and manifold, or if it has crossings that resolve_crossings() cannot
+/// resolve. Also if a shell encloses no volume, or exactly the same volume as another shell. InvalidOption if the
+/// complex is invalid (see homology()) or lacks a column of MedialView; Cancelled.
+/// Cost: about 2 s on one core for an axis with 100,000 vertices and a mesh with 100,000 triangles.
 [[nodiscard]] Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options = {},
                                   const Context& context = {});
 
-/// Checks an axis against the closed union of voxels. The voxels are those of an image, and distances refer to their
-/// faces. Or they represent a mesh that is not a polyhedron (SolidRule::winding), and distances refer to that mesh.
-/// voxels_inside() computes such voxels. They are used as given, so an error that they share with the construction is
-/// not detected.
-/// @param grid  of the voxels' centres.
-/// @param surface  the mesh; nullptr for an image.
+/// Checks an axis against the closed union of voxels. If `surface` is nullptr, the voxels are those of an image, and
+/// distances are measured to their faces. Otherwise, the voxels represent a mesh that is not a polyhedron
+/// (SolidRule::winding), and distances are measured to that mesh; voxels_inside() computes such voxels. All voxels are
+/// used as given. So an error in the voxels that the axis was made from is not detected if the same voxels are passed
+/// here.
+/// @param grid  grid whose nodes are the centres of the voxels.
+/// @param surface  mesh that the voxels represent; nullptr for an image.
 /// @throws InvalidGrid, also if the grid does not cover the mesh. InvalidMesh. InvalidOption, also if the sizes of the
 /// grid and the voxels differ, or no voxel exists. Cancelled.
 [[nodiscard]] Certificate certify(const Complex& axis, const VoxelSet& voxels, const GridSpec& grid,
                                   const MeshView* surface, const CertificateOptions& options = {},
                                   const Context& context = {});
 
-/// Checks whether any complex, a medial axis or not, has the topology of the solid of a mesh. Performs the checks of
-/// certify() that need only positions, without the columns of MedialView. Betti numbers must agree body by body, and
-/// vertices, edges and triangles must lie in the solid.
+/// Checks whether a complex has the topology of the solid of a mesh. The complex need not be a medial axis, and needs
+/// no columns. The function performs those checks of certify() that need only positions. Betti numbers must agree body
+/// by body, and vertices, edges and triangles must lie in the solid.
 /// @throws as certify().
 [[nodiscard]] Certificate certify_topology(const Complex& complex, const MeshView& mesh, const Context& context = {});
 
-/// Checks the topology of any complex against voxels, which are as in certify().
+/// Checks the topology of a complex against voxels. `voxels`, `grid` and `surface` are as in certify() for voxels.
 [[nodiscard]] Certificate certify_topology(const Complex& complex, const VoxelSet& voxels, const GridSpec& grid,
                                            const MeshView* surface, const Context& context = {});
 

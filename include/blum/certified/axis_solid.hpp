@@ -11,11 +11,12 @@
 
 namespace blum {
 
-/// Part of an image or a mesh that is the solid, from options or from a file.
+/// Options that select the solid in an image or a mesh. These options come from the user or from the file of an axis.
 struct SolidSelection {
-  std::optional<std::int64_t> label = {};  ///< Images: voxels of this value. At most one of label and threshold is set.
-  std::optional<double> threshold = {};    ///< Images: voxels of this value or more.
-  std::optional<double> weld = {};         ///< Meshes: MeshReadOptions::weld, mesh units.
+  /// Images: voxels of this value form the solid. At most one of label and threshold is set.
+  std::optional<std::int64_t> label = {};
+  std::optional<double> threshold = {};  ///< Images: voxels of this value or more form the solid.
+  std::optional<double> weld = {};       ///< Meshes: MeshReadOptions::weld, mesh units.
 };
 
 /// Form of options in messages of a front end: `--label 2` or `label=2`.
@@ -23,11 +24,12 @@ enum class OptionStyle : std::uint8_t { command_line, python };
 
 struct AxisSolid {
   SolidSelection selection;
-  std::vector<Warning> warnings;  ///< WarningCode::other_solid if the axis names another solid.
+  std::vector<Warning> warnings;  ///< WarningCode::other_solid if the axis records another selection.
 };
 
-/// Returns the solid of an axis. Given options take precedence over those that the axis records. A given label or
-/// threshold replaces both of the axis's. For images, weld is ignored; for meshes, label and threshold are.
+/// Returns the selection of the solid of an axis. Given options take precedence over the options that the axis records.
+/// A given label or threshold replaces both the label and the threshold that the axis records. For images, `weld` is
+/// ignored. For meshes, `label` and `threshold` are ignored.
 /// @param axis  name of the axis in the warning.
 [[nodiscard]] AxisSolid solid_of_axis(const SolidSelection& given, bool is_image, const MedialMetadata& metadata,
                                       const std::string& axis, OptionStyle style);

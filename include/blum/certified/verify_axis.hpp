@@ -21,7 +21,7 @@
 
 namespace blum {
 
-/// Claims of a file, or of its author, about an axis.
+/// Claims of a file, or of its author, about an axis. Each member `has_...` is true if the file contains these data.
 struct MedialClaims {
   MedialMetadata metadata;
   bool has_radii = true;
@@ -31,8 +31,8 @@ struct MedialClaims {
   bool has_labels = true;
 };
 
-/// Error for a mesh that does not bound a polyhedron, if the axis's file does not name the voxels that its solid
-/// consists of.
+/// Error if a mesh does not bound a polyhedron. In this case, voxels represent the solid, but the file of the axis does
+/// not give the grid of these voxels.
 class UnknownVoxels : public InvalidMesh {
  public:
   explicit UnknownVoxels(const std::string& reason)
@@ -46,16 +46,18 @@ class UnknownVoxels : public InvalidMesh {
   std::string reason_;
 };
 
-/// Returns one sentence for each false claim. A claim is false in these cases: The solid has another rule. The sides of
-/// the voxels differ from those of the image. For the voxels of a mesh, the steps of the grid differ from the spacing.
-/// A file by Blum lacks data that Blum always writes, or its sites belong to another kind of solid.
-/// @param found  rule of the solid.
+/// Returns one sentence for each false claim. A claim is false in these cases: The file gives another rule than
+/// `found`. The file gives sides of voxels that differ from those of the image. For the voxels of a mesh, the spacing
+/// in the file differs from the steps of the grid in the file. The file says that Blum wrote it, but lacks data that
+/// Blum always writes, or has sites of another kind of solid.
+/// @param found  actual rule of the solid.
 /// @param image_grid  grid of the voxels' centres for an image, else nullptr.
 [[nodiscard]] std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found,
                                                     const GridSpec* image_grid);
 
-/// Certifies axes of a mesh with the claims of their files. It reads the mesh once (AxisVerifier). If the mesh does not
-/// bound a polyhedron, consecutive axes that name the same grid share its voxels. Many threads may use it at once.
+/// Certifies axes of a mesh, and checks the claims of their files. The verifier reads the mesh only once
+/// (AxisVerifier). If the mesh does not bound a polyhedron, the voxels are computed once for consecutive axes with the
+/// same grid. Many threads may use one object at the same time.
 class MeshAxisVerifier {
  public:
   /// @param mesh  must stay unchanged while the verifier exists.
@@ -67,13 +69,14 @@ class MeshAxisVerifier {
   /// Certifies an axis against the solid of the mesh (AxisVerifier::certify()), and adds false claims to the
   /// mismatches.
   ///
-  /// The solid is the polyhedron that the mesh bounds. If the verifier finds none (solid_rule()), the solid consists of
-  /// the voxels inside on the grid that the claims name. Data that the file does not have are not checked, nor are
-  /// sites of another kind of solid. If Blum wrote the file, no vertex may lack a site.
+  /// The solid is the polyhedron that the mesh bounds. If the mesh does not bound a polyhedron (solid_rule()), the
+  /// solid consists of the voxels inside the mesh, on the grid in the claims. Data that the file lacks are not checked.
+  /// Sites are not checked if they belong to a solid of another kind. If Blum wrote the file, no vertex may lack a
+  /// site.
   /// @param available_memory  bytes; a grid that needs more is rejected.
-  /// @throws UnknownVoxels if a grid is needed and the claims name none. InvalidGrid if the grid has fewer than 8 steps
-  /// along the longest side of the mesh. InvalidMesh if none of its voxels lies inside. OutOfMemory; as certify() and
-  /// voxels_inside().
+  /// @throws UnknownVoxels if a grid is needed and the claims contain none. InvalidGrid if the grid has fewer than 8
+  /// steps along the longest side of the mesh. InvalidMesh if no voxel of the grid lies inside the mesh. OutOfMemory.
+  /// Also the exceptions of certify() and voxels_inside().
   [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims,
                                    const CertificateOptions& options = {}, double available_memory = 1e300,
                                    const Context& context = {}) const;
@@ -92,12 +95,12 @@ class MeshAxisVerifier {
   MeshView mesh_;
   AxisVerifier polyhedron_;
   mutable std::mutex mutex_;
-  mutable std::shared_ptr<const Voxels> voxels_;  ///< The last ones used.
+  mutable std::shared_ptr<const Voxels> voxels_;  ///< Voxels of the last grid that was used.
 };
 
-/// Certifies axes of an image with the claims of their files. The solid is the union of the selected, closed voxels. If
-/// the claims say so (MedialMetadata::smooth), it is the solid that their smooth surface bounds. The solid of the last
-/// selection is kept.
+/// Certifies axes of an image, and checks the claims of their files. The solid is the union of the selected, closed
+/// voxels. If MedialMetadata::smooth is set in the claims, the smooth surface of these voxels bounds the solid instead.
+/// The solid of the last selection is stored for the next axis.
 class ImageAxisVerifier {
  public:
   /// @param image  must stay unchanged while the verifier exists.
@@ -118,7 +121,7 @@ class ImageAxisVerifier {
 
   VoxelImageView image_;
   mutable std::mutex mutex_;
-  mutable std::shared_ptr<const Selected> selected_;  ///< The last one used.
+  mutable std::shared_ptr<const Selected> selected_;  ///< Solid of the last selection.
 };
 
 /// Verifies one axis with a MeshAxisVerifier.

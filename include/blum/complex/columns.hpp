@@ -20,14 +20,14 @@ template <class T>
 concept ColumnNumber =
     std::same_as<T, double> || std::same_as<T, float> || std::same_as<T, std::int64_t> || std::same_as<T, std::int32_t>;
 
-/// Named attribute: the same count of numbers, of one type, for each row.
+/// Named attribute: each row has `components` numbers, all of one type.
 struct Column {
   using Values =
       std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>, std::vector<std::int32_t>>;
 
   std::string name;
   std::size_t components = 1;  ///< Numbers per row, at least 1.
-  Values values;               ///< Row after row, with the components of a row side by side.
+  Values values;               ///< All rows, one after the other; the components of a row are adjacent.
 
   [[nodiscard]] std::size_t rows() const;
   /// Returns "float64", "float32", "int64" or "int32".
@@ -35,7 +35,7 @@ struct Column {
   [[nodiscard]] friend bool operator==(const Column&, const Column&) = default;
 };
 
-/// Columns over the same rows, in the order in which they were added. Their names are distinct.
+/// Columns with the same number of rows, in the order in which they were added. Their names are distinct.
 class Columns {
  public:
   Columns() = default;
@@ -48,7 +48,8 @@ class Columns {
   [[nodiscard]] auto end() const { return columns_.end(); }
 
   /// Adds a column.
-  /// @throws InvalidOption if its name is empty or in use, it has no components, or its count of rows differs.
+  /// @throws InvalidOption if the name is empty or in use, the column has no components, or its number of rows is not
+  /// rows().
   Column& add(Column column);
   /// Adds a column whose numbers are all `fill`.
   /// @throws InvalidOption as above.
@@ -63,12 +64,13 @@ class Columns {
   /// Returns a column; nullptr if none has this name.
   [[nodiscard]] const Column* find(std::string_view name) const;
   /// Returns the numbers of a column, row after row.
-  /// @throws InvalidOption if no such column exists, or its type or count of components differs.
+  /// @throws InvalidOption if no column has this name, or if its type is not T or its number of components is not
+  /// `components`.
   template <ColumnNumber T>
   [[nodiscard]] std::span<const T> get(std::string_view name, std::size_t components = 1) const {
     return std::get<std::vector<T>>(columns_[place_of(name, components, type_of<T>)].values);
   }
-  /// Returns the numbers of a column for writing, as get().
+  /// As get(), but returns numbers that can be changed.
   template <ColumnNumber T>
   [[nodiscard]] std::span<T> edit(std::string_view name, std::size_t components = 1) {
     return std::get<std::vector<T>>(columns_[place_of(name, components, type_of<T>)].values);
@@ -76,11 +78,11 @@ class Columns {
 
   /// Removes rows from the end, or appends rows of zeros.
   void resize(std::size_t rows);
-  /// Returns the given rows, in the given order. A row may be picked more than once.
+  /// Returns the rows with the given indices, in the given order. An index may occur more than once.
   /// @throws InvalidOption if a row does not exist.
   [[nodiscard]] Columns pick(std::span<const std::uint32_t> rows) const;
-  /// Appends rows.
-  /// @throws InvalidOption unless both have the same columns in the same order.
+  /// Appends the rows of other columns.
+  /// @throws InvalidOption if `other` does not have the same columns in the same order.
   void append(const Columns& other);
 
   [[nodiscard]] friend bool operator==(const Columns&, const Columns&) = default;

@@ -14,20 +14,20 @@
 
 namespace blum {
 
-/// Corners of edges and triangles, without positions and columns.
+/// Edges and triangles as indices of their vertices, without positions and columns.
 struct ComplexView {
   std::size_t vertex_count = 0;
   std::span<const std::array<std::uint32_t, 2>> edges;
   std::span<const std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Vertices, edges and triangles in space, with named columns of numbers on each. Examples are a medial axis, a mesh
-/// with attributes, or pairs of witness points. As a space it consists of all vertices, edges and triangles, and of the
-/// sides of the triangles, listed or not.
+/// Vertices, edges and triangles in space, each kind with named columns of numbers. Examples are a medial axis, a mesh
+/// with attributes, or pairs of witness points. As a space, a complex is the union of its vertices, edges and
+/// triangles. Sides of triangles belong to the complex, even if `edges` does not list them.
 struct Complex {
   std::vector<Vec3d> positions;                         ///< Positions of the vertices.
-  std::vector<std::array<std::uint32_t, 2>> edges;      ///< Vertices at the ends of the listed edges.
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Corners of the triangles.
+  std::vector<std::array<std::uint32_t, 2>> edges;      ///< Indices of the vertices of each listed edge.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices of the corners of each triangle.
   Columns vertex_columns;                               ///< One row for each vertex.
   Columns edge_columns;                                 ///< One row for each listed edge.
   Columns triangle_columns;                             ///< One row for each triangle.
@@ -35,15 +35,16 @@ struct Complex {
   [[nodiscard]] ComplexView view() const { return {positions.size(), edges, triangles}; }
 };
 
-/// Returns the first problem of the corners of a complex in one sentence, or an empty string. Edges and triangles must
-/// name vertices that exist, and none twice.
+/// Returns the first problem of the edges and triangles of a complex in one sentence, or an empty string. The vertices
+/// of each edge and triangle must exist and be distinct.
 [[nodiscard]] std::string problem_of(const ComplexView& complex);
-/// Returns the first problem of a whole complex in one sentence, or an empty string. In addition, every position must
-/// be finite, and columns must have a row for each vertex, edge or triangle.
+/// Returns the first problem of a whole complex in one sentence, or an empty string. The conditions are those of
+/// problem_of(ComplexView). In addition, every position must be finite, and each column must have one row per vertex,
+/// edge or triangle.
 [[nodiscard]] std::string problem_of(const Complex& complex);
 
 /// Checks a complex.
-/// @throws InvalidMesh with the text of problem_of().
+/// @throws InvalidMesh with the text of problem_of() if this text is not empty.
 void validate(const Complex& complex);
 
 }  // namespace blum

@@ -10,14 +10,15 @@
 
 namespace blum {
 
-/// Returns for each vertex the smallest vertex of its connected component, which represents it.
-/// @throws InvalidOption if an edge or a triangle names a vertex that does not exist, or one twice.
+/// Returns for each vertex the smallest vertex of its connected component. This vertex represents the component.
+/// @throws InvalidOption if an edge or a triangle has a vertex that does not exist, or the same vertex twice.
 /// Cost: near-linear.
 [[nodiscard]] std::vector<std::uint32_t> components(const ComplexView& complex);
 
-/// Returns all given complexes in one, one after the other, without joining anything.
-/// @throws InvalidOption if the complexes that have vertices (edges, triangles) differ in their columns or the order of
-/// these. Also if the result has more than 2^31 - 1 vertices.
+/// Returns one complex with the cells of all given complexes, one complex after the other. No vertices are merged.
+/// @throws InvalidOption if two complexes with vertices have different vertex columns, or the same columns in another
+/// order. The same condition applies to the columns of edges and of triangles. Also thrown if the result has more than
+/// 2^31 - 1 vertices.
 [[nodiscard]] Complex disjoint_union(std::span<const Complex> parts);
 
 }  // namespace blum

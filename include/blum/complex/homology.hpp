@@ -10,16 +10,17 @@
 
 namespace blum {
 
-/// Returns the Betti numbers over Z/2 of a complex, which consists of its vertices, edges, triangles and sides of
-/// triangles. They are computed by reduction of boundary matrices. Edges and triangles that occur twice count once.
-/// @throws InvalidOption if a corner is not a vertex, or an edge or triangle names one twice; Cancelled.
+/// Returns the Betti numbers over Z/2 of a complex. The function reduces boundary matrices. Sides of triangles count as
+/// edges, even if they are not listed. An edge or triangle that is listed twice counts once.
+/// @throws InvalidOption if an edge or triangle has a vertex that does not exist, or the same vertex twice; Cancelled.
 /// Cost: near-linear for surfaces that meet along few seams.
 [[nodiscard]] BettiNumbers homology(const ComplexView& complex, const Context& context = {});
 
-/// Returns the number of vertices minus edges plus triangles, which is the alternating sum of the Betti numbers. Sides
-/// of triangles are edges, too. Each cell counts once.
+/// Returns the number of vertices, minus the number of edges, plus the number of triangles. This number is the
+/// alternating sum of the Betti numbers. Sides of triangles count as edges, even if they are not listed. An edge or
+/// triangle that is listed twice counts once.
 /// @throws as homology().
-/// Cost: that of Incidence.
+/// Cost: that of constructing Incidence.
 [[nodiscard]] std::int64_t euler_characteristic(const ComplexView& complex, const Context& context = {});
 
 }  // namespace blum

@@ -16,23 +16,25 @@
 
 namespace blum {
 
-/// Edges of a complex, each once, and incidences of its cells. It is a copy, independent of the complex.
+/// List of the edges of a complex, each once, and incidences of the complex's vertices, edges and triangles. The object
+/// contains copies, so it stays valid if the complex changes.
 class Incidence {
  public:
   Incidence() = default;
   /// Computes the incidences of a complex.
-  /// @throws InvalidOption if an edge or a triangle names a vertex that does not exist, or one twice. Also if listed
-  /// edges and sides of triangles are 2^32 or more in all. Cancelled.
+  /// @throws InvalidOption if an edge or a triangle has a vertex that does not exist, or the same vertex twice. Also if
+  /// there are 2^32 or more listed edges and sides of triangles in total. Cancelled.
   /// Cost: linear except for sorting the edges of each vertex; about 60 bytes per triangle.
   explicit Incidence(const ComplexView& complex, const Context& context = {});
 
-  /// Returns the listed edges and the sides of triangles, each once, the smaller vertex first, in ascending order.
+  /// Returns all listed edges and all sides of triangles, each once, in ascending order. The smaller vertex of an edge
+  /// comes first.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const { return edges_; }
   /// Returns the index in edges() of each listed edge.
   [[nodiscard]] std::span<const std::uint32_t> edge_of_listed() const { return edge_of_listed_; }
   /// Returns the indices in edges() of the sides of each triangle: from corner 0 to 1, from 1 to 2, from 2 to 0.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 3>> sides() const { return sides_; }
-  /// Returns the triangles at each of edges(), ascending. A triangle that is listed twice occurs twice.
+  /// Returns the triangles at each edge of edges(), ascending. A triangle that is listed twice occurs twice.
   [[nodiscard]] const IndexRows& triangles_of_edge() const { return triangles_of_edge_; }
   /// Returns the indices in edges() of the edges at each vertex, ascending.
   [[nodiscard]] const IndexRows& edges_of_vertex() const { return edges_of_vertex_; }

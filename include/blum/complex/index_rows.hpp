@@ -10,11 +10,11 @@
 
 namespace blum {
 
-/// Rows of indices, one for each cell, in one array.
+/// Rows of indices, one row for each cell. All rows are stored in one array.
 class IndexRows {
  public:
   IndexRows() = default;
-  /// @param first  start of each row, and the end of the last one: one more than the number of cells.
+  /// @param first  start of each row in `items`, and the end of the last row. Its size is the number of cells plus 1.
   IndexRows(std::vector<std::size_t> first, std::vector<std::uint32_t> items)
       : first_(std::move(first)), items_(std::move(items)) {}
 
@@ -30,8 +30,9 @@ class IndexRows {
 
 namespace detail {
 
-/// Returns for each of `cell_count` cells the things that name it, ascending.
-/// @param cells_of  cells_of(k) returns the cells that thing k names, as a range.
+/// Returns one row for each of `cell_count` cells. The row contains the indices of the things that use the cell,
+/// ascending. For example, the cells are vertices and the things are edges.
+/// @param cells_of  cells_of(k) returns the cells that thing k uses, as a range.
 template <class CellsOf>
 [[nodiscard]] IndexRows rows_of(std::size_t thing_count, std::size_t cell_count, const CellsOf& cells_of) {
   std::vector<std::size_t> first(cell_count + 1, 0);

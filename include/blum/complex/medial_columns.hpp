@@ -18,12 +18,12 @@
 
 namespace blum {
 
-/// Location of a vertex or an edge on a medial axis; columns hold these numbers.
+/// Location of a vertex or an edge on a medial axis. The column `role` contains these values as numbers.
 enum class MedialRole : std::uint8_t {
-  sheet,     ///< Inside a sheet: surrounded by surface.
+  sheet,     ///< Inside a sheet, with triangles all around.
   rim,       ///< On the free border of a sheet.
   seam,      ///< At three or more triangles.
-  curve,     ///< On no triangle.
+  curve,     ///< On a curve, without triangles.
   junction,  ///< Vertex where seams or curves begin, end or meet, or where sheets touch.
 };
 
@@ -42,27 +42,29 @@ namespace medial_columns {
 
 /// Vertices, float64: exact distance to the surface, mesh units.
 inline constexpr std::string_view radius = "radius";
-/// Vertices, 3 x float64: the closest point of the surface, and the closest point of the other wall. Both are the same
-/// point if only one wall is near.
+/// Vertices, 3 x float64: the closest point of the surface, and the closest point of the other wall. If only one wall
+/// is near, both columns contain the same point.
 inline constexpr std::array<std::string_view, 2> footprints{"footprint_0", "footprint_1"};
 /// Vertices, int32: the sites of the input mesh, or voxels of the input image, that contain the footprints; -1 if
 /// unknown.
 inline constexpr std::array<std::string_view, 2> sites{"site_0", "site_1"};
 /// Vertices, float64, degrees: the angle between the footprints, seen from the vertex. Edges and triangles, float32,
-/// degrees: their angle, or 0 if only homotopy keeps them.
+/// degrees: their separation angle, or 0 if they exist only to preserve the homotopy type.
 inline constexpr std::string_view separation_angle = "separation_angle";
 /// Vertices and edges, int32: MedialRole. Edges have the roles rim, seam or curve.
 inline constexpr std::string_view role = "role";
-/// Triangles, int32: number of the sheet, from 0. A sheet is joined through edges of exactly two triangles. Next to a
-/// seam, edges that bend by 37 degrees or more do not join. Sheets of a mesh's axis are numbered by the faces that they
-/// lie between (see medial_axis()), those of an image's axis by their first triangle.
+/// Triangles, int32: number of the sheet, from 0. The triangles of a sheet are connected through edges of exactly two
+/// triangles. Next to a seam, an edge that bends by 37 degrees or more does not connect its triangles. In the axis of a
+/// mesh, the number of a sheet depends on the faces on its two sides (see medial_axis()). In the axis of an image, they
+/// are numbered in the order of their first triangles.
 inline constexpr std::string_view sheet = "sheet";
 
-/// Additional column of axes of all angles (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: they
-/// exist while theta is less than this; infinite if they always exist.
+/// Additional column of axes of all angles (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: a
+/// vertex, edge or triangle exists if theta is less than this angle. Infinite if it exists at every theta.
 inline constexpr std::string_view until = "until";
-/// Edges, float32, degrees: an edge has its role while from <= theta < until. An edge that is first a seam, then a rim
-/// and at last a curve is listed three times.
+/// Edges, float32, degrees: an edge has its role if from <= theta < until. If the role of an edge changes with theta,
+/// the edge is listed once for each role. For example, an edge that is a seam, then a rim, then a curve is listed three
+/// times.
 inline constexpr std::string_view from = "from";
 
 }  // namespace medial_columns
@@ -70,7 +72,7 @@ inline constexpr std::string_view from = "from";
 /// Columns of a medial axis, for reading. Valid while the complex exists and does not change.
 struct MedialView {
   /// Finds the columns.
-  /// @throws InvalidOption if a column is missing, or has another type or count of rows.
+  /// @throws InvalidOption if a column is missing, or has a wrong type or number of rows.
   explicit MedialView(const Complex& complex);
 
   std::span<const Vec3d> positions;
@@ -107,17 +109,19 @@ struct MedialLevels {
   std::span<const float> vertex_until, edge_from, edge_until, triangle_until;
 };
 
-/// Returns the message for a missing column of medial_columns: its name, and the file formats that hold it.
+/// Returns the message for a missing column of medial_columns. It contains the name of the column, and the file formats
+/// that store this column.
 /// @param kind  "vertices", "edges" or "triangles".
 [[nodiscard]] std::string missing_medial_column(std::string_view kind, std::string_view name);
 
-/// Adds the columns of MedialView that a complex lacks. Radii, footprints and angles are 0, sites are unknown, and all
-/// triangles are of one sheet. Vertices have the role sheet, and edges the role curve.
+/// Adds the columns of MedialView that a complex lacks. The added radii, footprints and angles are 0, and the added
+/// sites are unknown. If the column of sheets was missing, all triangles belong to one sheet. If roles were missing,
+/// vertices have the role sheet, and edges the role curve.
 void add_missing_medial_columns(Complex& complex);
 
-/// Axis with all columns of MedialView, for functions that do not use the columns that may be missing. It is the
-/// complex itself if that has all columns, else a copy after add_missing_medial_columns(). Valid while the complex
-/// exists.
+/// Axis with all columns of MedialView. This class is for functions that accept axes without some of the columns, and
+/// do not use the missing columns. The function get() returns the complex itself if no column is missing, else a copy
+/// after add_missing_medial_columns(). Valid while the complex exists.
 class CompleteAxis {
  public:
   explicit CompleteAxis(const Complex& axis);
@@ -129,21 +133,22 @@ class CompleteAxis {
   std::optional<Complex> copy_;
 };
 
-/// Returns the first problem of a complex as a medial axis in one sentence, or an empty string.
+/// Returns the first reason why a complex is not a medial axis in one sentence, or an empty string if it is one.
 ///
-/// It must be a complex (problem_of) of at most 2^31 - 1 vertices, with all columns of MedialView. Numbers must be
-/// finite, radii not negative, sites -1 or more, and roles those of MedialRole (edges: curve, rim or seam). Sheets must
-/// be numbered from 0, with no more numbers than triangles.
+/// The complex must have no problem of problem_of(), at most 2^31 - 1 vertices, and all columns of MedialView. All
+/// numbers must be finite, radii 0 or more, and sites -1 or more. Roles must be values of MedialRole, for edges curve,
+/// rim or seam. Sheet numbers must be 0 or more, and less than the number of triangles.
 [[nodiscard]] std::string problem_of_medial(const Complex& axis);
-/// Returns the first problem of axes of all angles, or an empty string. They must also have the columns of
-/// MedialLevels, whose numbers may be infinite, but not NaN.
+/// Returns the first problem of axes of all angles in one sentence, or an empty string. The complex must meet the
+/// conditions of problem_of_medial(), and have the columns of MedialLevels. The numbers in these columns may be
+/// infinite, but not NaN.
 [[nodiscard]] std::string problem_of_nested(const Complex& axes);
 
-/// Returns one more than the largest sheet number; 0 without triangles.
-/// @throws InvalidOption if the column is missing.
+/// Returns one more than the largest sheet number; 0 if there are no triangles.
+/// @throws InvalidOption if the column `sheet` is missing.
 [[nodiscard]] std::size_t sheet_count(const Complex& axis);
 
-/// Numbers of cells of a medial axis, by role.
+/// Numbers of vertices, triangles, sheets, edges and junctions of a medial axis.
 struct MedialCounts {
   std::size_t vertices = 0, triangles = 0, sheets = 0;
   std::size_t curve_edges = 0, rim_edges = 0, seam_edges = 0, junctions = 0;
@@ -152,18 +157,18 @@ struct MedialCounts {
 template <>
 struct Description<MedialCounts> {
   static constexpr std::string_view name = "MedialCounts";
-  static constexpr std::string_view doc = "Counts of the parts of a medial axis";
+  static constexpr std::string_view doc = "Numbers of the parts of a medial axis";
   static constexpr std::tuple members{
       Member{"vertices", &MedialCounts::vertices, "", "points of the axis"},
       Member{"triangles", &MedialCounts::triangles, "", "triangles of its sheets"},
-      Member{"sheets", &MedialCounts::sheets, "", "connected parts without seams"},
+      Member{"sheets", &MedialCounts::sheets, "", "parts of the surface that are connected without crossing a seam"},
       Member{"curve_edges", &MedialCounts::curve_edges, "", "edges without triangles"},
-      Member{"rim_edges", &MedialCounts::rim_edges, "", "edges of one triangle"},
-      Member{"seam_edges", &MedialCounts::seam_edges, "", "edges where sheets meet"},
+      Member{"rim_edges", &MedialCounts::rim_edges, "", "edges of exactly one triangle"},
+      Member{"seam_edges", &MedialCounts::seam_edges, "", "edges of three or more triangles"},
       Member{"junctions", &MedialCounts::junctions, "", "vertices where seams or curves meet"},
   };
 };
-/// Returns the numbers of cells of a medial axis.
+/// Counts the vertices, triangles, sheets, edges and junctions of a medial axis.
 /// @throws InvalidOption as MedialView().
 [[nodiscard]] MedialCounts count(const Complex& axis);
 

@@ -10,20 +10,20 @@
 
 namespace blum {
 
-/// Point of a medial axis with a radius, which is interpolated linearly between vertices.
+/// Point of a medial axis with its radius. Between vertices, the radius is interpolated linearly.
 struct AxisSample {
   Vec3d position;
   double radius = 0;         ///< Mesh units.
-  std::uint32_t vertex = 0;  ///< The vertex itself, or a corner of its edge or triangle.
+  std::uint32_t vertex = 0;  ///< Vertex at this point, or a corner of the edge or triangle that contains it.
 };
 
-/// Returns the balls of an axis with long edges or large triangles. These are all vertices, in their order, then points
-/// of listed edges and triangles that are longer than a step. No point of the axis is further than the step from a
-/// sample, unless an edge or side is longer than 4,096 steps. Radii of decimated axes are as exact as their tolerance.
+/// Returns the balls of an axis as samples. Vertices come first, in their order. Points on listed edges longer than
+/// `step`, and on triangles with a side longer than `step`, come next. Each point of the axis has a sample within
+/// `step`, unless an edge or side is longer than 4,096 steps. In decimated axes, interpolated radii are exact up to the
+/// tolerance of the decimation.
 /// @param step  > 0, mesh units.
 /// @throws InvalidOption if the step is out of range.
-/// Cost: linear in the samples. Besides the vertices, these are about length / step for edges and area / step^2 for
-/// triangles.
+/// Cost: linear in the number of samples. An edge has about length / step samples, and a triangle about area / step^2.
 [[nodiscard]] std::vector<AxisSample> sample_axis(const MedialView& axis, double step);
 
 /// Returns the area of all triangles, square mesh units.

@@ -18,8 +18,8 @@ void free_aligned(void* memory, std::size_t bytes) noexcept;
 
 /// Array of fixed size for grid values. It is aligned to 64 bytes, not initialised, and movable; clone() copies it.
 ///
-/// Writing a field to fresh 4 KiB pages costs more than computing it. So large buffers request huge pages, and nothing
-/// is zeroed first.
+/// Writing a field to fresh 4 KiB pages takes longer than computing the field. So large buffers request huge pages, and
+/// their memory is not zeroed.
 template <class T>
 class Buffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -62,7 +62,8 @@ class Buffer {
   [[nodiscard]] std::span<const T> span() const { return {data_, size_}; }
 
  private:
-  /// If the number of bytes overflows, returns the largest request. allocate_aligned rejects it as OutOfMemory.
+  /// Returns the size in bytes. If that overflows, returns the largest std::size_t, for which allocate_aligned() throws
+  /// OutOfMemory.
   static std::size_t checked_bytes(std::size_t size) {
     const std::size_t limit = static_cast<std::size_t>(-1);
     return size > limit / sizeof(T) ? limit : size * sizeof(T);

@@ -9,16 +9,17 @@
 
 namespace blum {
 
-/// Settings of how a call runs, passed along as a value. The default uses every core and reports no progress.
+/// Settings for how a call runs. The default uses every core and reports no progress.
 struct Context {
-  /// Number of threads; 0 means one per core that this process may use. Results never depend on it.
+  /// Number of threads; 0 means one per core that this process may use. Results never depend on this number.
   int threads = 0;
 
-  /// Called now and then during long work, with the finished fraction of the current phase and the phase's name. The
-  /// fraction rises from 0 to 1. Calls never overlap, but may come from a worker thread. It must not throw.
+  /// Called repeatedly during long work, with the finished fraction of the current phase and the name of this phase. In
+  /// each phase, the fraction rises from 0 to 1. Calls never overlap, but may come from a worker thread. The function
+  /// must not throw.
   std::function<void(double fraction, std::string_view phase)> progress = {};
 
-  /// Asks running work to stop. The call then throws Cancelled, within 200 ms.
+  /// Asks running work to stop. After such a request, the call throws Cancelled within 200 ms.
   std::stop_token cancel = {};
 
   /// Device that computes fields (distance_field, FieldSolver, distance_transform). All other work runs on the CPU,
@@ -26,7 +27,7 @@ struct Context {
   Device device = {};
 };
 
-/// Returns the number of threads of a context: context.threads, or the number of usable cores if that is 0.
+/// Returns the number of threads of a context: context.threads, or the number of usable cores if context.threads is 0.
 /// @throws InvalidOption if context.threads is negative or above 1024.
 [[nodiscard]] int thread_count(const Context& context);
 

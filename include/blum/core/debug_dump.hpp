@@ -12,21 +12,21 @@ namespace blum {
 
 /// Writes points, and edges and triangles between them, as a .vtp file for ParaView, PyVista and read_complex().
 ///
-/// It is for debugging only. Any layer can call it; the library itself never does. `tools/check_includes.py` rejects
-/// this header everywhere but in tests, so that no call stays behind. Use write_complex() to keep a complex with its
-/// columns.
+/// This function is for debugging only. Code in any layer can call it temporarily. `tools/check_includes.py` rejects
+/// this header everywhere except in tests, so that no call remains in the library. Use write_complex() to keep a
+/// complex with its columns.
 ///
-/// Points that no edge and no triangle names are drawn as points. Broken shapes are accepted. A point that is not
-/// finite is put at the origin and not drawn. Edges and triangles that name such a point, or one that does not exist,
-/// are left out.
+/// Points without an edge or a triangle are drawn as points. Invalid shapes are accepted. A point that is not finite is
+/// written as the origin, and not drawn. An edge or triangle is left out if one of its points is not finite, or if an
+/// index is out of range.
 ///
 /// @param path  path of the file, which is replaced. Threads that write at the same time need different paths.
-/// @throws FileError if it cannot be written.
+/// @throws FileError if the file cannot be written.
 void debug_dump(const std::string& path, std::span<const Vec3d> points,
                 std::span<const std::array<std::uint32_t, 2>> edges = {},
                 std::span<const std::array<std::uint32_t, 3>> triangles = {});
 
-/// Writes the triangles and segments of a TriangleMesh or a MeshView likewise.
+/// Writes the vertices, segments and triangles of a TriangleMesh or a MeshView as a .vtp file in the same way.
 template <class Mesh>
   requires requires(const Mesh& mesh) {
     mesh.vertices;
@@ -37,7 +37,7 @@ void debug_dump(const std::string& path, const Mesh& mesh) {
   debug_dump(path, mesh.vertices, mesh.segments, mesh.triangles);
 }
 
-/// Writes a Complex likewise, without its columns.
+/// Writes a Complex without its columns as a .vtp file in the same way.
 template <class Shape>
   requires requires(const Shape& complex) {
     complex.positions;

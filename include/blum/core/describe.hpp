@@ -16,8 +16,9 @@
 
 namespace blum {
 
-/// Description of a struct or an enumeration, specialised next to it. The tool's options, JSON, Python's options and
-/// results, their types and their documentation are generated from it.
+/// Description of a struct or an enumeration. The specialisation stands next to the described type. The command-line
+/// options, the JSON output, and the options and results in Python are generated from this description, with types and
+/// documentation.
 ///
 /// An enumeration:  static constexpr std::string_view name;
 ///                  static constexpr std::array values{NamedValue{value, "name"}, ...};
@@ -25,11 +26,12 @@ namespace blum {
 /// A struct:        static constexpr std::string_view name, doc;  // one sentence, without a full stop
 ///                  static constexpr std::tuple members{Member{...}, Fact{...}, ...};
 ///
-/// A struct must list all members in their order. for_each_member() checks at compile time that none is missing.
+/// The description of a struct must list all members in their order. The function for_each_member() checks at compile
+/// time that none is missing.
 template <class T>
 struct Description;
 
-/// Value of an enumeration, and its name on the command line, in Python and in files.
+/// Value of an enumeration, with its name on the command line, in Python and in files.
 template <class Enum>
 struct NamedValue {
   Enum value;
@@ -52,12 +54,12 @@ struct Range {
 /// Member of a struct.
 template <class Struct, class Type>
 struct Member {
-  std::string_view name;  ///< in Python, in JSON, and with dashes on the command line
+  std::string_view name;  ///< name in Python and JSON; on the command line with dashes
   Type Struct::* pointer;
   std::string_view unit;               ///< for example "mesh units"; empty if it has none
   std::string_view doc;                ///< one line, without a full stop
-  Range range = {};                    ///< of numeric options
-  std::span<const Type> choices = {};  ///< of enumerations: the allowed values; all of them if empty
+  Range range = {};                    ///< allowed range of a numeric option
+  std::span<const Type> choices = {};  ///< allowed values of an enumeration; if empty, all values
 
   using Value = Type;
   static constexpr bool is_stored = true;
@@ -70,7 +72,7 @@ Member(const char*, Type Struct::*, const char*, const char*, Range) -> Member<S
 template <class Struct, class Type, class Choices>
 Member(const char*, Type Struct::*, const char*, const char*, Range, const Choices&) -> Member<Struct, Type>;
 
-/// Value that a member function of a struct computes. It is shown like a member.
+/// Value that a member function of a struct computes. Outputs show it like a member.
 template <class Struct, class Type>
 struct Fact {
   std::string_view name;
@@ -92,7 +94,7 @@ concept DescribedStruct = requires { Description<T>::members; };
 
 namespace detail {
 
-/// List of types. Compilers join lists by + much faster than std::tuple_cat() joins tuples.
+/// List of types. Compilers evaluate + of two lists much faster than std::tuple_cat() of tuples.
 template <class... Types>
 struct TypeList {};
 template <class... Left, class... Right>
@@ -103,7 +105,7 @@ consteval TypeList<Left..., Right...> operator+(TypeList<Left...> /*left*/, Type
 template <class Entry>
 using StoredType = std::conditional_t<Entry::is_stored, TypeList<typename Entry::Value>, TypeList<>>;
 
-/// Returns true if a T can be made from exactly these types, and from no more.
+/// Returns true if a T can be initialised from values of these types, but not from one more value.
 template <class T, class... Types>
 consteval bool consists_of(TypeList<Types...> /*types*/) {
   return requires { T{std::declval<Types>()...}; } && !requires { T{std::declval<Types>()..., {}}; };
@@ -114,7 +116,7 @@ consteval bool is_described_by(const std::tuple<Entries...>& /*members*/) {
   return consists_of<T>((TypeList<>{} + ... + StoredType<Entries>{}));
 }
 
-/// @throws InvalidOption: `what` is 'text', but must be one of some names.
+/// @throws InvalidOption with the message that `what` is `text`, but must be one of `names`.
 [[noreturn]] void refuse_choice(std::string_view what, std::string_view text, std::span<const std::string_view> names);
 
 }  // namespace detail
@@ -151,7 +153,7 @@ template <DescribedEnum Enum>
   return names;
 }
 
-/// Returns the value with a name.
+/// Returns the value of an enumeration whose name is `text`.
 /// @param what     name of the option in messages.
 /// @param choices  as for names_of().
 /// @throws InvalidOption if the name is not allowed. The message lists the allowed names.
@@ -166,11 +168,12 @@ template <DescribedEnum Enum>
   detail::refuse_choice(what, text, names);
 }
 
-/// Returns "a, b and c", with `last` in place of "and". @param quote  is put around each word.
+/// Returns the words as one text: "a, b and c", with `last` instead of "and". @param quote  is put around each word.
 [[nodiscard]] std::string join_words(std::span<const std::string_view> words, std::string_view last = "and",
                                      std::string_view quote = {});
 
-/// @throws InvalidOption if both are given: "`first` and `second` exclude each other: `reason`".
+/// @throws InvalidOption if both options are given, with the message "`first` and `second` exclude each other:
+/// `reason`".
 void exclude(bool has_first, std::string_view first, bool has_second, std::string_view second, std::string_view reason);
 
 }  // namespace blum

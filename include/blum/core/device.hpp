@@ -13,10 +13,10 @@ enum class DeviceKind : std::uint8_t {
   cuda
 };
 
-/// Device on which a call computes, as a value.
+/// Device on which a call computes.
 struct Device {
   DeviceKind kind = DeviceKind::cpu;
-  int index = 0;  ///< number of a CUDA device among the visible ones, as the CUDA runtime counts; >= 0
+  int index = 0;  ///< index of a CUDA device, as the CUDA runtime counts visible devices; >= 0
 
   [[nodiscard]] static constexpr Device cpu() { return {}; }
   [[nodiscard]] static constexpr Device automatic() { return {DeviceKind::automatic, 0}; }
@@ -24,7 +24,8 @@ struct Device {
   [[nodiscard]] friend constexpr bool operator==(const Device&, const Device&) = default;
 };
 
-/// Reads "cpu", "auto", "cuda" (the first) or "cuda:K". @throws InvalidOption.
+/// Returns the device for "cpu", "auto", "cuda" (the first CUDA device) or "cuda:K". @throws InvalidOption for other
+/// texts.
 [[nodiscard]] Device parse_device(std::string_view text);
 /// Returns the text that parse_device() reads as this device.
 [[nodiscard]] std::string to_string(const Device& device);

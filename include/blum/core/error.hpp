@@ -14,13 +14,13 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A mesh that cannot be used: no vertices, non-finite coordinates, indices out of range.
+/// A mesh that cannot be used, for example because it has no vertices, non-finite coordinates or indices out of range.
 class InvalidMesh : public Error {
  public:
   using Error::Error;
 };
 
-/// A grid that cannot be used: non-positive spacing, no nodes, too many nodes.
+/// A grid that cannot be used, for example because its spacing is not positive, or it has no nodes or too many nodes.
 class InvalidGrid : public Error {
  public:
   using Error::Error;
@@ -68,10 +68,10 @@ class FormatError : public FileError {
   using FileError::FileError;
 };
 
-/// An axis that is not certified, although a certified one was requested. what() names every check that failed.
+/// An axis that is not certified, although a certified one was requested. The text of what() lists all mismatches.
 class NotCertified : public Error {
  public:
-  /// @param mismatches  the reasons, one sentence each.  @param rest  is appended to them.
+  /// @param mismatches  the reasons, one sentence each.  @param rest  text that follows the mismatches in what().
   explicit NotCertified(std::vector<std::string> mismatches, const std::string& rest = "")
       : Error("NOT certified: " + joined(mismatches) + rest), mismatches_(std::move(mismatches)) {}
   [[nodiscard]] const std::vector<std::string>& mismatches() const { return mismatches_; }

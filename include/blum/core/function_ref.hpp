@@ -10,11 +10,13 @@ namespace blum {
 template <class Signature>
 class FunctionRef;
 
-/// Reference to a callable object, for the duration of a call. It never allocates. The object must outlive it.
+/// Reference to a callable object, for the duration of a call. It never allocates. The object must outlive the
+/// reference.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:
-  // The object is referred to, not forwarded, and call_ restores its type. A lambda converts implicitly.
+  // The constructor stores the address of the object instead of forwarding it, and call_ restores its type. It is
+  // implicit, so that a lambda can be passed directly.
   // NOLINTBEGIN(google-explicit-constructor,cppcoreguidelines-missing-std-forward,cppcoreguidelines-pro-type-const-cast)
   template <class Callable>
     requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&

@@ -9,8 +9,8 @@
 
 namespace blum::detail {
 
-/// Returns the values that find(k, out) appends to a list for each k below `count`. They are in the order of k for any
-/// number of threads.
+/// Calls find(k, out) for each k below `count`, and returns all values that these calls append to `out`. The values are
+/// in the order of k, for any number of threads.
 /// @param phase  as for parallel_for().  @throws Cancelled.
 template <class T, class Find>
 [[nodiscard]] std::vector<T> gather(const Context& context, std::size_t count, std::size_t grain,

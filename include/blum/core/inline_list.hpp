@@ -9,8 +9,8 @@
 
 namespace blum {
 
-/// List of up to `most` values, stored in the object itself. Unlike an array, it does not initialise places without a
-/// value. This matters in loops that make a list in each pass.
+/// List of up to `most` values, stored in the object itself. Unlike an array, it does not initialise memory that
+/// contains no value yet. This saves time in loops that construct a list in each iteration.
 template <class T, std::size_t most>
 class InlineList {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -29,13 +29,13 @@ class InlineList {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] bool is_full() const { return size_ == most; }
-  /// Appends a value. @param value  the list must not be full.
+  /// Appends a value. @param value  is appended; the list must not be full.
   void push_back(const T& value) { std::construct_at(data() + size_++, value); }
-  /// Appends a default-initialised value and returns it, to be set in place. The list must not be full.
+  /// Appends a default-initialised value and returns a reference to it. The list must not be full.
   T& emplace_back() { return *std::construct_at(data() + size_++); }
   /// Removes the last value and returns it. The list must not be empty.
   T pop_back() { return data()[--size_]; }
-  /// Keeps only the first values. @param size  at most the current size.
+  /// Keeps only the first `size` values. @param size  at most the current size.
   void shrink(std::size_t size) { size_ = size; }
 
   [[nodiscard]] T* data() { return std::launder(reinterpret_cast<T*>(storage_)); }

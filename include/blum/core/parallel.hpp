@@ -9,19 +9,19 @@
 
 namespace blum {
 
-/// Half-open range of items, and the worker that runs it. Workers are numbered below thread_count(), so that each can
-/// have scratch space of its own.
+/// Half-open range of items, and the worker that runs it. Workers are numbered from 0 to thread_count() - 1, so that
+/// each can have its own scratch space.
 struct WorkRange {
   std::size_t begin = 0;
   std::size_t end = 0;
   int worker = 0;
 };
 
-/// Runs body over [0, count), cut into consecutive ranges of at most `grain` items. Workers take the ranges in rising
-/// order.
+/// Calls `body` for consecutive ranges of at most `grain` items, which together cover [0, count). Workers start the
+/// ranges in ascending order.
 ///
-/// The cut depends on count and grain only, never on the number of threads. So a body that writes only what belongs to
-/// its range gives the same result for any number of threads. A single worker runs on the calling thread.
+/// The ranges depend only on `count` and `grain`, never on the number of threads. So results are the same for any
+/// number of threads if `body` writes only data of its own range. A single worker runs on the calling thread.
 ///
 /// @param phase  name for Context::progress. An empty name reports no progress.
 /// @param body   must not throw, except std::bad_alloc. The first exception is rethrown once all workers have stopped.

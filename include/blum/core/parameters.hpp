@@ -1,4 +1,4 @@
-// Blum: named numbers that generators take. SPDX-License-Identifier: Apache-2.0
+// Blum: named numeric parameters of generators. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
@@ -13,15 +13,15 @@ using ParameterValues = std::map<std::string, double>;
 
 /// Numeric parameter of a generator.
 struct Parameter {
-  std::string name;         ///< as on the command line, without dashes in front
-  std::string description;  ///< one line, with the unit
+  std::string name;         ///< name on the command line, without leading dashes
+  std::string description;  ///< one line, including the unit
   double default_value = 0;
   double minimum = 0;  ///< inclusive
   double maximum = 0;  ///< inclusive
   bool integer = false;
 };
 
-/// Returns the values of all parameters, with defaults for those not given.
+/// Returns the values of all parameters. Parameters that are not in `given` have their default values.
 /// @param owner  name of the generator, for messages.
 /// @throws InvalidOption if a parameter is unknown, out of range, or not a whole number although it must be. The
 /// message lists all parameters and ranges.

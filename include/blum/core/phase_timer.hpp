@@ -14,7 +14,7 @@ struct PhaseTime {
   double seconds = 0;
 };
 
-/// Appends to a list of phases the time since construction, or since the last lap.
+/// Stopwatch: lap() appends the time since the previous lap, or since construction, to a list of phases.
 class PhaseTimer {
  public:
   explicit PhaseTimer(std::vector<PhaseTime>& phases) : phases_(phases) {}

@@ -1,4 +1,4 @@
-// Blum: lists as sets. SPDX-License-Identifier: Apache-2.0
+// Blum: lists without duplicates. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>

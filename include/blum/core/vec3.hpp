@@ -7,7 +7,7 @@
 
 namespace blum {
 
-/// Three components in x, y, z order. It is an aggregate of exactly three T, so an array of it can be viewed as
+/// Vector with the components x, y, z. It is an aggregate of exactly three T, so an array of n vectors can be viewed as
 /// T[n][3].
 template <class T>
 struct Vec3 {
@@ -71,7 +71,8 @@ template <class T>
   return {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, a.z < b.z ? b.z : a.z};
 }
 
-/// 3 x 3 matrix, stored as its columns. In a grid direction, column a is the unit vector of index axis a.
+/// 3 x 3 matrix, stored as its columns. If it is the direction of a grid, column a is the unit vector along index axis
+/// a.
 struct Mat3 {
   Vec3d columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
@@ -93,12 +94,12 @@ struct Box3 {
   [[nodiscard]] bool is_empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
   [[nodiscard]] Vec3d size() const { return upper - lower; }
   [[nodiscard]] Vec3d center() const { return (lower + upper) * 0.5; }
-  /// Returns true if a point lies in the box, sides included.
+  /// Returns true if a point lies in the box, boundary included.
   [[nodiscard]] bool contains(const Vec3d& p) const {
     return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z && p.z <= upper.z;
   }
   [[nodiscard]] double diagonal() const { return is_empty() ? 0.0 : length(size()); }
-  /// Returns the largest magnitude of a coordinate of its sides.
+  /// Returns the largest absolute value of a coordinate of its corners.
   [[nodiscard]] double largest_coordinate() const {
     double largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

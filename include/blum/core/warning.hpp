@@ -1,4 +1,4 @@
-// Blum: warnings of results about inputs that can be used, but may not be the ones that were meant.
+// Blum: warnings about results, and about inputs that can be used, but may not be the intended ones.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,24 +12,24 @@
 
 namespace blum {
 
-/// Subject of a warning, for programs that act on it. Texts may change; codes stay.
+/// Subject of a warning, for programs that react to warnings. Texts of warnings may change; codes do not.
 enum class WarningCode : std::uint8_t {
-  form_not_certified,  ///< an axis in a better form was not certified
+  form_not_certified,  ///< an axis has another form, because a better form was not certified
   not_certified,       ///< a result is not certified
-  grid_moved,          ///< an axis was certified on a grid moved by part of a voxel, not on the first grid
+  grid_moved,          ///< an axis was certified on a grid that was moved by part of a voxel, not on the first grid
   reversed_shells,     ///< shells or triangles faced the wrong way and were reversed
   solid_of_voxels,     ///< a mesh bounds no polyhedron, so its solid is represented by voxels
   crossings_removed,   ///< a mesh crosses itself; the result is that of the mesh without the crossings
-  other_solid,         ///< options name another solid than the file of an axis does
-  other_vertices,      ///< vertices were merged, or equal ones are separate: the mesh may not be the intended one
+  other_solid,         ///< options select another solid than the file of an axis records
+  other_vertices,      ///< vertices were merged, or equal vertices are separate: the mesh may not be the intended one
   left_out,            ///< parts of an input or a result were left out
   open_mesh,           ///< a mesh has a boundary although a closed one is expected
   facing,              ///< triangles face different ways, or into the solid
   nothing_inside,      ///< no node of a field is inside
-  nothing_found,       ///< nothing that was asked for was found
+  nothing_found,       ///< no object that was asked for was found
   other_topology,      ///< the topology of a result differs from that of its solid
   single_layer,        ///< an image has one layer of voxels, which form a plate
-  rounded,             ///< a file holds rounded numbers, for which the guarantees of the exact ones may not hold
+  rounded,             ///< a file contains rounded numbers, so guarantees for the exact numbers may not hold
   not_extended,        ///< rims of an axis were not extended
 };
 
@@ -57,7 +57,7 @@ struct Description<WarningCode> {
   };
 };
 
-/// Warning of a result. Results list all warnings in the order in which they were found.
+/// Warning about a result. Results list all warnings in the order in which they were found.
 struct Warning {
   WarningCode code = WarningCode::left_out;
   std::string text;  ///< one sentence without a full stop

@@ -24,9 +24,9 @@
 namespace blum {
 
 struct ClosestPointOptions {
-  /// Method for the sign, with the same rules as for fields. `none` is the cheapest.
+  /// Rule for the sign of distances, as for fields. `none` (unsigned) is the cheapest.
   SignMode sign = SignMode::automatic;
-  /// Largest distance that is searched; >= 0, in mesh units. Unset: no limit.
+  /// Largest distance at which points of the mesh are found; >= 0, in mesh units. Unset: no limit.
   std::optional<double> max_distance = {};
 };
 
@@ -35,7 +35,7 @@ struct Description<ClosestPointOptions> {
   static constexpr std::string_view name = "ClosestPointOptions";
   static constexpr std::string_view doc = "Options of closest points";
   static constexpr std::tuple members{
-      Member{"sign", &ClosestPointOptions::sign, "", "rule for the sign, as for fields; 'none' is cheapest"},
+      Member{"sign", &ClosestPointOptions::sign, "", "rule for the sign, as for fields; 'none' is fastest"},
       Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units", "largest distance that is searched",
              Range::at_least(0)},
   };
@@ -46,110 +46,119 @@ struct ClosestPoint {
   Vec3d point;          ///< on the mesh; the query itself if nothing lies within max_distance
   double distance = 0;  ///< mesh units, negative inside when signed; infinite if nothing lies within max_distance
   SiteId site;          ///< vertex, open edge or open face that contains the point, numbered as in SiteTable
-  TriangleId triangle;  ///< smallest triangle that contains the site; none() on free segments and points
+  TriangleId triangle;  ///< smallest index of a triangle that contains the site; none() if no triangle does
 };
 
-/// Returns the unit vector in which the signed distance grows: away from the surface outside, towards it inside. On the
-/// medial axis it is one of several such vectors. Returns nullopt on the surface, within rounding, and if nothing was
-/// found.
+/// Returns the unit vector along which the signed distance grows fastest. It points away from the surface if the query
+/// is outside, and towards the surface if the query is inside. On the medial axis, several vectors have this property,
+/// and one of them is returned. Returns nullopt if the query is on the surface (within rounding), or if no closest
+/// point was found.
 [[nodiscard]] std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found);
 
 /// Returns the weights of the corners of `found.triangle`, in their order. The closest point is the weighted mean of
-/// the corners. Each weight is at least 0, and their sum is 1 within rounding. If the point lies on a vertex, that
-/// weight is 1 and the others are 0.
-/// @param mesh  mesh of the query.
-/// @return      nullopt if the point lies on no triangle.
+/// the corners. Each weight is at least 0, and their sum is 1 within rounding. If the closest point is a corner, the
+/// weight of that corner is 1 and the others are 0.
+/// @param mesh  the mesh in which `found` was found.
+/// @return      nullopt if the closest point lies on no triangle.
 [[nodiscard]] std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const ClosestPoint& found);
 
-/// Closest point of one of several queries.
+/// Closest point of a mesh to one of several queries.
 struct FoundPoint {
   std::size_t query = 0;  ///< index of the query
-  Vec3d point;            ///< like the other members: as in ClosestPoint
+  Vec3d point;            ///< `point`, `distance` and `site` are as in ClosestPoint
   double distance = 0;
   SiteId site;
 };
 
-/// Primitives found by several queries. Those of query q are entries first[q] ... first[q + 1] - 1, by rising distance,
-/// then primitive.
+/// Primitives found by several queries. The primitives of query q are found[first[q]] to found[first[q + 1] - 1], in
+/// rising order of distance, then of primitive index.
 struct NearPrimitives {
-  std::vector<std::size_t> first{0};  ///< one more entry than queries
+  std::vector<std::size_t> first{0};  ///< one entry more than there are queries
   std::vector<NearestPrimitive> found;
 };
 
-/// Answers closest-point queries on one mesh. It copies what it needs, so the mesh need not outlive it.
+/// Answers closest-point queries on one mesh. It copies the data that it needs, so the mesh may be destroyed.
 class ClosestPointQuery {
  public:
   /// @throws InvalidMesh, InvalidOption, Cancelled.
-  /// Cost: O(n log n). For 70,000 triangles on two cores about 80 ms, unsigned 30 ms, and more if winding numbers are
-  /// needed.
+  /// Cost: O(n log n) for n primitives. With 70,000 triangles on two cores, construction takes about 80 ms, or 30 ms if
+  /// unsigned. It takes longer if winding numbers are needed.
   explicit ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options = {},
                              const Context& context = {});
   ClosestPointQuery(ClosestPointQuery&&) noexcept;
   ClosestPointQuery& operator=(ClosestPointQuery&&) noexcept;
   ~ClosestPointQuery();
 
-  /// Answers one query. It may be called from many threads at once, and allocates nothing.
-  /// @param query  finite. Coordinates must be at most 1e140, and at most 1e140 times the longest side of the mesh's
-  ///               box (unless that is 0). Else the result has no site.
-  /// @return       a distance within about 1e-15 of exact, relative to the extent of mesh and query together. Among
-  ///               sites at the same computed distance, the one with the smallest id is returned. A query on the
-  ///               surface is not inside. With an open mesh it may be, if rounding makes its computed distance differ
-  ///               from 0.
+  /// Returns the closest point to one query. This function may be called from many threads at once, and allocates no
+  /// memory.
+  /// @param query  finite. The magnitude of coordinates must be at most 1e140. If the longest side of the mesh's box is
+  ///               not 0, the magnitude must also be at most 1e140 times that side. If the query is beyond these
+  ///               limits, the result has no site.
+  /// @return       the closest point. The error of its distance is about 1e-15 times the extent of the box around mesh
+  ///               and query. If several sites have the smallest computed distance, the one with the smallest id is
+  ///               returned. A query whose computed distance is 0 counts as outside. With an open mesh, a query on the
+  ///               surface may count as inside if rounding makes its computed distance differ from 0.
   [[nodiscard]] ClosestPoint nearest(const Vec3d& query) const;
 
-  /// Answers many queries, threaded. Results are those of nearest(), bit for bit, for any number of threads. Queries
-  /// are ordered in space and answered together if they are at least 4,096 and at least as many as the mesh has
-  /// triangles. The first such call builds a structure for this, which takes 0.5 us and 450 bytes per triangle. Later
-  /// calls use it if they have at least 1,024 queries, and at least half as many as the mesh has triangles.
-  /// @throws InvalidOption that names the first query that is not finite or too far away.
+  /// Returns the closest points to many queries, computed with threads. Each result is that of nearest(query), bit for
+  /// bit, for any number of threads. If there are at least 4,096 queries, and no fewer queries than triangles, the
+  /// queries are ordered in space and answered together. The first such call builds a structure for this, which takes
+  /// 0.5 us and 450 bytes per triangle. A later call uses the structure if the number of its queries is at least 1,024,
+  /// and at least half the number of triangles.
+  /// @throws InvalidOption with the index of the first query that is not finite or beyond the limits above.
   /// @throws Cancelled.
   [[nodiscard]] std::vector<ClosestPoint> nearest(std::span<const Vec3d> queries, const Context& context = {}) const;
 
-  /// Answers many queries and reports the results as they are found, instead of keeping them. Calls use(found) for
-  /// groups of queries that lie close together, from several threads at once if the context has them. Each query is in
-  /// exactly one group.
+  /// Finds the closest points to many queries and passes them to `use` as they are found, instead of returning a list.
+  /// Calls use(found) once for each group of queries that lie close together. If the context has several threads,
+  /// several of these calls may run at the same time. Each query is in exactly one group.
   /// @throws as nearest().
   void for_each_nearest(std::span<const Vec3d> queries, FunctionRef<void(std::span<const FoundPoint>)> use,
                         const Context& context = {}) const;
 
-  /// Announces that many queries will come in batches, each of queries that lie close together. The structure of
-  /// nearest() is built now if the queries are at least 4,096 and at least as many as the mesh has triangles. From then
-  /// on, calls of nearest() with 1,024 queries or more use it. Answers stay the same. Must not run beside queries.
-  /// @param queries  approximate number of queries over all batches.
+  /// Prepares for many batches of queries. The queries of a batch should lie close together. If `queries` is at least
+  /// 4,096 and at least the number of triangles, this builds the structure that nearest() uses for many queries. Then
+  /// each call of nearest() with at least 1,024 queries uses the structure. Results stay the same. Must not run at the
+  /// same time as queries.
+  /// @param queries  approximate number of queries in all batches together.
   /// @throws Cancelled.
-  /// Cost: 0.5 us per triangle and core.
+  /// Cost: 0.5 us of one core per triangle.
   void prepare_for_many(std::size_t queries, const Context& context = {});
 
-  /// Finds the triangles, segments and points of the mesh within a distance of each query, threaded, each with its
-  /// closest point. Distances are unsigned.
-  /// @param distance  mesh units, >= 0; infinite: all of them. max_distance limits it, too.
-  /// @throws InvalidOption, also as nearest().
+  /// Finds, for each query, the triangles, segments and points of the mesh that are within a distance of the query.
+  /// Each of these primitives is returned with its point closest to the query. Distances are unsigned. The search uses
+  /// threads.
+  /// @param distance  mesh units, >= 0. If it is infinite, all primitives are found. ClosestPointOptions::max_distance
+  ///                  limits the search, too.
+  /// @throws InvalidOption, also for the queries that nearest() rejects.
   /// @throws Cancelled.
-  /// Cost: one search for each query, and 50 ns for each entry.
+  /// Cost: one search for each query, and 50 ns for each primitive found.
   [[nodiscard]] NearPrimitives within(std::span<const Vec3d> queries, double distance,
                                       const Context& context = {}) const;
 
-  /// Finds the k closest primitives of each query. There are fewer if the mesh has fewer within max_distance.
+  /// Finds the k closest primitives of each query. A query gets fewer than k if fewer primitives lie within
+  /// max_distance.
   /// @throws as within().
   /// Cost: as within().
   [[nodiscard]] NearPrimitives nearest_primitives(std::span<const Vec3d> queries, std::size_t k,
                                                   const Context& context = {}) const;
 
-  /// Moves the vertices of the mesh. Answers are, bit for bit, those of a new query object. They take longer as
-  /// neighbours move apart; make a new object then. Must not run beside queries.
-  /// @param vertices  as many as the mesh has.
-  /// @throws InvalidMesh; nothing has changed then.
-  /// @throws Cancelled; only another refit may follow then.
-  /// Cost: O(n), unsigned about 2 ms for 100,000 triangles on two cores. Signs are planned anew, which takes as long as
-  /// in a new query object. The structure for many queries is discarded. The next call with many queries, or
-  /// prepare_for_many(), builds it again.
+  /// Moves the vertices of the mesh. Results are then those of a new query object for the moved mesh, bit for bit.
+  /// Queries get slower as primitives that were neighbours move apart; a new object is then better. Must not run at the
+  /// same time as queries.
+  /// @param vertices  the new positions, one for each vertex of the mesh.
+  /// @throws InvalidMesh. The object is then unchanged.
+  /// @throws Cancelled. After this, refit() must be called again before any other function.
+  /// Cost: O(n). For 100,000 triangles on two cores, this takes about 2 ms if unsigned. If signed, the rule for signs
+  /// is also chosen again, which takes as long as in the constructor. The structure for many queries is discarded. The
+  /// next call with many queries, or prepare_for_many(), builds it again.
   void refit(std::span<const Vec3d> vertices, const Context& context = {});
 
-  /// Returns the rule that decides signs, and the reason for it (one sentence).
+  /// Return the rule that decides signs, and the reason for this rule (one sentence).
   [[nodiscard]] SignRule sign_rule() const;
   [[nodiscard]] const std::string& sign_reason() const;
-  /// Returns true if the sign may change off the surface, at distances other than 0. This happens with winding numbers
-  /// of meshes with a boundary, and with normals of shells that cross each other.
+  /// Returns true if the sign may change at points that are not on the surface. This happens with winding numbers if
+  /// the mesh has a boundary, and with normals if shells cross each other.
   [[nodiscard]] bool sign_may_jump() const;
 
  private:
@@ -162,16 +171,18 @@ class ClosestPointQuery {
 ///
 /// @param mesh     any soup of triangles, segments and points; must pass validate(mesh).
 /// @param queries  finite.
-/// @return         one entry per query, in their order; see ClosestPointQuery.
+/// @return         one entry per query, in the order of the queries; see ClosestPointQuery.
 /// @throws InvalidMesh.
-/// @throws InvalidOption, also for a query that is not finite or too far away; the message names its index.
+/// @throws InvalidOption, also for a query that is not finite, or beyond the limits of ClosestPointQuery::nearest().
+/// The message contains the index of the query.
 /// @throws Cancelled.
-/// Cost: O(n log n) for n primitives, then a search per query. Times per query and core were measured with 70,000
-/// triangles. With a million queries they are 0.2 us near the surface and 0.3 us all over the mesh's box. With fewer
-/// queries than triangles, each takes 0.7 us if they follow each other along the surface. Near the surface in any order
-/// it takes 1.4 us, all over the box 7 us. It takes up to 20 us where many sites are nearly equally close. Signs of
-/// closed meshes add up to a third, signs of open ones 0.2 to 0.4 us. In soups each sign takes a winding number.
-/// Method: docs/theory/closest-points.md.
+/// Cost: O(n log n) for n primitives, then one search per query. The following times of a search on one core were
+/// measured with 70,000 triangles. With a million queries, a search takes 0.2 us near the surface, and 0.3 us anywhere
+/// in the mesh's box. With fewer queries than triangles, a search takes 0.7 us if each query is near the previous
+/// query, along the surface. If the queries are in random order, a search takes 1.4 us near the surface, and 7 us
+/// anywhere in the box. Where many sites are nearly equally close, a search takes up to 20 us. The sign takes up to a
+/// third more for closed meshes, and 0.2 to 0.4 us more for open meshes. For soups, the sign takes the time of a
+/// winding number. Method: docs/theory/closest-points.md.
 [[nodiscard]] std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,
                                                        const ClosestPointOptions& options = {},
                                                        const Context& context = {});

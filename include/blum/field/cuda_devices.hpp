@@ -11,11 +11,11 @@
 
 namespace blum {
 
-/// Available CUDA device.
+/// A CUDA device that Blum can use.
 struct DeviceInfo {
   std::string device;        ///< name that parse_device() reads: "cuda:0"
-  std::string name;          ///< name given by its maker
-  std::uint64_t memory = 0;  ///< bytes
+  std::string name;          ///< name given by the manufacturer
+  std::uint64_t memory = 0;  ///< total memory in bytes
 };
 
 template <>
@@ -28,10 +28,10 @@ struct Description<DeviceInfo> {
       Member{"memory", &DeviceInfo::memory, "bytes", "total memory"}};
 };
 
-/// Available CUDA devices.
+/// All CUDA devices that Blum can use.
 struct CudaDevices {
   std::vector<DeviceInfo> devices;
-  std::string reason;  ///< if there are none: why, in one sentence; else empty
+  std::string reason;  ///< reason in one sentence if there are no devices; else empty
 };
 
 template <>
@@ -43,7 +43,8 @@ struct Description<CudaDevices> {
       Member{"reason", &CudaDevices::reason, "", "reason in one sentence if there are none; else empty"}};
 };
 
-/// Loads the CUDA module and returns the devices that it finds. Cost: starting CUDA, once; up to a second.
+/// Loads the CUDA module and returns the devices that it finds. Cost: the first call starts CUDA, which takes up to a
+/// second.
 [[nodiscard]] CudaDevices cuda_devices();
 
 }  // namespace blum

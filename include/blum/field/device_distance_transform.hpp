@@ -12,14 +12,15 @@
 
 namespace blum {
 
-/// Transforms images in a CUDA device's memory, and leaves the results there. Its working memory takes 1/8 byte per
-/// voxel and a little more, and is kept between calls. Streams and lifetimes are those of DeviceFieldSolver.
+/// Computes distance transforms of images in a CUDA device's memory, and leaves the results in that memory. The working
+/// memory takes slightly more than 1/8 byte per voxel, and is kept between calls. The rules for streams and lifetimes
+/// are those of DeviceFieldSolver.
 class DeviceDistanceTransform {
  public:
   /// @param grid     grid of the images.
-  /// @param context  names a CUDA device; `automatic` is the first one.
+  /// @param context  selects a CUDA device; `automatic` selects the first one.
   /// @throws InvalidGrid.
-  /// @throws InvalidImage if the image has more voxels than ids, or an extent that 32-bit distances do not hold.
+  /// @throws InvalidImage if the image has more voxels than ids, or an extent that 32-bit distances cannot represent.
   /// @throws InvalidOption, OutOfMemory, DeviceError.
   explicit DeviceDistanceTransform(const GridSpec& grid, const DistanceTransformOptions& options = {},
                                    const Context& context = {.device = Device::cuda()});
@@ -31,25 +32,27 @@ class DeviceDistanceTransform {
   [[nodiscard]] const GridSpec& grid() const;
   [[nodiscard]] const DistanceTransformOptions& options() const;
 
-  /// Queues the work of distance_transform(), with the same bytes as the result. It does not wait, except for the
-  /// oldest call when 64 calls are in flight.
+  /// Queues a distance transform whose results are the same bytes as those of distance_transform(). This call does not
+  /// wait for the device. Exception: if 64 earlier calls are not completed yet, it waits for the oldest of these.
   ///
-  /// The selected voxels are known only on the device. If no voxel is selected, all distances are
-  /// infinite (with a band, its half-width), without sites. In a signed transform this also holds if all are selected.
-  /// @param values  one per voxel, x fastest.
-  /// @param field   memory for distances and sites.
-  /// @throws InvalidImage for another number of values.
-  /// @throws InvalidOption if memory is missing.
+  /// The selected voxels are known only on the device. If no voxel is selected, every voxel gets an infinite distance
+  /// (with a band: the half-width of the band) and no site. In a signed transform, every voxel also gets these values
+  /// if all voxels are selected.
+  /// @param values  the values of the voxels, x fastest.
+  /// @param field   memory that receives distances and sites.
+  /// @throws InvalidImage if the number of values is not the number of voxels.
+  /// @throws InvalidOption if a pointer to memory is missing.
   /// @throws OutOfMemory, DeviceError.
   void compute(const DeviceArrayView& values, const DeviceFieldView& field, void* stream = nullptr);
 
   [[nodiscard]] DeviceProgress progress() const;
-  /// Makes work that is queued on a stream from now on wait for the first `pieces` pieces of work that progress()
-  /// counts.
+  /// Makes a stream wait for the first `pieces` of the calls that progress() counts. Work that is queued on the stream
+  /// after follow() starts when these calls are completed.
   void follow(std::uint64_t pieces, void* stream);
-  /// Returns the device that owns memory; nullopt for memory of the host.
+  /// Returns the device whose memory a pointer points to; nullopt for memory of the host.
   [[nodiscard]] std::optional<Device> device_of(const void* memory) const;
-  /// Makes work that is queued on stream `after` from now on wait for the work queued on `before` so far.
+  /// Makes stream `after` wait for stream `before`. Work that is queued on `after` from now on starts when all work
+  /// that is now queued on `before` is completed.
   void order(void* before, void* after);
 
  private:

@@ -12,7 +12,7 @@ namespace blum {
 /// Types of numbers, in the order of VoxelImageView::Values.
 enum class ElementType : std::uint8_t { uint8, int8, uint16, int16, uint32, int32, uint64, int64, float32, float64 };
 
-/// View of an array in a CUDA device's memory: rows one after the other, without gaps.
+/// View of an array in a CUDA device's memory. Its rows follow each other without gaps.
 struct DeviceArrayView {
   const void* data = nullptr;
   ElementType type = ElementType::float64;
@@ -23,24 +23,24 @@ struct DeviceArrayView {
 struct DeviceMeshView {
   DeviceArrayView vertices;   ///< n x 3, float32 or float64, mesh units
   DeviceArrayView triangles;  ///< n x 3, int32, uint32 or int64; without rows the type is ignored
-  DeviceArrayView segments;   ///< n x 2, the same types
-  DeviceArrayView points;     ///< n, the same types
+  DeviceArrayView segments;   ///< n x 2, the types of `triangles`
+  DeviceArrayView points;     ///< n x 1, the types of `triangles`
 };
 
 /// Memory for a field on a CUDA device: arrays of one value per node of the grid, x fastest.
 struct DeviceFieldView {
   float* distance = nullptr;
-  std::uint32_t* site = nullptr;  ///< 0xffffffff if none; ignored if the options exclude sites
+  std::uint32_t* site = nullptr;  ///< 0xffffffff if a node has no site; ignored if the options exclude sites
 };
 
-/// Number of calls that have queued work so far, and how many of them, counted from the first, the device has
-/// completed. Memory that completed calls read or wrote is free again.
+/// `queued` is the number of calls that have queued work so far. The device has completed the first `finished` of these
+/// calls. Memory that completed calls read or wrote may be freed or changed.
 struct DeviceProgress {
   std::uint64_t queued = 0;
   std::uint64_t finished = 0;
 };
 
-/// Memory of a CUDA device, freed with its last owner. Copies share it.
+/// Memory of a CUDA device. Copies share the memory, and the last one frees it.
 class DeviceMemory {
  public:
   DeviceMemory() = default;

@@ -19,11 +19,12 @@ namespace blum {
 
 struct DistanceTransformOptions {
   LabelSelection selection = {};
-  /// True: distance to the nearest voxel of the other kind, negative at selected voxels. False: distance to the nearest
-  /// selected voxel, 0 at selected voxels.
+  /// True: a selected voxel gets minus the distance to the nearest voxel that is not selected. Any other voxel gets the
+  /// distance to the nearest selected voxel. False: each voxel gets the distance to the nearest selected voxel, which
+  /// is 0 at selected voxels.
   bool is_signed = true;
-  /// Half-width of a narrow band, > 0, in the units of the image's spacing. Voxels with a larger distance get +-band
-  /// and no site. Unset: the full grid.
+  /// Largest distance that is computed (half-width of the band), > 0, in the units of the image's spacing. Voxels with
+  /// a larger distance get +-band and no site. Unset: no limit.
   std::optional<double> band = {};
 };
 
@@ -34,36 +35,40 @@ struct Description<DistanceTransformOptions> {
   static constexpr std::tuple members{
       Member{"selection", &DistanceTransformOptions::selection, "", "selected voxels"},
       Member{"signed", &DistanceTransformOptions::is_signed, "",
-             "true: distance to the nearest voxel of the other kind, negative at selected voxels; false: to the "
-             "nearest selected voxel"},
+             "true: distance to the nearest voxel of the other kind (selected or not), negative at selected voxels; "
+             "false: distance to the nearest selected voxel"},
       Member{"band", &DistanceTransformOptions::band, "units of the spacing",
-             "half-width of a narrow band; beyond it voxels get +-band and no site", Range::positive()},
+             "half-width of a band around the selected voxels; voxels beyond it get the distance +-band and no site",
+             Range::positive()},
   };
 };
 
-/// Computes the exact Euclidean distance and closest voxel at every voxel of an image, between voxel centres. The
-/// definition is that of scipy.ndimage.distance_transform_edt(mask, sampling=spacing, return_indices=True).
+/// Computes the exact Euclidean distance and the closest voxel for every voxel of an image. Distances are measured
+/// between voxel centres. The definition is that of scipy.ndimage.distance_transform_edt(mask, sampling=spacing,
+/// return_indices=True).
 ///
 /// @param image  must pass validate(image).
 /// @return       a field on image.grid. Site ids are linear indices of voxels (SiteIds::voxels). The sign rule is
-///               `label`, or `none` when unsigned. Distances have the units of the spacing. If the squared spacings are
+///               `label`, or `none` if unsigned. Distances are in the units of the spacing. If the squared spacings are
 ///               small multiples of a common unit (for example all equal, or whole numbers), squared distances are
-///               exact integers. Distances are then their correctly rounded roots times that unit. Else distances are
-///               computed in double. Among voxels at the same computed distance, the smallest linear index is reported.
-///               The bytes are the same for any number of threads.
-/// @throws InvalidImage, also if no voxel is selected, or every voxel in a signed transform.
-/// @throws InvalidImage if the image spans less than 1e-36 or more than 1e37, which 32-bit distances do not hold.
+///               computed exactly, as integers. Distances are then the correctly rounded square roots, in the units of
+///               the spacing. Otherwise, distances are computed in double. If several voxels have the smallest computed
+///               distance, the one with the smallest linear index is reported. The bytes are the same for any number of
+///               threads.
+/// @throws InvalidImage, also if no voxel is selected, or if every voxel is selected in a signed transform.
+/// @throws InvalidImage if the image spans less than 1e-36 or more than 1e37, which 32-bit distances cannot represent.
 /// @throws InvalidOption, OutOfMemory, DeviceError, Cancelled.
-/// Cost: about O(voxels log(side)), at worst twice that. The result takes 8 bytes per voxel, working memory 1/8 byte
-/// per voxel and a few MiB per thread.
-/// Method: one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use no lower
-/// envelopes: along a column, the closest row moves monotonically (Aggarwal 1987). They treat many columns at a time.
+/// Cost: about O(voxels log(side)) for `side` voxels along the longest side, at worst twice that. The result takes 8
+/// bytes per voxel. The working memory takes 1/8 byte per voxel, and a few MiB per thread. Method: one pass per axis
+/// (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use no lower envelopes. Instead, they use
+/// that the index of the closest row is monotone along a column (Aggarwal 1987). These passes process many columns at a
+/// time.
 [[nodiscard]] Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
                                        const Context& context = {});
 
-/// Computes the transforms of several selections (labels, thresholds) of one image, in their order. Each equals
-/// distance_transform() with that selection, byte for byte. options.selection is ignored. The image is checked once,
-/// and working memory is shared. The results take 8 bytes per voxel and selection.
+/// Computes the transforms of several selections (labels, thresholds) of one image, in their order. Each result equals
+/// that of distance_transform() with one selection, byte for byte. options.selection is ignored. The image is checked
+/// once, and working memory is shared. The results take 8 bytes per voxel and selection.
 /// @throws as distance_transform().
 [[nodiscard]] std::vector<Field> distance_transforms(const VoxelImageView& image,
                                                      std::span<const LabelSelection> selections,

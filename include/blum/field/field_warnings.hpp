@@ -11,29 +11,30 @@
 
 namespace blum {
 
-/// Returns a warning if the field of a mesh has suspicious signs. Either the mesh or a part of it faces the wrong way
-/// (WarningCode::facing), or no node is inside (WarningCode::nothing_inside). Returns at most one warning, and none for
-/// unsigned fields.
+/// Returns a warning if the signs of a mesh's field may be wrong. WarningCode::facing: triangles or shells of the mesh
+/// face the wrong way. WarningCode::nothing_inside: no node is inside the mesh. Returns at most one warning, and none
+/// for unsigned fields.
 ///
-/// @param mesh   the whole mesh of the field.
-/// @param facts  its orientation().
+/// @param mesh   the mesh of which the field was computed.
+/// @param facts  the result of orientation() for this mesh.
 /// @throws Cancelled.
-/// Cost: a search for a node inside. If the mesh is closed and oriented, but does not face outwards, also a search for
-/// a pair of triangles that cross.
+/// Cost: that of a search for a node inside the mesh. If the mesh is closed and oriented, but does not face outwards,
+/// the cost of a search for two triangles that cross is added.
 [[nodiscard]] std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh, const Orientation& facts,
                                                   const Context& context = {});
-/// Returns the same warnings, and computes the facts itself.
+/// Returns the same warnings, and computes the orientation of the mesh itself.
 /// @throws InvalidMesh unless the mesh passes validate(mesh).
 /// @throws Cancelled.
-/// Cost: in addition O(n log n) for n triangles, some milliseconds for 70,000; nothing for unsigned fields.
+/// Cost: in addition O(n log n) for n triangles: a few milliseconds for 70,000 triangles. There is no cost for unsigned
+/// fields.
 [[nodiscard]] std::vector<Warning> field_warnings(const Field& field, const MeshView& mesh,
                                                   const Context& context = {});
 
-/// Returns the warning that needs no grid (WarningCode::facing), for signed distances at any points.
-/// @param rule  ClosestPointQuery::sign_rule().
+/// Returns the warning WarningCode::facing, which needs no grid, for signed distances at any points.
+/// @param rule  the result of ClosestPointQuery::sign_rule().
 /// @throws InvalidMesh unless the mesh passes validate(mesh).
 /// @throws Cancelled.
-/// Cost: as field_warnings().
+/// Cost: as field_warnings(), without the search for a node inside.
 [[nodiscard]] std::vector<Warning> sign_warnings(const MeshView& mesh, SignRule rule, const Context& context = {});
 
 }  // namespace blum

@@ -12,15 +12,15 @@
 namespace blum::reference {
 
 struct NearestVoxel {
-  double squared = 0;  ///< squared distance between the voxel centres, in squared units of the spacing
-  SiteId site;         ///< smallest linear index among the voxels at the smallest squared distance
+  double squared = 0;  ///< squared distance between the centres of the two voxels, in squared units of the spacing
+  SiteId site;         ///< nearest voxel; the smallest linear index if several voxels are equally near
 };
 
 /// Returns the squared distance between the centres of two voxels, given by linear indices.
 [[nodiscard]] double squared_distance(const GridSpec& grid, std::size_t a, std::size_t b);
 
-/// Returns the target voxel (targets[i] != 0) nearest to one voxel, by a search of all targets in double. Without
-/// targets, the site is none(). Cost: O(voxels).
+/// Returns the target voxel (targets[i] != 0) nearest to one voxel, by an exhaustive search in double precision. If
+/// there are no targets, the site is none(). Cost: O(voxels).
 [[nodiscard]] NearestVoxel nearest_voxel(const GridSpec& grid, const std::vector<std::uint8_t>& targets,
                                          std::size_t voxel);
 

@@ -11,31 +11,34 @@
 
 namespace blum {
 
-/// Returns the distance at any points, trilinear between the eight nodes around each. It is not exact. Next to edges
-/// and bisectors of the shape it is off by up to about half the diagonal of a cell. Where the distance is smooth, it is
-/// off by O(spacing^2). closest_points() is exact.
+/// Returns the distance at any points, interpolated trilinearly between the eight nodes around each point. The distance
+/// is not exact. Near edges and bisectors of the shape, its error is up to about half the diagonal of a cell. Here, a
+/// cell is the box between eight neighbouring nodes. Where the distance is smooth, the error is O(spacing^2).
+/// closest_points() is exact.
 ///
-/// @param field   field.grid must be valid. Beyond a band, +-band counts as the distance.
+/// @param field   field.grid must be valid. Nodes beyond a band have the distance +-band.
 /// @param points  finite, mesh units.
-/// @return        mesh units, one per point, in their order; NaN for points outside of the grid. Along an axis with a
-///                single layer, points within half a spacing of it lie in the grid and take its value.
-/// @throws InvalidGrid, also if the counts of distances and nodes differ.
-/// @throws InvalidOption that names the first point that is not finite.
+/// @return        distances in mesh units, one per point, in the order of the points; NaN for points outside of the
+///                grid. If an axis has a single layer, points within half a spacing of the layer are in the grid and
+///                get its value.
+/// @throws InvalidGrid, also if the numbers of distances and nodes differ.
+/// @throws InvalidOption with the index of the first point that is not finite.
 /// @throws Cancelled.
 /// Cost: O(points).
 [[nodiscard]] std::vector<double> interpolate(const Field& field, std::span<const Vec3d> points,
                                               const Context& context = {});
 
-/// Values of the interpolant and its gradients.
+/// Interpolated distances and their gradients, one per point.
 struct InterpolatedGradients {
-  std::vector<double> value;    ///< those of interpolate(), bit for bit
+  std::vector<double> value;    ///< the results of interpolate(), bit for bit
   std::vector<Vec3d> gradient;  ///< without unit (distance over length), in the mesh's axes
 };
 
-/// Returns the values and the gradient of the trilinear interpolant. The gradient has a length of about 1 where the
-/// distance is smooth, and less next to edges and bisectors. It jumps at the borders of cells. There it is that of the
-/// cell with the higher nodes; in the last layer, that of the cell before. Along an axis with a single layer it is 0.
-/// It is NaN outside of the grid, and if a node of the cell is infinitely far.
+/// Returns the values and the gradients of the trilinear interpolation. The gradient has a length of about 1 where the
+/// distance is smooth, and is shorter near edges and bisectors. It jumps at the borders of cells. A point on a border
+/// gets the gradient of the cell with the larger indices. In the last layer, it gets that of the cell before the layer.
+/// The component of the gradient along an axis with a single layer is 0. Outside of the grid, the gradient is NaN. If a
+/// node of the cell is infinitely far, the gradient may be infinite or NaN.
 [[nodiscard]] InterpolatedGradients interpolate_with_gradient(const Field& field, std::span<const Vec3d> points,
                                                               const Context& context = {});
 

@@ -20,10 +20,10 @@ namespace blum::reference {
 
 struct Nearest {
   double distance = 0;
-  SiteId site;  ///< smallest id among the sites at the smallest distance
+  SiteId site;  ///< closest site; the smallest id if several sites are equally close
 };
 
-/// Searches every site for every query, in double: slow and simple. The mesh must outlive it.
+/// Searches all sites for each query, in double precision: slow and simple. The mesh must outlive this object.
 class BruteForce {
  public:
   explicit BruteForce(const MeshView& mesh);
@@ -31,12 +31,13 @@ class BruteForce {
   [[nodiscard]] const SiteTable& sites() const { return sites_; }
   /// Returns the distance from a point to one site (its closure).
   [[nodiscard]] double site_distance(SiteId id, const Vec3d& query) const;
-  /// Returns the closest site among all that a triangle, segment or point names. Cost: O(sites).
+  /// Returns the closest of all sites. Vertices that no triangle, segment or point uses are not sites here. Cost:
+  /// O(sites).
   [[nodiscard]] Nearest nearest(const Vec3d& query) const;
-  /// Returns the closest site among those whose vertices have no label of the first site. Fields of order 2 use this
-  /// rule.
-  /// @param first   the first site.
-  /// @param labels  one per vertex of the mesh; empty: each vertex has its own label.
+  /// Returns the closest of the sites that share no label with the first site (see share_label()). Fields of order 2
+  /// use this rule.
+  /// @param first   the closest site of the query.
+  /// @param labels  one label per vertex of the mesh. If the list is empty, each vertex has a label of its own.
   /// Cost: O(sites).
   [[nodiscard]] std::optional<Nearest> second(const Vec3d& query, SiteId first,
                                               std::span<const std::uint32_t> labels = {}) const;

@@ -15,8 +15,8 @@
 namespace blum {
 
 struct SmoothSurfaceOptions {
-  /// Rounds of smoothing, 0 to 1000. 0: the surface of the boxes, opened a little where boxes touch only in an edge or
-  /// a corner.
+  /// Number of rounds of smoothing, 0 to 1000. With 0, the result is the surface of the voxels' boxes, changed slightly
+  /// where boxes touch only in an edge or a corner.
   int iterations = 60;
 };
 
@@ -25,20 +25,21 @@ struct Description<SmoothSurfaceOptions> {
   static constexpr std::string_view name = "SmoothSurfaceOptions";
   static constexpr std::string_view doc = "Options of smoothing the surface of voxels";
   static constexpr std::tuple members{
-      Member{"iterations", &SmoothSurfaceOptions::iterations, "", "rounds of smoothing; 0: the surface of the boxes",
-             Range::between(0, 1000)},
+      Member{"iterations", &SmoothSurfaceOptions::iterations, "",
+             "rounds of smoothing; 0: the surface of the voxels' boxes", Range::between(0, 1000)},
   };
 };
 
 struct SmoothSurface {
   TriangleMesh mesh;
-  /// Largest move of a vertex from its start along any axis, in voxels of that axis: at most 0.59. Starts lie on the
-  /// surface of the boxes, except where boxes touch only in an edge or a corner. There they are already 0.1 or 0.2 away
-  /// from it, so the move can exceed 1/2. Each final vertex is within 0.49 of its place on the surface of the boxes,
-  /// along each axis.
+  /// Largest move of a vertex from its start position along any axis, as a fraction of the spacing along that axis: at
+  /// most 0.59. Start positions lie on the surface of the boxes, except where boxes touch only in an edge or a corner.
+  /// In that case, start positions are 0.1 or 0.2 away from the surface of the boxes, so the move can exceed 1/2. Along
+  /// each axis, each final vertex is within 0.49 of its original position on the surface of the boxes.
   double largest_move = 0;
-  std::size_t held_vertices = 0;  ///< vertices moved back by quarters of their way, because the surface would have
-                                  ///< crossed itself
+  std::size_t held_vertices = 0;  ///< number of vertices that were moved back towards their start positions, because
+                                  ///< the surface would have crossed itself. Each step back is a quarter of the
+                                  ///< vertex's move
 };
 
 /// Computes a smooth, closed surface between the selected voxels of an image and the others.
@@ -50,19 +51,20 @@ struct SmoothSurface {
 ///
 /// - The surface is an oriented manifold that does not cross or touch itself, also if the grid's direction mirrors.
 ///
-/// - Each vertex stays within half a voxel of its place on the surface of the boxes, along each axis.
+/// - Along each axis, each vertex stays within half a voxel of its original position on the surface of the boxes.
 ///
-/// - Taubin's filter (1995) smooths the surface and hardly shrinks it. Waves shorter than about 5 voxels vanish, long
-///   ones stay. The mean radius is right within 0.1 voxels for round tubes of radius 1.5 voxels or more, and balls of 2
-///   or more.
+/// - Taubin's filter (1995) smooths the surface and hardly shrinks it. Waves of the surface shorter than about 5 voxels
+///   nearly vanish; longer waves remain. For round tubes with a radius of at least 1.5 voxels, the mean radius of the
+///   result is right within 0.1 voxels. The same accuracy holds for balls with a radius of at least 2 voxels.
 ///
 /// @return      vertices in world coordinates. The bytes are the same for any number of threads.
 /// @throws InvalidImage, also if no voxel is selected.
 /// @throws InvalidOption, also for more than max_id_count vertices or triangles.
-/// @throws InvalidGrid if the spacing is too small beside the origin: rounded coordinates then make the surface cross
-/// itself.
+/// @throws InvalidGrid if the spacing is too small relative to the coordinates of the origin. Rounded coordinates then
+/// make the surface cross itself.
 /// @throws OutOfMemory, Cancelled.
-/// Cost: O(voxels / 64) and, for each of the surface's faces, about 5 microseconds of a core and 300 bytes.
+/// Cost: O(voxels / 64), and about 5 microseconds of one core and 300 bytes for each face between a selected voxel and
+/// another one.
 /// Method: docs/theory/smooth-surfaces.md.
 [[nodiscard]] SmoothSurface smooth_surface(const VoxelImageView& image, const LabelSelection& selection = {},
                                            const SmoothSurfaceOptions& options = {}, const Context& context = {});

@@ -9,11 +9,12 @@
 
 namespace blum {
 
-/// Returns the voxels whose centre has a winding number above 1/2, with the signs of fields. These voxels represent the
-/// solid of a mesh that bounds no polyhedron (SolidRule::winding).
-/// @param grid  grid of the voxel centres; for a medial axis MedialAxisReport::grid.
+/// Returns the voxels whose centre is inside a mesh. A centre is inside if the mesh's winding number there is above
+/// 1/2, as for SignMode::winding. These voxels represent the solid of a mesh that bounds no polyhedron
+/// (SolidRule::winding).
+/// @param grid  grid whose nodes are the voxel centres; for the solid of a medial axis, MedialAxisReport::grid.
 /// @throws as distance_field().
-/// Cost: that of a field with SignMode::winding; 16 bytes per voxel.
+/// Cost: as a field with SignMode::winding. Memory: 16 bytes per voxel.
 [[nodiscard]] VoxelSet voxels_inside(const MeshView& mesh, const GridSpec& grid, const Context& context = {});
 
 }  // namespace blum

@@ -34,39 +34,40 @@ struct NearestPrimitive {
   Vec3d point;                  ///< on the primitive, in mesh units
   double distance = 0;          ///< >= 0, mesh units
   SiteId site;                  ///< the vertex, open edge or open face that the point lies on
-  std::uint32_t primitive = 0;  ///< index
+  std::uint32_t primitive = 0;  ///< index of the primitive
 };
 
-/// Some leaves of a hierarchy. See Bvh::part_in().
+/// Set of leaves of a hierarchy. See Bvh::part_in().
 class BvhPart {
  private:
   friend class Bvh;
   struct Leaves {
-    std::uint32_t block = 0;  ///< number of a block of eight consecutive leaves
-    std::uint32_t bits = 0;   ///< those of them that belong to the part
+    std::uint32_t block = 0;  ///< index of a block: leaves 8 * block to 8 * block + 7
+    std::uint32_t bits = 0;   ///< bit k is set if leaf 8 * block + k belongs to the set
   };
   std::vector<Leaves> leaves_;
 };
 
 /// Crossing of a ray and a triangle. Its existence, `side` and `on_border` are exact.
 struct RayCrossing {
-  double t = 0;  ///< the point is origin + t * direction; >= 0
+  double t = 0;  ///< the crossing is at origin + t * direction; t >= 0
   TriangleId triangle;
-  std::array<double, 3> weights{};  ///< barycentric, in the order of the triangle's corners; their sum is 1
-  int side = 0;                     ///< 1 if the ray leaves through the side that the triangle faces, -1 if it enters
-  bool on_border = false;           ///< on an edge or corner, where the ray meets neighbouring triangles, too
+  std::array<double, 3> weights{};  ///< barycentric weights of the triangle's corners, in their order; their sum is 1
+  int side = 0;                     ///< 1 if the ray crosses towards the side that the triangle faces, -1 if it crosses
+                                    ///< the other way
+  bool on_border = false;           ///< true if the ray meets an edge or corner, so that it meets neighbouring
+                                    ///< triangles, too
 };
 
 /// Bounding-volume hierarchy over the triangles, segments and points of a mesh, with eight children per node and eight
-/// primitives per leaf. It copies the data it needs, so the mesh may be destroyed. BoxBvh is the hierarchy for boxes
-/// alone.
+/// primitives per leaf. It copies the data it needs, so the mesh may be destroyed. The hierarchy for boxes is BoxBvh.
 ///
-/// All queries may run on many threads at once. Queries that return no list allocate nothing. Distances are exact up to
-/// rounding, about 1e-15 of the extent of mesh and query together. Queries must be finite, and within 1e140 times the
-/// mesh's longest side. Others find nothing.
+/// All queries may run on many threads at once. Queries that return no list allocate no memory. The rounding error of
+/// distances is about 1e-15 times the extent of the box around mesh and query. Coordinates of queries must be finite,
+/// and of magnitude at most 1e140 times the mesh's longest side. A query beyond these limits finds nothing.
 ///
-/// Cost: O(n) to build. That takes about 15 ms for 70,000 triangles and 0.4 s for 1.6 million, on two cores; 135 bytes
-/// per primitive.
+/// Cost: O(n) time to build, and 135 bytes per primitive. On two cores, building takes about 15 ms for 70,000 triangles
+/// and 0.4 s for 1.6 million.
 class Bvh {
  public:
   /// @param mesh   must pass validate(mesh).
@@ -77,17 +78,21 @@ class Bvh {
   Bvh& operator=(Bvh&&) noexcept;
   ~Bvh();
 
-  /// Updates the hierarchy to moved vertices of the same primitives. Answers are, bit for bit, those of a newly built
-  /// hierarchy; only the order of visits differs. Queries get slower as neighbours move apart; then build a new
-  /// hierarchy. Must not run at the same time as queries.
-  /// @param vertices  as many as the mesh had. Those that the mesh names must be finite, of magnitude at most 1e150.
-  /// @throws InvalidMesh if the number differs or a named vertex is out of range; Cancelled. After Cancelled, only
-  /// another refit may follow. Cost: O(n), about a fifth of building.
+  /// Updates the hierarchy to moved vertices of the same primitives. Results are then those of a newly built hierarchy,
+  /// bit for bit; only the order of visits differs. Queries get slower as primitives that were neighbours move apart; a
+  /// new hierarchy is then better. Must not run at the same time as queries.
+  /// @param vertices  the new positions, one for each vertex of the mesh. Vertices that a triangle, segment or point
+  ///                  uses must be finite, of magnitude at most 1e150.
+  /// @throws InvalidMesh if the number of vertices has changed or a used vertex is out of range; Cancelled. After
+  /// Cancelled, refit() must be called again before any other function. Cost: O(n), about a fifth of the time to build
+  /// a hierarchy.
   void refit(std::span<const Vec3d> vertices, const Context& context = {});
 
-  /// Returns the closest site. Among sites at the same computed distance it is the one with the smallest id.
+  /// Returns the closest site. If several sites have the smallest computed distance, the one with the smallest id is
+  /// returned.
   /// @param max_distance  mesh units; farther sites are not found.
-  /// @return              nullopt if no site lies within max_distance, or if the query is out of its range.
+  /// @return              nullopt if no site lies within max_distance, or if the query is out of the range stated
+  ///                      above.
   /// Cost: about O(log n) near the surface; more if many sites are nearly equally close.
   [[nodiscard]] std::optional<NearestSite> nearest(const Vec3d& query,
                                                    double max_distance = std::numeric_limits<double>::infinity()) const;
@@ -96,32 +101,34 @@ class Bvh {
       std::span<const Vec3d> queries, double max_distance = std::numeric_limits<double>::infinity(),
       const Context& context = {}) const;
 
-  /// Returns the closest of the wanted primitives. Among primitives at the same computed distance it is the first.
-  /// @param is_wanted  asked about primitives that may be closer than those found before; maybe several times for one.
+  /// Returns the closest primitive for which is_wanted(primitive) returns true. If several primitives have the smallest
+  /// computed distance, the one with the smallest index is returned.
+  /// @param is_wanted  called with primitives that may be closer than those found before; may be called several times
+  ///                   with the same primitive.
   [[nodiscard]] std::optional<NearestPrimitive> nearest_wanted(
       const Vec3d& query, FunctionRef<bool(std::uint32_t)> is_wanted,
       double max_distance = std::numeric_limits<double>::infinity()) const;
 
-  /// Returns the k closest primitives by rising distance, then index. Fewer are returned if fewer lie within
-  /// max_distance.
+  /// Returns the k closest primitives, in rising order of distance, then of index. Returns fewer than k if fewer
+  /// primitives lie within max_distance.
   [[nodiscard]] std::vector<NearestPrimitive> nearest_primitives(
       const Vec3d& query, std::size_t k, double max_distance = std::numeric_limits<double>::infinity()) const;
 
-  /// Calls visit(primitive) for the primitives within a distance of a query, until it returns false. The order is
+  /// Calls visit(primitive) for each primitive within a distance of a query, until visit() returns false. The order is
   /// unspecified.
   void for_each_within(const Vec3d& query, double distance, FunctionRef<bool(const NearestPrimitive&)> visit) const;
-  /// Returns all these primitives by rising distance, then index.
+  /// Returns all primitives within a distance of a query, in rising order of distance, then of index.
   [[nodiscard]] std::vector<NearestPrimitive> within(const Vec3d& query, double distance) const;
 
-  /// Calls limit = visit(crossing) for the triangles that a ray crosses between t = 0 and limit. Closer ones come
-  /// first, as far as the hierarchy orders them. A visitor that lowers the limit ends the search early. Triangles are
-  /// closed: at an edge, all triangles that share it are found. Triangles whose plane contains the ray are not found,
-  /// and neither are triangles without area.
+  /// Calls limit = visit(crossing) for each triangle that a ray crosses between t = 0 and t = limit. The value that
+  /// visit() returns is the limit for the rest of the search; a lower limit ends the search earlier. Crossings are
+  /// visited approximately in rising order of t. Triangles are closed: if a ray crosses an edge, all triangles that
+  /// share the edge are found. Triangles without area, and triangles whose plane contains the ray, are not found.
   void for_each_crossing(const Ray& ray, double limit, FunctionRef<double(const RayCrossing&)> visit) const;
-  /// Returns all crossings up to t = limit, by rising t, then triangle.
+  /// Returns all crossings with t <= limit, in rising order of t, then of triangle index.
   [[nodiscard]] std::vector<RayCrossing> crossings(const Ray& ray,
                                                    double limit = std::numeric_limits<double>::infinity()) const;
-  /// Returns the first of these crossings.
+  /// Returns the first of the crossings that crossings() would return.
   [[nodiscard]] std::optional<RayCrossing> first_crossing(const Ray& ray,
                                                           double limit = std::numeric_limits<double>::infinity()) const;
   /// Returns the first crossings of many rays, computed with threads. @throws Cancelled.
@@ -129,26 +136,29 @@ class Bvh {
       std::span<const Ray> rays, double limit = std::numeric_limits<double>::infinity(),
       const Context& context = {}) const;
 
-  /// Returns the leaves of the hierarchy that touch a box. With them, many short queries in the same small region are
-  /// faster. The part must not be used after refit(). @return  nullopt if too many leaves touch the box for a gain.
+  /// Returns the leaves of the hierarchy that touch a box. With this set of leaves, many short queries in the same
+  /// small region are faster. The set must not be used after refit(). @return nullopt if so many leaves touch the box
+  /// that queries would not be faster.
   [[nodiscard]] std::optional<BvhPart> part_in(const Box3& box) const;
-  /// Returns first_crossing() up to t = 1, for a ray whose points up to there lie in the box of a part.
+  /// Returns the result of first_crossing() with limit 1. The points of the ray with t <= 1 must lie in the box that
+  /// was passed to part_in().
   [[nodiscard]] std::optional<RayCrossing> first_crossing(const Ray& ray, const BvhPart& part) const;
-  /// Works as for_each_near() below, for a triangle in the box of a part.
+  /// Works as for_each_near() below, for a triangle that lies in the box that was passed to part_in().
   void for_each_near(const std::array<Vec3d, 3>& triangle, const BvhPart& part,
                      FunctionRef<bool(TriangleId)> visit) const;
 
-  /// Calls visit(triangle) for the triangles of the mesh that may have a common point with a given triangle, until it
-  /// returns false. The given triangle need not belong to the mesh; the order is unspecified. No triangle with a common
-  /// point is left out. Most others are: those whose boxes do not touch, and pairs in which one lies on one side of the
-  /// other's plane.
+  /// Calls visit(triangle) for triangles of the mesh that may have a common point with a given triangle, until visit()
+  /// returns false. The given triangle need not belong to the mesh. The order is unspecified. All triangles with a
+  /// common point are visited. Most other triangles are not visited: their box does not touch the given triangle's box,
+  /// or the plane of one triangle separates the two.
   void for_each_near(const std::array<Vec3d, 3>& triangle, FunctionRef<bool(TriangleId)> visit) const;
 
-  /// Returns true if the box of a primitive may touch this box. If false, this box is free of the mesh.
+  /// Returns true if the box of a primitive may touch the given box. If it returns false, the given box contains no
+  /// point of the mesh.
   [[nodiscard]] bool may_touch(const Box3& box) const;
 
-  /// Returns all primitives in the order of the leaves. Every aligned run of 8, 64, 512, ... of them lay in a compact
-  /// box of its own when the hierarchy was built.
+  /// Returns all primitives in the order of the leaves. Entries 8 k to 8 k + 7, for any k, are neighbours: they lay in
+  /// a compact box of their own when the hierarchy was built. The same holds for groups of 64, 512, ... entries.
   [[nodiscard]] std::span<const std::uint32_t> order() const;
 
   /// Returns the box around all primitives, mesh units.

@@ -8,7 +8,7 @@
 
 namespace blum {
 
-/// Returns the point of a closed segment that is closest to a query, up to rounding. Segments may be points.
+/// Returns the point of a closed segment that is closest to a query, up to rounding. The two ends may be equal.
 [[nodiscard]] inline Vec3d closest_point_on_segment(const Vec3d& query, const Vec3d& a, const Vec3d& b) {
   const Vec3d direction = b - a;
   const double squared = squared_length(direction);
@@ -16,8 +16,9 @@ namespace blum {
   return a + direction * std::clamp(dot(query - a, direction) / squared, 0.0, 1.0);
 }
 
-/// Returns the point of a closed triangle that is closest to a query, up to rounding. For a sliver it may be another
-/// point of the triangle. For a triangle without area it is the closest point of its sides.
+/// Returns the point of a closed triangle that is closest to a query, up to rounding. If the triangle is a sliver,
+/// another point of the triangle may be returned. If the triangle has no area, the closest point of its sides is
+/// returned.
 [[nodiscard]] inline Vec3d closest_point_on_triangle(const Vec3d& query, const std::array<Vec3d, 3>& corners) {
   const auto& [a, b, c] = corners;
   const Vec3d normal = cross(b - a, c - a);
@@ -45,7 +46,7 @@ namespace blum {
   const double determinant = uu * vv - uv * uv;
   const double s = determinant > 0 ? std::clamp((uv * dot(v, w) - vv * dot(u, w)) / determinant, 0.0, 1.0) : 0.0;
   const Vec3d on_second = closest_point_on_segment(first[0] + u * s, second[0], second[1]);
-  // If the point on the second segment was clamped, the best point on the first one moves.
+  // If the point on the second segment was clamped, the closest point on the first segment changes.
   const Vec3d on_first = closest_point_on_segment(on_second, first[0], first[1]);
   return {on_first, closest_point_on_segment(on_first, second[0], second[1])};
 }

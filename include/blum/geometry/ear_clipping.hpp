@@ -10,27 +10,29 @@
 
 namespace blum::detail {
 
-/// Order in which ears are cut. Both orders make O(n) passes over the remaining corners.
+/// Order in which ears are cut off. Both orders make O(n) passes over the remaining corners.
 enum class EarOrder : std::uint8_t {
-  in_turn,     ///< corner by corner; corners next to a new ear are tried again after all others
-  every_other  ///< never next to the last ear, which gives better-shaped triangles
+  in_turn,     ///< corner by corner; corners next to an ear that was cut off are tried again after all others
+  every_other  ///< never a corner next to the last ear, which gives better-shaped triangles
 };
 
 /// Cuts a counter-clockwise polygon into counter-clockwise triangles, by cutting off ears. An ear is a corner that
 /// turns left and whose triangle contains no other corner.
 ///
-/// The polygon may be weakly simple. Bridges may join holes to the outline; their ends then appear twice at one place.
-/// Parts may meet in a corner, or be joined by a bridge outside. Corners may lie on edges. With `in_turn`, some
-/// triangles may have no area. The triangles cover the inside exactly once, whatever ears are cut, because their
-/// winding numbers add up to the polygon's. The result is exact for the given points (see orient2d).
-/// @param points     corners in order; at least 3.
-/// @param triangles  receives indices of corners: points.size() - 2 entries.
-/// @param work_left  number of corners and boxes of corners that may be examined; receives the remaining number.
-/// @return  false if the polygon crosses itself or takes too much work. Also false for some polygons that are folded
-/// onto themselves along one line several times. `triangles` is then unusable.
+/// The polygon may be weakly simple. Bridges (edges that are traversed twice) may join holes to the outline; each end
+/// of a bridge is then listed twice. The polygon may touch itself in corners, and bridges may also run outside of it.
+/// Corners may lie on edges. With `in_turn`, some triangles may have no area. The triangles cover the interior of the
+/// polygon exactly once, whichever ears are cut off. At every point, the sum of the triangles' winding numbers is the
+/// winding number of the polygon. The result is exact for the given points (see orient2d).
+/// @param points     corners of the polygon in their order; at least 3.
+/// @param triangles  receives points.size() - 2 triangles; their entries are indices of corners.
+/// @param work_left  largest number of examinations of corners and of boxes of corners. The number of examinations that
+///                   were made is subtracted from it.
+/// @return  false if the polygon crosses itself or takes too much work. It is also false for some polygons that are
+/// folded onto themselves several times along one line. If it returns false, `triangles` must not be used.
 /// @throws Cancelled.
-/// Cost: a few dozen examinations per corner of usual polygons. An ear whose tip is also the tip of another part, with
-/// both edges along that part's, costs one per remaining corner. O(n^2) at worst.
+/// Cost: usually a few dozen examinations per corner. If the polygon visits the tip of an ear twice, along the same two
+/// edges, that ear costs one examination per remaining corner. O(n^2) at worst.
 [[nodiscard]] bool clip_ears(std::span<const std::array<double, 2>> points, EarOrder order,
                              std::span<Triangle> triangles, std::int64_t& work_left, const Context& context = {});
 

@@ -8,47 +8,48 @@
 
 namespace blum::detail {
 
-// Every plane of a grid counts as moved down by an infinitely small amount (simulation of simplicity, Edelsbrunner and
-// Muecke 1990). The amount across x is infinitely larger than that across y, which is infinitely larger than that
-// across z. So no vertex lies in a plane, no edge meets a line, and no triangle meets a node. All answers are
-// consistent, and exact for coordinates that are 0 or of magnitude 1e-45 to 1e45.
+// Every plane of a grid is treated as if it were moved infinitely little towards smaller coordinates (simulation of
+// simplicity, Edelsbrunner and Muecke 1990). Planes across x move infinitely more than planes across y, which move
+// infinitely more than planes across z. So no vertex lies in a plane, no edge meets a line of the grid, and no triangle
+// meets a node. All answers are consistent, and exact for coordinates that are 0 or of magnitude 1e-45 to 1e45.
 //
-// A line along an axis has the coordinates `u` and `v` along the next axis and the one after: (x, y, z, x, ...).
+// A line along an axis is given by two coordinates: `u` along the next axis, and `v` along the axis after that. The
+// order of axes is x, y, z, x, ...
 
-/// Returns the axis after an axis: x, y, z, x, ...
+/// Returns the axis after a given axis, in the order x, y, z, x, ...
 constexpr std::size_t next_axis(std::size_t axis) {
   return (axis + 1) % 3;
 }
 
 using TriangleCorners = std::array<Vec3d, 3>;
 
-/// Two ends.
+/// Positions of the first and the second end of an edge.
 using EdgeEnds = std::array<Vec3d, 2>;
 
-/// Returns true if a coordinate is above a plane.
+/// Returns true if a coordinate is at least that of a plane, so that it is above the moved plane.
 [[nodiscard]] inline bool is_above(double coordinate, double plane) {
   return coordinate >= plane;
 }
 
-/// Returns 1 if a line along an axis passes an edge on its left, seen against the axis, and -1 on its right. Returns 0
-/// if the edge runs along the axis, too.
+/// Returns 1 if a line along an axis lies left of an edge, and -1 if it lies right of it, seen against the axis. The
+/// edge is directed from its first to its second end. Returns 0 if the edge is parallel to the axis.
 [[nodiscard]] int side_of_line(const EdgeEnds& edge, std::size_t axis, double u, double v);
 
-/// Returns the side (-1, 1) of a triangle's plane that contains a node of the grid. It is 1 if the triangle turns
-/// counter-clockwise seen from the node. Returns 0 if its corners lie on one line.
+/// Returns the side (-1 or 1) of a triangle's plane on which a node of the grid lies. It is 1 if the triangle turns
+/// counter-clockwise seen from the node. Returns 0 if the corners of the triangle lie on one line.
 [[nodiscard]] int side_of_node(const TriangleCorners& triangle, const Vec3d& node);
 
-/// Returns the sign (-1, 0, 1) of a component of a triangle's normal. It is 1 if the triangle turns counter-clockwise
-/// seen against the axis.
+/// Returns the sign (-1, 0, 1) of the component of a triangle's normal along an axis. It is 1 if the triangle turns
+/// counter-clockwise seen against the axis.
 [[nodiscard]] int normal_sign(const TriangleCorners& triangle, std::size_t axis);
 
-/// Returns true if a line along an axis crosses `first` below `second`. The line must cross both triangles, and neither
-/// may be parallel to the axis. Returns false for two triangles in one plane.
+/// Returns true if a line along an axis crosses `first` at a smaller coordinate than `second`. The line must cross both
+/// triangles, and neither may be parallel to the axis. Returns false for two triangles in one plane.
 [[nodiscard]] bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& second, std::size_t axis,
                                      double u, double v);
 
-/// Returns true if `first` passes the plane across an axis at a smaller coordinate along another axis than `second`.
-/// Both edges must cross the plane.
+/// Returns true if `first` crosses a plane at a smaller coordinate along the axis `along` than `second`. The plane is
+/// at right angles to the axis `across`, at coordinate `plane`. Both edges must cross it.
 [[nodiscard]] bool passes_before(const EdgeEnds& first, const EdgeEnds& second, std::size_t across, double plane,
                                  std::size_t along);
 

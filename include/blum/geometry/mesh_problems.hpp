@@ -12,20 +12,21 @@
 
 namespace blum {
 
-/// Returns the reason why a mesh bounds no solid, in one sentence with counts and possible remedies. It is empty if the
-/// mesh is closed, oriented, manifold and faces outwards. It does not check for self-crossings; problem_of_crossings()
-/// does.
+/// Returns the reason why a mesh bounds no solid, in one sentence with counts and possible remedies. The text is empty
+/// if the mesh is closed, oriented, manifold and faces outwards. Self-crossings are not looked for;
+/// problem_of_crossings() finds them.
 [[nodiscard]] std::string problem_as_solid(const Topology& facts);
 
-/// Return a sentence if a mesh meets itself where it should not, naming two vertices or triangles; else an empty one.
-/// The first function looks for two vertices of triangles in one place, the second for triangles that cross or touch.
+/// Return a sentence if a mesh touches or crosses itself; else an empty text. The sentence contains the indices of two
+/// vertices or triangles. The first function looks for two vertices of triangles at the same position. The second one
+/// looks for triangles that cross, or touch beyond shared corners and edges.
 /// @throws Cancelled.
 [[nodiscard]] std::string problem_of_places(const MeshView& mesh);
 [[nodiscard]] std::string problem_of_crossings(const MeshView& mesh, const Context& context = {});
 /// Returns the same sentence for a result of find_self_intersections().
 [[nodiscard]] std::string problem_of_crossings(const SelfIntersections& found);
 
-/// Sentences and ends of sentences. All messages of Blum about meshes that bound no solid are here and in
+/// Messages and ends of messages. All messages of Blum about meshes that bound no solid are in this namespace and in
 /// mesh_problems.cpp.
 namespace mesh_problem {
 
@@ -44,27 +45,32 @@ inline constexpr std::string_view more_than_triangles =
 inline constexpr std::string_view touches_when_resolved =
     "the mesh crosses itself, and its solid touches itself once the crossings are resolved: move these parts apart, or "
     "into each other";
-/// Ends "the mesh bounds no polyhedron: ...".
+/// End of a message "the mesh bounds no polyhedron: ...".
 inline constexpr std::string_view shells_cross = "its shells are not nested: they cross or coincide";
 
-/// Returns all reasons found at edges and vertices why a mesh bounds no polyhedron. They end "the mesh bounds no
-/// polyhedron: ...". Empty without such a reason.
+/// Returns all reasons at edges and vertices why a mesh bounds no polyhedron, as the end of a message "the mesh bounds
+/// no polyhedron: ...". The text is empty if there are no such reasons.
 [[nodiscard]] std::string obstacles(const Topology& facts);
-/// Return such a reason for pairs of triangles that cross or touch. @param is_complete  false if more pairs exist.
+/// Return the same kind of text (the end of that message) for pairs of triangles that cross or touch.
+/// @param is_complete  false if more than `pairs` pairs exist.
 [[nodiscard]] std::string crossing(std::size_t pairs, bool is_complete);
 [[nodiscard]] std::string touching(std::size_t pairs, bool is_complete);
-/// Returns the message of calls that need the numbers of the mesh's own triangles. @param how  Solid::reason().
+/// Returns the message of functions that need the triangles of the mesh itself, if the mesh crosses or touches itself.
+/// @param how  text of Solid::reason().
 [[nodiscard]] std::string crosses_and_is_resolved(const std::string& how);
-/// Return messages for a triangle that names a vertex twice, and for one without area that no edge flip removes.
+/// Return the messages for a triangle with the same vertex at two corners, and for a triangle without area that no edge
+/// flip removes.
 [[nodiscard]] std::string doubled_corner(std::size_t triangle);
 [[nodiscard]] std::string without_area(std::size_t triangle);
-/// Returns how many edges of each kind keep a mesh from being closed and oriented. It ends "the mesh has ...".
+/// Returns the numbers of edges, by kind, that keep a mesh from being closed and oriented. The text is the end of a
+/// message "the mesh has ...".
 [[nodiscard]] std::string of_edges(const Orientation& facts);
 
-/// Return messages about one object among several. @param name  for example "object 3".
+/// Return messages about one of several objects. @param name  for example "object 3".
 [[nodiscard]] std::string no_triangles_in(const std::string& name);
 [[nodiscard]] std::string faces_inwards(const std::string& name);
-/// @param open                  number of edges that have no two triangles in opposite directions.
+/// @param open                  number of edges that are not traversed by exactly two triangles, in opposite
+///                              directions.
 /// @param is_closed_by_welding  true if merging equal vertices leaves no such edge.
 [[nodiscard]] std::string not_closed(const std::string& name, std::size_t open, bool is_closed_by_welding);
 /// @param obstacle  ResolvedMesh::obstacle.

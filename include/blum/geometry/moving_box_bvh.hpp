@@ -12,23 +12,24 @@
 
 namespace blum {
 
-/// Box whose sides move at constant speeds from time 0 to time 1. A point that moves at constant velocity stays in the
-/// box if it is in it at both times.
+/// Box whose sides move at constant speeds from time 0 to time 1. A point that moves at constant velocity is always in
+/// the box if it is in the box at times 0 and 1.
 struct MovingBox {
   Box3 start;
   Box3 end;
 };
 
-/// Bounding-volume hierarchy over moving boxes, with eight children per node. It finds pairs that may touch at the same
-/// time. Unlike boxes around whole motions, it separates boxes that sweep the same places at different times, for
-/// example in a cloth that flies by. Boxes are named by their index.
+/// Bounding-volume hierarchy over moving boxes, with eight children per node. It finds pairs of boxes that may touch at
+/// some time. If two boxes sweep the same region only at different times, for example in a cloth that flies by, the
+/// pair is not visited. A hierarchy of boxes around whole motions would visit this pair. The indices of boxes are
+/// passed to a function of the caller, the visitor.
 ///
-/// All queries may run on many threads at once, and allocate nothing. A pair that touches is never left out. Few other
-/// pairs are seen, because of rounding to single precision.
-/// Cost: O(n log n) to build, about 0.15 microseconds per box; 160 bytes per box.
+/// All queries may run on many threads at once, and allocate no memory. Every pair of boxes that touch at some time is
+/// visited. Because of rounding to single precision, a few pairs that do not touch are visited, too. Cost: O(n log n)
+/// time to build, about 0.15 microseconds per box, and 160 bytes per box.
 class MovingBoxBvh {
  public:
-  /// @param boxes  finite, none empty; at most max_id_count. @throws Cancelled.
+  /// @param boxes  at most max_id_count boxes, all finite, none empty. @throws Cancelled.
   explicit MovingBoxBvh(std::span<const MovingBox> boxes, const Context& context = {});
   MovingBoxBvh(MovingBoxBvh&&) noexcept;
   MovingBoxBvh& operator=(MovingBoxBvh&&) noexcept;
@@ -36,15 +37,15 @@ class MovingBoxBvh {
 
   [[nodiscard]] std::size_t size() const;
 
-  /// Returns the number of blocks. Boxes lie in blocks of eight, so that threads can share a loop over blocks.
+  /// Returns the number of blocks. A block is a group of eight boxes. Threads can share a loop over blocks.
   [[nodiscard]] std::size_t block_count() const;
 
-  /// Calls visit(index here, index there) for pairs that may touch at some time: a box of a block, and a box of another
-  /// hierarchy.
+  /// Calls visit(a, b) for pairs of a box a in a block of this hierarchy, and a box b of `other`. It visits all pairs
+  /// that may touch at some time.
   void for_each_pair(std::size_t block, const MovingBoxBvh& other,
                      FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
-  /// Calls visit likewise for pairs of boxes of this hierarchy. Over all blocks each pair is seen once, in either
-  /// order.
+  /// Does the same for pairs of boxes of this hierarchy. If it is called for all blocks, each pair is visited once;
+  /// either of its boxes may be a.
   void for_each_self_pair(std::size_t block, FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
  private:

@@ -1,4 +1,4 @@
-// Blum: a bounding-volume hierarchy of oriented boxes, for pairs. SPDX-License-Identifier: Apache-2.0
+// Blum: a bounding-volume hierarchy of oriented boxes, for close pairs. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -16,25 +16,26 @@
 namespace blum {
 
 /// Bounding-volume hierarchy over the primitives of a mesh, with eight children per node and boxes aligned with the
-/// surface. It finds pairs of primitives of two meshes that may be close. Bvh is the hierarchy for closest points and
-/// rays. Primitives are the triangles, then the segments, then the points of the mesh, in its order.
+/// surface. It finds pairs of primitives of two meshes that may be close. The hierarchy for closest points and rays is
+/// Bvh. Primitives are numbered consecutively: the triangles, then the segments, then the points of the mesh.
 ///
-/// All queries may run on many threads at once. They allocate nothing, except dive_to_near_pairs(). A pair that is
-/// within the limit is never left out. The hierarchy decides which other pairs are seen, and in which order.
-/// Cost: O(n log n) to build, about 0.3 microseconds per primitive; 150 bytes per primitive.
+/// All queries may run on many threads at once. Only dive_to_near_pairs() allocates memory. Every pair whose distance
+/// is within the limit is visited. Pairs that are farther apart may be visited, too. The hierarchy determines these
+/// additional pairs and the order of visits. Cost: O(n log n) time to build, about 0.3 microseconds per primitive, and
+/// 150 bytes per primitive.
 class OrientedBvh {
  public:
-  /// Pairs that a visitor wants to see from now on.
+  /// Limits on the pairs that the rest of a search visits. A visitor returns them.
   struct Wanted {
-    double limit;                           ///< largest distance of a pair; none is wanted if it is negative
-    std::uint32_t last_there = 0xffffffff;  ///< largest primitive of the other hierarchy
+    double limit;                           ///< largest distance of a pair; if it is negative, the search ends
+    std::uint32_t last_there = 0xffffffff;  ///< primitives of the other hierarchy with a larger index are not visited
 
     Wanted(double limit_) : limit(limit_) {}  // NOLINT(google-explicit-constructor): mostly a distance is all
     Wanted(double limit_, std::uint32_t last) : limit(limit_), last_there(last) {}
   };
 
-  /// Called with a primitive of this hierarchy, one of the other, and a lower bound on their distance. Returns the
-  /// pairs that are wanted from now on. They can only become fewer.
+  /// Visitor: a function that is called with a primitive of this hierarchy, a primitive of the other hierarchy, and a
+  /// lower bound on their distance. It returns the limits for the rest of the search. Limits can only become narrower.
   using Visit = FunctionRef<Wanted(std::uint32_t, std::uint32_t, double)>;
 
   /// @param mesh  must pass validate(mesh). @throws Cancelled.
@@ -43,11 +44,12 @@ class OrientedBvh {
   OrientedBvh& operator=(OrientedBvh&&) noexcept;
   ~OrientedBvh();
 
-  /// Updates the hierarchy to moved vertices of the same primitives. Queries get slower as neighbours move apart; then
-  /// build a new hierarchy. Must not run at the same time as queries.
-  /// @param vertices  as many as the mesh had. Those that the mesh names must be finite.
-  /// @throws InvalidMesh if the number differs; Cancelled. After Cancelled, only another refit may follow. Cost: O(n),
-  /// a tenth of building.
+  /// Updates the hierarchy to moved vertices of the same primitives. Queries get slower as primitives that were
+  /// neighbours move apart; a new hierarchy is then better. Must not run at the same time as queries.
+  /// @param vertices  the new positions, one for each vertex of the mesh. Vertices that a triangle, segment or point
+  ///                  uses must be finite.
+  /// @throws InvalidMesh if the number of vertices has changed; Cancelled. After Cancelled, refit() must be called
+  /// again before any other function. Cost: O(n), a tenth of the time to build a hierarchy.
   void refit(std::span<const Vec3d> vertices, const Context& context = {});
 
   /// Returns the number of primitives.
@@ -55,44 +57,47 @@ class OrientedBvh {
   /// Returns the axis-aligned box around all primitives.
   [[nodiscard]] const Box3& bounds() const;
 
-  /// Calls limit = visit(here, there, distance) for pairs of primitives of this hierarchy and another that may be at
-  /// most `limit` apart. Pairs that seem closest come first. A visitor that lowers the limit ends the search early, at
-  /// the latest with a negative limit.
+  /// Calls limit = visit(a, b, distance) for each primitive a of this hierarchy and each primitive b of `other` that
+  /// may be at most `limit` apart. Pairs are visited approximately in rising order of the lower bounds on their
+  /// distances. A visitor that returns a lower limit shortens the search; a negative limit ends it.
   /// @param place  maps points of the other hierarchy to coordinates of this one.
   void for_each_near_pair(const OrientedBvh& other, const RigidTransform& place, double limit, Visit visit) const;
 
-  /// Node of a hierarchy. At level -1 it is a block of primitives; above, its children are a block of boxes.
+  /// Node of a hierarchy. A node at level -1 is a block of primitives. The boxes of the children of a node at a higher
+  /// level are a block.
   struct Node {
     std::uint32_t index = 0;
     std::int32_t level = -1;
     [[nodiscard]] bool is_leaf() const { return level < 0; }
   };
-  /// Node of this hierarchy, node of another, and a lower bound on their squared distance, up to rounding.
+  /// Node of this hierarchy (`here`), node of another (`there`), and a lower bound on their squared distance, up to
+  /// rounding.
   struct NodePair {
     double squared_gap = 0;
     Node here, there;
   };
-  /// Begins for_each_near_pair(): `dives` times, goes from the closest remaining pair of nodes down to primitives. The
-  /// pairs found are mostly near the closest pair of all, and rule out most of the rest. Allocates memory.
-  /// @return  the remaining pairs of nodes, closest first, for threads to share.
+  /// Does the first steps of for_each_near_pair(). It descends `dives` times from the closest remaining pair of nodes
+  /// to primitives, and visits the pairs that it finds. The visited pairs are mostly near the closest pair of all, so
+  /// their distances exclude most other pairs. Allocates memory.
+  /// @return  the remaining pairs of nodes, closest first. Threads can share them.
   [[nodiscard]] std::vector<NodePair> dive_to_near_pairs(const OrientedBvh& other, const RigidTransform& place,
                                                          double limit, std::size_t dives, Visit visit) const;
-  /// Works as for_each_near_pair(), for primitives below a pair of nodes only.
+  /// Works as for_each_near_pair(), but only for the primitives below a pair of nodes.
   void for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place, double limit,
                           Visit visit) const;
 
-  /// Returns the number of blocks. Primitives lie in blocks of eight, so that threads can share a loop over blocks.
+  /// Returns the number of blocks. A block is a group of up to eight primitives. Threads can share a loop over blocks.
   [[nodiscard]] std::size_t block_count() const;
   /// Returns all primitives in the order of the hierarchy, which keeps neighbours in space together.
   [[nodiscard]] std::span<const std::uint32_t> order() const;
   /// Returns the primitives of a block.
   [[nodiscard]] std::span<const std::uint32_t> block(std::size_t block) const;
 
-  /// Works as for_each_near_pair(), for the primitives of one block only.
+  /// Works as for_each_near_pair(), but only for the primitives of one block of this hierarchy.
   void for_each_near_pair(std::size_t block, const OrientedBvh& other, const RigidTransform& place, double limit,
                           Visit visit) const;
-  /// Works as for_each_near_pair(), for pairs of primitives of this hierarchy. Over all blocks each pair is seen once,
-  /// in either order.
+  /// Works as for_each_near_pair(), for a primitive of one block and any primitive of this hierarchy. If it is called
+  /// for all blocks, each pair is visited once; either of its primitives may be first.
   void for_each_near_self_pair(std::size_t block, double limit, Visit visit) const;
 
  private:

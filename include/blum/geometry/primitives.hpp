@@ -17,8 +17,8 @@ namespace blum {
   return mesh.triangles.size() + mesh.segments.size() + mesh.points.size();
 }
 
-/// Returns the vertices of a primitive of a mesh as corners of a triangle. A segment gives a, b, b; a point gives three
-/// equal ones. @param primitive  below primitive_count(mesh).
+/// Returns the vertices of a primitive of a mesh as corners of a triangle. A segment a, b becomes a, b, b. A point a
+/// becomes a, a, a. @param primitive  below primitive_count(mesh).
 [[nodiscard]] inline Triangle primitive_vertices(const MeshView& mesh, std::uint32_t primitive) {
   std::size_t k = primitive;
   if (k < mesh.triangles.size()) return mesh.triangles[k];
@@ -28,9 +28,9 @@ namespace blum {
   return {v, v, v};
 }
 
-/// Returns the one, two or three vertices of a feature of a triangle, as files name them: padded with -1. An edge names
-/// its smaller vertex first. A face keeps the order of the triangle. Vertices that the triangle names twice appear
-/// once.
+/// Returns the indices of the one, two or three vertices of a feature of a triangle, padded with -1, as in files. The
+/// smaller vertex of an edge is first. A face has the order of the triangle. If the triangle has the same vertex at two
+/// corners, this vertex is listed once.
 [[nodiscard]] inline std::array<std::int32_t, 3> feature_vertices(const Triangle& triangle,
                                                                   const TriangleFeature& feature) {
   const std::size_t count = feature.kind == SiteKind::vertex ? 1 : feature.kind == SiteKind::edge ? 2 : 3;

@@ -12,14 +12,15 @@
 
 namespace blum {
 
-/// Normals of the sites of a mesh that give the sign of the distance of a query q. Let x be the point closest to q, and
-/// n the normal of the site that contains x. Then (q - x) . n has the sign of the signed distance of q. The mesh must
-/// be closed and consistently oriented, without self-intersections (Baerentzen and Aanaes, "Signed distance computation
-/// using the angle weighted pseudonormal", 2005).
+/// Normals of the sites of a mesh, which decide the sign of the distance of a query q. Let x be the point of the mesh
+/// closest to q, and n the normal of the site that contains x. Then (q - x) . n has the sign of the signed distance of
+/// q. The mesh must be closed and consistently oriented, without self-intersections (Baerentzen and Aanaes, "Signed
+/// distance computation using the angle weighted pseudonormal", 2005).
 ///
-/// Face: its unit normal. Edge: the sum of its faces' unit normals. Vertex: the sum of its faces' unit normals, each
-/// times the face's angle at the vertex. Only directions matter: sums are not normalised. Triangles without area
-/// contribute nothing. Sites without a triangle have a zero normal.
+/// The normal of a face is its unit normal. The normal of an edge is the sum of the unit normals of its faces. The
+/// normal of a vertex is a weighted sum of the unit normals of its faces. The weights are the angles of the faces at
+/// the vertex. Sums are not normalised, because only their directions matter. Triangles without area contribute
+/// nothing. Sites without a triangle have a zero normal.
 class Pseudonormals {
  public:
   /// @param mesh   must pass validate(mesh).
@@ -30,8 +31,9 @@ class Pseudonormals {
   /// @param site  below sites.size().
   [[nodiscard]] const Vec3d& normal(SiteId site) const { return normals_[site.value]; }
 
-  /// Returns true if a query lies inside, which is the sign of the signed distance. @param closest  closest point to
-  /// the query.  @param site  the site that contains it.
+  /// Returns true if a query lies inside, so that its signed distance is negative.
+  /// @param closest  point of the mesh closest to the query.
+  /// @param site     site that contains `closest`.
   [[nodiscard]] bool is_inside(const Vec3d& query, const Vec3d& closest, SiteId site) const {
     return dot(query - closest, normal(site)) < 0;
   }

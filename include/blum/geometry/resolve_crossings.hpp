@@ -15,48 +15,49 @@
 namespace blum {
 
 struct ResolveOptions {
-  /// Largest number of pairs of triangles that cross or touch. With more pairs, the mesh is not resolved.
+  /// Largest number of pairs of triangles that may cross or touch. If there are more pairs, the mesh is not resolved.
   std::size_t most_pairs = 100000;
-  /// Largest number of rounds. After each round, new vertices are rounded, which may make triangles cross anew; then
-  /// another round follows. With 0 there is one round, and its result is not checked. Its parts and how they meet are
-  /// exact, but triangles may cross by rounding errors.
+  /// Largest number of rounds. At the end of a round, new vertices are rounded. If this makes triangles cross anew,
+  /// another round follows. With 0 there is one round, and its result is not checked: its connectivity is exact, but
+  /// triangles may cross because of rounding errors.
   int most_rounds = 6;
-  /// Points are inside if the mesh winds around them at least this often. With 2, these are the points that lie in two
-  /// of its parts.
+  /// Smallest winding number of points that count as inside. With 2, these are the points that two overlapping parts of
+  /// the mesh enclose.
   int least_winding = 1;
 };
 
-/// Defects that keep a mesh from being the boundary of a solid, and their repair, as counts.
+/// Counts of the defects that keep a mesh from bounding a solid, and of the changes that repair them.
 struct CrossingCounts {
   std::size_t crossing = 0;        ///< pairs of triangles that cross
-  std::size_t touching = 0;        ///< pairs that overlap, or touch beyond what they share
+  std::size_t touching = 0;        ///< pairs that overlap, or touch beyond shared corners and edges
   std::size_t flat = 0;            ///< triangles without area
   std::size_t crowded_edges = 0;   ///< edges with more than two triangles
-  std::size_t cut = 0;             ///< triangles that others cross or touch, or that have a cut edge
+  std::size_t cut = 0;             ///< triangles that other triangles cross or touch, or that have a cut edge
   std::size_t new_vertices = 0;    ///< vertices of the result that the input does not have
   std::size_t touching_edges = 0;  ///< edges along which parts of the result only touch each other
   std::size_t pinches = 0;         ///< times a body of the result meets itself in a vertex, and is separated there
-  std::size_t rounds = 0;          ///< rounds until the rounded vertices made no new crossings
+  std::size_t rounds = 0;          ///< number of rounds until rounded vertices made no new crossings
 };
 
 template <>
 struct Description<CrossingCounts> {
   static constexpr std::string_view name = "CrossingCounts";
   static constexpr std::string_view doc =
-      "Defects that keep a mesh from being the boundary of a solid, and their repair, as counts";
+      "Counts of the defects that keep a mesh from bounding a solid, and of the changes that repair them";
   static constexpr std::tuple members{
       Member{"crossing", &CrossingCounts::crossing, "", "pairs of triangles that cross"},
       Member{"touching", &CrossingCounts::touching, "",
-             "pairs of triangles that overlap, or touch beyond what they share"},
+             "pairs of triangles that overlap, or touch beyond their common corners and edges"},
       Member{"flat", &CrossingCounts::flat, "", "triangles without area"},
       Member{"crowded_edges", &CrossingCounts::crowded_edges, "", "edges with more than two triangles"},
-      Member{"cut", &CrossingCounts::cut, "", "triangles that others cross or touch, or that have a cut edge"},
+      Member{"cut", &CrossingCounts::cut, "", "triangles that other triangles cross or touch, or that have a cut edge"},
       Member{"new_vertices", &CrossingCounts::new_vertices, "", "vertices of the result that the input does not have"},
       Member{"touching_edges", &CrossingCounts::touching_edges, "",
              "edges along which parts of the result only touch each other"},
       Member{"pinches", &CrossingCounts::pinches, "",
-             "times a body of the result meets itself in a vertex, and is separated there"},
-      Member{"rounds", &CrossingCounts::rounds, "", "rounds until the rounded vertices made no new crossings"},
+             "number of times that a body of the result meets itself in a vertex, and is separated there"},
+      Member{"rounds", &CrossingCounts::rounds, "",
+             "rounds of cutting until rounding the vertices made no new crossings"},
   };
 };
 
@@ -64,37 +65,42 @@ struct Description<CrossingCounts> {
 struct ResolvedMesh {
   static constexpr std::uint32_t no_vertex = 0xffffffffU;
 
-  std::string obstacle;  ///< reason why crossings are not resolved, else empty; if set, the rest describes the attempt
+  std::string obstacle;  ///< reason why crossings are not resolved, else empty. If it is not empty, the other members
+                         ///< describe the failed attempt
   CrossingCounts counts;
   TriangleMesh mesh;
-  std::vector<std::uint32_t> vertex_of;    ///< of each vertex: its number in the input; no_vertex for new ones
-  std::vector<std::uint32_t> triangle_of;  ///< of each triangle: the triangle of the input that it is part of
+  std::vector<std::uint32_t> vertex_of;    ///< for each vertex of `mesh`: its index in the input; no_vertex for new
+                                           ///< vertices
+  std::vector<std::uint32_t> triangle_of;  ///< for each triangle of `mesh`: the triangle of the input that contains it
 
-  /// For each triangle, the body that it bounds, by the number of the body's outer shell in topology(mesh). Set if the
-  /// crossings are resolved.
+  /// For each triangle of `mesh`: the body that it bounds, as the index of the body's outer shell in topology(mesh). It
+  /// is empty if the crossings are not resolved.
   std::vector<std::uint32_t> body_of;
   bool has_inside = true;  ///< false if no point is inside, which is an obstacle, too
 
   [[nodiscard]] bool is_resolved() const { return obstacle.empty(); }
 };
 
-/// Computes the boundary of the points around which a closed mesh winds at least once, or options.least_winding times.
-/// It resolves meshes that cross, overlap or touch themselves, have edges with more than two triangles, or have
-/// triangles without area. Vertices at one place count as one.
+/// Computes the boundary of the set of points around which a closed mesh winds at least options.least_winding times (by
+/// default once). It resolves meshes that cross, overlap or touch themselves, have edges with more than two triangles,
+/// or have triangles without area. Vertices at the same position count as one vertex.
 ///
 /// Triangles are cut along their crossings, and the parts that are not on the boundary are removed. Triangles that
 /// nothing crosses or touches are kept or removed as a whole. Exact arithmetic decides which parts exist and how they
-/// meet. New vertices are then rounded to doubles.
+/// are connected. New vertices are then rounded to doubles.
 ///
 /// The result is checked exactly. It must be closed and manifold, and its shells must face away from the solid. No two
-/// triangles of one body may cross or touch beyond what they share. Its shells must have the genera that they had
-/// before rounding. A result that fails is resolved again. If the last round fails, the obstacle is reported.
+/// triangles of one body may cross, or touch beyond shared corners and edges. Rounding must not change the genus of any
+/// shell. If the result fails this check, its crossings are resolved in another round. If the last round fails,
+/// ResolvedMesh::obstacle contains the reason.
 ///
-/// Parts of the solid that meet only in a vertex or along an edge are separated there, in one body or in two. Each part
-/// has vertices of its own. All other vertices at one place become one.
+/// If parts of the solid meet only in a vertex or an edge, the mesh is separated there: each part gets vertices of its
+/// own. This holds for parts of the same body and of different bodies. All other vertices at the same position become
+/// one vertex.
 ///
 /// @throws InvalidMesh if the mesh fails validate(mesh) or has no triangles; Cancelled.
-/// Cost of a round: find_self_intersections() twice, topology(), Bvh, and 0.1 ms per pair, on one core.
+/// Cost of a round, on one core: find_self_intersections() twice, topology(), a Bvh, and 0.1 ms for each pair of
+/// triangles that cross or touch.
 [[nodiscard]] ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& options = {},
                                              const Context& context = {});
 

@@ -48,9 +48,10 @@ struct RigidTransform {
   [[nodiscard]] friend constexpr bool operator==(const RigidTransform&, const RigidTransform&) = default;
 };
 
-/// Returns the rotation closest to a matrix that is a rotation up to rounding, for example of a pose in single
-/// precision.
-/// @throws InvalidOption if the error of the matrix (RigidTransform::rotation_error) is above 0.1, or if it mirrors.
+/// Returns the rotation closest to a matrix. The matrix should be a rotation up to rounding, for example from a pose in
+/// single precision.
+/// @throws InvalidOption if the error of the matrix (RigidTransform::rotation_error) is above 0.1, or if the matrix
+/// mirrors.
 [[nodiscard]] Mat3 closest_rotation(const Mat3& matrix);
 
 }  // namespace blum

@@ -1,4 +1,4 @@
-// Blum: closest points of single sites. SPDX-License-Identifier: Apache-2.0
+// Blum: closest points on single sites. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -12,8 +12,9 @@
 
 namespace blum {
 
-/// Projection of points onto sites that are known to be closest, or next to the closest. It turns the result of a fast
-/// search in single precision into that of Bvh::nearest(), bit for bit. It copies the data that it needs.
+/// Projection of query points onto sites. A site should be the closest one to the query, or a neighbour of the closest
+/// one. This class converts the result of a fast search in single precision into the result of Bvh::nearest(), bit for
+/// bit. It copies the data that it needs.
 class SiteProjection {
  public:
   /// @param mesh   must pass validate(mesh).
@@ -25,16 +26,16 @@ class SiteProjection {
   SiteProjection& operator=(SiteProjection&&) noexcept;
   ~SiteProjection();
 
-  /// Finds the closest point of a site, if the query lies in the site's domain by a margin. The domain contains the
-  /// points that project onto the open site, and onto no site that touches it. All planes that bound the domain must be
-  /// at least `margin` away.
+  /// Finds the closest point of a site, if the query is certainly in the site's domain. The domain is the set of points
+  /// whose projection lies on the open site, and not on a site that touches it. The query must be at least `margin`
+  /// away from all planes that bound the domain.
   /// @param query   finite.
   /// @param margin  mesh units, > 0.
-  /// @param found   receives the closest point. Returning it would double the cost, because a copy has to wait for what
-  /// was just written.
-  /// @return        false if the query is not in the domain by the margin, or if that is uncertain, as for faces
-  /// without a usable plane.
-  /// Cost: about 15 ns. For a vertex, 5 ns per edge at it.
+  /// @param found   receives the closest point. To return the point by value would double the cost, because a copy has
+  ///                to wait for data that was just written.
+  /// @return        false if the query is outside of the domain or closer than `margin` to its border. It is also false
+  ///                if this is uncertain, for example for faces without a usable plane.
+  /// Cost: about 15 ns; for a vertex, 5 ns for each edge at the vertex.
   [[nodiscard]] bool project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const;
 
  private:

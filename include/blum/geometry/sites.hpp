@@ -14,7 +14,7 @@ namespace blum {
 
 enum class SiteKind : std::uint8_t { vertex, edge, face };
 
-/// A vertex, an open edge or an open face of a mesh. `index` counts within the kind.
+/// A vertex, an open edge or an open face of a mesh. `index` is the index among the sites of the same kind.
 struct Site {
   SiteKind kind = SiteKind::vertex;
   std::uint32_t index = 0;
@@ -25,17 +25,19 @@ struct Site {
 ///
 /// With V vertices, E distinct edges and F triangles, site ids are:
 ///
-///   [0, V)          the vertices, in the mesh's order. Those that nothing names are never reported.
-///   [V, V+E)        the distinct edges of triangles and segments, by (smaller, larger vertex) in rising order.
+///   [0, V)          the vertices, in the mesh's order. Vertices that no triangle, segment or point uses are
+///                   never reported.
+///   [V, V+E)        the distinct edges of triangles and segments, in rising order of (smaller, larger vertex).
 ///   [V+E, V+E+F)    the triangles, in the mesh's order.
 ///
 /// Edges whose two ends are the same vertex are not counted. Edges are distinguished by vertex index, not by position.
-/// Weld a mesh first if its pieces should share edges.
+/// If parts of a mesh should share edges, weld the mesh first (see weld()).
 class SiteTable {
  public:
   SiteTable() = default;
   /// Builds the table. The mesh must pass validate().
-  /// Cost: O(V + F) time; 8 bytes per edge and 12 per triangle, and as much again during construction.
+  /// Cost: O(V + F) time. The table takes 8 bytes per edge and 12 bytes per triangle, and twice that during
+  /// construction.
   /// @throws InvalidMesh if V + E + F exceeds max_id_count.
   explicit SiteTable(const MeshView& mesh, const Context& context = {});
 
@@ -47,15 +49,15 @@ class SiteTable {
   [[nodiscard]] SiteId id(Site site) const;
   /// Returns the site of an id. @param id  below size().
   [[nodiscard]] Site site(SiteId id) const;
-  /// Returns the one, two or three vertices of a site, padded with -1.
+  /// Returns the indices of the one, two or three vertices of a site, padded with -1.
   [[nodiscard]] std::array<std::int32_t, 3> vertices(SiteId id) const;
 
-  /// Returns the vertex pairs of the edges, smaller vertex first, sorted.
+  /// Returns the two vertices of each edge, the smaller one first. Edges are in rising order.
   [[nodiscard]] std::span<const Segment> edges() const { return edges_; }
-  /// Returns the edge indices of each triangle. Entry k is the edge between corners k and (k+1) % 3; none() if these
-  /// are one vertex.
+  /// Returns the edge indices of each triangle. Entry k of a triangle is the edge between its corners k and (k+1) % 3;
+  /// none() if these corners are the same vertex.
   [[nodiscard]] std::span<const std::array<EdgeId, 3>> triangle_edges() const { return triangle_edges_; }
-  /// Returns the smallest triangle that contains a site; none() for free segments and points.
+  /// Returns the smallest index of a triangle that contains a site; none() if no triangle contains it.
   [[nodiscard]] TriangleId triangle(SiteId id) const;
 
  private:

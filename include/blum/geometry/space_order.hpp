@@ -11,13 +11,16 @@
 
 namespace blum {
 
-/// Returns an order of points in which every aligned run of 8, 64, 512, ... fills a compact box of its own. The points
-/// are cut at coordinates, across the longest side each time, at powers of two. A space-filling curve would not do: it
-/// jumps where it leaves a surface and meets it again elsewhere, so that runs span both places.
+/// Returns an order of points in which neighbours in space are together. Positions 8 k to 8 k + 7 in the order, for any
+/// k, are points in a compact box of their own. The same holds for groups of 64, 512, ... points. The points are split
+/// recursively, across the longest side of their box. In each split, the number of points in the first group is a power
+/// of two. A space-filling curve is not suitable: where the curve leaves a surface and meets the surface elsewhere, a
+/// group would contain points of both regions.
 ///
-/// @param position  called once per index in [0, count), from several threads; must return finite points.
-/// @return          indices; equal positions keep their order. The same for any number of threads.
-/// Cost: O(count log count); about 0.08 us per point for 70,000 points.
+/// @param position  called once per index from 0 to count - 1, from several threads; must return finite points.
+/// @return          the indices of the points in this order. Points at equal positions keep their order. The result is
+///                  the same for any number of threads.
+/// Cost: O(count log count); about 0.08 us per point if there are 70,000 points.
 [[nodiscard]] std::vector<std::uint32_t> space_order(std::size_t count,
                                                      const std::function<Vec3d(std::size_t)>& position,
                                                      const Context& context);

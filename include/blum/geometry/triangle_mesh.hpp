@@ -11,20 +11,20 @@
 
 namespace blum {
 
-/// Vertex indices of a triangle, counter-clockwise seen from outside if the mesh bounds a solid.
+/// Vertex indices of a triangle. If the mesh bounds a solid, they are counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 /// Vertex indices of a line segment.
 using Segment = std::array<std::uint32_t, 2>;
 
 /// View of any set of triangles, segments and points over shared vertices, through spans. It copies and owns nothing.
 ///
-/// Nothing is assumed about it: triangles may intersect, repeat, degenerate, or leave holes. Vertices that no triangle,
-/// segment or point names are not part of the shape, and are ignored everywhere.
+/// Nothing is assumed about the mesh: triangles may intersect, be repeated or degenerate, and leave holes. Vertices
+/// that no triangle, segment or point uses are not part of the shape, and are ignored.
 struct MeshView {
   std::span<const Vec3d> vertices = {};
   std::span<const Triangle> triangles = {};
   std::span<const Segment> segments = {};
-  /// Vertices that are part of the shape by themselves. For a point cloud these are all vertices.
+  /// Indices of vertices that are part of the shape by themselves. For a point cloud, these are all vertices.
   std::span<const std::uint32_t> points = {};
 };
 
@@ -42,8 +42,8 @@ struct TriangleMesh {
 /// Returns a deep copy of a view.
 [[nodiscard]] TriangleMesh copy_of(const MeshView& mesh);
 
-/// Calls visit(vertex) for each corner of each triangle, each end of each segment and each point, in this order. A
-/// vertex is visited as often as it is named.
+/// Calls visit(vertex) for each corner of each triangle, then each end of each segment, then each point. A vertex is
+/// visited once for each time that it is used.
 template <class Visit>
 void for_each_named_vertex(const MeshView& mesh, Visit visit) {
   for (const Triangle& triangle : mesh.triangles) {
@@ -61,16 +61,17 @@ void for_each_named_vertex(const MeshView& mesh, Visit visit) {
   return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
-/// Returns the triangles of a mesh, each reversed to face the other way.
+/// Returns the given triangles, each reversed so that it faces the other way.
 [[nodiscard]] std::vector<Triangle> reversed_triangles(std::span<const Triangle> triangles);
 
-/// Returns the box around all vertices that a triangle, segment or point names. It is empty without such vertices.
+/// Returns the box around all vertices that a triangle, segment or point uses. If there are no such vertices, the box
+/// is empty.
 [[nodiscard]] Box3 bounds(const MeshView& mesh);
 
-/// Checks the conditions that every algorithm needs. At least one triangle, segment or point exists. Indices are in
-/// range, and counts fit ids. Coordinates of named vertices are finite, and of magnitude at most 1e150 so that squares
-/// stay finite.
-/// @throws InvalidMesh naming the first offender.
+/// Checks the conditions that every algorithm needs. At least one triangle, segment or point must exist. Indices must
+/// be in range. The numbers of vertices, triangles, segments and points must fit ids. Coordinates of used vertices must
+/// be finite, and of magnitude at most 1e150 so that their squares are finite.
+/// @throws InvalidMesh with the index of the first element that breaks a condition.
 void validate(const MeshView& mesh);
 
 }  // namespace blum

@@ -10,8 +10,8 @@
 
 namespace blum {
 
-/// Vertex, edge, square or cube of the lattice: 8 * node + axes. It spans one step from its node along each axis whose
-/// bit is set in `axes` (x 1, y 2, z 4).
+/// Cell of the lattice: a vertex, edge, square or cube. Its number is 8 * node + axes. It extends one step from its
+/// node along each axis whose bit is set in `axes` (x 1, y 2, z 4).
 using Cell = std::uint32_t;
 using CellAxes = unsigned;
 
@@ -28,7 +28,7 @@ constexpr int dimension_of(Cell cell) {
   return std::popcount(axes_of(cell));
 }
 
-/// Returns the axis of a bit.
+/// Returns the axis (0, 1, 2) of a bit (1, 2, 4).
 constexpr std::size_t axis_of(CellAxes bit) {
   return static_cast<std::size_t>(std::countr_zero(bit));
 }
@@ -38,12 +38,13 @@ constexpr std::size_t normal_axis(Cell square) {
 }
 
 /// Lattice of the cubes of a box. Node (i, j, k) is the corner that the cubes (i, j, k) and (i - 1, j - 1, k - 1)
-/// share. Cell (node, all axes) is cube (i, j, k). For an image, the cubes are the voxels.
+/// share. The cell of this node with all three axes is cube (i, j, k). If the lattice is that of an image, the cubes
+/// are the voxels.
 class CellLattice {
  public:
   CellLattice() = default;
-  /// @param cubes  along x, y, z, each >= 0.
-  /// @throws InvalidGrid if the cells need more than 32 bits (boxes above 811^3 cubes).
+  /// @param cubes  numbers of cubes along x, y, z, each >= 0.
+  /// @throws InvalidGrid if the numbers of cells need more than 32 bits (for boxes of more than 811^3 cubes).
   explicit CellLattice(const std::array<std::int64_t, 3>& cubes);
 
   [[nodiscard]] std::size_t node_count() const { return count_; }
@@ -58,13 +59,14 @@ class CellLattice {
   [[nodiscard]] std::size_t stride(std::size_t axis) const { return stride_[axis]; }
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
 
-  /// Returns the cubes below and above a square. Both must lie in the lattice.
+  /// Returns the cube below a square and the cube above it, along the square's normal axis. Both cubes must be in the
+  /// lattice.
   [[nodiscard]] std::array<Cell, 2> cubes_beside(Cell square) const {
     const Cell above = square | 7U;
     return {static_cast<Cell>(above - 8 * stride_[normal_axis(square)]), above};
   }
 
-  /// Calls visit(face) for the cells in a cell's border that have one dimension less.
+  /// Calls visit(face) for each face of a given cell: a cell of one dimension less in its border.
   template <class Visit>
   void for_each_face(Cell cell, const Visit& visit) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -74,7 +76,8 @@ class CellLattice {
       visit(static_cast<Cell>((cell ^ bit) + 8 * stride_[axis]));
     }
   }
-  /// Calls visit(coface) for the cells around a cell that have one dimension more. None may lie beyond the lattice.
+  /// Calls visit(coface) for each cell that has a given cell in its border and one dimension more than that cell. All
+  /// these cofaces must be in the lattice.
   template <class Visit>
   void for_each_coface(Cell cell, const Visit& visit) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -84,7 +87,8 @@ class CellLattice {
       visit(static_cast<Cell>((cell | bit) - 8 * stride_[axis]));
     }
   }
-  /// Calls visit(place) for the cubes that contain a cell, also those beyond the lattice. A cube contains itself.
+  /// Calls visit(indices i, j, k) for each cube that contains a given cell, also for cubes outside of the lattice. A
+  /// cube contains itself.
   template <class Visit>
   void for_each_cube_around(Cell cell, const Visit& visit) const {
     const std::array<std::int64_t, 3> at = place(node_of(cell));
@@ -95,7 +99,7 @@ class CellLattice {
   }
 
  private:
-  std::array<std::int64_t, 3> size_{0, 0, 0};  ///< in nodes
+  std::array<std::int64_t, 3> size_{0, 0, 0};  ///< number of nodes along x, y, z
   std::array<std::size_t, 3> stride_{0, 0, 0};
   std::size_t count_ = 0;
 };

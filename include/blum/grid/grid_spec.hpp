@@ -13,8 +13,8 @@
 namespace blum {
 
 /// Regular grid of nodes. Node (i, j, k) lies at origin + direction * (i * spacing.x, j * spacing.y, k * spacing.z).
-/// Values are stored with i (x) fastest. The same memory is a C-ordered array indexed [z, y, x].
-/// A grid with one layer along an axis is a 2D field.
+/// Values are stored with i (x) fastest, as in a C-ordered array that is indexed [z, y, x]. With a grid that has one
+/// layer along an axis, a field is two-dimensional.
 struct GridSpec {
   Vec3d origin{};                             ///< position of node (0, 0, 0), in mesh units
   Vec3d spacing{1, 1, 1};                     ///< distance between neighbouring nodes, > 0, in mesh units
@@ -43,35 +43,36 @@ struct Description<GridSpec> {
       Member{"spacing", &GridSpec::spacing, "mesh units", "distance between neighbouring nodes"},
       Member{"size", &GridSpec::size, "", "number of nodes along x, y, z"},
       Fact{"nodes", &GridSpec::node_count, "", "number of nodes"},
-      Member{"direction", &GridSpec::direction, "", "orthonormal; column a is the direction of index axis a"},
+      Member{"direction", &GridSpec::direction, "", "orthonormal matrix; column a is the direction of index axis a"},
   };
 };
 
-/// @throws InvalidGrid if a size is below 1, the nodes are more than 2^40, or a spacing is not positive and finite.
-/// Also if the origin is not finite, or the direction is not orthonormal within 1e-6.
+/// @throws InvalidGrid if a size is below 1, there are more than 2^40 nodes, or a spacing is not positive and finite.
+/// It is also thrown if the origin is not finite, or the direction is not orthonormal within 1e-6.
 void validate(const GridSpec& grid);
 
 /// Returns the box around the grid's nodes, axis-aligned in world space.
 [[nodiscard]] Box3 bounds(const GridSpec& grid);
 
 /// Returns the default grid around a shape. Let L be the longest side of the shape's bounds. Each side of the bounds is
-/// padded by padding * L at both ends. The longest padded side gets `resolution` nodes. All axes get the spacing
-/// (1 + 2 padding) L / (resolution - 1). The other axes get the smallest number of nodes that covers their padded side,
-/// centred.
+/// padded by padding * L at both ends. The longest padded side gets `resolution` nodes. The spacing along all axes is
+/// (1 + 2 padding) L / (resolution - 1). Each other axis gets the smallest number of nodes that covers its padded side.
+/// These nodes are centred on the side.
 /// @param resolution  2 to 65536.
 /// @param padding     0 to 1e6, as a fraction of L.
 /// @throws InvalidGrid if the bounds are empty, not finite or a single point, or the grid has over 2^40 nodes.
 /// @throws InvalidOption if a parameter is out of range.
 [[nodiscard]] GridSpec grid_around(const Box3& shape_bounds, int resolution = 256, double padding = 0.1);
 
-/// Returns the same grid for a given spacing instead of a number of nodes. @param spacing  > 0, in mesh units.
+/// Returns the grid of grid_around() for a given spacing instead of a resolution. @param spacing  > 0, in mesh units.
 [[nodiscard]] GridSpec grid_around_with_spacing(const Box3& shape_bounds, double spacing, double padding = 0.1);
 
-/// Returns a grid over exactly this box, without padding. Its longest side has `resolution` nodes; the other sides are
-/// centred as above. A side of length zero gets one layer. @throws InvalidGrid, InvalidOption.
+/// Returns a grid over a box, without padding. The longest side has `resolution` nodes and is covered exactly. The
+/// other sides get nodes as in grid_around(). A side of length zero gets one layer. @throws InvalidGrid, InvalidOption.
 [[nodiscard]] GridSpec grid_in(const Box3& box, int resolution = 256);
-/// Returns the same grid for a given spacing. A side that is not a whole number of steps long grows to the next whole
-/// number, centred. So the grid extends beyond the box by less than half a step at each end.
+/// Returns the grid of grid_in() for a given spacing. If a side is not a whole number of steps long, the grid is
+/// centred on the side, with the next larger number of steps. The grid then extends beyond the box by less than half a
+/// step at each end.
 [[nodiscard]] GridSpec grid_in_with_spacing(const Box3& box, double spacing);
 
 }  // namespace blum

@@ -22,8 +22,9 @@ namespace blum {
 struct LabelFacts {
   std::int64_t label = 0;
   std::uint64_t voxels = 0;
-  double volume = 0;                       ///< of all of them, in cubic units of the spacing
-  std::optional<BettiNumbers> betti = {};  ///< of the union of the closed voxels; unset for 0, the background
+  double volume = 0;                       ///< volume of all these voxels together, in cubic units of the spacing
+  std::optional<BettiNumbers> betti = {};  ///< Betti numbers of the union of these voxels as closed boxes; unset for 0,
+                                           ///< the background
 };
 
 template <>
@@ -41,13 +42,14 @@ struct Description<LabelFacts> {
 
 /// Values of an image.
 struct ImageValues {
-  std::optional<std::array<double, 2>> range = {};  ///< smallest and largest; unset if all voxels are NaN
-  std::uint64_t nonzero = 0;                        ///< voxels that are neither 0 nor NaN
-  std::uint64_t not_numbers = 0;                    ///< voxels that are NaN
-  /// Number of distinct values. Unset if there are over 100,000, or if one cannot be a label. Labels are whole numbers
-  /// that fit int64, and at most 2^53 in images of floats.
+  std::optional<std::array<double, 2>> range = {};  ///< smallest and largest value; unset if all voxels are NaN
+  std::uint64_t nonzero = 0;                        ///< number of voxels that are neither 0 nor NaN
+  std::uint64_t not_numbers = 0;                    ///< number of voxels that are NaN
+  /// Number of distinct values. Unset if there are more than 100,000, or if one of them cannot be a label. Labels are
+  /// whole numbers that fit int64. In images of floating-point numbers, they must be at most 2^53.
   std::optional<std::uint64_t> distinct = {};
-  std::vector<LabelFacts> labels = {};  ///< the values of most voxels, the most first; empty if `distinct` is unset
+  std::vector<LabelFacts> labels = {};  ///< the most frequent values, in falling order of their number of voxels; empty
+                                        ///< if `distinct` is unset
 };
 
 template <>
@@ -58,21 +60,22 @@ struct Description<ImageValues> {
       Member{"range", &ImageValues::range, "", "smallest and largest value; unknown if all voxels are NaN"},
       Member{"nonzero", &ImageValues::nonzero, "", "number of voxels that are neither 0 nor NaN"},
       Member{"not_numbers", &ImageValues::not_numbers, "", "number of voxels that are NaN"},
-      Member{"distinct", &ImageValues::distinct, "", "number of distinct values; unknown if they cannot be labels"},
+      Member{"distinct", &ImageValues::distinct, "",
+             "number of distinct values; unknown if the values cannot be labels"},
       Member{"labels", &ImageValues::labels, "", "voxels of each value, most frequent value first"},
   };
 };
 
 /// Returns the values of an image.
 /// @param image        must pass validate(image).
-/// @param most_labels  length of `labels`; further labels are only counted in `distinct`.
+/// @param most_labels  largest length of `labels`. Other labels are only counted in `distinct`.
 /// @throws Cancelled.
-/// Cost: one pass over the values, and selected_voxels() and betti_numbers() per listed label. That is about 10 ms per
-/// label for 256^3 voxels.
+/// Cost: one pass over the values, plus selected_voxels() and betti_numbers() for each listed label. For 256^3 voxels,
+/// this takes about 10 ms per label.
 [[nodiscard]] ImageValues image_values(const VoxelImageView& image, std::size_t most_labels = 20,
                                        const Context& context = {});
 
-/// Returns a message that no voxel is selected. It names the values that the image has instead.
+/// Returns a message that no voxel is selected. The message lists the values that the image contains.
 [[nodiscard]] std::string nothing_selected_text(const VoxelImageView& image, const LabelSelection& selection);
 
 }  // namespace blum

@@ -11,14 +11,15 @@
 
 namespace blum {
 
-/// Set of cells of a lattice. Its members are numbered in rising order. Memory: two bytes per node.
+/// Set of cells of a lattice. The cells in the set are numbered 0, 1, 2, ... in rising order. Memory: two bytes per
+/// node.
 class RankedCells {
  public:
   RankedCells() = default;
   explicit RankedCells(const CellLattice& lattice) : words_(lattice.node_count() / 8 + 1) {}
 
   void insert(Cell cell) { words_[cell >> 6U].bits |= bit(cell); }
-  /// Numbers the cells. No cell may be inserted afterwards.
+  /// Numbers the cells of the set. No cell may be inserted afterwards.
   void finish() {
     std::uint32_t count = 0;
     for (Word& word : words_) {
@@ -30,12 +31,12 @@ class RankedCells {
 
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] bool contains(Cell cell) const { return (words_[cell >> 6U].bits & bit(cell)) != 0; }
-  /// Returns the number of a cell, which must be in the set.
+  /// Returns the number of a cell. The cell must be in the set.
   [[nodiscard]] std::uint32_t number(Cell cell) const {
     const Word& word = words_[cell >> 6U];
     return word.before + static_cast<std::uint32_t>(std::popcount(word.bits & (bit(cell) - 1)));
   }
-  /// Returns all cells in rising order. A cell's number is its index in this list.
+  /// Returns all cells of the set in rising order. A cell's number is its index in this list.
   [[nodiscard]] std::vector<Cell> cells() const {
     std::vector<Cell> out;
     out.reserve(count_);

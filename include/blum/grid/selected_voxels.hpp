@@ -15,21 +15,22 @@ namespace blum {
 
 /// Returns the selected voxels of an image. The set may be empty.
 /// @param image  must pass validate(image).
-/// @throws InvalidImage, InvalidOption, Cancelled. Cost: memory bandwidth; 1/8 byte per voxel, twice.
+/// @throws InvalidImage, InvalidOption, Cancelled. Cost: limited by memory bandwidth. Memory: 1/8 byte per voxel for
+/// the result, and another 1/8 byte per voxel during the computation.
 [[nodiscard]] VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& selection,
                                        const Context& context = {});
 
 namespace detail {
 
-/// Rows of bits. Bit x of row r is set if the voxel is selected. A row starts on a new 64-bit word, and the bits beyond
-/// its last voxel are clear. A row may also be read as groups of 16 bits, in rising x.
+/// Selected voxels as rows of bits. Bit x of row r is set if voxel x of row r is selected. Each row starts with a new
+/// 64-bit word, and the bits after its last voxel are 0. A row may also be read as groups of 16 bits, in rising x.
 struct MaskBits {
   std::size_t words_per_row = 0;
   Buffer<std::uint64_t> words;
 };
 
-/// Fills the bits of an image cut into rows of `row_length` voxels. Returns the number of selected voxels. Reuses the
-/// buffer if it has the right size. @throws InvalidOption if the threshold is NaN; Cancelled.
+/// Fills the bits of an image that is divided into rows of `row_length` voxels. Returns the number of selected voxels.
+/// Reuses the buffer of `mask` if it has the right size. @throws InvalidOption if the threshold is NaN; Cancelled.
 std::size_t select_voxels(const VoxelImageView& image, const LabelSelection& selection, std::size_t row_length,
                           const Context& context, MaskBits& mask);
 

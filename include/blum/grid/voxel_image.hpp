@@ -13,7 +13,7 @@ namespace blum {
 
 /// View of a 3D image through a span. It copies and owns no values. See VoxelImage.
 struct VoxelImageView {
-  /// In the order of VoxelImage::Values.
+  /// Types in the order of VoxelImage::Values.
   using Values =
       std::variant<std::span<const std::uint8_t>, std::span<const std::int8_t>, std::span<const std::uint16_t>,
                    std::span<const std::int16_t>, std::span<const std::uint32_t>, std::span<const std::int32_t>,
@@ -25,7 +25,7 @@ struct VoxelImageView {
 };
 
 /// 3D image: one value per voxel, x fastest, and the positions of the voxel centres in the world. The grid's nodes are
-/// the voxel centres. World axes are those of the source file (NRRD and ITK: LPS; NIfTI: RAS), and are not converted.
+/// the voxel centres. The world axes are those of the source file, without conversion (NRRD and ITK: LPS; NIfTI: RAS).
 struct VoxelImage {
   using Values =
       std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
@@ -33,8 +33,8 @@ struct VoxelImage {
                    std::vector<std::uint64_t>, std::vector<std::int64_t>, std::vector<float>, std::vector<double>>;
   GridSpec grid;
   Values values;  ///< grid.node_count() values
-  /// Meaning of the world axes, as NRRD names it ("left-posterior-superior", "right-anterior-superior", "scanner-xyz",
-  /// ...). Empty if the file does not state it.
+  /// Meaning of the world axes, with the names of NRRD ("left-posterior-superior", "right-anterior-superior",
+  /// "scanner-xyz", ...). Empty if the file does not state it.
   std::string space = {};
 
   [[nodiscard]] VoxelImageView view() const {

@@ -10,12 +10,12 @@
 
 namespace blum {
 
-/// Set of voxels of a box, one bit each. Voxels beyond the box are not in the set. Rows run along x. They are padded to
-/// whole words, with at least one bit that is always zero.
+/// Set of voxels of a box, one bit each. Voxels beyond the box are not in the set. Rows are along x. Each row is padded
+/// to whole words, with at least one bit that is always zero.
 class VoxelSet {
  public:
   VoxelSet() = default;
-  /// Makes the empty set. @param size  voxels along x, y, z, each >= 0.
+  /// Makes the empty set. @param size  numbers of voxels along x, y, z, each >= 0.
   explicit VoxelSet(const std::array<std::int64_t, 3>& size)
       : size_(size),
         words_per_row_(static_cast<std::size_t>(size[0] / 64 + 1)),
@@ -24,8 +24,8 @@ class VoxelSet {
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
   [[nodiscard]] std::size_t words_per_row() const { return words_per_row_; }
 
-  /// Returns the place of a voxel from its linear index, x fastest. It divides in 32 bits, which is several times
-  /// faster.
+  /// Returns the indices (i, j, k) of a voxel from its linear index, x fastest. Divisions are in 32 bits, which is
+  /// several times faster than in 64 bits.
   [[nodiscard]] std::array<std::int64_t, 3> place(std::uint32_t voxel) const {
     const auto x = static_cast<std::uint32_t>(size_[0]);
     const auto y = static_cast<std::uint32_t>(size_[1]);
@@ -43,13 +43,14 @@ class VoxelSet {
     if (i < 0 || j < 0 || k < 0 || i >= size_[0] || j >= size_[1] || k >= size_[2]) return false;
     return (words_[word(i, j, k)] >> (i % 64) & 1U) != 0;
   }
-  /// Adds a voxel. It must lie in the box; the same holds for erase().
+  /// Adds a voxel. In insert() and erase(), the voxel must be in the box.
   void insert(std::int64_t i, std::int64_t j, std::int64_t k) { words_[word(i, j, k)] |= std::uint64_t{1} << (i % 64); }
   void erase(std::int64_t i, std::int64_t j, std::int64_t k) {
     words_[word(i, j, k)] &= ~(std::uint64_t{1} << (i % 64));
   }
 
-  /// Returns the words of a row. Bit i % 64 of word i / 64 is voxel (i, j, k). Bits beyond the box must stay zero.
+  /// Returns the words of row (j, k). Bit i % 64 of word i / 64 is voxel (i, j, k). Bits beyond the box must remain
+  /// zero.
   [[nodiscard]] std::span<std::uint64_t> row(std::int64_t j, std::int64_t k) {
     return {words_.data() + word(0, j, k), words_per_row_};
   }

@@ -14,8 +14,8 @@
 
 namespace blum::detail {
 
-// Each test is a single comparison, so that loops over it vectorise. They are constexpr, because kernels of devices
-// call them, too.
+// Each test is a single comparison, so that loops over it vectorise. They are constexpr because device kernels call
+// them, too.
 struct NoVoxel {
   template <class T>
   constexpr bool operator()(T) const {
@@ -54,7 +54,7 @@ using VoxelTest = std::variant<NoVoxel, EveryVoxel, Nonzero<T>, Equal<T>, AtLeas
 template <class T>
 VoxelTest<T> label_test(std::int64_t label) {
   if constexpr (std::is_floating_point_v<T>) {
-    // A label that the type cannot hold exactly equals none of its values. (2^63 itself is out of int64's range.)
+    // If the type cannot represent a label exactly, no value equals the label. (2^63 is out of the range of int64.)
     const T nearest = static_cast<T>(label);
     if (nearest >= T(9223372036854775808.0) || static_cast<std::int64_t>(nearest) != label) return NoVoxel{};
     return Equal<T>{nearest};
@@ -76,7 +76,7 @@ VoxelTest<T> threshold_test(double threshold) {
     return AtLeast<T>{lowest};
   } else {
     const double lowest = std::ceil(threshold);
-    // As doubles, the limits may round up to the next power of two, which no value of the type reaches.
+    // Converted to double, the upper limit may be rounded to the next power of two, which no value of the type reaches.
     if (lowest <= static_cast<double>(std::numeric_limits<T>::min())) return EveryVoxel{};
     if (lowest >= std::ldexp(1.0, std::numeric_limits<T>::digits)) return NoVoxel{};
     return AtLeast<T>{static_cast<T>(lowest)};

@@ -8,18 +8,19 @@
 
 namespace blum {
 
-/// Writes a file such that its name only ever shows the complete content.
+/// Writes a file so that no reader ever finds an incomplete file under its name.
 ///
-/// The bytes go to a temporary file in the same directory. commit() flushes it to the disk and renames it over the
-/// target. Without commit(), the temporary file is removed and an existing target stays unchanged. A replaced file
-/// keeps its permissions, and its owner and group if the system allows it. A symbolic link stays a link: the file that
-/// it points to is replaced or made. A target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written
-/// directly, and cannot be restored. A target that is a directory, or that may not be written, is rejected at once.
+/// The bytes are written to a temporary file in the same directory. Then commit() flushes it to the disk and renames
+/// it, so that it replaces the target. If commit() is not called, the temporary file is removed and an existing target
+/// is unchanged. The new file gets the permissions of the replaced file, and its owner and group if the system allows
+/// it. If the target is a symbolic link, the link stays, and the file that it points to is replaced or created. A
+/// target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written directly, and cannot be restored. A
+/// target that is a directory, or that may not be written, is rejected at once.
 ///
-/// Small writes are gathered in a buffer of 256 KiB. Not for use by several threads at once.
+/// Small writes are collected in a buffer of 256 KiB. Several threads must not use an object at the same time.
 class AtomicFile {
  public:
-  /// @throws FileError if the file cannot be made there; the message holds the path and the system's reason.
+  /// @throws FileError if the file cannot be created. The message contains the path and the system's reason.
   explicit AtomicFile(std::filesystem::path path);
   /// Removes the temporary file unless commit() succeeded. Never throws.
   ~AtomicFile();
@@ -33,19 +34,20 @@ class AtomicFile {
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Flushes everything written to the disk and closes the file, so that commit() only has to rename it. Use it for
-  /// files that should appear together. May be called once, before commit(), which otherwise does this work.
-  /// @throws FileError as commit().
+  /// Flushes all written bytes to the disk and closes the file, so that commit() only has to rename it. This is useful
+  /// for several files that should appear together. May be called once, before commit(). If finish() is not called,
+  /// commit() does this work.
+  /// @throws FileError in the same cases as commit().
   void finish();
 
   /// Makes the file appear under its name, with everything that was written. May be called once.
-  /// @throws FileError if anything could not be written, now or before. The target is then unchanged, unless it is
-  /// written directly.
+  /// @throws FileError if this call or an earlier write failed. The target is then unchanged, unless it is written
+  /// directly.
   void commit();
 
-  /// Returns the requested name.
+  /// Returns the path that was passed to the constructor.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Returns the bytes written so far, including buffered ones.
+  /// Returns the number of bytes written so far, including those in the buffer.
   [[nodiscard]] std::size_t size() const { return size_; }
 
  private:
@@ -62,7 +64,7 @@ class AtomicFile {
   std::vector<char> buffer_;
   std::size_t size_ = 0;
   int descriptor_ = -1;
-  bool finished_ = false;  ///< by finish(), and not committed yet
+  bool finished_ = false;  ///< true after finish(), until commit()
 };
 
 }  // namespace blum

@@ -12,20 +12,20 @@ namespace blum {
 
 /// Further content of a file of centrelines.
 struct CentrelineFileInfo {
-  std::string version = {};  ///< version of Blum, named by .swc files; may be empty
-  std::string head = {};     ///< JSON object whose members come first in .json; empty: none
+  std::string version = {};  ///< version of Blum, for .swc files; may be empty
+  std::string head = {};     ///< text of a JSON object; its members are written first in .json files; empty: none
 };
 
 /// Writes centrelines. The extension selects the format.
 ///
-///   `.json`  Everything: the members of `info.head`, then `labels`. That list holds the members of each Centreline and
-///            their members, by their names.
+///   `.json`  Everything: the members of `info.head`, then the list `labels`. Each entry of `labels` is an object with
+///            the members of a Centreline, including nested members. Names of members are those in C++.
 ///   `.csv`   A row for each branch. Columns: `label, branch, first_node, last_node, first_kind, last_kind, length,
-///            mean_radius, min_radius, points`. The last one counts the points. Closed curves have no nodes, and the
-///            kind `closed`.
-///   `.swc`   A tree of points for each component, with loops cut. Columns: `number type x y z radius parent`, with
-///            type 0.
-///   `.vtp`, `.ply`, `.npz`  Polylines with radii: complex_of(), see write_complex().
+///            mean_radius, min_radius, points`. The last column is the number of points. Closed curves have no nodes,
+///            and both kinds are `closed`.
+///   `.swc`   A tree of points for each component; loops are cut. Columns: `number type x y z radius parent`. The type
+///            is 0.
+///   `.vtp`, `.ply`, `.npz`  Polylines with radii: the result of complex_of(), written as by write_complex().
 ///
 /// A file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension.

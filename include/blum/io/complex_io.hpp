@@ -1,5 +1,4 @@
-// Blum: files of complexes with attributes (VTP, PLY, OBJ, NPZ; GLB is written only). SPDX-License-Identifier:
-// Apache-2.0
+// Blum: files of complexes with columns (VTP, PLY, OBJ, NPZ; GLB is written only). SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -17,18 +16,18 @@
 
 namespace blum {
 
-/// Complex that a file holds beside its first one.
+/// A further complex in a file, in addition to the first one.
 struct NamedComplex {
   std::string name;
   Complex complex;
 };
-/// Reference to such a complex, for writers.
+/// Reference to a further complex, for writers.
 struct NamedComplexRef {
   std::string name;  ///< 1 to max_file_name letters and digits; not "vertex", "edge" or "triangle"
   const Complex* complex = nullptr;
 };
 
-/// Content of a file of a complex.
+/// Content of a complex file.
 struct ComplexFile {
   Complex complex;
   FileMetadata metadata = {};
@@ -36,72 +35,78 @@ struct ComplexFile {
 };
 
 struct ComplexWriteOptions {
-  /// True: columns and metadata that the format cannot hold (.obj: all of them) are left out. False: they are rejected.
+  /// True: columns and metadata that the format cannot hold are left out (.obj cannot hold any). False: they are
+  /// rejected.
   bool allow_loss = false;
-  std::vector<NamedComplexRef> further = {};  ///< complexes beside the first, for .npz files only; names differ
+  std::vector<NamedComplexRef> further = {};  ///< complexes in addition to the first, only for .npz files; their names
+                                              ///< must differ
 };
 
-/// Largest number of columns of vertices, edges or triangles in a file, and of components of a column.
+/// Largest number of vertex columns in a file. The numbers of edge columns, of triangle columns, and of components of
+/// one column have the same limit.
 inline constexpr std::size_t max_file_columns = 1000;
-/// Largest number of characters of a column's name, and of a further complex's, in a file.
+/// Largest number of characters of the name of a column or of a further complex in a file.
 inline constexpr std::size_t max_file_name = 256;
 
 /// Writes a complex with all its columns. The extension selects the format.
 ///
-///   `.vtp`  VTK poly data, raw appended. Vertices of no edge and no triangle are verts, edges are lines, triangles are
-///           polys. Columns of vertices are point data. Columns of edges and triangles are cell data. A column of edges
-///           and one of triangles share an array if name, type and components agree. Cells without the column hold a
-///           fill value: -1 in columns of whole numbers, NaN in others. Verts hold the value of the vertex if it has a
-///           column of that name. The strings `edge_columns` and `triangle_columns` of the field data, in JSON, list
-///           the array of each column. The string `metadata` is a JSON object.
+///   `.vtp`  VTK poly data, with raw appended data. Vertices that belong to no edge and no triangle are verts, edges
+///           are lines, triangles are polys. Columns of vertices are point data. Columns of edges and triangles are
+///           cell data. A column of edges and a column of triangles are in the same array if they have the same name,
+///           type and number of components. Cells without the column have a fill value: -1 in columns of whole numbers,
+///           NaN in others. If the vertices have a column of this name, a vert has the value of its vertex in that
+///           column. The field data `edge_columns` and `triangle_columns` are JSON texts that list the array of each
+///           column. The field data `metadata` is a JSON object.
 ///   `.ply`  Binary, little endian: vertices (coordinates in double precision) and triangles with their columns, then
-///           edges. Columns of edges are an element `edge_attributes`, in the edges' order. A column of three
-///           components has the properties NAME_x, NAME_y, NAME_z. One of more components, or of two, has NAME_0,
-///           NAME_1, ... Comments `blum_column ELEMENT PROPERTY COMPONENTS NAME` describe columns that these rules
-///           would read differently. A floating-point column `radius` is repeated as `quality` (float), by which
-///           MeshLab colours. Metadata are comments `blum {"key": "text"}`.
-///   `.obj`  Lines `v`; `f`; `l` for every listed edge; `p` for vertices of no edge and no triangle. No columns, no
-///           metadata.
+///           edges. Columns of edges are an element `edge_attributes`, in the order of the edges. A column of three
+///           components has the properties NAME_x, NAME_y, NAME_z. A column of two, or more than three, components has
+///           NAME_0, NAME_1, ... Comments `blum_column ELEMENT PROPERTY COMPONENTS NAME` describe columns that would be
+///           read differently by these rules. A floating-point column `radius` is repeated as `quality` (float), which
+///           MeshLab uses for colours. Metadata are comments `blum {"key": "text"}`.
+///   `.obj`  Lines `v` and `f`, `l` for each edge of the complex, and `p` for vertices that belong to no edge and no
+///           triangle. There are no columns and no metadata.
 ///   `.npz`  `vertices` [n, 3] float64, `edges` [n, 2] and `triangles` [n, 3] int32. Columns of edges, triangles and
-///           vertices are `edge_NAME`, `triangle_NAME` and NAME, [n] or [n, components]. A vertex column is
+///           vertices are `edge_NAME`, `triangle_NAME` and NAME, [n] or [n, components]. A column of vertices is
 ///           `vertex_NAME` if NAME alone would be read differently. `metadata` is a JSON object. A further complex has
-///           the same arrays, with its name and `_` before theirs, and no metadata.
-///   `.glb`  Binary glTF (see write_gltf()): triangles, edges as lines, vertices of no edge and no triangle as points.
-///           A column of vertices is the attribute `_NAME` in upper case, unless two names would then be the same.
-///           Metadata are extras. All numbers are in single precision. It holds no columns of edges and triangles, no
-///           columns of more than four components, and no whole numbers beyond 2^24.
+///           the same arrays; their names begin with the name of the complex and `_`. It has no metadata.
+///   `.glb`  Binary glTF (see write_gltf()): triangles, edges as lines, and vertices that belong to no edge and no
+///           triangle as points. A column of vertices is the attribute `_NAME`. The name is in upper case, unless two
+///           names would then be the same. Metadata are extras. All numbers are in single precision. The format cannot
+///           hold columns of edges and triangles, columns of more than four components, and whole numbers beyond 2^24.
 ///
 /// Indices count from 0 (in .obj from 1). A file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension.
-/// @throws InvalidOption, for formats with columns, if a name has other characters than letters, digits, `_`, `-` and
-/// `.`, or more than max_file_name of them. Also for more columns or components than max_file_columns, and in .ply for
-/// more than 100,000 numbers for a vertex, edge or triangle.
+/// @throws InvalidOption, in formats with columns, if a column's name has other characters than letters, digits, `_`,
+/// `-` and `.`, or more than max_file_name characters. It is also thrown for more columns or components than
+/// max_file_columns. In .ply, it is also thrown for more than 100,000 numbers for each vertex, edge or triangle.
 /// @throws InvalidOption for metadata with an empty or repeated key, and for bad names in options.further.
 /// @throws InvalidOption for content that the format cannot hold, unless allow_loss is true. Further complexes are
-/// always rejected by other formats than .npz.
-/// @throws InvalidMesh with problem_of(complex) as its text, or for more than 2^31 - 1 vertices.
+/// rejected in all formats except .npz, even if allow_loss is true.
+/// @throws InvalidMesh if problem_of(complex) finds a problem, with its text, or for more than 2^31 - 1 vertices.
 /// @throws FileError, Cancelled.
 void write_complex(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata = {},
                    const ComplexWriteOptions& options = {}, const Context& context = {});
 
-/// Reads a file written by write_complex(), or one of the same form by another program. It may have any columns, other
-/// numeric types and byte orders. Polygons (.ply, .obj) become triangles, and lines of several steps (.vtp, .obj)
-/// become edges. These share the attributes. Files of .vtp, .ply and .npz give back exactly what was written; .glb is
-/// not read. Whole numbers of 8 and 16 bits become int32, unsigned ones of 32 and 64 bits int64. Ignored are lists and
+/// Reads a file written by write_complex(), or a file of the same form written by another program. The file may have
+/// any columns, numeric types and byte order. Polygons (.ply, .obj) become triangles, and lines of several steps (.vtp,
+/// .obj) become edges. The triangles and edges get the column values of their polygon or line. If write_complex() wrote
+/// a .vtp, .ply or .npz file, the result equals the written complex exactly. GLB files are not read. Whole numbers of 8
+/// and 16 bits become int32. Unsigned whole numbers of 32 and 64 bits become int64. The reader ignores lists and
 /// unknown elements of .ply, texts of .vtp, and statements of .obj other than vertices, faces and lines. Cell data of
 /// .vtp files from other programs become columns of both the edges and the triangles.
 /// @throws FileError.
-/// @throws FormatError that names the file and the reason, also if problem_of() finds one or a column's name is not
+/// @throws FormatError with the file and the reason, also if problem_of() finds a problem, or if a column's name is not
 /// UTF-8.
 /// @throws InvalidOption for another extension or a format that is not read.
 /// @throws OutOfMemory.
 [[nodiscard]] ComplexFile read_complex(const std::filesystem::path& path);
 
-/// Returns true if files of a path's extension are read as complexes and may hold columns, or several complexes.
+/// Return true if files with the extension of a path are read as complexes. The files must also be able to hold columns
+/// (may_hold_columns()), or further complexes (may_hold_further()).
 [[nodiscard]] bool may_hold_columns(const std::filesystem::path& path);
 [[nodiscard]] bool may_hold_further(const std::filesystem::path& path);
 
-/// Reads a complex from memory. In messages, `name` stands for the file.
+/// Reads a complex from memory. In messages, `name` is used as the name of the file.
 [[nodiscard]] ComplexFile read_complex(std::span<const std::byte> bytes, ComplexFormat format,
                                        const std::string& name = "complex");
 

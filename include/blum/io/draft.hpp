@@ -7,13 +7,13 @@
 
 namespace blum {
 
-/// File that is written, and perhaps read again, before it replaces another one. It is hidden, lies beside the other
-/// file, and has the same extension and a new name. A link is followed, so that the draft can replace the file that it
-/// points to. The file is deleted with the object, unless it was kept.
+/// Draft of a file: a file that is written, and perhaps read again, before it replaces another file. The draft is a
+/// hidden file in the same directory, with the same extension and a new name. If the name of the other file is a link,
+/// keep() replaces the file that the link points to. The destructor deletes the draft, unless keep() was called.
 class Draft {
  public:
-  /// Makes an empty file.
-  /// @throws FileError if none can be made beside `name`.
+  /// Creates an empty draft.
+  /// @throws FileError if no file can be created in the directory of `name`.
   explicit Draft(std::filesystem::path name);
   ~Draft();
   Draft(Draft&& other) noexcept;
@@ -25,7 +25,8 @@ class Draft {
   [[nodiscard]] const std::filesystem::path& path() const { return draft_; }
   /// Returns the name of the file to be replaced.
   [[nodiscard]] const std::filesystem::path& name() const { return name_; }
-  /// Moves the draft to the name of the file, and gives it the permissions of an existing file. May be called once.
+  /// Renames the draft to the name of the file to be replaced. If that file exists, the draft gets its permissions. May
+  /// be called once.
   /// @throws FileError.
   void keep();
 

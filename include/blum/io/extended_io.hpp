@@ -10,9 +10,9 @@
 
 namespace blum {
 
-/// Writes an extended axis. The extension selects the format. Files of .vtp, .ply and .npz hold all of it with its
-/// columns (see write_complex()), and read_complex() reads them. Their metadata are `content` ("extended medial axis")
-/// and, if known, `blum_version`, `source`, `theta`, `lambda`, `spacing`, `deviation`, `smooth`. Files of .obj hold the
+/// Writes an extended axis. The extension selects the format. Files of .vtp, .ply and .npz hold the whole axis and its
+/// columns (see write_complex()); read_complex() reads them. Their metadata are `content` ("extended medial axis") and,
+/// if known, `blum_version`, `source`, `theta`, `lambda`, `spacing`, `deviation`, `smooth`. Files of .obj hold the
 /// triangles and curves. Files of .stl hold the triangles, in single precision. Columns that a format cannot hold are
 /// left out.
 ///

@@ -8,7 +8,7 @@
 
 namespace blum {
 
-/// Texts that a file holds besides its numbers: pairs of key and text, in their order. Texts are UTF-8.
+/// Texts that a file holds in addition to its numbers: a list of pairs of key and text. Texts are UTF-8.
 using FileMetadata = std::vector<std::pair<std::string, std::string>>;
 
 /// Returns the text of a key; empty if the key is missing.

@@ -15,18 +15,18 @@
 
 namespace blum {
 
-/// Content of a file. Medial axes are complexes.
+/// Kind of content of a file. Medial axes are complexes.
 enum class FileContent : std::uint8_t {
   mesh,
   image,
   field,
   complex,
-  points,         ///< with attributes
-  pairs,          ///< primitives that are close
+  points,         ///< points with columns
+  pairs,          ///< pairs of close primitives
   collisions,     ///< collisions of moving features
-  surface_map,    ///< distances as a texture
+  surface_map,    ///< distances on a surface, as a texture
   graph,          ///< graph of a medial axis or a Voronoi diagram
-  centreline,     ///< graphs of curves with radii
+  centreline,     ///< graph of curves with radii
   extended_axis,  ///< medial axis continued to the surface
 };
 
@@ -49,44 +49,47 @@ struct Description<FileContent> {
 enum class FileAccess : std::uint8_t {
   read,
   write,
-  both  ///< written files can be read again
+  both  ///< a format that is written and read
 };
 
-/// Format of files of one content. A name that several contents use (PLY) has a row for each.
+/// File format of one kind of content. If several kinds of content use the same format name (PLY), there is a
+/// FileFormat for each.
 struct FileFormat {
   FileContent content = FileContent::mesh;
   std::string name;                     ///< for example "PLY"
-  std::vector<std::string> extensions;  ///< read: lower case, with their dots; the usual one first
-  std::vector<std::string> written;     ///< written: some of those that are read, or others if the format is not read
-  std::string holds;                    ///< possible content, for people
-  std::string opens_in;                 ///< other programs, for people
+  std::vector<std::string> extensions;  ///< extensions that are read, in lower case, with their dots; the usual one
+                                        ///< first
+  std::vector<std::string> written;     ///< extensions that are written: some of those that are read, or others if the
+                                        ///< format is not read
+  std::string holds;                    ///< description of the possible content, for people
+  std::string opens_in;                 ///< other programs that open the files, for people
 };
 
 template <>
 struct Description<FileFormat> {
   static constexpr std::string_view name = "FileFormat";
   static constexpr std::string_view doc =
-      "File format of one content; a name that several contents use (PLY) is listed once for each";
+      "File format for one kind of content; a format for several kinds, such as PLY, is listed once for each";
   static constexpr std::tuple members{
       Member{"content", &FileFormat::content, "", "content of the files; medial axes are complexes"},
       Member{"name", &FileFormat::name, "", "name of the format"},
-      Member{"extensions", &FileFormat::extensions, "", "extensions that are read, in lower case, with their dots"},
+      Member{"extensions", &FileFormat::extensions, "", "extensions that are read, in lower case, with the dot"},
       Member{"written", &FileFormat::written, "",
-             "extensions that are written: some of those that are read, or others if the format is not read"},
-      Member{"holds", &FileFormat::holds, "", "possible content, for people"},
-      Member{"opens_in", &FileFormat::opens_in, "", "other programs, for people"},
+             "extensions that are written: some or all of those that are read, or others if the format is not read"},
+      Member{"holds", &FileFormat::holds, "", "description of the possible content"},
+      Member{"opens_in", &FileFormat::opens_in, "", "names of other programs that open such files"},
   };
 };
 
-/// Returns all formats, content by content.
+/// Returns all formats, ordered by their kind of content.
 [[nodiscard]] const std::vector<FileFormat>& file_formats();
 
-/// A format of files of one content.
+/// A file format of one kind of content: an entry of file_formats().
 template <FileContent content>
 class FormatOf {
  public:
-  /// Finds a format by its name in file_formats() or one of its extensions, in any case, with or without the dot:
-  /// MeshFormat("stl").
+  /// Finds a format by its name in file_formats() or by one of its extensions, in lower or upper case, with or without
+  /// the dot. Example: MeshFormat("stl").
   /// @throws InvalidOption that lists the known formats.
   explicit FormatOf(std::string_view name);
 
@@ -96,13 +99,14 @@ class FormatOf {
   [[nodiscard]] std::size_t row() const { return row_; }
   friend bool operator==(FormatOf, FormatOf) = default;
 
-  /// Returns the format that is read from files with the extension of a path; nullopt if none is.
+  /// Returns the format in which files with the extension of a path are read; nullopt if such files are not read.
   [[nodiscard]] static std::optional<FormatOf> by_name(const std::filesystem::path& path);
-  /// Returns the format of a file by its first bytes (8 KiB, or all); nullopt if they do not show one.
+  /// Returns the format that the first bytes of a file identify; nullopt if they identify none.
+  /// @param head  the first 8 KiB of the file, or all bytes of a smaller file.
   [[nodiscard]] static std::optional<FormatOf> by_head(std::string_view head);
-  /// Returns the format that files with the extension of a path are read or written in.
-  /// @param what  name of the files' content in messages, in the plural; empty: its own name.
-  /// @throws InvalidOption that names the path and the extensions that can be read or written.
+  /// Returns the format in which files with the extension of a path are read or written.
+  /// @param what  name of the content in messages, in the plural; if empty, a default such as "meshes".
+  /// @throws InvalidOption with the path and the extensions that can be read or written.
   [[nodiscard]] static FormatOf of(const std::filesystem::path& path, FileAccess access = FileAccess::read,
                                    std::string_view what = {});
 
@@ -135,12 +139,13 @@ extern template class FormatOf<FileContent::graph>;
 extern template class FormatOf<FileContent::centreline>;
 extern template class FormatOf<FileContent::extended_axis>;
 
-/// Returns the last extension of a name in lower case, with its dot. ".nii.gz", ".hdr.gz" and ".img.gz" count as one.
+/// Returns the last extension of a file name in lower case, with its dot. It treats ".nii.gz", ".hdr.gz" and ".img.gz"
+/// as single extensions.
 [[nodiscard]] std::string file_extension(const std::filesystem::path& path);
 
-/// Returns the extensions of a content's formats, in the order of the table.
+/// Returns the extensions of the formats of one kind of content, in the order of file_formats().
 [[nodiscard]] std::vector<std::string> file_extensions(FileContent content, FileAccess access);
-/// Returns the same extensions as a text, for example ".obj .off .stl .ply".
+/// Returns the extensions of the formats of one kind of content as one text, for example ".obj .off .stl .ply".
 [[nodiscard]] std::string extension_list(FileContent content, FileAccess access, std::string_view between = " ");
 
 }  // namespace blum

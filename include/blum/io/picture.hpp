@@ -15,10 +15,10 @@ struct Color {
   }
 };
 
-/// Returns a component as files hold it. Values beyond [0, 1] are clamped.
+/// Returns a component of a colour, 0 to 1, as a byte of a file, 0 to 255. Values outside of [0, 1] are clamped.
 [[nodiscard]] std::uint8_t byte_of(float component);
 
-/// Picture: rows from the top, pixels from the left.
+/// Picture. Rows are numbered from the top, and pixels of a row from the left.
 class Picture {
  public:
   /// @param width, height  pixels, at least 1.

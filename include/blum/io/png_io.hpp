@@ -12,13 +12,13 @@
 
 namespace blum {
 
-/// Content of a pixel of a PNG file; values are its bytes.
+/// Channels of a pixel of a PNG file. The value of an enumerator is the number of bytes per pixel.
 enum class PngChannels : std::uint8_t {
   rgb = 3,
-  rgba = 4  ///< the last is opacity: 255 is opaque
+  rgba = 4  ///< the last channel is opacity: 255 is opaque
 };
 
-/// View of pixels in memory, in sRGB: rows from the top, pixels from the left, a byte for each channel.
+/// View of pixels in memory, in sRGB: rows from the top, pixels from the left, one byte for each channel.
 struct PixelView {
   std::span<const std::uint8_t> bytes;
   std::uint32_t width = 0;   ///< pixels, 1 to 1,000,000
@@ -27,10 +27,10 @@ struct PixelView {
 };
 
 /// Returns the bytes of a PNG file with 8 bits per channel. The same pixels give the same bytes.
-/// @throws InvalidOption for a size beyond the limits, or another count of bytes.
+/// @throws InvalidOption if a size is beyond the limits, or the number of bytes does not match it.
 /// @throws FileError if libpng refuses.
 /// @throws OutOfMemory.
-/// Cost: about 80 ns per pixel; the memory of an uncompressed copy.
+/// Cost: about 80 ns per pixel, and memory for an uncompressed copy.
 [[nodiscard]] std::vector<std::byte> encode_png(const PixelView& pixels);
 [[nodiscard]] std::vector<std::byte> encode_png(const Picture& picture);
 

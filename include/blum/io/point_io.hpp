@@ -1,4 +1,4 @@
-// Blum: files of points with attributes. SPDX-License-Identifier: Apache-2.0
+// Blum: files of points with columns. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -15,40 +15,42 @@
 
 namespace blum {
 
-/// Returns the extensions that read_points() reads and whose files hold points, not meshes.
+/// Returns the extensions of files that read_points() reads and that hold points, not meshes.
 [[nodiscard]] std::vector<std::string> cloud_extensions();
 
 /// Reads points. The extension selects the format.
 ///
 ///   `.npy`  An array [n, 3] of numbers.
-///   `.npz`  The array `points`, or else `vertices`, [n, 3].
+///   `.npz`  The array `points` [n, 3] or, if it is missing, `vertices` [n, 3].
 ///   `.csv`, `.xyz`, `.txt`  A row for each point. Its first three numbers are the coordinates, separated by commas,
-///                           semicolons or blanks; the rest is ignored. Empty rows, rows that begin with `#`, and a
-///                           first row of names are ignored, too.
-///   `.ply`, `.vtp`, `.obj`, `.off`, `.stl`  The vertices, in their order.
+///                           semicolons or blanks; the rest of the row is ignored. Empty rows, rows that begin with
+///                           `#`, and a first row of names are ignored, too.
+///   `.ply`, `.vtp`, `.obj`, `.off`, `.stl`  The vertices of the mesh or complex, in their order.
 ///
 /// @throws FileError.
-/// @throws FormatError that names the file, the line and the reason, also for numbers that are not finite.
+/// @throws FormatError with the file, the line and the reason, also for numbers that are not finite.
 /// @throws InvalidOption for another extension.
 /// @throws OutOfMemory.
 [[nodiscard]] std::vector<Vec3d> read_points(const std::filesystem::path& path);
 
 /// Reads the rows of a .csv, .xyz or .txt file from memory.
-/// @param name  stands for the file in messages.
+/// @param name  used as the name of the file in messages.
 [[nodiscard]] std::vector<Vec3d> read_point_rows(std::span<const std::byte> text, const std::string& name = "points");
 
 /// Writes points with their columns. The extension selects the format.
 ///
 ///   `.ply`, `.vtp`  As write_complex() does.
 ///   `.npz`          An array `points` [n, 3], one array for each column under its name, and `metadata`, a JSON object.
-///   `.csv`          A first row of names: x, y, z, then the columns. Columns of three numbers are NAME_x, NAME_y,
-///                   NAME_z, others of several NAME_0, NAME_1, ... CSV files have no metadata.
+///   `.csv`          A row of names: x, y, z, then those of the columns. Then follows a row for each point. A column of
+///                   three numbers has the names NAME_x, NAME_y, NAME_z. A column of two, or more than three, numbers
+///                   has NAME_0, NAME_1, ... CSV files have no metadata.
 ///
-/// Numbers of text are exact.
-/// @param metadata  unless they contain `content`, it is set to "points". Readers of axes and fields reject such files.
+/// Numbers in text are exact.
+/// @param metadata  if the key `content` is missing, it is added with the text "points". Functions that read axes and
+///                  fields reject files with this content.
 /// @param points    a complex of vertices alone; validate(points) must pass.
-/// @throws InvalidMesh, also for edges or triangles.
-/// @throws InvalidOption for another extension, and in .npz for a column `points` or `metadata`.
+/// @throws InvalidMesh, also if `points` has edges or triangles.
+/// @throws InvalidOption for another extension, and in .npz for a column with the name `points` or `metadata`.
 /// @throws FileError, Cancelled.
 void write_points(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata = {},
                   const Context& context = {});

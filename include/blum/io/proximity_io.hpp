@@ -14,22 +14,27 @@ namespace blum {
 
 /// Writes pairs of primitives of a scene. The extension selects the format.
 ///
-///   `.npz`   `object` [n, 2] and `primitive` [n, 2] are int32. `distance` [n] and `point` [n, 2, 3], the closest
-///            points, are float64. `feature` [n, 2, 3] int32 holds the one, two or three vertices that each point lies
-///            on, padded with -1. They are vertices of the mesh of the point's object. `metadata` is a JSON object.
+///   `.npz`   Arrays for n pairs. `object` [n, 2] and `primitive` [n, 2] are the indices of the two objects, and of the
+///            primitives in the meshes of these objects (int32). `distance` [n] and `point` [n, 2, 3], the two closest
+///            points, are float64. `feature` [n, 2, 3] (int32) holds the vertices of the feature on which each of the
+///            two points lies. These are one, two or three indices in the object's mesh, padded with -1. `metadata` is
+///            a JSON object.
 ///   `.csv`   A row for each pair: `first_object, first_primitive, second_object, second_primitive, distance, first_x,
 ///            first_y, first_z, second_x, second_y, second_z`, `first_feature_0` to `_2`, `second_feature_0` to `_2`.
-///   `.json`  An object with the metadata (max_distance and self as numbers, true and false) and the lists of .npz.
-///   `.vtp`   VTK poly data: a line from the first to the second point of each pair. Cell data are `distance`,
-///            `object`, `primitive` and `feature` (six components). read_complex() reads these files, too.
+///   `.json`  An object with the metadata, and lists with the names of the .npz arrays. The metadata `max_distance` and
+///            `self` are written as numbers, true or false, not as texts.
+///   `.vtp`   VTK poly data: for each pair, a segment from its first to its second closest point. Cell data are
+///            `distance`, `object`, `primitive` and `feature` (six components). read_complex() reads these files, too.
 ///
 /// A file appears under its name only when it is complete.
-/// @param objects  the meshes of the scene, by object.
-/// @param more     further numbers of each pair, written after those above. They are arrays of .npz, columns of .csv,
-///                 lists of .json, and cell data of .vtp. In .csv, columns of several components are name_0, name_1,
-///                 ... It is empty or has a row for each pair.
-/// @throws InvalidOption for another extension, and for pairs of objects or primitives that are not given.
-/// @throws InvalidOption for another count of rows, or a name listed above, in `more`.
+/// @param objects  the mesh of each object of the scene.
+/// @param more     further columns, with a row for each pair; may be empty. They are written after the numbers above,
+///                 as arrays of .npz, columns of .csv, lists of .json, and cell data of .vtp. In .csv, a column of
+///                 several components becomes name_0, name_1, ...
+/// @throws InvalidOption for another extension, and for pairs with an object that is not in `objects` or a primitive
+/// that its mesh does not have.
+/// @throws InvalidOption if `more` has another number of rows than pairs, or a column with the name of one of the .npz
+/// arrays above.
 /// @throws FileError, Cancelled.
 void write_proximity_pairs(const std::filesystem::path& path, std::span<const PrimitivePair> pairs,
                            std::span<const MeshView> objects, const FileMetadata& metadata = {},

@@ -24,11 +24,13 @@
 namespace blum {
 
 struct CentrelineOptions {
-  /// Selected voxels. By default (not zero), each value in the image is a label of its own, and all must be whole
-  /// numbers.
+  /// Selected voxels. By default (`nonzero`), each value other than 0 is a label of its own, and all values must be
+  /// whole numbers.
   LabelSelection selection = {};
-  /// A branch with a free end stays if its reach exceeds this many radii of the ball at its root by 1.5 voxels. At 1 a
-  /// removed branch hardly leaves that ball. At 0 all longer branches stay.
+  /// Limit for the removal of branches with a free end (spurs). A spur is removed if no point of it is further than
+  /// spur * radius + 1.5 voxels from its other end. Here, `radius` is the radius of the ball at that other end. If spur
+  /// is 1, removed branches leave the ball by at most 1.5 voxels. If spur is 0, only branches of at most 1.5 voxels are
+  /// removed.
   double spur = 1;
 };
 
@@ -38,15 +40,17 @@ struct Description<CentrelineOptions> {
   static constexpr std::string_view doc = "Options of centrelines";
   static constexpr std::tuple members{
       Member{"selection", &CentrelineOptions::selection, "", "selected voxels"},
-      Member{"spur", &CentrelineOptions::spur, "radii of the ball at their root",
-             "shortest branch with a free end that stays; a voxel and a half is added", Range::between(0, 100)},
+      Member{"spur", &CentrelineOptions::spur, "radii at the branch's root",
+             "limit for branches with a free end: if they are shorter than this limit plus 1.5 voxels, they are "
+             "removed",
+             Range::between(0, 100)},
   };
 };
 
 enum class CentrelineNodeKind : std::uint8_t {
-  point,    ///< Part without branches, for example a blob.
+  point,    ///< Node of a component without branches, for example of a blob.
   end,      ///< End of one branch.
-  junction  ///< End of several branches, or of one that returns to it.
+  junction  ///< End of several branches, or both ends of one branch.
 };
 template <>
 struct Description<CentrelineNodeKind> {
@@ -59,7 +63,8 @@ struct Description<CentrelineNodeKind> {
 struct CentrelineNode {
   CentrelineNodeKind kind = CentrelineNodeKind::point;
   Vec3d position{};   ///< World coordinates.
-  double radius = 0;  ///< At an end that of its branch; otherwise the distance to the closest voxel outside.
+  double radius = 0;  ///< Radius of the node's ball, world units. At an `end`, it is the radius of the branch there. At
+                      ///< other nodes, it is the distance to the closest voxel outside the label.
 };
 template <>
 struct Description<CentrelineNode> {
@@ -69,46 +74,50 @@ struct Description<CentrelineNode> {
       Member{"kind", &CentrelineNode::kind, "", "point (of a blob without branches), end or junction"},
       Member{"position", &CentrelineNode::position, "world units", "position"},
       Member{"radius", &CentrelineNode::radius, "world units",
-             "end: radius of its branch there; else distance to the closest voxel outside"},
+             "end: radius of its branch there; other kinds: distance to the closest voxel outside"},
   };
 };
 
 /// Curve between two nodes, or a closed curve without nodes.
 struct CentrelineBranch {
   std::array<std::int32_t, 2> nodes{-1, -1};  ///< Indices of its first and last node; -1 for closed curves.
-  double length = 0;                          ///< Length of the polyline, including the nodes.
-  double mean_radius = 0;                     ///< Mean along its length, outside the balls of its junctions.
-  double min_radius = 0;                      ///< Least radius, likewise.
-  std::vector<Vec3d> points = {};             ///< From node to node. Closed curves repeat the first point at the end.
-  std::vector<double> radii = {};             ///< Radius of the circle with the area of the section, at each point.
+  double length = 0;                          ///< Length of the polyline `points`, world units.
+  double mean_radius = 0;  ///< Mean of `radii` along the branch, without points in the balls of its junctions.
+  double min_radius = 0;   ///< Least of `radii`, also without these points.
+  /// Polyline from the first to the last node. A closed curve ends with its first point.
+  std::vector<Vec3d> points = {};
+  /// For each point: radius of the circle that has the area of the cross-section there.
+  std::vector<double> radii = {};
 };
 template <>
 struct Description<CentrelineBranch> {
   static constexpr std::string_view name = "CentrelineBranch";
-  static constexpr std::string_view doc = "Curve between two nodes, or a closed curve without any";
+  static constexpr std::string_view doc = "Curve between two nodes, or a closed curve without nodes";
   static constexpr std::tuple members{
       Member{"nodes", &CentrelineBranch::nodes, "", "first and last node; -1 for closed curves"},
       Member{"length", &CentrelineBranch::length, "world units", "length of its polyline"},
       Member{"mean_radius", &CentrelineBranch::mean_radius, "world units",
              "mean radius along its length, outside the balls of its junctions"},
-      Member{"min_radius", &CentrelineBranch::min_radius, "world units", "smallest radius, likewise"},
+      Member{"min_radius", &CentrelineBranch::min_radius, "world units",
+             "smallest radius along its length, outside the balls of its junctions"},
       Member{"points", &CentrelineBranch::points, "world units",
              "polyline from node to node; for closed curves the first point is also the last"},
       Member{"radii", &CentrelineBranch::radii, "world units",
-             "radius at each point: that of the circle with the area of the section there"},
+             "radius at each point: that of the circle with the area of the cross-section there"},
   };
 };
 
 /// Centreline of the voxels of one label.
 struct Centreline {
-  std::optional<std::int64_t> label = {};  ///< Unset if a threshold selects.
-  std::uint64_t voxels = 0;                ///< Number of voxels.
+  std::optional<std::int64_t> label = {};  ///< Unset if a threshold selects the voxels.
+  std::uint64_t voxels = 0;                ///< Number of voxels of the label.
   std::vector<CentrelineNode> nodes = {};
   std::vector<CentrelineBranch> branches = {};
   BettiNumbers label_betti{};  ///< Components, tunnels and voids of the union of the closed voxels.
   BettiNumbers graph_betti{};  ///< Components, tunnels and voids of the nodes and branches.
-  bool homotopy_kept = true;   ///< True if these are equal.
-  std::string homotopy;        ///< One sentence: kept, or the difference and its reason.
+  bool homotopy_kept = true;   ///< True if label_betti and graph_betti are equal.
+  /// One sentence: states that the homotopy type is kept, or gives the difference and its reason.
+  std::string homotopy;
 };
 template <>
 struct Description<Centreline> {
@@ -121,46 +130,51 @@ struct Description<Centreline> {
       Member{"branches", &Centreline::branches, "", "curves between nodes"},
       Member{"label_betti", &Centreline::label_betti, "", "components, tunnels, voids of the voxels"},
       Member{"graph_betti", &Centreline::graph_betti, "", "components, tunnels, voids of nodes and branches"},
-      Member{"homotopy_kept", &Centreline::homotopy_kept, "", "true if both are equal"},
-      Member{"homotopy", &Centreline::homotopy, "", "sentence: kept, or the difference and its reason"},
+      Member{"homotopy_kept", &Centreline::homotopy_kept, "", "true if label_betti and graph_betti are equal"},
+      Member{"homotopy", &Centreline::homotopy, "", "one sentence: kept, or the difference and its reason"},
   };
 };
 
 struct Centrelines {
-  std::vector<Centreline> labels;  ///< By ascending label.
+  std::vector<Centreline> labels;  ///< By ascending label, or in the order of the labels given to centreline().
   std::vector<PhaseTime> phases;
   std::vector<Warning> warnings;  ///< Result of centreline_warnings().
 };
 
 /// Returns the centreline of each label of an image, as a graph of curves.
 ///
-/// Voxels touch in corners (26), the background by faces (6), as for betti_numbers(). Beyond the image is background.
-/// Voids are filled first. Then the voxels are thinned in the order of their distance to the background. Each step
-/// preserves the homotopy type. So do pruning and the merging of junctions that lie in each other's balls. Finally,
-/// curves are moved to the centroids of the sections across them, no point by more than a voxel. The radius at a point
-/// is that of the circle with the section's area. A free end lies where its ball touches the tip. See
+/// Voxels of a label are connected through corners (26 neighbours). Voxels of the background are connected through
+/// faces (6 neighbours), as for betti_numbers(). Everything beyond the image is background. Voids of the label are
+/// filled first. Then voxels are removed in the order of their distance to the background, until only curves remain.
+/// Next, short branches with a free end are removed (CentrelineOptions::spur), and junctions are merged if they lie in
+/// each other's balls. All steps after the filling of voids preserve the homotopy type. Finally, each point of a curve
+/// is moved to the centroid of the point's cross-section, by at most the longest side of a voxel. The radius at a point
+/// is that of the circle with the area of the cross-section. The ball at a free end touches the tip of the label. See
 /// docs/theory/centrelines.md for the method.
 ///
 /// @param image  must pass validate(image).
 /// @return  the same bytes for any number of threads. Labels without voxels have neither nodes nor branches.
 /// @throws InvalidImage, also if values are labels and one is not a whole number; InvalidOption; OutOfMemory;
 /// Cancelled.
-/// Cost: about twice that of distance_transform(); 10 bytes per voxel of the largest box around a label.
+/// Cost: about twice the time of distance_transform(); 10 bytes of memory per voxel of the largest box around a label.
 [[nodiscard]] Centrelines centreline(const VoxelImageView& image, const CentrelineOptions& options = {},
                                      const Context& context = {});
 
-/// Returns the centrelines of the given labels, in this order. options.selection is ignored.
+/// Returns the centrelines of the given labels, in the given order. options.selection is ignored.
 [[nodiscard]] Centrelines centreline(const VoxelImageView& image, std::span<const std::int64_t> labels,
                                      const CentrelineOptions& options = {}, const Context& context = {});
 
-/// Returns warnings about the centrelines of an image with this grid. An image may have a single layer of voxels
-/// (WarningCode::single_layer). A label may have none (WarningCode::nothing_found), or another topology than its curves
-/// (WarningCode::other_topology). At most six are returned; the last one counts those that are left out.
+/// Returns warnings about the centrelines of an image with this grid. A warning may report that the image has a single
+/// layer of voxels (WarningCode::single_layer), or that a label has no voxels (WarningCode::nothing_found). It may also
+/// report that the topology of a label differs from that of the label's curves (WarningCode::other_topology). At most
+/// six warnings are returned. If more apply, the sixth warning gives the number of labels without a warning of their
+/// own.
 [[nodiscard]] std::vector<Warning> centreline_warnings(const Centrelines& lines, const GridSpec& grid);
 
-/// Returns all branches as edges from point to point, for files. Vertices have the column `radius`. Edges have `label`
-/// (int64; 0 if unset), `branch` (int32, counted over all labels), and its `length`, `mean_radius` and `min_radius`.
-/// Branches share the vertices of their nodes.
+/// Returns all branches as a complex, for files. An edge joins each point of a branch to the next point. Vertices have
+/// the column `radius`. Edges have the columns `label` (int64; 0 if unset) and `branch` (int32, counted over all
+/// labels). Edges also have the columns `length`, `mean_radius` and `min_radius`, with the values of their branch.
+/// Branches that end at the same node share the node's vertex.
 [[nodiscard]] Complex complex_of(const Centrelines& lines);
 
 }  // namespace blum

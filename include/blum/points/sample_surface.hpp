@@ -20,8 +20,8 @@ namespace blum {
 struct SampleOptions {
   /// Seed of the random numbers. Different seeds give different points.
   std::uint64_t seed = 0;
-  /// Makes points keep their distance from each other (blue noise). It keeps the most evenly spaced of five times as
-  /// many points, by sample elimination (Yuksel 2015). Takes 3 us per point instead of 0.1.
+  /// True: points are evenly spaced (blue noise). Five times the requested number of points are drawn, and sample
+  /// elimination (Yuksel 2015) keeps the requested number of them. This takes 3 us per point instead of 0.1 us.
   bool blue_noise = false;
 };
 
@@ -31,24 +31,25 @@ struct Description<SampleOptions> {
   static constexpr std::string_view doc = "Options of random points on a surface";
   static constexpr std::tuple members{
       Member{"seed", &SampleOptions::seed, "", "seed of the random numbers", Range::between(0, 0x1p62)},
-      Member{"blue_noise", &SampleOptions::blue_noise, "", "evenly spaced points (blue noise); takes 30 times as long"},
+      Member{"blue_noise", &SampleOptions::blue_noise, "",
+             "evenly spaced points on the surface (blue noise), which take 30 times as long as random points"},
   };
 };
 
 /// Points of a surface. Entry k of each list belongs to point k.
 struct SurfaceSamples {
   std::vector<Vec3d> points;          ///< mesh units
-  std::vector<Vec3d> normals;         ///< unit normal of the triangle, from the order of its corners, counter-clockwise
-  std::vector<TriangleId> triangles;  ///< triangles that contain the points
+  std::vector<Vec3d> normals;         ///< unit normal of the triangle, around which its corners run counter-clockwise
+  std::vector<TriangleId> triangles;  ///< triangle that contains the point
 };
 
-/// Returns random points of a surface, uniform by area. They are independent of each other, unless blue noise is asked
-/// for.
+/// Returns random points of a surface, uniform by area. The points are independent of each other, unless
+/// SampleOptions::blue_noise is true.
 ///
-/// @param mesh   must have a triangle with an area. Its segments and points are ignored.
-/// @param count  number of points, at most 2^31; with blue noise at most a fifth of that.
-/// @return       `count` points in random order. They are the same for the same mesh and seed, for any number of
-/// threads.
+/// @param mesh   must have a triangle of non-zero area. The mesh's segments and points are ignored.
+/// @param count  number of points, at most 2^31; with blue noise at most a fifth of 2^31.
+/// @return       `count` points in random order. The same mesh, count and options give the same points, for any number
+///               of threads.
 /// @throws InvalidMesh if no triangle has an area, OutOfMemory, Cancelled. Cost: O(triangles + count log triangles).
 [[nodiscard]] SurfaceSamples sample_surface(const MeshView& mesh, std::size_t count, const SampleOptions& options = {},
                                             const Context& context = {});
@@ -57,8 +58,8 @@ struct NearSampleOptions {
   /// Standard deviation of the offset from the surface along each axis, mesh units, > 0. Unset: a hundredth of the
   /// diagonal of the mesh's bounds.
   std::optional<double> sigma = {};
-  /// Fraction of the points that are uniform in a box instead of near the surface, 0 to 1. The box is the mesh's
-  /// bounds, made a tenth larger.
+  /// Fraction of the points that are uniformly distributed in a box instead of near the surface, 0 to 1. The box is the
+  /// mesh's bounds, with all sides a tenth longer.
   double in_box = 0;
   std::uint64_t seed = 0;
   /// Method that finds the signs, as for closest_points().
@@ -73,26 +74,28 @@ struct Description<NearSampleOptions> {
       Member{"sigma", &NearSampleOptions::sigma, "mesh units",
              "standard deviation of the offset from the surface along each axis; by default 1/100 of the diagonal",
              Range::positive()},
-      Member{"in_box", &NearSampleOptions::in_box, "fraction of all",
-             "points that are uniform in the bounding box, enlarged by a tenth, instead of near the surface",
+      Member{"in_box", &NearSampleOptions::in_box, "",
+             "fraction of the points that are uniform in the bounding box, enlarged by a tenth, instead of near the "
+             "surface",
              Range::between(0, 1)},
       Member{"seed", &NearSampleOptions::seed, "", "seed of the random numbers", Range::between(0, 0x1p62)},
       Member{"sign", &NearSampleOptions::sign, "", "rule for signs, as for closest points"},
   };
 };
 
-/// Points near a surface, and the closest points of the surface to them. This is the input for learning signed
-/// distances.
+/// Points near a surface, and for each point the closest point of the surface. Models that learn signed distances are
+/// trained with such points.
 struct NearSamples {
   std::vector<Vec3d> points;          ///< mesh units
-  std::vector<ClosestPoint> closest;  ///< of each point, with the signed distance
+  std::vector<ClosestPoint> closest;  ///< for each point: the closest point of the surface, with the signed distance
 };
 
 /// Returns points of a surface, moved by normally distributed offsets, with their exact signed distances.
 ///
-/// @param count  number of points. Those near the surface come first, then those in the box.
-/// @throws as sample_surface() and closest_points(); InvalidOption. The result is the same for any number of threads.
-/// Cost: that of both.
+/// @param count  number of points. The points near the surface come first, then the points in the box.
+/// @return       the points and their distances; they are the same for any number of threads.
+/// @throws as sample_surface() and closest_points(); InvalidOption.
+/// Cost: that of sample_surface() and closest_points().
 [[nodiscard]] NearSamples sample_near(const MeshView& mesh, std::size_t count, const NearSampleOptions& options = {},
                                       const Context& context = {});
 

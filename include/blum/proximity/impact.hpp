@@ -23,9 +23,10 @@ struct FourMovingPoints {
 
 /// Options of continuous collisions.
 struct ImpactOptions {
-  /// Largest time by which a reported impact may precede the true one, as a part of the motion: 2^-40 to 1.
+  /// Largest time by which a reported impact may precede the true one, as a fraction of the motion: 2^-40 to 1.
   double tolerance = 1e-6;
-  /// Distance, in mesh units, at which features meet: 0 to 1e150. At 0, they must have a point in common.
+  /// A vertex and a face, or two edges, meet as soon as their distance is at most this: 0 to 1e150, mesh units. At 0,
+  /// they meet if they have a point in common.
   double min_separation = 0;
 };
 
@@ -37,7 +38,7 @@ struct Description<ImpactOptions> {
       Member{"tolerance", &ImpactOptions::tolerance, "parts of the motion",
              "largest time by which a reported impact may precede the true one", Range::between(0x1p-40, 1)},
       Member{"min_separation", &ImpactOptions::min_separation, "mesh units",
-             "distance at which features meet; 0: they must have a point in common", Range::between(0, 1e150)},
+             "distance at or below which features meet; 0: they must have a point in common", Range::between(0, 1e150)},
   };
 };
 
@@ -47,26 +48,29 @@ void check(const ImpactOptions& options);
 
 /// Returns the first time at which a moving vertex lies in a moving triangle, its border included.
 ///
-/// With a minimum separation, returns the first time at which their distance is at most that.
+/// If options.min_separation is above 0, returns the first time at which the distance of vertex and triangle is at most
+/// options.min_separation.
 ///
-/// The existence of a contact is exact for the given coordinates: none is missed and none is made up, whatever the
-/// motion. Triangles may lose their area and turn over. Points may stay in a plane or in one place.
+/// The existence of a contact is exact for the given coordinates: for every motion, no contact is missed, and no
+/// reported contact is false. Triangles may lose their area and turn over. The four points may stay in one plane, or
+/// not move at all.
 /// @param points  the vertex, then the corners of the triangle.
-/// @return        nullopt if they never meet. Otherwise a time from 0 to 1 that is not after the first contact. It is
-///                at most options.tolerance earlier, plus 2^-52 for rounding.
+/// @return        nullopt if vertex and triangle never meet. Otherwise a time from 0 to 1 that is not after the first
+///                contact. It is earlier by at most options.tolerance plus 2^-52 (rounding).
 /// @throws InvalidMesh if a coordinate is not finite; InvalidOption.
-/// Cost: 0.1 microseconds if simple bounds separate them, 1 for most contacts, some 10 if doubles do not decide.
+/// Cost: 0.1 microseconds if simple bounds separate vertex and triangle, 1 microsecond for most contacts, about 10
+/// microseconds if doubles do not decide.
 /// Method: docs/theory/proximity.md.
 [[nodiscard]] std::optional<double> vertex_face_impact(const FourMovingPoints& points,
                                                        const ImpactOptions& options = {});
 
-/// Returns the first time at which two moving edges have a point in common, their ends included; see
-/// vertex_face_impact().
+/// Returns the first time at which two moving edges, including their ends, have a point in common. For options, errors
+/// and cost see vertex_face_impact().
 /// @param points  the ends of one edge, then those of the other.
 [[nodiscard]] std::optional<double> edge_edge_impact(const FourMovingPoints& points, const ImpactOptions& options = {});
 
-/// Return the times of impact of many vertices and faces, or pairs of edges, with many threads.
-/// @throws Cancelled; as vertex_face_impact().
+/// Return the times of impact of many pairs of a vertex and a face, or of two edges, computed with threads.
+/// @throws Cancelled; otherwise as vertex_face_impact().
 [[nodiscard]] std::vector<std::optional<double>> vertex_face_impacts(std::span<const FourMovingPoints> points,
                                                                      const ImpactOptions& options = {},
                                                                      const Context& context = {});

@@ -14,24 +14,26 @@
 
 namespace blum {
 
-/// Object of a scene: its number, in the order in which objects were added.
+/// Number of an object of a scene, from 0, in the order in which objects were added.
 using ObjectId = Id<struct ObjectTag>;
 
-/// Motion of an object from its present place. Each vertex moves along a straight line, at a constant speed, from time
-/// 0 to time 1. Rotation is treated likewise: vertices move along chords, and are exact at both ends.
+/// Motion of an object from its present position. Each vertex moves along a straight line, at a constant speed, from
+/// time 0 to time 1. If the object rotates, its vertices move along chords instead of arcs, with exact positions at
+/// both ends.
 struct ObjectMotion {
   ObjectId object;
-  std::span<const Vec3d> vertices = {};      ///< At the end, before the transform; empty: as they are.
-  std::optional<RigidTransform> place = {};  ///< At the end; nullopt: where it is.
+  std::span<const Vec3d> vertices = {};      ///< Positions at time 1, before the transform. If empty, vertices stay.
+  std::optional<RigidTransform> place = {};  ///< Transform at time 1. If nullopt, the transform stays.
 };
 
-/// Collisions of two objects, or of one with itself.
+/// Collisions of two objects, or of one object with itself.
 struct ObjectCollisions {
   ObjectId first;
   ObjectId second;
-  std::vector<VertexFaceCollision> vertex_face;  ///< A vertex of the first object and a face of the second.
-  std::vector<VertexFaceCollision> face_vertex;  ///< A vertex of the second object, a face of the first; empty for one.
-  std::vector<EdgeEdgeCollision> edge_edge;      ///< An edge of the first object, then one of the second.
+  std::vector<VertexFaceCollision> vertex_face;  ///< Vertices of the first object, faces of the second object.
+  /// Vertices of the second object, faces of the first; empty if both are one object.
+  std::vector<VertexFaceCollision> face_vertex;
+  std::vector<EdgeEdgeCollision> edge_edge;  ///< Edges of the first object, edges of the second object.
 
   /// Returns the earliest time of impact; nullopt if nothing collides.
   [[nodiscard]] std::optional<double> earliest() const;
@@ -39,8 +41,9 @@ struct ObjectCollisions {
 
 struct SceneCollisions {
   std::vector<ObjectCollisions> objects;  ///< Pairs of objects that collide, by ascending (first, second).
-  std::size_t box_pairs = 0;              ///< Pairs of features whose moving boxes touch.
-  std::size_t exact_tests = 0;            ///< Pairs that were tested, because no direction separates them.
+  std::size_t box_pairs = 0;              ///< Pairs of a vertex and a face, or of two edges, whose moving boxes touch.
+  /// Number of the pairs in `box_pairs` that were tested exactly, because no examined direction separates them.
+  std::size_t exact_tests = 0;
   std::vector<PhaseTime> phases;
 
   /// Returns the earliest time of impact; nullopt if nothing collides.

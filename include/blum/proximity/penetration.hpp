@@ -16,9 +16,9 @@
 namespace blum {
 
 struct PenetrationOptions {
-  /// Largest excess of the true depth over the reported one, as a part of it: 1e-6 to 1. If 200,000 points do not
-  /// suffice to show that, the reported bound is larger. This happens for parts of curved surfaces that are much wider
-  /// than deep.
+  /// Largest excess of the true depth over the reported depth, as a fraction of the reported depth: 1e-6 to 1. The
+  /// search ends after 200,000 points; then Penetration::depth_bound may be larger. This happens if a common part is
+  /// bounded by curved surfaces and is much wider than deep.
   double depth_tolerance = 0.01;
 };
 
@@ -28,7 +28,7 @@ struct Description<PenetrationOptions> {
   static constexpr std::string_view doc = "Precision of penetration depths";
   static constexpr std::tuple members{
       Member{"depth_tolerance", &PenetrationOptions::depth_tolerance, "parts of the depth",
-             "largest excess of the true depth over the reported one", Range::between(1e-6, 1)},
+             "largest excess of the true depth over the reported depth", Range::between(1e-6, 1)},
   };
 };
 
@@ -38,36 +38,37 @@ void check(const PenetrationOptions& options);
 
 /// Connected part of the overlap of two solids.
 ///
-/// Its border consists of two sides, each the part of one solid's surface that lies in the other solid. The depth is
-/// the largest distance of a point of one side from the other side (Sud 2006, ch. 4: local penetration depth). It is
-/// not the shortest separating translation: moving by it brings the deepest point to the other side, but others may
-/// stay inside. Surfaces outside the part do not count. If surfaces coincide, the depth is the limit for an
-/// infinitesimal displacement.
+/// Its border consists of two sides. Each side is the part of one solid's surface that lies in the other solid. The
+/// depth is the largest distance of a point of one side from the other side (Sud 2006, ch. 4: local penetration depth).
+/// It is not the length of the shortest translation that separates the solids. A translation by the depth brings the
+/// deepest point to the other side, but other points may remain in the other solid. Surfaces that do not bound this
+/// part do not count. If surfaces coincide, the depth is its limit as the displacement of one solid tends to zero.
 struct Penetration {
   ObjectId first_object;
   ObjectId second_object;
   double depth = 0;        ///< Mesh units; distance of `deep_point` and `surface_point`.
   double depth_bound = 0;  ///< Upper bound on the true depth, proven except for rounding.
-  /// Unit vector. Moving the first object by `depth` in this direction brings the deepest point to the surface.
+  /// Unit vector. If the first object moves by `depth` in this direction, `deep_point` and `surface_point` coincide.
   Vec3d direction;
-  Vec3d deep_point;                    ///< Deepest point of the surface of one object in the other one.
-  Vec3d surface_point;                 ///< Closest point to it on the surface of the other object.
-  bool is_first_deep = false;          ///< True if the deepest point belongs to the first object, else to the second.
-  std::uint32_t deep_triangle = 0;     ///< Triangle of its object that contains `deep_point`.
+  Vec3d deep_point;            ///< Deepest point: a point of one object's surface in the other object.
+  Vec3d surface_point;         ///< Point of the other object's surface that is closest to `deep_point`.
+  bool is_first_deep = false;  ///< True if `deep_point` lies on the first object's surface, false if on the second's.
+  /// Triangle that contains `deep_point`, in the object whose surface that point lies on.
+  std::uint32_t deep_triangle = 0;
   std::uint32_t surface_triangle = 0;  ///< Triangle of the other object that contains `surface_point`.
-  /// Areas of the sides of the first and the second object, square mesh units. If an object is compared with itself,
-  /// the first entry contains both.
+  /// Area of the side that belongs to the first object, then of the other side, square mesh units. If an object is
+  /// compared with itself, the first entry is the sum of both areas.
   std::array<double, 2> area{};
-  double volume = 0;  ///< Cubic mesh units.
-  /// Curves in which the surfaces cross. Each ends where it began. They are simple closed curves, unless more than two
-  /// parts meet on them.
+  double volume = 0;  ///< Volume of the common part, cubic mesh units.
+  /// Curves in which the surfaces cross. A curve is closed and ends with its first point, unless it meets other curves.
+  /// In that case, it ends at the points where they meet.
   std::vector<std::vector<Vec3d>> curves;
 };
 
-/// Overlaps of solids, as connected parts, for each pair the deepest first.
+/// Connected parts of the overlaps of pairs of solids. For each pair of objects, the deepest part is first.
 struct Penetrations {
   std::vector<Penetration> parts;
-  std::size_t object_pairs = 0;  ///< Compared pairs; an object with itself is one.
+  std::size_t object_pairs = 0;  ///< Compared pairs. An object compared with itself counts as a pair.
   std::vector<PhaseTime> phases;
 };
 

@@ -22,7 +22,7 @@ struct ShapeInfo {
   std::string name;
   std::string description;  ///< one line
   std::vector<ShapeParameter> parameters;
-  /// Makes the mesh. All parameters must be given and in range; make_shape() takes care of both.
+  /// Makes the mesh. All parameters must be given and in range; make_shape() adds defaults and checks ranges.
   std::function<TriangleMesh(const ShapeParameters&)> make;
   /// Returns the Betti numbers of the solid (components, tunnels, voids), known from the construction. They are unset
   /// if the mesh does not bound a solid: open surfaces, soups, segments, points.
@@ -32,18 +32,19 @@ struct ShapeInfo {
 /// Returns all shapes, sorted by name.
 [[nodiscard]] const std::vector<ShapeInfo>& shape_catalog();
 
-/// Returns the shape of that name. @throws InvalidOption that lists the known names.
+/// Returns the shape with the given name.
+/// @throws InvalidOption if no shape has the name; the message lists the known names.
 [[nodiscard]] const ShapeInfo& find_shape(std::string_view name);
 
-/// Returns the parameters of a shape, with defaults for those not given.
-/// @throws InvalidOption if a parameter is unknown, out of range or not a whole number although it must be. The message
-/// lists the shape's parameters and ranges.
+/// Returns values for all parameters of a shape: the given ones, and defaults for the others.
+/// @throws InvalidOption if a parameter is unknown or out of range, or if it must be a whole number and is not. The
+/// message lists the shape's parameters and ranges.
 [[nodiscard]] ShapeParameters complete_parameters(const ShapeInfo& shape, const ShapeParameters& given);
 
-/// Generates a shape by name; see generators.hpp for each. Numbers are the same on every platform, up to the last bits
-/// of its sine and cosine.
-/// @throws InvalidOption as above, and for parameters that contradict each other. Examples are holes that overlap, a
-/// tube thicker than its ring, or more than 50 million triangles.
+/// Generates the shape with the given name; generators.hpp describes the shapes. Coordinates are the same on every
+/// platform, except for the last bits of sines and cosines.
+/// @throws InvalidOption as find_shape() and complete_parameters(), and for more than 50 million triangles. It is also
+/// thrown for parameters that contradict each other: for example, a tube thicker than its ring, or holes that overlap.
 [[nodiscard]] TriangleMesh make_shape(std::string_view name, const ShapeParameters& parameters = {});
 
 }  // namespace blum

@@ -19,47 +19,52 @@
 
 namespace blum {
 
-/// Cell of a model that does not correspond to a cell of the voxels.
+/// Cell of a cellular model that is not a cell of the lattice of voxels.
 struct ExtraCell {
-  /// End of an interval on a line between two nodes.
+  /// End of an interval on the segment between two neighbouring nodes.
   struct End {
     Vec3d point;                                 ///< Mesh units.
-    std::optional<std::uint32_t> triangle = {};  ///< Triangle of the surface; none if a node of the grid is the end.
+    std::optional<std::uint32_t> triangle = {};  ///< Triangle of the surface at this end; none if the end is a node.
   };
   int dimension = 0;  ///< 0 to 3.
-  /// Cell of the voxels at this place; none if cubes of the model were split there.
+  /// Cell of the lattice of voxels to which this cell corresponds; none if cubes of the model were split there.
   std::optional<Cell> place = {};
   Vec3d witness;            ///< Point of the component of the solid that the cell represents, mesh units.
-  std::optional<Box3> box;  ///< Vertices in split cubes: what is left of the cube, mesh units.
-  std::array<End, 2> ends;  ///< Polygons: ends of the interval that it represents.
+  std::optional<Box3> box;  ///< For vertices in split cubes: the part of the cube in which the vertex lies, mesh units.
+  std::array<End, 2> ends;  ///< For polygons: ends of the interval that the polygon represents.
 };
 
-/// Cellular model of a body (see CellularModel) over a grid. It consists of the closed voxels around the nodes inside,
-/// and of the differences from their union. Where walls or gaps are thinner than a voxel, the model has cells that no
-/// voxel has, or several cells in place of one. All other cells are cells of the lattice of voxels. A node inside is a
-/// voxel, a line between nodes a square, a square of the grid an edge, and a cube a vertex.
+/// Cellular model of a body (see CellularModel) over a grid. It is stored in two parts. The first part is the set of
+/// voxels whose nodes are inside the body. The second part is the list of cells in which the model differs from the
+/// union of these closed voxels. Where walls or gaps are thinner than a voxel, the model has extra cells. An extra cell
+/// belongs to no voxel, or is one of several cells that replace one cell of the lattice. All other cells of the model
+/// are cells of the lattice of voxels. In this lattice, a voxel stands for a node inside the body, and a square stands
+/// for an edge of the grid. An edge of the lattice stands for a square of the grid, and a vertex for a cube of the
+/// grid.
 struct BodyCells {
   CellLattice lattice;         ///< Lattice of the voxels. Voxel (i, j, k) surrounds node (i, j, k) of the grid.
-  VoxelSet inside;             ///< Nodes inside. Exact, with ties broken as in CellularModel.
-  std::vector<Cell> replaced;  ///< Cells of the voxels that extra cells replace in the model, ascending.
+  VoxelSet inside;             ///< Nodes inside the body; exact. Ties: docs/theory/solid.md.
+  std::vector<Cell> replaced;  ///< Cells of `lattice` that extra cells replace in the model, ascending.
   std::vector<ExtraCell> extra;
-  /// Faces of each extra cell, of one dimension less. Numbers below `first` are cells of the lattice; others are
-  /// `first` plus the number of an extra cell.
+  /// For each extra cell, its faces: the cells of one dimension less in its border. A number below `first` is a cell of
+  /// `lattice`. Any other number is `first` plus an index in `extra`.
   IndexRows faces;
   std::uint32_t first = 0;
-  /// Pairs of an extra cell and a cell of the lattice of which it is a face: numbers of both.
+  /// Pairs of an extra cell (index in `extra`) and a cell of `lattice` that has the extra cell as a face.
   std::vector<std::array<std::uint32_t, 2>> cofaces;
 
-  /// Places where a component is not contractible. If any exists, the model does not have the body's homotopy type.
+  /// Boxes in which a component of the body is not contractible. If any exists, the model does not have the body's
+  /// homotopy type.
   std::vector<ModelFailure> failures;
 };
 
 /// Computes the cellular model of a body.
 /// @param body  closed, manifold, without self-intersections, facing outwards.
-/// @param grid  its axes are those of space. All of the body lies more than one step inside its outermost nodes.
-/// @param finer  boxes in which the model must be finer than necessary, mesh units. Boxes of the model that contain
-///               part of the surface, and share inner points with one of these, are split. This ends when no side is
-///               longer than about a quarter of the longest side of that box.
+/// @param grid  its axes must be the coordinate axes. The body must lie in the box of the outermost nodes, more than
+///              one step away from its sides.
+/// @param finer  boxes in which the model must be finer than necessary, mesh units. A box of the model is split if it
+///               contains part of the surface and overlaps one of the boxes in `finer`. Splitting ends when the longest
+///               side of the model's box is at most about a quarter of the longest side of the box in `finer`.
 /// @throws InvalidMesh, InvalidGrid, OutOfMemory, Cancelled as Solid::model().
 /// Cost: that of Solid::model().
 [[nodiscard]] BodyCells body_cells(const TriangleMesh& body, const GridSpec& grid, std::span<const Box3> finer,

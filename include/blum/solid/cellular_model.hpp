@@ -28,9 +28,10 @@ struct CellularModelOptions {
   int resolution = 64;
   /// Side of a cube, > 0, mesh units. Replaces `resolution`.
   std::optional<double> spacing = {};
-  /// Shift of the grid along each axis, 0 to 1 cube. If a place fails, another shift may pass.
+  /// Shift of the grid along each axis, in sides of a cube, 0 to 1. If the test fails in a cube, it may pass with
+  /// another shift.
   double shift = 0.381966;
-  /// Largest number of splits of a failing cube, 0 to 200.
+  /// Largest number of successive splits that lead from a failing cube to a box, 0 to 200.
   int most_splits = 60;
 };
 
@@ -44,17 +45,19 @@ struct Description<CellularModelOptions> {
       Member{"spacing", &CellularModelOptions::spacing, "mesh units", "side of a cube, instead of the resolution",
              Range::positive()},
       Member{"shift", &CellularModelOptions::shift, "cubes",
-             "shift of the grid along each axis: if a place fails, another shift may pass", Range::between(0, 1)},
-      Member{"most_splits", &CellularModelOptions::most_splits, "", "largest number of splits of a cube that fails",
+             "shift of the grid along each axis; if a cube fails the test, another may help", Range::between(0, 1)},
+      Member{"most_splits", &CellularModelOptions::most_splits, "", "most successive splits of a cube that fails",
              Range::between(0, 200)},
   };
 };
 
-/// Reason why a cell does not pass.
+/// Reason why a box does not pass the test of CellularModel.
 enum class ModelObstacle : std::uint8_t {
-  hole_in_square,  ///< The solid has a hole within a side of the box, for example an empty needle that no split opens.
-  slanted_needle,  ///< Such a hole is slanted, and thousands of splits would not open it.
-  handle,          ///< A component in the box has a tunnel, or an inner boundary.
+  hole_in_square,  ///< In a side of the box, the solid has a hole, for example the cross-section of an empty needle
+                   ///< that no split opens.
+  slanted_needle,  ///< As `hole_in_square`, but the needle is slanted, and more than ModelFailure::most_cuts splits
+                   ///< would be needed to open it.
+  handle,          ///< A component of the solid in the box has a tunnel, or an inner boundary.
   void_in_cube     ///< A void lies wholly inside the box.
 };
 
@@ -67,15 +70,16 @@ struct Description<ModelObstacle> {
                                      NamedValue{ModelObstacle::void_in_cube, "void in cube"}};
 };
 
-/// Box in which a component of the solid is not contractible, and that could not be split further.
+/// Box in which a component of the solid is not contractible. The box could not be split further.
 struct ModelFailure {
   Vec3d low{};   ///< Corner, mesh units.
   Vec3d high{};  ///< Opposite corner.
   ModelObstacle obstacle = ModelObstacle::handle;
-  double cuts = 0;  ///< For `slanted_needle`: splits to open it in this box; half as many at half the size.
+  double cuts = 0;  ///< For `slanted_needle`: number of splits that would open the needle in this box. A box of half
+                    ///< the size needs half this number.
 
-  /// A split opens a hole over the length for which the hole stays in its plane: its width divided by its slant. If one
-  /// box needs more splits than this, none is made.
+  /// Largest number of splits of a box that are made to open a slanted needle. If more splits are needed, none is made.
+  /// Each split opens a part of the needle. The length of this part is the needle's width divided by its slant.
   static constexpr double most_cuts = 8192;
 };
 
@@ -86,21 +90,22 @@ struct Description<ModelFailure> {
   static constexpr std::tuple members{
       Member{"low", &ModelFailure::low, "mesh units", "corner of the box"},
       Member{"high", &ModelFailure::high, "mesh units", "opposite corner"},
-      Member{"obstacle", &ModelFailure::obstacle, "", "reason why it does not pass"},
-      Member{"cuts", &ModelFailure::cuts, "", "slanted needle: splits that open it in this box"},
+      Member{"obstacle", &ModelFailure::obstacle, "", "reason why the component is not contractible"},
+      Member{"cuts", &ModelFailure::cuts, "", "slanted needle: number of splits that would open it in this box"},
   };
 };
 
 struct CellularModelReport {
-  bool passes = false;        ///< True if every component in a cell is contractible, which proves the homotopy type.
-  GridSpec grid;              ///< Corners of the cubes.
-  std::size_t cut_cubes = 0;  ///< Cubes that the surface meets.
-  std::size_t failing_cubes = 0;        ///< Cubes of these that had to be split.
-  std::size_t boxes = 0;                ///< Boxes into which these were split.
-  int splits = 0;                       ///< Largest number of splits that led to a box.
-  std::array<std::int64_t, 4> cells{};  ///< Vertices, edges, polygons and polyhedra of the model.
-  std::int64_t euler = 0;               ///< Their alternating sum: components less tunnels plus voids.
-  std::vector<ModelFailure> failures;   ///< Places that do not pass.
+  /// True if, in every cube and box, each component of the solid is contractible. This proves the homotopy type.
+  bool passes = false;
+  GridSpec grid;                        ///< Grid whose nodes are the corners of the cubes.
+  std::size_t cut_cubes = 0;            ///< Number of cubes that the surface meets.
+  std::size_t failing_cubes = 0;        ///< Number of cubes that had to be split.
+  std::size_t boxes = 0;                ///< Number of boxes into which failing cubes were split.
+  int splits = 0;                       ///< Largest number of successive splits that led to a box.
+  std::array<std::int64_t, 4> cells{};  ///< Numbers of vertices, edges, polygons and polyhedra of the model.
+  std::int64_t euler = 0;               ///< Alternating sum of `cells`: components - tunnels + voids.
+  std::vector<ModelFailure> failures;   ///< Boxes that do not pass.
   std::vector<PhaseTime> phases;        ///< Seconds.
 };
 
@@ -110,34 +115,35 @@ struct Description<CellularModelReport> {
   static constexpr std::string_view doc = "Counts of a cellular model, and the result of its check";
   static constexpr std::tuple members{
       Member{"passes", &CellularModelReport::passes, "",
-             "whether every component in a cell is contractible, so that the model has the solid's homotopy type"},
-      Member{"grid", &CellularModelReport::grid, "", "corners of the cubes"},
+             "true if every component in a cell is contractible: then the model has the solid's homotopy type"},
+      Member{"grid", &CellularModelReport::grid, "", "grid whose nodes are the corners of the cubes"},
       Member{"cut_cubes", &CellularModelReport::cut_cubes, "", "cubes that the surface meets"},
-      Member{"failing_cubes", &CellularModelReport::failing_cubes, "", "those of these that had to be split"},
-      Member{"boxes", &CellularModelReport::boxes, "", "boxes of these cubes after splitting"},
-      Member{"splits", &CellularModelReport::splits, "", "largest number of splits of a box"},
+      Member{"failing_cubes", &CellularModelReport::failing_cubes, "", "number of cubes that had to be split"},
+      Member{"boxes", &CellularModelReport::boxes, "", "number of boxes from these splits"},
+      Member{"splits", &CellularModelReport::splits, "", "largest number of successive splits"},
       Member{"cells", &CellularModelReport::cells, "", "vertices, edges, polygons, polyhedra of the model"},
-      Member{"euler", &CellularModelReport::euler, "", "their alternating sum: components - tunnels + voids"},
-      Member{"failures", &CellularModelReport::failures, "", "places that do not pass"},
+      Member{"euler", &CellularModelReport::euler, "", "alternating sum of the cells: components - tunnels + voids"},
+      Member{"failures", &CellularModelReport::failures, "", "boxes that fail the test"},
       Member{"seconds", &CellularModelReport::phases, "s", "wall-clock time of each phase"},
   };
 };
 
 /// Regular cell complex with the homotopy type of a polyhedron, at any resolution.
 ///
-/// A grid of cubes cuts the solid. The model has a vertex for each connected component of the solid in a cube, and an
-/// edge for each in a square between cubes. It has a polygon for each interval of a grid edge inside the solid, and a
-/// polyhedron for each grid node inside. If all components are contractible, the model is homotopy equivalent to the
-/// solid. Exact local tests decide this, and cubes that fail are split until they pass. Walls, gaps and tunnels may be
-/// thinner than a cube. Theorem and proof: docs/theory/solid.md.
+/// A grid of cubes cuts the solid. The model has a vertex for each connected component of the solid in a cube. It has
+/// an edge for each connected component in a square between two cubes. It has a polygon for each interval of a grid
+/// edge inside the solid, and a polyhedron for each grid node inside. If all components are contractible, the model is
+/// homotopy equivalent to the solid. An exact test in each cube decides if the components in it are contractible. A
+/// cube that fails the test is split into boxes until every box passes, or until CellularModelOptions::most_splits is
+/// reached. Walls, gaps and tunnels may be thinner than a cube. Theorem and proof: docs/theory/solid.md.
 class CellularModel {
  public:
   [[nodiscard]] const CellularModelReport& report() const;
 
-  /// Returns the model after collapses from outside, as far as free cells exist. The result has vertices, edges and
-  /// triangles with the same homotopy type, and their corners lie in the solid. Mesh units.
+  /// Collapses the model from outside until no free cell is left, and returns the result in mesh units. The result
+  /// consists of vertices, edges and triangles, and has the homotopy type of the model. All vertices lie in the solid.
   /// @throws Cancelled; OutOfMemory.
-  /// Cost: near-linear in the cells; about 0.3 us and 100 bytes each.
+  /// Cost: near-linear in the number of cells of the model; about 0.3 us and 100 bytes per cell.
   [[nodiscard]] Complex complex(const Context& context = {}) const;
 
   /// Returns the components, tunnels and voids of the model, from the homology of complex().
@@ -150,7 +156,7 @@ class CellularModel {
   struct Data;
   explicit CellularModel(std::shared_ptr<const Data> data);
   /// Computes Solid::model().
-  /// @param groups  group of each body. Bodies of one group do not touch each other.
+  /// @param groups  number of the group of each body. Bodies of one group do not touch each other.
   static CellularModel of(const Solid& solid, const std::vector<std::uint32_t>& groups,
                           const CellularModelOptions& options, const Context& context);
   std::shared_ptr<const Data> data_;

@@ -15,17 +15,18 @@ struct OrientedMesh {
   std::size_t reversed_shells = 0;     ///< Shells that faced the solid as a whole.
 };
 
-/// Returns the same triangles, in their order, all facing away from the solid that they bound. First, triangles that
-/// disagree with most of their shell are reversed, then shells that face the solid. Voids are shells at odd depth, as
-/// in Shell. The set of points and the numbers of vertices, edges and triangles stay the same.
+/// Returns the triangles of a mesh in their order, all facing away from the solid that they bound. First, triangles
+/// that face another way than most of their shell are reversed. Then, shells that face the solid are reversed. Shells
+/// at odd depth (Shell::depth) bound voids. The surface as a set of points does not change, and neither do the indices
+/// of vertices, edges and triangles.
 ///
-/// If half of a shell's triangles face one way and half the other, its triangle with the smallest number decides.
+/// If half of a shell's triangles face one way and half the other way, the triangle with the smallest index decides.
 ///
-/// @param mesh  closed and manifold: each edge has two triangles. Crossings are not checked. If shells cross, their
-///              triangles with the smallest numbers decide which one lies in the other.
-/// @throws InvalidMesh if it is not, or has only one side, like a Klein bottle. Also if a shell encloses no volume (or
-/// none that a double represents), or shells coincide, so that each lies in the other. Cancelled.
-/// Cost: that of topology(), twice if triangles disagree.
+/// @param mesh  closed and manifold: each edge has two triangles. Crossings are not checked. If two shells cross, the
+///              triangle with the smallest index in each shell decides which shell counts as inside the other.
+/// @throws InvalidMesh if the mesh is not closed and manifold, or has only one side, like a Klein bottle. It is also
+/// thrown if a shell encloses no volume (or a volume that no double represents), or if two shells coincide. Cancelled.
+/// Cost: that of topology(), or twice that if triangles of a shell face different ways.
 [[nodiscard]] OrientedMesh oriented_mesh(const MeshView& mesh, const Context& context = {});
 
 }  // namespace blum

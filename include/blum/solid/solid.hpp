@@ -32,12 +32,12 @@ namespace blum {
 
 /// Closed shell of the surface of a polyhedron.
 struct SolidShell {
-  std::uint32_t body = 0;                    ///< Body that it bounds from outside, or of which it is a void.
-  std::uint32_t depth = 0;                   ///< Number of other shells that contain it. At odd depth it is a void.
-  std::optional<std::uint32_t> parent = {};  ///< Innermost shell that contains it.
+  std::uint32_t body = 0;   ///< Body whose outer shell this is, or in which this shell bounds a void.
+  std::uint32_t depth = 0;  ///< Number of other shells that contain this one. If odd, this shell bounds a void.
+  std::optional<std::uint32_t> parent = {};  ///< Innermost shell that contains this one, if any does.
   std::int64_t genus = 0;                    ///< Number of handles.
   double volume = 0;                         ///< Enclosed volume, > 0, cubic mesh units.
-  bool is_reversed = false;                  ///< True if it faced the solid in the input.
+  bool is_reversed = false;                  ///< True if the shell faced the solid in the input.
 };
 
 template <>
@@ -45,60 +45,63 @@ struct Description<SolidShell> {
   static constexpr std::string_view name = "SolidShell";
   static constexpr std::string_view doc = "Closed shell of the surface of a polyhedron";
   static constexpr std::tuple members{
-      Member{"body", &SolidShell::body, "", "body that it bounds from outside, or has as a void"},
-      Member{"depth", &SolidShell::depth, "", "number of other shells around it; it is a void at odd depth"},
-      Member{"parent", &SolidShell::parent, "", "innermost shell around it"},
+      Member{"body", &SolidShell::body, "", "body whose outer shell this is, or in which it bounds a void"},
+      Member{"depth", &SolidShell::depth, "", "number of other shells that contain it; if odd, it bounds a void"},
+      Member{"parent", &SolidShell::parent, "", "innermost other shell that contains this one"},
       Member{"genus", &SolidShell::genus, "", "number of handles"},
       Member{"volume", &SolidShell::volume, "cubic mesh units", "enclosed volume, > 0"},
       Member{"is_reversed", &SolidShell::is_reversed, "", "true if it faced the solid in the input"}};
 };
 
-/// Connected part of a solid, or the whole of it, and the triangles of the input around it.
+/// Body of a mesh: a connected part of a polyhedron, or all of a solid with SolidRule::winding. It stores the triangles
+/// of the input that bound the body.
 struct SolidBody {
-  /// Marks a vertex that the input does not have, because triangles crossed there.
+  /// Value of `vertex_of` for a vertex that the input does not have, because triangles crossed there.
   static constexpr std::uint32_t no_vertex = ResolvedMesh::no_vertex;
 
   TriangleMesh mesh;
-  std::vector<std::uint32_t> vertex_of;    ///< Vertex of the input for each vertex of `mesh`; or no_vertex.
-  std::vector<std::uint32_t> triangle_of;  ///< Triangle of the input of which each triangle of `mesh` is a part.
+  std::vector<std::uint32_t> vertex_of;    ///< For each vertex of `mesh`: its index in the input, or no_vertex.
+  std::vector<std::uint32_t> triangle_of;  ///< For each triangle of `mesh`: the input's triangle that contains it.
   BettiNumbers betti{};                    ///< SolidRule::polyhedron: Betti numbers of the body.
-  std::vector<std::uint32_t> shells;       ///< SolidRule::polyhedron: the outer shell, then its voids, ascending.
+  std::vector<std::uint32_t> shells;  ///< SolidRule::polyhedron: the outer shell, then the shells of voids, ascending.
 
-  /// Returns the site of the input that a site of `mesh` represents. If crossings were resolved, new vertices and edges
-  /// represent a face that contains them, up to the rounding of their coordinates.
+  /// Returns the site of the input that a site of `mesh` represents. If crossings were resolved, the result for a new
+  /// vertex or edge is a face of the input. Up to rounding of coordinates, this face contains the vertex or edge.
   [[nodiscard]] SiteId input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const;
 };
 
 /// Surface of a solid as one mesh.
 struct SolidSurface {
-  /// The surface of a polyhedron faces away from it. Its triangles are those of the input in their order, with the
-  /// second and third corner of some exchanged. If crossings were resolved, they are the resulting triangles.
+  /// The surface of a polyhedron faces away from the solid. Its triangles are those of the input in their order, with
+  /// the second and third corner of some triangles exchanged. If crossings were resolved, the triangles are those of
+  /// ResolvedMesh.
   TriangleMesh mesh;
-  /// If crossings were resolved: vertex of the input for each vertex, or SolidBody::no_vertex. Otherwise empty, because
-  /// numbers stay.
+  /// If crossings were resolved: for each vertex, its index in the input, or SolidBody::no_vertex. Otherwise empty,
+  /// because indices are those of the input.
   std::vector<std::uint32_t> vertex_of;
-  /// If crossings were resolved: triangle of the input of which each triangle is a part. Otherwise empty.
+  /// If crossings were resolved: for each triangle, the triangle of the input that contains it. Otherwise empty.
   std::vector<std::uint32_t> triangle_of;
 };
 
-/// Solid that a mesh or an image represents: the rule for its inside, its bodies and their topology. It is computed
-/// once and passed on. Copies share the data, and many threads may read it at once.
+/// Solid that a mesh or an image represents. This class stores the rule that decides which points are inside, the
+/// bodies of the solid, and their topology. Compute a Solid once and pass it to all functions that need one. Copies
+/// share their data, and many threads may read it at the same time.
 ///
-/// For SolidRule::winding, the nodes of a grid that are inside depend on the grid. They are not part of the solid;
-/// voxels_inside() computes them from the signs of fields.
+/// For SolidRule::winding, this class does not store voxels, because voxels depend on a grid. Call voxels_inside() for
+/// the voxels of a grid that are inside.
 class Solid {
  public:
   /// Returns the solid of a mesh.
   ///
-  /// Closed, manifold meshes that do not cross themselves are polyhedra (SolidRule::polyhedron), shell by shell. Each
-  /// outer shell and the voids in it are one body, and bodies may touch. Triangles that face another way than most of
-  /// their shell are reversed, and so are shells that face the solid. Closed meshes that cross, overlap or touch
-  /// themselves become such meshes if resolve_crossings() succeeds. The solid is then where their winding number is 1
-  /// or more. The solid of other meshes is where that is above 1/2 (SolidRule::winding). The mesh is not needed
-  /// afterwards.
+  /// A closed, manifold mesh that does not cross itself bounds a polyhedron (SolidRule::polyhedron). Each outer shell,
+  /// with the shells of the voids in it, bounds one body. Bodies may touch each other. Triangles that face another way
+  /// than most of their shell are reversed, and so are shells that face the solid. If a closed mesh crosses, overlaps
+  /// or touches itself, resolve_crossings() is called. If this succeeds, the solid is the polyhedron of the points with
+  /// a winding number of 1 or more. For all other meshes, the solid consists of the points with a winding number above
+  /// 1/2 (SolidRule::winding). The mesh is not needed after the call.
   /// @throws InvalidMesh if validate(mesh) fails or no triangle exists; Cancelled.
-  /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh. If it crosses itself, also that of
-  /// resolve_crossings() and of both again.
+  /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh. If the mesh crosses itself, also
+  /// that of resolve_crossings(), and of topology() and find_self_intersections() for its result.
   [[nodiscard]] static Solid of(const MeshView& mesh, const Context& context = {});
 
   /// Returns the union of the selected, closed voxels of an image. Voxels that touch in a corner belong to one body.
@@ -110,35 +113,37 @@ class Solid {
   /// Returns one sentence: the reason for this rule.
   [[nodiscard]] const std::string& reason() const;
 
-  /// Returns the reason why a mesh does not bound bodies that do not touch, in one sentence with advice. Empty if it
-  /// does. Not empty if rule() is SolidRule::winding or SolidRule::voxels. Also not empty if bodies touch in more than
-  /// vertices or edges with the same positions.
+  /// Returns an empty string if the solid is a polyhedron whose bodies do not touch. Otherwise returns one sentence
+  /// with the reason and advice. Contacts in vertices or edges at the same positions are ignored here; check_manifold()
+  /// reports them. For SolidRule::winding and SolidRule::voxels, the string is never empty.
   [[nodiscard]] const std::string& problem() const;
 
-  /// Returns components, tunnels and voids of the whole solid. Returns nullopt for SolidRule::winding, where only
-  /// voxels have such numbers.
+  /// Returns the numbers of components, tunnels and voids of the whole solid. Returns nullopt for SolidRule::winding,
+  /// because these numbers then depend on a grid of voxels.
   [[nodiscard]] std::optional<BettiNumbers> betti() const;
-  /// Returns the bodies. Those of polyhedra face outwards. SolidRule::winding: one, of all triangles. Images: none.
+  /// Returns the bodies. Those of a polyhedron face outwards. SolidRule::winding: one body with all triangles. Images:
+  /// none.
   [[nodiscard]] std::span<const SolidBody> bodies() const&;
   std::span<const SolidBody> bodies() const&& = delete;  // they are part of the solid
-  /// Returns the surface of all bodies of a mesh, or the whole mesh if it bounds none. Images: empty.
+  /// Returns the surface of all bodies of a polyhedron. SolidRule::winding: the whole mesh. Images: empty.
   [[nodiscard]] const SolidSurface& surface() const&;
   const SolidSurface& surface() const&& = delete;
   /// Returns the topology of the input mesh, before any reversal or resolution. Images: zeros.
   [[nodiscard]] const Topology& topology() const&;
   const Topology& topology() const&& = delete;
-  /// Returns the shells of a polyhedron in the order of their smallest triangles. Otherwise none.
+  /// Returns the shells of a polyhedron in the order of their smallest triangles. Other rules: none.
   [[nodiscard]] std::span<const SolidShell> shells() const&;
   std::span<const SolidShell> shells() const&& = delete;
   /// Returns the number of shells that faced the solid and were reversed.
   [[nodiscard]] std::size_t reversed_shells() const;
   /// Returns the number of triangles that faced another way than most of their shell and were reversed.
   [[nodiscard]] std::size_t reversed_triangles() const;
-  /// Returns counts of the defects that were resolved to make the mesh a polyhedron. Returns nullopt if no defect
-  /// exists, or if defects were not resolved; then reason() gives the cause.
+  /// Returns counts of the defects that were resolved to make the mesh a polyhedron. Returns nullopt if the mesh has no
+  /// defects, or if they were not resolved. In the latter case, reason() gives the cause.
   [[nodiscard]] const std::optional<CrossingCounts>& resolved() const;
-  /// SolidRule::winding: returns true if the triangles face inwards as a whole, so that hardly anything is inside.
-  /// Reversing all triangles helps. The sign of the volume between them and the middle of their box decides.
+  /// SolidRule::winding: returns true if the triangles face inwards as a whole, so that almost no point is inside. The
+  /// remedy is to reverse all triangles. The sign of the volume between the triangles and the middle of their box
+  /// decides.
   [[nodiscard]] bool faces_inwards() const;
 
   /// Returns the box around the input mesh, mesh units. Images: the box of all voxels, selected or not.
@@ -152,18 +157,21 @@ class Solid {
 
   /// Returns true if a point lies in the solid.
   ///
-  /// For closed and consistently oriented meshes the result is exact, for coordinates of magnitude 1e-80 to 1e100 or 0.
-  /// It counts crossings of a ray. Points on the surface of a polyhedron lie in it. Other meshes use
-  /// WindingNumber::is_inside(). For images it is exact up to the rounding of the grid's coordinates; voxels are
-  /// closed.
+  /// For closed and consistently oriented meshes, crossings of a ray are counted. The result is then exact if all
+  /// coordinates are 0 or have magnitudes of 1e-80 to 1e100. Points on the surface of a polyhedron count as inside. For
+  /// other meshes, the result is that of WindingNumber::is_inside(). For images, the result is exact up to the rounding
+  /// of the grid's coordinates, and voxels include their borders.
   /// @param p  finite.
   /// Cost: about a microsecond. The first call also builds a search structure.
   [[nodiscard]] bool inside(const Vec3d& p) const;
 
-  /// Returns a cell complex with the homotopy type of a polyhedron. Its report() states whether that is proven.
-  /// @throws InvalidOption, also for an image, whose voxels are such a complex. InvalidMesh for SolidRule::winding, or
-  /// if coordinates lie further apart than 45 orders of magnitude. InvalidGrid, OutOfMemory, Cancelled.
-  /// Cost: linear in triangles, and in the cubes that the surface meets; 3 bytes per cube of the box.
+  /// Returns a cell complex with the homotopy type of a polyhedron. CellularModel::report() states if this homotopy
+  /// type is proven.
+  /// @throws InvalidOption, also for an image, because its voxels already are such a complex. InvalidMesh for
+  /// SolidRule::winding, or if a coordinate is not 0 but smaller than the largest one by more than 45 orders of
+  /// magnitude. InvalidGrid, OutOfMemory, Cancelled.
+  /// Cost: linear in the number of triangles, and of cubes that the surface meets; 3 bytes of memory per cube of the
+  /// grid.
   [[nodiscard]] CellularModel model(const CellularModelOptions& options = {}, const Context& context = {}) const;
 
  private:
@@ -173,8 +181,8 @@ class Solid {
 };
 
 /// Checks that a solid is a polyhedron whose surface is a manifold without contacts.
-/// @throws InvalidMesh if it is not: if vertices or edges of it have the same positions, or Solid::problem() is not
-/// empty.
+/// @throws InvalidMesh if two vertices or two edges of the surface have the same positions, or if Solid::problem() is
+/// not empty.
 /// Cost: near-linear in the surface.
 void check_manifold(const Solid& solid);
 

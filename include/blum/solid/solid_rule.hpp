@@ -11,10 +11,10 @@ namespace blum {
 
 /// Rule that defines a solid, and so the meaning of a certificate.
 enum class SolidRule : std::uint8_t {
-  polyhedron,  ///< Bounded by the closed shells of a mesh. Tunnels and voids are known exactly.
-  winding,  ///< Where the winding number is above 1/2. The mesh is open, crosses itself or is not manifold. As voxels
-            ///< it consists of those whose centre is inside, and only their topology is preserved.
-  voxels    ///< Union of the selected, closed voxels of an image.
+  polyhedron,  ///< Solid that the closed shells of a mesh bound. Its tunnels and voids are known exactly.
+  winding,     ///< Points with a winding number above 1/2. The mesh is open, crosses itself or is not manifold. Results
+               ///< preserve only the topology of the voxels whose centres are inside.
+  voxels       ///< Union of the selected, closed voxels of an image.
 };
 
 template <>

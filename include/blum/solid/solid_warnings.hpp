@@ -9,15 +9,17 @@
 
 namespace blum {
 
-/// Returns a warning that triangles or shells were reversed (WarningCode::reversed_shells); none if both numbers are 0.
-/// @param triangles, shells Solid::reversed_triangles(), Solid::reversed_shells(), or those of a CleanReport.
+/// Returns a warning if triangles were reversed, and another one if shells were reversed (both
+/// WarningCode::reversed_shells).
+/// @param triangles, shells  numbers of reversed triangles and shells, from Solid::reversed_triangles() and
+///                           Solid::reversed_shells(), or from a CleanReport.
 [[nodiscard]] std::vector<Warning> reversal_warnings(std::size_t triangles, std::size_t shells);
 
-/// Returns a warning that results refer to Solid::surface(), which has no crossings, and not to the mesh
-/// (WarningCode::crossings_removed). Returns none if nothing was resolved.
+/// If crossings were resolved, returns a warning that results refer to Solid::surface(), not to the mesh
+/// (WarningCode::crossings_removed). Otherwise returns none.
 [[nodiscard]] std::vector<Warning> crossing_warnings(const Solid& solid);
 
-/// Returns both kinds of warnings of a solid.
+/// Returns reversal_warnings() and crossing_warnings() of a solid.
 [[nodiscard]] std::vector<Warning> solid_warnings(const Solid& solid);
 
 }  // namespace blum

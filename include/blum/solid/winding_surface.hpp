@@ -11,32 +11,32 @@
 
 namespace blum {
 
-/// Returns the surface of the points around which a closed mesh winds once or more, with its present orientation.
-/// Shells that lie in each other and face the same way bound the union of both. If the mesh already is that surface,
-/// returns it.
+/// Returns the boundary of the set of points around which a closed mesh winds once or more. The mesh keeps its present
+/// orientation: no triangle is reversed. If one shell lies in another one and both face the same way, only the outer
+/// shell remains. If the mesh already is that boundary, returns the mesh.
 ///
-/// This is Solid::of() for moving meshes. It reverses nothing, and computes no bodies, shells and topology, which would
-/// take several times as long.
+/// Use this function instead of Solid::of() for meshes that move. It computes neither bodies nor shells nor topology,
+/// and takes a fraction of the time.
 ///
 /// @param mesh  must pass validate(mesh). Its segments and points are left out.
 /// @param name  name in errors, for example "object 3".
-/// @throws InvalidMesh if no triangle exists, or they face inwards as a whole. Also if the mesh is not closed, or its
-/// crossings are not resolved. Cancelled.
-/// Cost: about 0.3 microseconds per triangle; that of resolve_crossings() if it crosses itself.
+/// @throws InvalidMesh if the mesh has no triangles, or if they face inwards as a whole. It is also thrown if the mesh
+/// is not closed, or if its crossings cannot be resolved. Cancelled.
+/// Cost: about 0.3 microseconds per triangle. If the mesh crosses itself, also that of resolve_crossings().
 [[nodiscard]] SolidSurface winding_surface(TriangleMesh mesh, const std::string& name, const Context& context = {});
 
 /// Checks that a mesh faces outwards.
-/// @throws InvalidMesh if it has no triangles, or a negative volume.
+/// @throws InvalidMesh if the mesh has no triangles, or a negative volume.
 /// Cost: linear.
 void check_faces_outwards(const MeshView& mesh, const std::string& name);
 
 /// Checks that a mesh is closed.
-/// @throws InvalidMesh with advice if it is not.
+/// @throws InvalidMesh if the mesh is not closed. The message contains advice.
 /// Cost: O(n log n).
 void check_is_closed(const MeshView& mesh, const std::string& name);
 
-/// Returns the number of edges that are traversed more often one way than the other. It is 0 for closed meshes, whose
-/// winding numbers are whole.
+/// Returns the number of edges that triangles traverse more often in one direction than in the other. The number is 0
+/// for closed meshes, whose winding numbers are whole numbers.
 /// Cost: O(n log n).
 [[nodiscard]] std::size_t open_edges(const MeshView& mesh);
 

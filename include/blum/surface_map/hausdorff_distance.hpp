@@ -17,11 +17,12 @@
 namespace blum {
 
 struct HausdorffOptions {
-  /// Largest width of the interval, > 0, mesh units. Unset: a ten-thousandth of the diagonal of the box around both
-  /// meshes.
+  /// Largest width of the interval that contains the distance, > 0, mesh units. Unset: a ten-thousandth of the diagonal
+  /// of the box around both meshes.
   std::optional<double> tolerance = {};
-  /// The search stops, with a wider interval, when it holds this many points of a mesh: its vertices, and points added
-  /// between them. Each takes up to 150 bytes. At most max_id_count points are used.
+  /// Largest number of points of a mesh that the search stores: the mesh's vertices, and points added between them. If
+  /// more would be needed, the search stops with a wider interval. Each point takes up to 150 bytes. Values above
+  /// max_id_count count as max_id_count.
   std::size_t max_points = 20'000'000;
 };
 
@@ -34,18 +35,20 @@ struct Description<HausdorffOptions> {
              "largest width of the interval; by default 1/10,000 of the diagonal of the box around both meshes",
              Range::positive()},
       Member{"max_points", &HausdorffOptions::max_points, "",
-             "largest number of points per mesh; the search then stops with a wider interval", Range::between(1, 1e15)},
+             "largest number of examined points per mesh; when it is reached, the search stops with a wider interval",
+             Range::between(1, 1e15)},
   };
 };
 
-/// Interval that contains the largest distance of any point of a mesh to the closest point of another mesh.
+/// Interval, from `lower` to `upper`, that contains the one-sided Hausdorff distance: the largest distance of a point
+/// of a mesh from another mesh.
 struct DirectedHausdorff {
   double lower = 0;  ///< mesh units
   double upper = 0;
   /// A point of the mesh whose distance is at least `lower`, and the point of the other mesh that is closest to it.
   std::array<Vec3d, 2> points;
-  std::size_t primitive = 0;    ///< primitive of the mesh that contains the first point: triangles, then segments, then
-                                ///< points
+  /// primitive of the mesh that contains the first point; triangles count first, then segments, then points
+  std::size_t primitive = 0;
   SiteId site;                  ///< site of the other mesh that contains the second point
   std::size_t evaluations = 0;  ///< number of points at which the distance was computed
 };
@@ -60,20 +63,23 @@ struct Description<DirectedHausdorff> {
       Member{"points", &DirectedHausdorff::points, "mesh units",
              "point of the mesh that is at least 'lower' away, and the closest point of the other mesh"},
       Member{"primitive", &DirectedHausdorff::primitive, "",
-             "primitive of the mesh that contains the first point: triangles, then segments, then points"},
+             "index of the primitive of the mesh that contains the first point: triangles first, then segments, then "
+             "points"},
       Member{"site", &DirectedHausdorff::site, "", "site of the other mesh that contains the second point"},
       Member{"evaluations", &DirectedHausdorff::evaluations, "", "number of points at which the distance was computed"},
   };
 };
 
-/// Hausdorff distance of two meshes: the larger one of both directions.
+/// Interval, from `lower` to `upper`, that contains the Hausdorff distance of two meshes: the larger one of both
+/// one-sided distances.
 struct HausdorffDistance {
   double lower = 0;  ///< Mesh units.
   double upper = 0;
-  std::array<Vec3d, 2> points;  ///< A point of the first mesh, then one of the second. One is at least `lower` from the
-                                ///< other mesh; the other one is its closest point there.
-  DirectedHausdorff forward;    ///< of the first mesh from the second
-  DirectedHausdorff backward;   ///< of the second mesh from the first
+  /// A point of the first mesh, then a point of the second mesh. They are at least `lower` apart, and one of them is
+  /// the closest point of its mesh to the other point.
+  std::array<Vec3d, 2> points;
+  DirectedHausdorff forward;   ///< distance of the first mesh from the second
+  DirectedHausdorff backward;  ///< distance of the second mesh from the first
 };
 
 template <>
@@ -91,17 +97,19 @@ struct Description<HausdorffDistance> {
   };
 };
 
-/// Computes the one-sided Hausdorff distance, from `mesh` to `other`.
+/// Computes the one-sided Hausdorff distance of `mesh` from `other`.
 ///
 /// @param mesh, other  any soups of triangles, segments and points.
 /// @return             an interval that contains the distance, rounding included. It is no wider than the tolerance,
-///                     unless max_points has ended the search. The tolerance is at least 1e-13 of the largest
-///                     coordinate. The result is the same for any number of threads.
-/// @throws InvalidMesh, also if one mesh is more than 1e140 times as large as the other, or as far from it.
+///                     unless max_points has ended the search. The smallest effective tolerance is 1e-13 times the
+///                     largest coordinate; smaller values are raised to it. The result is the same for any number of
+///                     threads.
+/// @throws InvalidMesh, also if one mesh, or the distance between both, is more than 1e140 times as large as the other
+/// mesh.
 /// @throws InvalidOption, Cancelled.
-/// Cost: two hierarchies and one search per vertex, then as many searches as the tolerance needs near the furthest
-/// places. Where many triangles coincide without sharing vertices, it is the square of their number. Method:
-/// docs/theory/surface-maps.md.
+/// Cost: two hierarchies and one search per vertex. Then the search adds points near those with the largest distances,
+/// until the tolerance is reached. If n triangles coincide without sharing vertices, the cost is O(n^2).
+/// Method: docs/theory/surface-maps.md.
 [[nodiscard]] DirectedHausdorff directed_hausdorff_distance(const MeshView& mesh, const MeshView& other,
                                                             const HausdorffOptions& options = {},
                                                             const Context& context = {});

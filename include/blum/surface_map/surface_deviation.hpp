@@ -16,7 +16,7 @@
 namespace blum {
 
 struct DeviationOptions {
-  /// The surface is cut into about this many pieces, and more if triangles are long; 1 to 10^9.
+  /// Approximate number of pieces into which the surface is cut, 1 to 10^9. Long triangles are cut into more pieces.
   std::size_t pieces = 1'000'000;
   /// Rule for signs, as for closest_points(). Signed deviations are negative where the surface is inside of the other
   /// mesh.
@@ -29,14 +29,16 @@ struct Description<DeviationOptions> {
   static constexpr std::string_view doc = "Precision of deviations";
   static constexpr std::tuple members{
       Member{"pieces", &DeviationOptions::pieces, "",
-             "approximate number of pieces of the surface; errors fall with their size", Range::between(1, 1e9)},
+             "approximate number of pieces into which the surface is divided; smaller pieces give smaller errors",
+             Range::between(1, 1e9)},
       Member{"sign", &DeviationOptions::sign, "", "rule for signs: negative inside the other mesh"},
   };
 };
 
-/// Distances of all points of a surface from another mesh, by area. The surface is cut into small pieces; the exact
-/// distance at its centroid stands for each. Errors are guaranteed bounds, not estimates, and far above likely errors.
-/// A distance changes by at most the distance moved, so distances on a piece are known to within its size.
+/// Statistics of the distances of all points of a surface from another mesh, weighted by area. The surface is cut into
+/// small pieces. The exact distance at the centroid of a piece stands for all its points. Members with `error` in their
+/// name are guaranteed bounds on errors, not estimates; actual errors are usually far smaller. These bounds hold
+/// because the distances at two points differ by at most the distance between the points.
 struct SurfaceDeviation {
   static constexpr std::array<double, 7> percents{1, 5, 25, 50, 75, 95, 99};
 
@@ -44,10 +46,10 @@ struct SurfaceDeviation {
   double mean_error = 0;  ///< The true mean is at most this far from `mean`.
   double rms = 0;         ///< Root of the mean square.
   double rms_error = 0;
-  double smallest = 0;  ///< At the centroids.
+  double smallest = 0;  ///< Smallest distance at a centroid.
   double largest = 0;
-  std::array<double, 7> percentiles{};  ///< This many percent of the area are below: see `percents`.
-  double percentile_error = 0;          ///< Bound for each of them, and for smallest and largest.
+  std::array<double, 7> percentiles{};  ///< Entry k: percents[k] percent of the area have smaller distances.
+  double percentile_error = 0;          ///< Bound on the error of each percentile, of `smallest` and of `largest`.
   double area = 0;                      ///< Area of the surface, square mesh units.
   std::size_t pieces = 0;
   SignRule sign_rule = SignRule::none;
@@ -59,18 +61,18 @@ struct Description<SurfaceDeviation> {
   static constexpr std::string_view name = "SurfaceDeviation";
   static constexpr std::string_view doc = "Distances of all points of a surface from another mesh, by area";
   static constexpr std::tuple members{
-      Member{"mean", &SurfaceDeviation::mean, "mesh units", "mean, signed if signs are requested"},
+      Member{"mean", &SurfaceDeviation::mean, "mesh units", "mean distance, signed if signs are requested"},
       Member{"mean_error", &SurfaceDeviation::mean_error, "mesh units", "guaranteed bound for the error of the mean"},
-      Member{"rms", &SurfaceDeviation::rms, "mesh units", "root of the mean square"},
+      Member{"rms", &SurfaceDeviation::rms, "mesh units", "root mean square of the distances"},
       Member{"rms_error", &SurfaceDeviation::rms_error, "mesh units", "guaranteed bound for the error of rms"},
-      Member{"smallest", &SurfaceDeviation::smallest, "mesh units", "smallest value at the centroids of the pieces"},
-      Member{"largest", &SurfaceDeviation::largest, "mesh units", "largest value at the centroids of the pieces"},
+      Member{"smallest", &SurfaceDeviation::smallest, "mesh units", "smallest distance at the centroid of a piece"},
+      Member{"largest", &SurfaceDeviation::largest, "mesh units", "largest distance at the centroid of a piece"},
       Member{"percentiles", &SurfaceDeviation::percentiles, "mesh units",
-             "values that 1, 5, 25, 50, 75, 95 and 99 percent of the area are below"},
+             "values below which 1, 5, 25, 50, 75, 95 and 99 percent of the area lie"},
       Member{"percentile_error", &SurfaceDeviation::percentile_error, "mesh units",
              "guaranteed bound for the error of each percentile, and of smallest and largest"},
       Member{"area", &SurfaceDeviation::area, "square mesh units", "area of the surface"},
-      Member{"pieces", &SurfaceDeviation::pieces, "", "number of pieces"},
+      Member{"pieces", &SurfaceDeviation::pieces, "", "number of pieces into which the surface was divided"},
       Member{"sign_rule", &SurfaceDeviation::sign_rule, "", "rule that found the signs"},
       Member{"sign_reason", &SurfaceDeviation::sign_reason, "", "reason for this rule"},
   };
@@ -82,7 +84,7 @@ struct Description<SurfaceDeviation> {
 /// @param other  any soup of triangles, segments and points.
 /// @return       the same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled.
-/// Cost: one closest point for each piece.
+/// Cost: one search of the closest point for each piece.
 [[nodiscard]] SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other,
                                                  const DeviationOptions& options = {}, const Context& context = {});
 

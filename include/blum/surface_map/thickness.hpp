@@ -19,15 +19,20 @@
 
 namespace blum {
 
-/// Definition of thickness at a point of a triangle, whose normal points out of the solid.
+/// Definition of thickness at a point of a triangle. The triangle's normal points out of the solid.
 enum class ThicknessKind : std::uint8_t {
-  ray,  ///< Distance from the point against the normal to the first other triangle through which the ray leaves the
-        ///< solid. Infinite if there is none: the mesh is open, or faces inwards.
-  ball  ///< Diameter of the largest ball that touches the surface at the point, from inside. It contains no point of a
-        ///< triangle whose normal differs from the surface's there by `separation` or more. That normal is the one of
-        ///< the smooth surface that the mesh approximates. It lies between those of the triangle's corners. A corner's
-        ///< normal is the mean, by angle, of the normals there that differ from the triangle's by less than
-        ///< `separation`. Infinite if there is no such ball.
+  /// A ray starts at the point, in the direction opposite to the normal. The thickness is the distance to the first
+  /// other triangle through which the ray leaves the solid. The thickness is infinite if no such triangle exists,
+  /// because the mesh is open or faces inwards.
+  ray,
+  /// Let m be the normal, at the point, of the smooth surface that the mesh approximates. The thickness is the diameter
+  /// of the largest ball that touches the surface at the point from inside. Its centre lies in the direction opposite
+  /// to m. The ball contains no point of a triangle whose normal differs from m by `separation` or more. The normal m
+  /// is interpolated between normals at the three corners of the point's triangle. A corner's normal is the mean of the
+  /// normals of triangles at the corner, weighted by their angles. This mean includes only triangles whose normal
+  /// differs from that of the point's triangle by less than `separation`. The thickness is infinite if nothing limits
+  /// the ball.
+  ball
 };
 
 template <>
@@ -38,9 +43,10 @@ struct Description<ThicknessKind> {
 
 struct ThicknessOptions {
   ThicknessKind kind = ThicknessKind::ray;
-  /// For balls, degrees, 0 to 180. Triangles whose normals differ by less do not limit a ball, and count as parts of
-  /// the same smooth surface. With 0 the ball touches the triangle itself and lies inside of the polyhedron. It shrinks
-  /// to nothing at each convex edge, also those that only approximate a smooth surface.
+  /// For balls: degrees, 0 to 180. A triangle does not limit a point's ball if its normal differs by less than this
+  /// angle from the surface normal at the point. Such triangles count as parts of the same smooth surface. With 0, the
+  /// ball touches the triangle itself, and lies inside the polyhedron. The ball then shrinks to nothing at each convex
+  /// edge, also at edges that only approximate a smooth surface.
   double separation = 30;
 };
 
@@ -50,33 +56,35 @@ struct Description<ThicknessOptions> {
   static constexpr std::string_view doc = "Options of thickness";
   static constexpr std::tuple members{
       Member{"kind", &ThicknessOptions::kind, "",
-             "'ray': distance straight inwards to the far side; 'ball': diameter of the largest inner ball that "
-             "touches the point"},
+             "'ray': distance straight inwards to the far side; 'ball': diameter of the largest ball inside the solid "
+             "that touches the surface at the point"},
       Member{"separation", &ThicknessOptions::separation, "degrees",
-             "for balls: largest angle between normals of triangles that do not limit the ball",
+             "for balls: triangles are ignored if their normals differ from that of the point's triangle by less than "
+             "this",
              Range::between(0, 180)},
   };
 };
 
 /// Thickness of a solid at a point of its surface.
 struct Thickness {
-  double thickness = 0;  ///< mesh units; infinite if nothing lies on the far side
-  Vec3d opposite;        ///< where the ray leaves, or the ball touches; the point itself if nothing was found
-  TriangleId triangle;   ///< triangle that contains `opposite`; none() if nothing was found
+  double thickness = 0;  ///< Mesh units; infinite if nothing lies on the far side.
+  /// Point where the ray leaves the solid, or other point that the ball touches; the given point if nothing was found.
+  Vec3d opposite;
+  TriangleId triangle;  ///< triangle that contains `opposite`; none() if nothing was found
 };
 
 /// Computes the thickness of a solid at points of its surface.
 ///
-/// @param solid   a mesh whose triangles face outwards. It must be closed for all of it to have a thickness. Triangles
-///                without area have none (infinite), and limit no ball.
-/// @param points  finite. Each stands for the point of the surface that is closest to it and, on edges and at vertices,
-///                for the smallest triangle there. A point on the border of its triangle is moved inside, by a
-///                ten-millionth of the way to the triangle's centroid.
-/// @return        one entry per point; exact within rounding. For balls, infinite beyond eight diagonals of the solid.
-///                The same for any number of threads.
+/// @param solid   a mesh whose triangles face outwards. If it is not closed, points opposite to a hole have no
+///                thickness, or a wrong one. Triangles without area have an infinite thickness, and limit no ball.
+/// @param points  finite. Each is replaced by the closest point of the surface. On edges and at vertices, that point
+///                belongs to the triangle with the smallest index. A point on the border of its triangle is moved
+///                inside, by a ten-millionth of the way to the triangle's centroid.
+/// @return        one entry per point, exact up to rounding. Balls wider than eight diagonals of the box around the
+///                solid count as infinite. The result is the same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, Cancelled.
-/// Cost: about 1 us (ray) and 5 to 30 us (ball) per point and core. Balls that touch much of the surface at once, as in
-/// spheres, take far more.
+/// Cost: per point, on one core, about 1 us for a ray and 5 to 30 us for a ball. Balls that touch much of the surface
+/// at once, as in spheres, take far longer.
 /// Method: docs/theory/surface-maps.md. Balls shrink as in Ma, Bae, Choi, "3D medial axis point approximation using
 /// nearest neighbors and the normal field" (2012).
 [[nodiscard]] std::vector<Thickness> thickness(const MeshView& solid, std::span<const Vec3d> points,
@@ -86,12 +94,12 @@ struct Thickness {
 [[nodiscard]] std::vector<Thickness> thickness(const MeshView& solid, const ThicknessOptions& options = {},
                                                const Context& context = {});
 
-/// Computes the thickness as a texture over the surface. The map's option `sign` is ignored.
+/// Computes the thickness as a texture over the surface. SurfaceMapOptions::sign is ignored.
 [[nodiscard]] SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map = {},
                                        const ThicknessOptions& options = {}, const Context& context = {});
 
-/// Returns a warning if not all of a mesh has a meaningful thickness. Either it is open (WarningCode::open_mesh), or it
-/// does not face outwards everywhere (WarningCode::facing). Returns at most one warning.
+/// Returns a warning if the thickness is not meaningful everywhere on a mesh. The mesh is either open
+/// (WarningCode::open_mesh), or does not face outwards everywhere (WarningCode::facing). Returns at most one warning.
 /// @param solid  must pass validate(solid).
 /// Cost: that of orientation() and a table of sites.
 [[nodiscard]] std::vector<Warning> thickness_warnings(const MeshView& solid, const Context& context = {});

@@ -8,13 +8,14 @@
 
 namespace blum {
 
-/// Adds the twelve sides of each cube as edges. They show where a complex that is not certified may be wrong.
+/// Adds the twelve edges of each failing cube to a complex. These edges show where a complex that is not certified may
+/// be wrong.
 ///
-/// @param complex  result of voronoi_complex(), without edges. Its vertex columns are 0 at the corners of cubes;
-///                 `site_0` and `site_1`, if they exist, are -1. Edges get the column `obstacle`, int32: the
-///                 VoronoiObstacle of the cube.
-/// @param failing  from its report.
-/// @throws InvalidOption if the complex has edges, or would have more vertices than ids.
+/// @param complex  result of voronoi_complex(), without edges. At the new vertices, the columns `site_0` and `site_1`
+/// (if present) are -1, and all other columns are 0. Edges get the column `obstacle` (int32): the VoronoiObstacle of
+/// their cube.
+/// @param failing  VoronoiReport::failing of the same result.
+/// @throws InvalidOption if the complex has edges, or would have more than max_id_count vertices.
 void add_failing_cells(Complex& complex, std::span<const FailingVoronoiCell> failing);
 
 }  // namespace blum

@@ -12,7 +12,7 @@
 
 namespace blum {
 
-/// Kind of an edge by the angle inside the solid. The exact side of a plane decides.
+/// Kind of an edge, by the angle between its two triangles, measured through the solid. The kind is determined exactly.
 enum class EdgeTurn : std::uint8_t {
   convex,  ///< Below 180 degrees.
   flat,    ///< 180 degrees: both triangles lie in one plane.
@@ -20,34 +20,38 @@ enum class EdgeTurn : std::uint8_t {
 };
 
 /// Faces, reflex edges and reflex vertices of a polyhedron, which are the sites of the Voronoi diagram inside it. No
-/// point inside is closest to any other part of the surface: next to a convex edge, one of its faces is closer.
+/// other part of the surface is closest to a point inside. For example, near a convex edge, a face at the edge is
+/// closer than the edge.
 struct PolyhedronSites {
-  /// Face of each triangle. Triangles of one plane that share edges form one face. Faces are numbered by their smallest
-  /// triangle.
+  /// For each triangle, the number of its face. Triangles in one plane that are connected through edges form one face.
+  /// Faces are numbered in the order of their smallest triangles.
   std::vector<std::uint32_t> face_of;
   std::size_t face_count = 0;
-  std::vector<EdgeTurn> turn;  ///< One for each edge of the SiteTable.
-  /// Two triangles of each edge. The first one traverses it from its smaller to its larger vertex.
+  std::vector<EdgeTurn> turn;  ///< Kind of each edge of the SiteTable.
+  /// The two triangles of each edge of the SiteTable. The first one traverses the edge from its smaller to its larger
+  /// vertex.
   std::vector<std::array<std::uint32_t, 2>> triangles_of;
   std::vector<std::uint32_t> reflex_edges;  ///< Edges of the SiteTable, ascending.
-  /// Vertices to which a cone of points inside is closest, ascending.
+  /// Vertices, ascending: each is the closest point of the surface to all points of a cone inside the solid, near the
+  /// vertex.
   std::vector<std::uint32_t> reflex_vertices;
 };
 
 /// Finds the sites of a polyhedron, exactly for the given triangles.
 ///
-/// Let v be a vertex with edges to w_1, ..., w_n. Only the surface near v counts here. Then v is closest to the points
-/// q with (q - v) . (w_i - v) <= 0 for all i, the dual cone of its edges. If that cone has an interior, it meets the
-/// surface near v in v alone. So it lies inside the solid or outside. Each of its extreme planes belongs to an edge
-/// that is extreme among all of them, and is reflex or convex accordingly. Half-spaces cut the cone one after the
-/// other. Exact signs of determinants of three edges decide everything. (Sud 2006, 5.3: sites of a polyhedron.)
+/// Let v be a vertex with edges to w_1, ..., w_n. Only the surface near v is considered here. Its point closest to q is
+/// v if (q - v) . (w_i - v) <= 0 for all i. All such points q form the dual cone of the edges. If the cone has an
+/// interior, it meets the surface near v in v alone. So the part of the cone near v lies either inside or outside the
+/// solid. Each face of the cone belongs to an edge at v. All these edges are reflex if the cone lies inside, and convex
+/// if it lies outside. The half-spaces of the edges cut the cone one after the other. Exact signs of determinants of
+/// three edges decide everything. (Sud 2006, 5.3: sites of a polyhedron.)
 ///
-/// @param mesh   closed, facing away from its inside, without crossings. Coordinates have magnitude 1e-80 to 1e100, or
-///               are 0. Shells may touch in vertices.
+/// @param mesh   closed, facing away from its inside, without crossings. Coordinates must be 0, or have magnitudes of
+///               1e-80 to 1e100. Shells may touch in vertices.
 /// @param sites  table of this mesh.
 /// @throws InvalidMesh if an edge does not have two triangles that traverse it in opposite directions, or a triangle
 /// has no area; Cancelled.
-/// Cost: about 0.1 us per edge; at vertices with reflex edges up to the square of their degree.
+/// Cost: about 0.1 us per edge; for a vertex with reflex edges, up to the square of its number of edges.
 [[nodiscard]] PolyhedronSites polyhedron_sites(const MeshView& mesh, const SiteTable& sites,
                                                const Context& context = {});
 

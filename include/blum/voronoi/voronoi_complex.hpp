@@ -25,8 +25,8 @@ namespace blum {
 enum class VoronoiPart : std::uint8_t {
   all,          ///< Walls between regions, and the surface.
   walls,        ///< Walls without the surface.
-  medial_axis,  ///< Walls whose points have two footprints. Walls between a face and its own reflex edge, or an edge
-                ///< and its end, are left out. So are walls between edges that form one line.
+  medial_axis,  ///< Walls whose points have two footprints. Walls between a face and its own reflex edge, or between an
+                ///< edge and its own end, are left out. Walls between two edges on one line are left out, too.
 };
 
 template <>
@@ -37,18 +37,21 @@ struct Description<VoronoiPart> {
 };
 
 struct VoronoiOptions {
-  /// Part of the diagram.
+  /// Part of the diagram that the complex represents.
   VoronoiPart part = VoronoiPart::all;
-  /// Cubes that meet the solid are at most the side of the box around it, divided by this, 1 to 1024.
+  /// Limit for the side of cubes that meet the solid. The limit is the longest side of the solid's box, divided by this
+  /// number, 1 to 1024.
   int resolution = 16;
   /// Largest diagonal of cubes that meet the solid, > 0, mesh units. The limit of `resolution` also applies.
   std::optional<double> tolerance = {};
-  /// Largest number of times that a cube is split, 1 to 24.
+  /// Largest number of successive splits that lead to a cube, 1 to 24. More splits are made if `resolution` or
+  /// `tolerance` requires them.
   int depth = 24;
-  /// Largest number of positions of the grid that are tried, 1 to 100. If few cubes fail, another position may pass.
+  /// Largest number of positions of the grid that are tried, 1 to 100. If only a few cubes fail the test, all cubes may
+  /// pass it at another position of the grid.
   int grids = 4;
-  /// Largest number of cubes, including those that are split, 1,000 to 100,000,000. Cubes that do not pass then are
-  /// reported. Each takes about 10 kB.
+  /// Largest number of cubes, including those that are split, 1,000 to 100,000,000. If this number is reached,
+  /// splitting ends, and cubes that do not pass the test are reported. Each cube takes about 10 kB of memory.
   std::int64_t max_cubes = 1'000'000;
 };
 
@@ -66,23 +69,24 @@ struct Description<VoronoiOptions> {
              "largest distance between the complex and the exact walls", Range::positive()},
       Member{"depth", &VoronoiOptions::depth, "", "largest number of splits of a cube", Range::between(1, 24)},
       Member{"grids", &VoronoiOptions::grids, "",
-             "largest number of grid positions that are tried: if few cubes fail, others may pass",
+             "largest number of grid positions that are tried: if few cubes fail, another position may have none that "
+             "fails",
              Range::between(1, 100)},
       Member{"max_cubes", &VoronoiOptions::max_cubes, "",
              "largest number of cubes, including split ones: about 10 kB each", Range::between(1000, 100'000'000)},
   };
 };
 
-/// Reason why a cube does not pass.
+/// Reason why a cube does not pass the test.
 enum class VoronoiObstacle : std::uint8_t {
   none,
-  square,        ///< The border of one of its squares does not determine the inside of the square.
-  tunnel,        ///< The region of a site passes through it, or may.
-  enclosed,      ///< The region of a site lies wholly inside it, or may.
-  face_hole,     ///< A hole of a face lies in it, or next to it.
-  handle,        ///< A component of the solid in it has a tunnel or a second boundary.
-  joins,         ///< It is unknown which walls on its boundary are connected inside.
-  contradiction  ///< Signs contradict each other.
+  square,        ///< The border of a square of the cube does not determine the diagram in the square.
+  tunnel,        ///< The region of a site passes through the cube, or may do so.
+  enclosed,      ///< The region of a site lies wholly inside the cube, or may do so.
+  face_hole,     ///< A hole of a face lies in the cube, or next to it.
+  handle,        ///< A component of the solid in the cube has a tunnel, or more than one boundary component.
+  joins,         ///< It is unknown which walls on the cube's boundary are connected inside the cube.
+  contradiction  ///< Results for the cube's lines contradict each other.
 };
 
 template <>
@@ -95,7 +99,7 @@ struct Description<VoronoiObstacle> {
       NamedValue{VoronoiObstacle::joins, "joins"},         NamedValue{VoronoiObstacle::contradiction, "contradiction"}};
 };
 
-/// Cube that does not pass, at the largest depth.
+/// Cube that does not pass the test, and was not split further.
 struct FailingVoronoiCell {
   Vec3d low{};   ///< Corner, mesh units.
   Vec3d high{};  ///< Opposite corner.
@@ -109,37 +113,39 @@ struct Description<FailingVoronoiCell> {
   static constexpr std::tuple members{
       Member{"low", &FailingVoronoiCell::low, "mesh units", "corner of the cube"},
       Member{"high", &FailingVoronoiCell::high, "mesh units", "opposite corner"},
-      Member{"obstacle", &FailingVoronoiCell::obstacle, "", "reason why it does not pass"},
+      Member{"obstacle", &FailingVoronoiCell::obstacle, "", "reason why the cube does not pass"},
   };
 };
 
 struct VoronoiReport {
-  /// True if every cube passes, all signs agree, and the Betti numbers are the expected ones. Then the complex is
-  /// proven to have the homology of the requested part of the exact diagram.
+  /// True if every cube passes the test, no signs contradict each other, and the Betti numbers are the expected ones.
+  /// Then the complex provably has the homology of the requested part of the exact diagram.
   bool certified = false;
-  BettiNumbers expected{};  ///< For the part: from the numbers of the solid, of holes in faces, and of regions.
+  BettiNumbers expected{};  ///< Betti numbers that the requested part of the exact diagram has.
   BettiNumbers found{};     ///< Betti numbers of the complex.
-  /// Bound on the Hausdorff distance of the complex and the exact part, if certified, mesh units. It is the largest
-  /// diagonal of a cube that either of them meets.
+  /// If certified: upper bound on the Hausdorff distance between the complex and the requested part of the exact
+  /// diagram, mesh units. The bound is the largest diagonal of a cube that the complex or this part meets.
   double hausdorff_bound = 0;
   std::size_t faces = 0;            ///< Faces among the sites.
   std::size_t reflex_edges = 0;     ///< Reflex edges among the sites.
   std::size_t reflex_vertices = 0;  ///< Reflex vertices among the sites.
-  /// Reflex vertices whose cones are thinner than 1e-3 radians. Their regions, narrower than long by this factor, count
-  /// as part of walls.
+  /// Reflex vertices whose dual cones (see polyhedron_sites()) are thinner than 1e-3 radians. The region of such a
+  /// vertex is a needle with a width below 1e-3 of its length, and counts as part of walls.
   std::size_t thin_vertices = 0;
-  std::size_t grids = 0;              ///< Positions of the grid that were tried.
-  std::size_t cubes = 0;              ///< Cubes that meet the solid, and are not split.
-  std::size_t squares = 0;            ///< Squares, and parts of squares.
-  std::size_t undecided_squares = 0;  ///< Squares of these whose borders do not determine the inside.
-  std::size_t splits = 0;             ///< Cubes that were split because they did not pass.
-  int depth = 0;                      ///< Number of splits that led to the smallest cube.
+  std::size_t grids = 0;              ///< Number of positions of the grid that were tried.
+  std::size_t cubes = 0;              ///< Number of cubes that meet the solid, and are not split.
+  std::size_t squares = 0;            ///< Number of squares between cubes; of a split square, only the parts count.
+  std::size_t undecided_squares = 0;  ///< Number of `squares` whose borders do not determine the diagram in them.
+  std::size_t splits = 0;             ///< Number of cubes that were split because they did not pass.
+  int depth = 0;                      ///< Number of successive splits that led to the smallest cube.
   bool stopped_at_max_cubes = false;  ///< True if VoronoiOptions::max_cubes prevented splits.
-  double governors = 0;               ///< Mean number of labels that may be closest in a cube.
-  std::size_t lines = 0;              ///< Parts of grid lines in the solid whose labels were found.
-  std::size_t exact_lines = 0;        ///< Lines of these that doubles did not decide.
-  std::size_t undecided_lines = 0;    ///< Lines of these that nothing decided.
-  std::size_t contradictions = 0;     ///< Nodes with different sites on different lines.
+  /// Mean over all cubes of the number of triangles, reflex edges and reflex vertices that may be closest to a point of
+  /// the cube.
+  double governors = 0;
+  std::size_t lines = 0;            ///< Segments of grid lines in the solid along which closest sites were searched.
+  std::size_t exact_lines = 0;      ///< Number of `lines` that doubles did not decide.
+  std::size_t undecided_lines = 0;  ///< Number of `lines` that exact signs did not decide either.
+  std::size_t contradictions = 0;   ///< Grid nodes with different closest sites on different grid lines.
   std::vector<FailingVoronoiCell> failing;
   std::vector<PhaseTime> phases;  ///< Seconds.
 };
@@ -151,28 +157,35 @@ struct Description<VoronoiReport> {
   static constexpr std::tuple members{
       Member{"certified", &VoronoiReport::certified, "",
              "true if every cube passes and the Betti numbers are as expected: then the homology is proven"},
-      Member{"expected_betti", &VoronoiReport::expected, "", "components, tunnels, voids of the requested part"},
+      Member{"expected_betti", &VoronoiReport::expected, "",
+             "components, tunnels, voids of the requested part of the exact diagram"},
       Member{"found_betti", &VoronoiReport::found, "", "components, tunnels, voids of the complex"},
       Member{"hausdorff_bound", &VoronoiReport::hausdorff_bound, "mesh units",
-             "if certified: bound of the distance between the complex and the exact part"},
-      Member{"faces", &VoronoiReport::faces, "", "faces among the sites: coplanar triangles that share edges are one"},
+             "if certified: upper bound on the distance between the complex and the requested part of the exact "
+             "diagram"},
+      Member{"faces", &VoronoiReport::faces, "",
+             "faces among the sites: coplanar triangles that share edges count as one face"},
       Member{"reflex_edges", &VoronoiReport::reflex_edges, "", "reflex edges among the sites"},
       Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "reflex vertices among the sites"},
       Member{"thin_vertices", &VoronoiReport::thin_vertices, "",
-             "reflex vertices whose cones are thinner than 1e-3: their regions count as part of walls"},
+             "reflex vertices whose dual cones are thinner than 1e-3 radians: their regions count as part of walls"},
       Member{"grids", &VoronoiReport::grids, "", "grid positions that were tried"},
       Member{"cubes", &VoronoiReport::cubes, "", "cubes that meet the solid and are not split"},
-      Member{"squares", &VoronoiReport::squares, "", "squares and parts of squares"},
+      Member{"squares", &VoronoiReport::squares, "", "squares between cubes; of a split square, only the parts count"},
       Member{"undecided_squares", &VoronoiReport::undecided_squares, "",
-             "those of these whose borders do not determine the inside"},
+             "number of squares between cubes whose borders do not determine the diagram in them"},
       Member{"splits", &VoronoiReport::splits, "", "cubes that were split because they did not pass"},
-      Member{"depth", &VoronoiReport::depth, "", "number of splits of the smallest cube"},
+      Member{"depth", &VoronoiReport::depth, "", "number of successive splits that led to the smallest cube"},
       Member{"stopped_at_max_cubes", &VoronoiReport::stopped_at_max_cubes, "", "true if max_cubes prevented splits"},
-      Member{"governors", &VoronoiReport::governors, "", "mean number of labels that may be closest in a cube"},
-      Member{"lines", &VoronoiReport::lines, "", "parts of grid lines in the solid whose labels were found"},
-      Member{"exact_lines", &VoronoiReport::exact_lines, "", "those of these that doubles did not decide"},
-      Member{"undecided_lines", &VoronoiReport::undecided_lines, "", "those of these that nothing decided"},
-      Member{"contradictions", &VoronoiReport::contradictions, "", "nodes with different sites on different lines"},
+      Member{"governors", &VoronoiReport::governors, "",
+             "mean over all cubes of the number of sites that may be closest to a point of the cube"},
+      Member{"lines", &VoronoiReport::lines, "",
+             "segments of grid lines in the solid along which closest sites were searched"},
+      Member{"exact_lines", &VoronoiReport::exact_lines, "",
+             "number of searched segments that needed exact arithmetic"},
+      Member{"undecided_lines", &VoronoiReport::undecided_lines, "", "number of searched segments without a decision"},
+      Member{"contradictions", &VoronoiReport::contradictions, "",
+             "grid nodes for which different lines give different closest sites"},
       Member{"failing", &VoronoiReport::failing, "", "cubes that do not pass at the largest depth"},
       Member{"seconds", &VoronoiReport::phases, "s", "wall-clock time of each phase"},
   };
@@ -182,47 +195,53 @@ struct Description<VoronoiReport> {
 struct VoronoiComplex {
   /// Triangles on walls between regions and on the surface.
   ///
-  /// Vertices have the column `radius` (float64, mesh units), the distance from the closest site, 0 on the surface.
-  /// `footprint_0` and `footprint_1` (3 x float64) are the closest points of the surface. If more than two exist, those
-  /// with the largest angle are taken; if only one exists, both are the same. `site_0` and `site_1` (int32) are their
-  /// sites in the SiteTable. `separation_angle` (float64, degrees) is the angle between the footprints.
+  /// Columns of vertices: `radius` (float64, mesh units) is the distance from the closest site, 0 on the surface.
+  /// `footprint_0` and `footprint_1` (3 x float64) are the closest points of the surface. If more than two closest
+  /// points exist, the two with the largest angle between them are stored. If only one exists, both columns contain
+  /// this point. `site_0` and `site_1` (int32) are the sites of the footprints in the SiteTable. `separation_angle`
+  /// (float64, degrees) is the angle between the footprints, seen from the vertex.
   ///
-  /// Triangles have `site_a` and `site_b` (int32), the regions on both sides, the smaller one first; -1 and a site on
-  /// the surface. `separation_angle` (float32, degrees) is the angle at which the middle sees both. It is 0 below 1e-6,
-  /// and on the surface. Corners run counterclockwise as seen from the region of site_b.
+  /// Columns of triangles: `site_a` and `site_b` (int32) are the sites of the regions on the two sides, the smaller
+  /// site first. On the surface, `site_a` is -1. `separation_angle` (float32, degrees) is the angle between the two
+  /// sites, seen from the middle of the triangle. The column contains 0 on the surface, and where the angle is below
+  /// 1e-6 degrees. Corners run counterclockwise as seen from the region of site_b.
   ///
-  /// Numbers of site_a and site_b count faces, by their smallest triangle, then reflex edges, then reflex vertices, as
-  /// in polyhedron_sites().
+  /// Sites in site_a and site_b are numbered as in voronoi_sites(): first faces, in the order of their smallest
+  /// triangles, then reflex edges, then reflex vertices.
   Complex complex;
   VoronoiReport report;
 };
 
-/// Computes the Voronoi diagram of the faces, reflex edges and reflex vertices of a polyhedron inside it, as a complex.
+/// Computes a complex that represents the Voronoi diagram inside a polyhedron. The sites of the diagram are the faces,
+/// reflex edges and reflex vertices of the polyhedron.
 ///
 /// Let K be the union of the surface and the walls between regions of different sites. An octree in generic position
-/// cuts space. On its edges, the order of roots gives the closest sites, or exact signs if doubles do not decide. Its
-/// squares are split in two dimensions until their borders determine their inside. A cube passes if its boundary proves
-/// that all components of K in it are acyclic; otherwise it is split.
+/// cuts space into cubes. The closest sites along the edges of cubes follow from the order of roots, or from exact
+/// signs if doubles do not decide. Squares between cubes are split into smaller squares until the border of each square
+/// determines K in the square. A cube passes the test if its boundary proves that all components of K in the cube are
+/// acyclic. Otherwise, the cube is split.
 ///
-/// Then K has the homology of the complex of pairs of a cell and a component of K in it. This complex is the result,
-/// with a vertex for each component in a cube, in a square and on an edge. (Sud 2006, 5.3 and 5.4; theorem and proof:
-/// docs/theory/voronoi.md.)
+/// If all cubes pass, K has the same homology as the order complex of the pairs (cell, component of K in the cell).
+/// This complex is the result. It has a vertex for each component of K in a cube, in a square and on an edge. (Sud
+/// 2006, 5.3 and 5.4; theorem and proof: docs/theory/voronoi.md.)
 ///
-/// If the report says that it is not certified, parts of the complex may be missing or wrong.
+/// If VoronoiReport::certified is false, parts of the complex may be missing or wrong.
 ///
-/// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of its surface().mesh.
-///               Coordinates there have magnitude 1e-45 to 1e45, or are 0, and are at most 1e8 times its size from the
-///               origin. Triangles are used as given, so faces bent by rounding are several sites.
+/// @param solid  polyhedron whose bodies do not touch (Solid::problem()). Sites are those of solid.surface().mesh.
+/// Coordinates of this mesh must be 0, or have magnitudes of 1e-45 to 1e45. No magnitude may exceed 1e8 times the size
+/// of the mesh. Triangles are used as given, so a face that rounding has bent counts as several sites.
 /// @throws InvalidMesh if the solid is not such a polyhedron; InvalidOption; Cancelled; OutOfMemory.
-/// Cost: about 0.1 ms and 10 kB per cube on one core. 1,000 triangles take thousands to tens of thousands of cubes.
+/// Cost: about 0.1 ms on one core and 10 kB of memory per cube. Meshes of 1,000 triangles need thousands to tens of
+/// thousands of cubes.
 [[nodiscard]] VoronoiComplex voronoi_complex(const Solid& solid, const VoronoiOptions& options = {},
                                              const Context& context = {});
 
 /// Computes the Voronoi diagram of the solid that a mesh bounds, found by Solid::of(). Triangles that face the wrong
-/// way are reversed, which changes no number of a site.
-/// @param mesh  without segments and points. It must not cross itself, because then the sites would not be its own:
-///              pass its Solid instead.
-/// @throws InvalidMesh also for these.
+/// way are reversed. This does not change the numbers of sites.
+/// @param mesh  without segments and points. The mesh must not cross itself, because Solid::of() would then replace the
+/// surface. For a mesh that crosses itself, pass Solid::of(mesh) to voronoi_complex(), and use the sites of the Solid's
+/// surface.
+/// @throws InvalidMesh also if the mesh has segments or points, or crosses itself.
 [[nodiscard]] VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options = {},
                                              const Context& context = {});
 

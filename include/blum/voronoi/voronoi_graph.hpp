@@ -19,7 +19,7 @@ struct VoronoiWall {
   std::int32_t site_a = 0;           ///< Site of the region on one side: the smaller one.
   std::int32_t site_b = 0;           ///< Site of the region on the other side.
   double area = 0;                   ///< Square mesh units.
-  std::vector<std::uint32_t> seams;  ///< Seams along its border, ascending.
+  std::vector<std::uint32_t> seams;  ///< Indices of the seams along the wall's border, ascending.
 };
 
 template <>
@@ -30,57 +30,59 @@ struct Description<VoronoiWall> {
       Member{"site_a", &VoronoiWall::site_a, "", "site of the region on one side: the smaller site"},
       Member{"site_b", &VoronoiWall::site_b, "", "site of the region on the other side"},
       Member{"area", &VoronoiWall::area, "square mesh units", "area of its triangles"},
-      Member{"seams", &VoronoiWall::seams, "", "seams along its border: places in the list of seams"},
+      Member{"seams", &VoronoiWall::seams, "", "seams along its border: indices into the list of seams"},
   };
 };
 
-/// Line in which regions of three or more sites meet.
+/// Chain of edges along which regions of three or more sites meet.
 struct VoronoiSeam {
   std::vector<std::int32_t> sites;       ///< Sites of the regions around it, ascending.
   double length = 0;                     ///< Mesh units.
-  std::vector<std::uint32_t> walls;      ///< Walls that meet in it, ascending.
-  std::vector<std::uint32_t> junctions;  ///< Its ends, ascending: two; one if it returns to it; none for a closed line.
+  std::vector<std::uint32_t> walls;      ///< Indices of the walls that meet along the seam, ascending.
+  std::vector<std::uint32_t> junctions;  ///< Indices of the junctions at its ends, ascending: two; one if both ends
+                                         ///< meet in it; none if the seam is a closed line.
 };
 
 template <>
 struct Description<VoronoiSeam> {
   static constexpr std::string_view name = "VoronoiSeam";
-  static constexpr std::string_view doc = "Line in which regions of three or more sites meet";
+  static constexpr std::string_view doc = "Chain of edges along which regions of three or more sites meet";
   static constexpr std::tuple members{
       Member{"sites", &VoronoiSeam::sites, "", "sites of the regions around it"},
       Member{"length", &VoronoiSeam::length, "mesh units", "length of its edges"},
-      Member{"walls", &VoronoiSeam::walls, "", "walls that meet in it: places in the list of walls"},
-      Member{"junctions", &VoronoiSeam::junctions, "", "junctions at which it ends: places in the list of junctions"},
+      Member{"walls", &VoronoiSeam::walls, "", "walls that meet along the seam: indices into the list of walls"},
+      Member{"junctions", &VoronoiSeam::junctions, "",
+             "junctions at the ends of the seam: indices into the list of junctions"},
   };
 };
 
-/// Point in which seams meet, or one ends.
+/// Point in which several seams meet, or in which one seam ends.
 struct VoronoiJunction {
-  std::uint32_t vertex = 0;          ///< Vertex of the complex.
-  Vec3d position;                    ///< Position of the vertex, mesh units, off by at most
-                                     ///< VoronoiReport::hausdorff_bound.
+  std::uint32_t vertex = 0;  ///< Index of its vertex in the complex.
+  Vec3d position;  ///< Position of the vertex, mesh units. Its error is at most VoronoiReport::hausdorff_bound.
   std::vector<std::int32_t> sites;   ///< Sites of the regions around it, ascending.
-  std::vector<std::uint32_t> seams;  ///< Seams that begin or end there, ascending.
+  std::vector<std::uint32_t> seams;  ///< Indices of the seams that end at the junction, ascending.
 };
 
 template <>
 struct Description<VoronoiJunction> {
   static constexpr std::string_view name = "VoronoiJunction";
-  static constexpr std::string_view doc = "Point in which seams meet, or one ends";
+  static constexpr std::string_view doc = "Point in which several seams meet, or in which one seam ends";
   static constexpr std::tuple members{
       Member{"vertex", &VoronoiJunction::vertex, "", "vertex of the complex"},
       Member{"position", &VoronoiJunction::position, "mesh units",
-             "position of that vertex: near the point, in a cube at it"},
+             "position of that vertex; its error is at most hausdorff_bound"},
       Member{"sites", &VoronoiJunction::sites, "", "sites of the regions around it"},
-      Member{"seams", &VoronoiJunction::seams, "", "seams that begin or end there: places in the list of seams"},
+      Member{"seams", &VoronoiJunction::seams, "", "seams that begin or end there: indices into the list of seams"},
   };
 };
 
-/// Voronoi diagram as a graph of parts that meet. Numbers of walls, seams and junctions are indices into these lists.
+/// Voronoi diagram as a graph of regions, walls, seams and junctions. Indices of walls, seams and junctions are
+/// positions in the lists below.
 struct VoronoiGraph {
-  std::vector<VoronoiRegion> regions;      ///< Regions of a complex with its surface, by ascending site.
-  std::vector<VoronoiWall> walls;          ///< By their first triangle.
-  std::vector<VoronoiSeam> seams;          ///< By their first edge.
+  std::vector<VoronoiRegion> regions;      ///< By ascending site. Empty if the complex does not contain the surface.
+  std::vector<VoronoiWall> walls;          ///< In the order of their first triangles.
+  std::vector<VoronoiSeam> seams;          ///< In the order of their first edges.
   std::vector<VoronoiJunction> junctions;  ///< By ascending vertex.
 };
 
@@ -89,21 +91,22 @@ struct Description<VoronoiGraph> {
   static constexpr std::string_view name = "VoronoiGraph";
   static constexpr std::string_view doc = "Voronoi diagram as regions, walls, seams and junctions";
   static constexpr std::tuple members{
-      Member{"regions", &VoronoiGraph::regions, "", "regions of a complex with its surface; none without"},
+      Member{"regions", &VoronoiGraph::regions, "", "regions, if the complex includes the surface; otherwise none"},
       Member{"walls", &VoronoiGraph::walls, "", "connected parts of borders between two regions"},
-      Member{"seams", &VoronoiGraph::seams, "", "lines in which regions of three or more sites meet"},
+      Member{"seams", &VoronoiGraph::seams, "", "chains of edges along which regions of three or more sites meet"},
       Member{"junctions", &VoronoiGraph::junctions, "", "points in which seams meet or end"},
   };
 };
 
-/// Returns the parts of a result of voronoi_complex(). A wall consists of triangles between the same two sites that
-/// share edges. A seam consists of edges whose triangles name three or more sites. It is cut at vertices at which not
-/// exactly two such edges meet. Parts narrower than a cube may be missing, and junctions closer together than a cube
-/// are one.
+/// Returns the regions, walls, seams and junctions of a result of voronoi_complex(). A wall consists of triangles
+/// between the same two sites that are connected through vertices. A seam consists of edges whose triangles have three
+/// or more sites. A seam ends at each of its vertices that does not belong to exactly two such edges. Regions, walls
+/// and seams narrower than a cube may be missing. Junctions that are closer together than the side of a cube may become
+/// one.
 ///
 /// @param complex  with the columns `site_a` and `site_b`.
-/// @throws InvalidOption if these are missing; InvalidMesh with the text of problem_of(complex); Cancelled.
-/// Cost: O(n log n) in the triangles, about 1 us and 100 bytes each.
+/// @throws InvalidOption if a column is missing; InvalidMesh with the text of problem_of(complex); Cancelled.
+/// Cost: O(n log n) for n triangles; about 1 us and 100 bytes per triangle.
 [[nodiscard]] VoronoiGraph voronoi_graph(const Complex& complex, const Context& context = {});
 
 }  // namespace blum

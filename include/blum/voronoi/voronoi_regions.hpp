@@ -12,7 +12,7 @@
 
 namespace blum {
 
-/// Neighbour of a region, and the wall to it.
+/// Neighbour of a region, and the wall between the two.
 struct VoronoiNeighbour {
   std::int32_t site = 0;  ///< Site of the neighbour.
   double area = 0;        ///< Area of the wall, square mesh units.
@@ -28,11 +28,11 @@ struct Description<VoronoiNeighbour> {
   };
 };
 
-/// Points that are closest to one site.
+/// Region of one site: the points that are closest to the site.
 struct VoronoiRegion {
   std::int32_t site = 0;
   double volume = 0;                         ///< Cubic mesh units; 0 if the complex has no surface.
-  double surface_area = 0;                   ///< Area of its part of the surface, square mesh units.
+  double surface_area = 0;                   ///< Area of the region's part of the surface, square mesh units.
   std::vector<VoronoiNeighbour> neighbours;  ///< By ascending site.
 };
 
@@ -44,17 +44,18 @@ struct Description<VoronoiRegion> {
       Member{"site", &VoronoiRegion::site, "", "site, numbered as site_a and site_b"},
       Member{"volume", &VoronoiRegion::volume, "cubic mesh units", "volume enclosed by its walls and its surface"},
       Member{"surface_area", &VoronoiRegion::surface_area, "square mesh units", "area of its part of the surface"},
-      Member{"neighbours", &VoronoiRegion::neighbours, "", "regions beyond its walls"},
+      Member{"neighbours", &VoronoiRegion::neighbours, "", "regions on the other side of its walls"},
   };
 };
 
-/// Returns the regions of a result of voronoi_complex() that have triangles, by ascending site. Volumes and areas are
-/// those of the triangles. A volume is off by about the area of the region's walls times VoronoiReport::hausdorff_bound
-/// at most, mostly much less. Regions thinner than a cube may have a volume of 0, or slightly below.
-/// @param complex  with the columns `site_a` and `site_b`. Without the surface (VoronoiPart::all), volumes are
-///                 meaningless.
-/// @throws InvalidOption if these are missing; InvalidMesh with the text of problem_of(complex).
-/// Cost: O(n log n) in the triangles.
+/// Returns the regions of a result of voronoi_complex() that have triangles in their border, by ascending site. Volumes
+/// and areas are computed from the triangles. The error of a volume is at most about the area of the region's walls
+/// times VoronoiReport::hausdorff_bound, and usually much smaller. Regions thinner than a cube may have a volume of 0,
+/// or slightly below 0.
+/// @param complex  with the columns `site_a` and `site_b`. Volumes are meaningful only if the complex contains the
+/// surface (VoronoiPart::all).
+/// @throws InvalidOption if a column is missing; InvalidMesh with the text of problem_of(complex).
+/// Cost: O(n log n) for n triangles.
 [[nodiscard]] std::vector<VoronoiRegion> voronoi_regions(const Complex& complex);
 
 }  // namespace blum

@@ -21,11 +21,13 @@ struct Description<SiteKind> {
                                      NamedValue{SiteKind::face, "face"}};
 };
 
-/// Face, reflex edge or reflex vertex of a polyhedron, by its parts in the mesh.
+/// Face, reflex edge or reflex vertex of a polyhedron. A face lists its triangles in the mesh, an edge or vertex its
+/// vertices.
 struct VoronoiSite {
   SiteKind kind = SiteKind::face;
-  std::vector<std::uint32_t> triangles;  ///< For a face, ascending: coplanar triangles that share edges.
-  std::vector<std::uint32_t> vertices;   ///< Both ends of an edge, the smaller first; or the vertex itself.
+  std::vector<std::uint32_t> triangles;  ///< For a face: its coplanar triangles, ascending. Otherwise empty.
+  /// For an edge: both ends, the smaller first. For a vertex: the vertex. For a face: empty.
+  std::vector<std::uint32_t> vertices;
 };
 
 template <>
@@ -35,7 +37,8 @@ struct Description<VoronoiSite> {
   static constexpr std::tuple members{
       Member{"kind", &VoronoiSite::kind, "", "face, edge or vertex"},
       Member{"triangles", &VoronoiSite::triangles, "", "triangles of a face"},
-      Member{"vertices", &VoronoiSite::vertices, "", "vertices of the mesh: both ends of an edge; a vertex"},
+      Member{"vertices", &VoronoiSite::vertices, "",
+             "vertices of the mesh: the two ends of an edge, or the one vertex"},
   };
 };
 

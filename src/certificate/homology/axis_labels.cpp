@@ -24,8 +24,8 @@ namespace {
 
 constexpr int most_moves = 32;
 
-/// Returns the deepest point that `prefers` accepts, of some directions and the shortest step that leads deep enough.
-/// Otherwise returns the deepest point tried; nullopt if none is inside.
+/// Returns the deepest point that `prefers` accepts, among some directions, at the shortest step with a deep enough
+/// point. If no step has one, it returns the deepest point tried; nullopt if no point is inside.
 /// @param prefers  returns true if a point is acceptable.
 template <class Prefers>
 std::optional<Vec3d> best_step(const SolidOracle& solid, std::uint32_t body, const Vec3d& point, double step,
@@ -47,23 +47,23 @@ std::optional<Vec3d> best_step(const SolidOracle& solid, std::uint32_t body, con
   return deepest;
 }
 
-/// Returns a point beside a point of the segment from a to b.
+/// Returns a point inside, beside the point at parameter `along` of the segment from a to b.
 std::optional<Vec3d> moved_aside(const SolidOracle& solid, std::uint32_t body, const Vec3d& a, const Vec3d& b,
                                  double along, double step) {
   constexpr std::size_t count = 12;
-  constexpr double turn = 0.1;  // radians from directions along axes
+  constexpr double turn = 0.1;  // radians; avoids directions along axes
   const ProbeLine line = line_between(a, b);
   std::array<Vec3d, count> directions;
   for (std::size_t k = 0; k < count; ++k) {
     const double angle = turn + 2 * std::numbers::pi * static_cast<double>(k) / count;
     directions[k] = line.across * std::cos(angle) + line.up * std::sin(angle);
   }
-  // Beyond a gap narrower than the step, a point is inside, too.
+  // A point beyond a narrow gap would be inside, too. So the segments to both ends must not meet the boundary.
   const auto is_beside = [&](const Vec3d& p) { return solid.is_clear(a, p, body) && solid.is_clear(p, b, body); };
   return best_step(solid, body, a + (b - a) * along, step, directions, is_beside);
 }
 
-/// Adds the points between a and b that lead past touched segments, and b. Returns false if that fails.
+/// Adds points between a and b, so that the way passes all touched segments, and then b. Returns false if that fails.
 bool lead_between(const SolidOracle& solid, std::uint32_t body, const Curtains& curtains, double step, const Vec3d& a,
                   const Vec3d& b, int& moves_left, Way& way) {
   const auto touched = curtains.first_touched(a, b, body);
@@ -77,9 +77,9 @@ bool lead_between(const SolidOracle& solid, std::uint32_t body, const Curtains& 
          lead_between(solid, body, curtains, step, *middle, b, moves_left, way);
 }
 
-/// Returns a point in a body, close to one on its surface. It is the first one that is deep enough for its step, else
-/// the deepest one tried; nullopt if none is inside.
-/// @param step  the shortest tried; the longest is 16 times as long.
+/// Returns a point in a body, close to the given surface point. It is the first point tried that is deep enough for its
+/// step. If there is none, it is the deepest point tried; nullopt if no point is inside.
+/// @param step  the shortest step to try; the longest is 16 times as long.
 std::optional<Vec3d> moved_inside(const SolidOracle& solid, std::uint32_t body, const Vec3d& point, double step) {
   std::vector<Vec3d> directions;
   for (std::uint32_t k = 0; k < 12; ++k) {
@@ -92,10 +92,10 @@ std::optional<Vec3d> moved_inside(const SolidOracle& solid, std::uint32_t body, 
   return best_step(solid, body, point, step, directions, [](const Vec3d&) { return true; });
 }
 
-/// Adds points to a way that touches segments of paths, so that it passes them inside the body. Way points on the
-/// surface are moved inside, except for both ends.
-/// @param step  as above.
-/// @return      true if the way touches nothing any more.
+/// Adds points to a way that touches segments of paths, so that it passes them inside the body. Points of the way that
+/// are less deep than `step` are moved inside, except for its two ends.
+/// @param step  the shortest step to try, as for moved_inside().
+/// @return      true if the way no longer touches any segment.
 bool lead_inside(const SolidOracle& solid, std::uint32_t body, const Curtains& curtains, double step, Way& way) {
   for (std::size_t k = 1; k + 1 < way.size(); ++k) {
     if (solid.depth(way[k], body) >= step) continue;
@@ -110,7 +110,7 @@ bool lead_inside(const SolidOracle& solid, std::uint32_t body, const Curtains& c
   return true;
 }
 
-/// Share of the tolerance of positions: far below the tolerance of edges, and far above rounding.
+/// Fraction of the tolerance of positions. It is far below the tolerance of edges, and far above rounding.
 constexpr double of_tolerance = 1.0 / 16;
 
 }  // namespace
@@ -256,7 +256,7 @@ void AxisLabels::lead_over_triangles(std::vector<std::uint32_t>& across, const C
       for (std::size_t k = 0; k < 3 && is_across(t, row); ++k) {
         const std::uint32_t e = given_.incidence.sides()[t][k];
         const auto pushed = replaced_.find(e);
-        if (pushed == replaced_.end()) continue;  // no side of a triangle across is doubtful
+        if (pushed == replaced_.end()) continue;  // sides of these triangles are not doubtful
         const auto before = count_at(e);
         std::vector<Label> other = over_other_sides(t, k);
         other.swap(pushed->second);
@@ -306,7 +306,7 @@ bool AxisLabels::look_at_thin_parts(const Context& context) {
 }
 
 bool AxisLabels::look_closely(std::span<const std::uint32_t> edges, const Context& context) {
-  // Few at a time: together they may use more looks than are left.
+  // Only few edges are examined at a time, because together they may use more looks than are left.
   constexpr std::size_t most_at_a_time = 32;
   bool is_changed = false;
   std::vector<CloserLook> found;

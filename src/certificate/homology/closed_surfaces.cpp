@@ -17,12 +17,12 @@ using Face = std::array<std::uint32_t, 3>;
 
 constexpr std::uint32_t none = 0xffffffffU;
 
-/// Returns true if a triangle passes one of its sides from the lower vertex to the higher one.
+/// Returns true if a triangle traverses one of its sides from the lower vertex to the higher one.
 bool rises(const Face& face, std::size_t side) {
   return face[side] < face[(side + 1) % 3];
 }
 
-/// The triangles that remain when those with free edges are removed, in bodies with voids; each once.
+/// The triangles in bodies with voids that remain after triangles with free edges are removed. Duplicates are left out.
 class Core {
  public:
   Core(const ComplexView& axis, const Incidence& incidence, const std::vector<bool>& is_wanted)
@@ -65,7 +65,7 @@ class Core {
     return found;
   }
   [[nodiscard]] const Face& face(std::uint32_t t) const { return axis_.triangles[t]; }
-  /// Returns 1 or -1 by the direction in which a triangle passes one of its sides.
+  /// Returns 1 if a triangle traverses one of its sides from the lower vertex to the higher one, otherwise -1.
   [[nodiscard]] int sign(std::uint32_t t, std::uint32_t edge) const {
     const auto& sides = incidence_.sides()[t];
     const auto side = static_cast<std::size_t>(std::find(sides.begin(), sides.end(), edge) - sides.begin());
@@ -75,7 +75,7 @@ class Core {
   [[nodiscard]] std::size_t size() const { return is_in_.size(); }
 
  private:
-  /// Keeps the first of triangles with the same sides.
+  /// Keeps only the first of several triangles with the same sides.
   void take_doubles() {
     const auto sorted = [&](std::uint32_t t) {
       Face sides = incidence_.sides()[t];
@@ -96,7 +96,8 @@ class Core {
   std::vector<bool> is_in_;
 };
 
-/// Triangles that are connected over edges of two triangles, with the same orientation as far as possible.
+/// Sheets: triangles that are connected over edges of two triangles. They get consistent orientations as far as
+/// possible.
 class Sheets {
  public:
   explicit Sheets(const Core& core) : sheet_(core.size(), none), facing_(core.size(), 0) {
@@ -142,7 +143,8 @@ class Sheets {
   std::vector<std::uint32_t> first_;
 };
 
-/// The border of each sheet along the seams. Seams where the same sheets meet alike count once.
+/// The border of each sheet: how often it runs along each seam, with sign. Seams with the same sheets and signs count
+/// once.
 struct Borders {
   std::vector<SparseRow> rows;
   std::uint32_t columns = 0;
@@ -162,7 +164,7 @@ struct Borders {
   }
 
  private:
-  /// Adds entries of one sheet, and makes the first entry positive.
+  /// Adds up the entries of each sheet, and makes the first entry positive.
   static void tidy_keeping_parity(SparseRow& row) {
     tidy(row);
     if (row.empty() || row.front().second > 0) return;
@@ -170,7 +172,7 @@ struct Borders {
   }
 };
 
-/// Counts crossings of lines from the voids to a far point.
+/// Counts crossings of sheets with lines from the voids to a far point.
 class VoidLines {
  public:
   VoidLines(const Core& core, const Sheets& sheets, const std::vector<Vec3d>& positions,
@@ -185,9 +187,9 @@ class VoidLines {
     tree_ = BoxHierarchy(boxes_, context);
   }
 
-  /// Adds to each sheet's row how often lines from a point of each void cross it.
-  /// @param choice  which point of a void is used, or the last one.
-  /// @return        for each void, true if that is undecided.
+  /// Adds to each sheet's row how often the line from a point of each void crosses the sheet.
+  /// @param choice  index of the point of a void to use; its last point if it has fewer.
+  /// @return        for each void: true if a crossing is undecided.
   [[nodiscard]] std::vector<bool> add(std::size_t choice, std::uint32_t first_column, std::vector<SparseRow>& rows,
                                       const Context& context) const {
     std::vector<bool> is_doubtful(complement_.voids().size(), false);
@@ -230,7 +232,8 @@ class VoidLines {
 
 constexpr std::size_t most_steps = 300'000'000;
 
-/// Returns the winding numbers of the cycles of a body's sheets; nullopt if the elimination is incomplete.
+/// Returns for each cycle of a body's sheets its winding numbers around the voids; nullopt if the elimination is
+/// incomplete.
 std::optional<std::vector<SparseRow>> wound(Elimination::Over over, const std::vector<SparseRow>& rows,
                                             const std::vector<bool>& is_taken, std::uint32_t columns) {
   Elimination seams(over, columns, most_steps);
@@ -241,7 +244,7 @@ std::optional<std::vector<SparseRow>> wound(Elimination::Over over, const std::v
   return seams.left();
 }
 
-/// Winding numbers of the surfaces of one body, from the rows of its sheets.
+/// Winding numbers of the closed surfaces in one body, from the rows of its sheets.
 struct Wound {
   std::size_t rank = 0;
   bool over_integers = false;
@@ -287,7 +290,7 @@ Windings windings(const ComplexView& axis, const Incidence& incidence, const std
   const Core core(axis, incidence, is_wanted);
   const Sheets sheets(core);
   const Borders borders(core, sheets);
-  std::vector<std::unique_ptr<VoidLines>> lines;  // to several far points
+  std::vector<std::unique_ptr<VoidLines>> lines;  // one for each far point
   const auto void_count = static_cast<std::uint32_t>(complement.voids().size());
   std::vector<bool> is_decided(body_count, false);
   std::vector<bool> is_decided_by_rows(body_count, false);  // for the previous choice

@@ -18,18 +18,19 @@ namespace blum::verifier {
 
 /// Winding numbers of the closed surfaces of an axis.
 struct Windings {
-  std::vector<std::size_t> rank;  ///< in each body, modulo 2: the least over all choices of points in its voids
-  bool over_integers = false;     ///< true if they span all integer ones, in every body
-  /// For each body, a point of a void left undecided by triangles through its points.
+  std::vector<std::size_t> rank;  ///< for each body: rank modulo 2, the least over all choices of points in its voids
+  bool over_integers = false;     ///< true if they span all integer winding numbers in every body
+  /// For each body: a point of a void with undecided winding numbers.
   std::vector<std::optional<Vec3d>> undecided;
 };
 
 /// Computes how often closed surfaces of an axis wind around the voids. Triangles with free edges are removed
-/// repeatedly. The rest is grouped into sheets over edges of two triangles. Elimination at the seams yields the cycles
-/// of sheets. Crossings of lines from the voids count how often each cycle winds around each void. That is done for all
-/// points of the voids, because a surface through a void is around some of them only. Duplicate triangles count once.
-/// @param body_of  of each vertex.
-/// @throws Cancelled. Cost: linear, except for the elimination: sheets are few.
+/// repeatedly. The others are grouped into sheets, which are connected over edges of two triangles. Elimination at the
+/// seams yields the cycles of sheets. Crossings of sheets with lines from the voids show how often each cycle winds
+/// around each void. This is repeated for all points of each void, because a surface that passes through a void
+/// encloses only some of them. Duplicate triangles count once.
+/// @param body_of  for each vertex.
+/// @throws Cancelled. Cost: linear, except for the elimination, which is cheap because sheets are few.
 [[nodiscard]] Windings windings(const ComplexView& axis, const Incidence& incidence,
                                 const std::vector<Vec3d>& positions, const std::vector<std::uint32_t>& body_of,
                                 const Complement& complement, std::size_t body_count, const Box3& box,

@@ -17,11 +17,11 @@ namespace blum::verifier {
 
 /// For each body of a solid: closed paths that generate the first homology of its complement, and points in each of its
 /// voids. By Alexander duality, linking numbers with the paths distinguish all classes of the body's first homology.
-/// Winding numbers around the points distinguish all classes of the second one. Paths and points may lie on the
+/// Winding numbers around the points distinguish all classes of its second homology. Paths and points may lie on the
 /// boundary.
 class Complement {
  public:
-  /// A straight part of paths, listed once however many paths run along it.
+  /// A straight segment of one or more paths, listed once.
   struct Segment {
     std::array<std::uint32_t, 2> ends;  ///< indices for point()
     std::uint32_t body = 0;
@@ -29,14 +29,14 @@ class Complement {
   /// A path that runs along a segment.
   struct Use {
     std::uint32_t path = 0;
-    std::int32_t times = 0;  ///< below 0 if it runs the other way
+    std::int32_t times = 0;  ///< how often the path runs along it; negative if backwards
   };
   struct Void {
-    std::vector<Vec3d> points;  ///< in it, deepest first; at least one
+    std::vector<Vec3d> points;  ///< points in the void, the deepest first; at least one
     std::uint32_t body = 0;
   };
 
-  /// Part of a path, during construction.
+  /// A segment of a path, used only during construction.
   struct Step {
     std::array<std::uint32_t, 2> ends;
     std::uint32_t path = 0;
@@ -44,7 +44,7 @@ class Complement {
   };
 
   Complement() = default;
-  /// @param body_of_path  in rising order.
+  /// @param body_of_path  for each path its body, in ascending order.
   Complement(std::vector<Vec3d> points, std::vector<Step> steps, const std::vector<std::uint32_t>& body_of_path,
              std::vector<Void> voids);
 
@@ -67,7 +67,7 @@ class Complement {
 
 /// Returns paths along the edges of the shells, and points in each void. The paths generate the homology of the shells,
 /// and so that of the complement. Cost: nothing for shells without handles.
-/// @param points_of_void  returns, for a shell, points in its void, or one on its boundary.
+/// @param points_of_void  returns for a shell points in its void, or a point on its boundary.
 /// @throws Cancelled.
 [[nodiscard]] Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells,
                                             const std::function<std::vector<Vec3d>(std::uint32_t)>& points_of_void,

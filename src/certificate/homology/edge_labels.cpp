@@ -22,7 +22,7 @@ Box3 box_of(const Vec3d& p, const Vec3d& q) {
 
 Apex::Apex(const Box3& box, std::uint32_t attempt) : size_(box.diagonal()) {
   constexpr double far = 3;
-  constexpr std::uint32_t first_direction = 1000;  // not the directions by which points are located
+  constexpr std::uint32_t first_direction = 1000;  // differs from the directions used to locate points
   const ProbeLine line = line_through(box.center(), first_direction + attempt);
   apex_ = box.center() - line.along * (far * size_);
   along_ = line.along;
@@ -53,7 +53,7 @@ Curtains::Curtains(const Complement& complement, const Apex& apex, const Context
     const Vec3d u = apex.seen(complement.point(segment.ends[0]));
     const Vec3d v = apex.seen(complement.point(segment.ends[1]));
     Box3 box = box_of(u, v);
-    box.lower = {box.lower.x - room, box.lower.y - room, 0};  // everything before the segment
+    box.lower = {box.lower.x - room, box.lower.y - room, 0};  // everything between the apex and the segment
     box.upper += Vec3d{room, room, room};
     boxes.push_back(box);
   }

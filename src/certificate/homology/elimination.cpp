@@ -32,7 +32,7 @@ void Elimination::reduce(SparseRow& row) {
   constexpr std::int64_t largest = std::int64_t{1} << 30;
   SparseRow sum;
   while (true) {
-    // Takes the first pivot. Later ones have no entry in its column, so that the column stays 0.
+    // Uses the earliest pivot. Later pivots have no entry in its column, so the column stays 0.
     std::uint32_t first = none;
     std::int64_t value = 0;
     for (const auto& [column, entry] : row) {
@@ -44,7 +44,7 @@ void Elimination::reduce(SparseRow& row) {
     if (first == none) return;
     const SparseRow& pivot = pivots_[first];
     const auto at = std::lower_bound(pivot.begin(), pivot.end(), std::pair{column_of_[first], -largest});
-    const std::int64_t times = -value * at->second;  // the pivot is 1 or -1
+    const std::int64_t times = -value * at->second;  // the pivot entry is 1 or -1
     sum.clear();
     auto p = pivot.begin();
     const auto put = [&](std::uint32_t column, std::int64_t entry) {

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t often = 65536;
 
-/// Transposes a table: returns for each item the rows that name it.
+/// Transposes a table: returns for each item the rows that contain it.
 IndexRows turned(std::size_t items, std::span<const std::uint32_t> named, std::size_t per_row) {
   std::vector<std::size_t> first(items + 1, 0);
   for (const std::uint32_t item : named) ++first[item + std::size_t{1}];
@@ -34,7 +34,7 @@ GeneratingCycles::GeneratingCycles(const CellGraph& graph, const Context& contex
 
 void GeneratingCycles::collapse(const CellGraph& graph, const IndexRows& cells_of_edge, const Context& context) {
   std::vector<std::uint32_t> count(edges_.size());
-  std::vector<std::uint32_t> line;  // of free edges, first found first: the rest then has few detours
+  std::vector<std::uint32_t> line;  // free edges, first found first, so that the remaining graph has few detours
   for (std::uint32_t e = 0; e < count.size(); ++e) {
     count[e] = static_cast<std::uint32_t>(cells_of_edge[e].size());
     if (count[e] == 1) line.push_back(e);
@@ -79,7 +79,7 @@ void GeneratingCycles::grow_trees(const CellGraph& graph, const Context& context
 
 void GeneratingCycles::find_closing(const CellGraph& graph, const IndexRows& cells_of_edge, const Context& context) {
   const std::size_t cells = is_cell_left_.size();
-  std::vector<bool> is_open = is_edge_left_;  // neither in a tree, nor led back, nor closing
+  std::vector<bool> is_open = is_edge_left_;  // neither in a tree, nor reducible, nor closing
   for (const std::uint32_t e : parent_edge_) {
     if (e != none) is_open[e] = false;
   }

@@ -21,9 +21,9 @@ struct CellGraph {
 };
 
 /// Edges that close cycles which generate the fundamental group of each component. First, cells with free edges are
-/// removed repeatedly. Then a shortest-path tree of the rest is grown. An edge closes a cycle unless a cell leads it
-/// back to the tree and earlier edges. There are as many as tunnels if all collapses to a graph or to spheres, else a
-/// few more.
+/// removed repeatedly. Then a shortest-path tree of the remaining graph is built. An edge closes a cycle unless a cell
+/// expresses it by the tree and earlier edges. If everything collapses to a graph or to spheres, the number of these
+/// edges is that of the tunnels. Otherwise it is a little larger.
 class GeneratingCycles {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
@@ -31,11 +31,11 @@ class GeneratingCycles {
   /// @throws Cancelled. Cost: linear.
   GeneratingCycles(const CellGraph& graph, const Context& context);
 
-  /// Returns the edges that close the cycles, in rising order.
+  /// Returns the edges that close the cycles, in ascending order.
   [[nodiscard]] const std::vector<std::uint32_t>& closing() const { return closing_; }
 
-  /// Calls use(edge, sign) along the cycle that an edge closes. The sign is 1 if an edge is passed from its first
-  /// vertex to its second one, else -1.
+  /// Calls use(edge, sign) along the cycle that an edge closes. The sign is 1 if the cycle traverses the edge from its
+  /// first vertex to its second, otherwise -1.
   template <class Use>
   void walk(std::uint32_t closing, const Use& use) const {
     auto [a, b] = edges_[closing];
@@ -62,7 +62,7 @@ class GeneratingCycles {
 
   std::span<const std::array<std::uint32_t, 2>> edges_;
   std::vector<bool> is_edge_left_, is_cell_left_;
-  std::vector<std::uint32_t> parent_edge_;  ///< of each vertex; none at a root
+  std::vector<std::uint32_t> parent_edge_;  ///< for each vertex; none at a root
   std::vector<std::uint32_t> depth_;
   std::vector<std::uint32_t> closing_;
 };

@@ -18,18 +18,18 @@ constexpr std::size_t most_steps = 300'000'000;
 /// Facts about one body.
 struct BodyProof {
   bool is_compared = false;           ///< true if its Betti numbers agree and edges lie in the solid
-  std::size_t generators = 0;         ///< of the fundamental group of the axis in it
+  std::size_t generators = 0;         ///< number of generators of the axis's fundamental group in it
   bool loops_over_integers = true;    ///< true if loops of the axis span all of its first homology
-  std::size_t across = 0;             ///< triangles that span its tunnels
-  std::size_t doubtful = 0;           ///< edges that touch the surface, so that linking is undecided
-  bool are_triangles_decided = true;  ///< true if none of these is the side of a triangle
+  std::size_t across = 0;             ///< number of triangles that span its tunnels
+  std::size_t doubtful = 0;           ///< number of edges that touch the surface, so that linking is undecided
+  bool are_triangles_decided = true;  ///< true if no such edge is the side of a triangle
 };
 
 std::string counted(std::size_t count, const char* one, const char* many) {
   return count_text(count) + " " + (count == 1 ? one : many);
 }
 
-/// Checks loops, and fills the ranks of bodies and of proofs.
+/// Checks the loops of an axis, and sets the ranks of bodies and proofs.
 class Loops {
  public:
   Loops(const AxisInSolid& given, const GeneratingCycles& cycles, const Complement& complement)
@@ -83,7 +83,7 @@ class Loops {
     }
   }
 
-  /// Returns true if a doubtful edge is on the cycle that an edge closes.
+  /// Returns true if the cycle that an edge closes contains a doubtful edge.
   [[nodiscard]] bool is_doubtful(const AxisLabels& labels, std::uint32_t closing) const {
     if (labels.doubtful().empty()) return false;
     bool is_on = false;
@@ -127,7 +127,7 @@ class Loops {
 
 /// Findings about loops and closed surfaces.
 struct Found {
-  bool is_looked_at = false;  ///< false if a solid is made of voxels
+  bool is_looked_at = false;  ///< false if the solid consists of voxels
   std::vector<BodyProof> proofs;
   Windings surfaces;
 };
@@ -165,7 +165,7 @@ std::string sentence(Proven proven) {
   }
 }
 
-/// Returns the mismatch of the loops of a body; empty if none.
+/// Returns the mismatch about the loops in a body; empty if there is none.
 std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std::string& name) {
   const bool is_short = body.tunnels_met < body.solid[1];
   if (proof.doubtful > 0 && (is_short || !proof.are_triangles_decided)) {
@@ -176,10 +176,10 @@ std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std
   if (!is_short) return {};
   return "loops of the axis run around " + count_text(static_cast<std::uint64_t>(body.tunnels_met)) + " of the " +
          counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " + name +
-         ": the others run around no tunnel, or around the same ones";
+         ": its other loops run around no tunnel, or around the same tunnels";
 }
 
-/// Returns the mismatch of its closed surfaces; empty if none.
+/// Returns the mismatch about the closed surfaces in a body; empty if there is none.
 std::string wrong_surfaces(const BodyCheck& body, const std::optional<Vec3d>& undecided, double factor,
                            const std::string& name) {
   if (undecided) {
@@ -223,11 +223,12 @@ void conclude(HomologyCheck& check, const Found& found, const AxisInSolid& given
   }
   check.shown = sentence(check.proven);
   if (given.undecided_edges > 0) {
-    check.shown +=
-        ", and no more: " + counted(given.undecided_edges, "edge", "edges") + " may cross a gap of the solid";
+    check.shown += "; nothing stronger is proven, because " + counted(given.undecided_edges, "edge", "edges") +
+                   " may cross a gap of the solid";
   }
-  if (!found.is_looked_at && has_tunnels_or_voids) check.shown += ", and no more: it is made of voxels";
-  if (check.across > 0) check.shown += ", and no more: triangles span a tunnel of the solid";
+  if (!found.is_looked_at && has_tunnels_or_voids)
+    check.shown += "; nothing stronger is proven, because the solid consists of voxels";
+  if (check.across > 0) check.shown += "; nothing stronger is proven, because triangles span a tunnel of the solid";
   if (check.doubtful > 0) check.shown += "; " + counted(check.doubtful, "edge touches", "edges touch") + " the surface";
 }
 
@@ -252,7 +253,7 @@ HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vec
   }
   if (!edges_hold || !all_agree) {
     check.proven = all_agree ? Proven::betti_numbers : Proven::nothing;
-    check.shown = all_agree ? sentence(check.proven) + ", and no more: edges leave the solid"
+    check.shown = all_agree ? sentence(check.proven) + "; nothing stronger is proven, because edges leave the solid"
                             : "the axis has other Betti numbers than the solid";
     return check;
   }

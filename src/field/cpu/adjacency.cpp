@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t grain = 1 << 14;
 
-/// Sorts the indices 0 .. keys.size()-1 by ascending key (< key_count). Equal keys keep their own order.
+/// Sorts the indices 0 .. keys.size()-1 by ascending key (all keys < key_count). The sort is stable: equal keys keep
+/// the order of their indices.
 void counting_order(std::span<const std::uint32_t> keys, std::size_t key_count, std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> start(key_count + 1, 0);
   for (const std::uint32_t key : keys) ++start[key + 1];

@@ -15,31 +15,34 @@ namespace blum::cpu {
 
 inline constexpr std::uint32_t no_index = 0xffffffff;
 
-/// Connectivity of a mesh. It depends on the mesh's indices alone, so a deforming mesh keeps it.
+/// Connectivity of a mesh. It depends only on the mesh's indices, so it stays valid while the mesh deforms.
 struct Adjacency {
-  /// Vertices that a triangle, segment or point names, ascending.
+  /// Vertices that a triangle, segment or point uses, ascending.
   std::vector<std::uint32_t> named_vertices;
   /// Other ends of the edges at vertex v: neighbours[first_neighbour[v] .. first_neighbour[v + 1]).
   std::vector<std::uint32_t> first_neighbour;
   std::vector<std::uint32_t> neighbours;
-  /// Up to two triangles of each edge (more are not needed for a valid bound); no_index if there are fewer.
+  /// Two triangles of each edge. Further triangles are left out: bounds stay valid without them. no_index fills missing
+  /// entries.
   std::vector<std::array<std::uint32_t, 2>> edge_faces;
 };
 
 void build_adjacency(const MeshView& mesh, const SiteTable& sites, const Context& context, Adjacency& out);
 
-/// Spatially coherent orders of the sites. Named vertices follow a Morton curve, and edges and faces their first vertex
-/// on it. Ties keep the sites' own order.
+/// Orders of the sites in which sites that lie close together follow each other. Vertices in use are sorted along a
+/// Morton curve. Edges and faces are sorted by the position of their first vertex on the curve. Ties are sorted by site
+/// id.
 struct SiteOrder {
   std::vector<std::uint32_t> vertices;
   std::vector<std::uint32_t> edges;
   std::vector<std::uint32_t> faces;
-  /// Place of each vertex of the mesh in `vertices`; 0 if it is not named.
+  /// Index in `vertices` of each vertex of the mesh; 0 for vertices not in use.
   std::vector<std::uint32_t> rank;
 };
 
-/// Orders the sites.
-/// @param positions  one per vertex of the mesh, in the normalised frame ([-1, 1] on each axis if named).
+/// Computes the orders.
+/// @param positions  one per vertex of the mesh, in the normalised frame (within [-1, 1] on each axis for vertices in
+/// use).
 void order_sites(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                  std::span<const Vec3d> positions, const Context& context, SiteOrder& out);
 

@@ -27,7 +27,7 @@ TransformPlan make_plan(const GridSpec& grid, const DistanceTransformOptions& op
   return plan;
 }
 
-/// Working memory that lasts over several selections.
+/// Working memory that is kept from one selection to the next.
 struct Workspace {
   Workspace(const TransformPlan& plan, int workers)
       : squares_y(plan.size[1], plan.weight[1], plan.integer), squares_z(plan.size[2], plan.weight[2], plan.integer) {
@@ -54,16 +54,17 @@ class PhaseClock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Small planes stay in cache between the x and the y pass. Large ones (2D images) are cut into more tasks.
+/// Largest plane (in voxels) that is one task of the x and y passes, so that it stays in cache between them. Larger
+/// planes, as in 2D images, are split into several tasks.
 constexpr std::size_t largest_plane_per_task = std::size_t{1} << 20U;
-/// Voxels of a task: enough to hide its overhead, few enough to stop within milliseconds.
+/// Voxels per task: enough to hide the task's overhead, and few enough to react to a cancel within milliseconds.
 constexpr std::size_t task_voxels = std::size_t{1} << 16U;
-/// Voxels of a task of the z pass. Its neighbouring tiles share pages and the memory's rows, so that tasks are larger.
+/// Voxels per task of the z pass. These tasks are larger because neighbouring tiles share memory pages and DRAM rows.
 constexpr std::size_t depth_task_voxels = std::size_t{1} << 18U;
 
-/// Writes to each page of some rows of distances, which nothing has written yet. The depth pass would do so, but a
-/// column of it crosses a page in every layer. Its first few tasks would wait for all of the memory, and not react to a
-/// cancel.
+/// Touches each memory page of some rows of distances, which nothing has written before. Without this, the z pass would
+/// touch them first. Its columns meet a new page in every layer. So its first few tasks would map all of the memory and
+/// could not react to a cancel.
 void touch_distances(const TransformPlan& plan, std::size_t first_row, std::size_t last_row) {
   constexpr std::size_t page = 4096 / sizeof(float);
   const std::size_t end = last_row * plan.size[0];
@@ -86,7 +87,8 @@ void transform_planes(const TransformPlan& plan, Workspace& work, const Context&
       touch_distances(plan, range.begin * rows, range.end * rows);
       for (std::size_t z = range.begin; z < range.end; ++z) {
         detail::transform_rows(plan, scratch, z * rows, (z + 1) * rows);
-        if (rows == 1) continue;  // nothing to do along y: a partial site of y = 0 is its x
+        // With one row, the y pass has nothing to do: for y = 0, a packed partial site equals its x.
+        if (rows == 1) continue;
         for (std::size_t tile = 0; tile < tiles; ++tile) columns(z * tiles + tile, scratch);
       }
     });

@@ -1,16 +1,16 @@
 // The three passes of the distance transform, compiled once per instruction set.
 //
-// A column pass (y or z) solves the rows r of a column. For each it finds the row s that minimises f(s) + w (r - s)^2,
-// where f is the result of the earlier passes. The smallest minimiser s(r) never falls as r grows (the matrix is
-// totally monotone: Aggarwal, Klawe, Moran, Shor, Wilber 1987). So rows are solved coarse to fine, each only between
-// the solutions of its two neighbours. This takes log2(n) + 2 candidates per row in all. Lanes are neighbouring
-// columns; a row searches the union of their ranges. Neighbouring columns that disagree too much for that are solved
-// one by one.
+// A column pass (y or z) processes the rows r of a column. For each r it finds the row s that minimises f(s) + w (r -
+// s)^2, where f is the result of the earlier passes. The smallest minimiser s(r) never decreases as r grows (the matrix
+// is totally monotone: Aggarwal, Klawe, Moran, Shor, Wilber 1987). So rows are solved coarse to fine. For each row, the
+// search is limited to the rows between the minimisers of the two nearest rows already solved. The average is log2(n) +
+// 2 candidates per row. Vector lanes contain neighbouring columns; the search for a row covers the union of the lanes'
+// ranges. If the ranges differ too much, the columns are solved one by one.
 //
-// In a signed transform a voxel of the other kind in the column costs nothing by itself. The smallest minimiser then
-// never falls within each kind, and between rows of different kinds it falls by at most one. The reason: between r1 <
-// r2 there is an edge of the kinds, e | e + 1. There s(r1) <= e + 1 and s(r2) >= e, because nothing beyond the edge is
-// closer.
+// In a signed transform, a voxel of the other kind (selected or not) has cost f = 0. The smallest minimiser then never
+// decreases among rows of the same kind, and between rows of different kinds it decreases by at most one. The reason:
+// between rows r1 < r2 of different kinds, the kind changes somewhere, between rows e and e + 1. Then s(r1) <= e + 1
+// and s(r2) >= e, because nothing beyond the change is closer.
 #include "field/cpu/distance_transform_kernels.hpp"
 
 #include <algorithm>
@@ -34,15 +34,16 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::detail::HWY_NAMESPACE {
 namespace {
 
-/// Arithmetic of squared distances, in int32 or double. In a column of mixed kinds the cost of a selected voxel is
-/// stored flipped: ~f or -f. For a selected row, all costs are flipped again. Then costs of the row's own kind are
-/// positive, and those of the other kind negative.
+/// Arithmetic of squared distances, in int32 or double. In a column with both kinds of voxels, the cost f of a selected
+/// voxel is stored as ~f (int32) or -f (double). For a selected row, all costs are flipped again. Then costs of voxels
+/// of the row's own kind are positive, and those of the other kind negative.
 template <class T>
 struct Costs;
 
 template <>
 struct Costs<std::int32_t> {
-  static constexpr std::int32_t far = std::int32_t{1} << 30;  ///< no site; far + the square of an axis still fits
+  /// Cost without a site; adding the square of an axis length still fits in int32.
+  static constexpr std::int32_t far = std::int32_t{1} << 30;
   static const std::int32_t* table(const SquareTable& squares) { return squares.integers.data(); }
   static std::int32_t* scratch(PassScratch& scratch) { return scratch.integer_costs.data(); }
   template <class D, class VI>
@@ -57,7 +58,8 @@ struct Costs<std::int32_t> {
   static HWY_INLINE V flip(D d, V cost) {
     return hn::Xor(cost, hn::Set(d, -1));
   }
-  /// Returns the mask that flips the other costs for this row by xor: all ones if the row's own cost is flipped.
+  /// Returns the mask with which an xor flips all costs for this row. In int32 it has all bits set if the row's own
+  /// cost is flipped, else none.
   template <class D, class V>
   static HWY_INLINE V flip_mask(D, V cost) {
     return hn::ShiftRight<31>(cost);
@@ -87,19 +89,19 @@ struct Costs<double> {
   }
 };
 
-/// Neighbouring columns of one axis, as scratch memory holds them: lane l of row r is at r * stride + l.
+/// Neighbouring columns along one axis, as stored in scratch memory: lane l of row r is at r * stride + l.
 struct Columns {
   std::size_t length = 0;      ///< Number of rows.
   std::size_t stride = 0;      ///< Step between rows in scratch.
   std::size_t first = 0;       ///< Linear index of the voxel of row 0, lane 0.
   std::size_t row_stride = 0;  ///< Step between rows in the image.
-  std::size_t x = 0;           ///< Coordinate of lane 0.
-  std::size_t y = 0;           ///< Coordinate in the z pass.
-  std::size_t lanes = 0;       ///< Number of columns; the lanes of a vector beyond them repeat the last one.
-  std::size_t mask_word = 0;   ///< Start of the mask's row of row 0.
+  std::size_t x = 0;           ///< x coordinate of lane 0.
+  std::size_t y = 0;           ///< y coordinate of the columns; used in the z pass only.
+  std::size_t lanes = 0;       ///< Number of columns. Further lanes of a vector repeat the last column.
+  std::size_t mask_word = 0;   ///< Index of the mask's first word for row 0.
   std::size_t mask_stride = 0;
-  bool mixed = false;         ///< Holds both kinds, in a signed transform.
-  bool all_selected = false;  ///< Holds only selected voxels, in a signed transform.
+  bool mixed = false;         ///< In a signed transform: the columns contain both kinds of voxels.
+  bool all_selected = false;  ///< In a signed transform: all voxels of the columns are selected.
   std::size_t lowest_candidate = 0;
   std::size_t highest_candidate = 0;
 };
@@ -109,7 +111,7 @@ HWY_INLINE std::uint32_t column_bits(const TransformPlan& plan, const Columns& c
   return static_cast<std::uint32_t>(words[columns.x / 64] >> (columns.x % 64));
 }
 
-/// Finds the kinds that the columns hold.
+/// Sets `mixed` and `all_selected`.
 void classify(const TransformPlan& plan, Columns& columns) {
   if (!plan.is_signed) return;
   const std::uint32_t lanes = (std::uint32_t{1} << columns.lanes) - 1;
@@ -125,7 +127,7 @@ void classify(const TransformPlan& plan, Columns& columns) {
   columns.all_selected = all == lanes;
 }
 
-/// Copies the result of the pass before in the columns into scratch, with the costs, and finds the rows that can be
+/// Copies the columns' results of the previous pass into scratch, with their costs. Finds the range of rows that can be
 /// closest.
 template <class D, bool kFinal, bool kMixed>
 void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& columns) {
@@ -160,7 +162,7 @@ void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& colu
   std::size_t highest = 0;
   for (std::size_t row = 0; row < columns.length; ++row) {
     const auto* in = reinterpret_cast<const std::int32_t*>(plan.site) + columns.first + row * columns.row_stride;
-    // The rows of a column lie far apart, so the processor does not prefetch them by itself.
+    // The rows of a column are far apart in memory, so the processor does not prefetch them by itself.
     if constexpr (kFinal) hwy::Prefetch(in + (next_columns ? width : 0));
     if (columns.lanes < width) {
       for (std::size_t lane = 0; lane < width; ++lane) buffer[lane] = in[std::min(lane, columns.lanes - 1)];
@@ -180,7 +182,7 @@ void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& colu
       lowest = std::min(lowest, row);
       highest = row;
     }
-    // Masks of int32 lanes widen to those of the costs as numbers: -1 or 0.
+    // Each int32 lane mask (-1 or 0) is widened to the width of a cost.
     const auto zero = hn::Zero(d);
     cost = hn::IfThenElse(hn::Ne(Cost::from_int(d, hn::VecFromMask(di, is_none)), zero), hn::Set(d, Cost::far), cost);
     if constexpr (kMixed) {
@@ -195,7 +197,7 @@ void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& colu
   columns.highest_candidate = kMixed ? columns.length - 1 : highest;
 }
 
-/// Solves the columns of one vector, from scratch to the image.
+/// Solves the columns of one vector. Reads scratch and writes the image.
 template <class D, bool kFinal, bool kMixed>
 class Sweep {
   using T = hn::TFromD<D>;
@@ -207,7 +209,7 @@ class Sweep {
   static constexpr bool one_lane = hn::MaxLanes(D()) == 1;
 
  public:
-  /// @param lane  lane of the columns at which the vector starts.
+  /// @param lane  first lane of the columns that the vector contains.
   Sweep(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, const Columns& columns,
         std::size_t lane)
       : plan_(plan),
@@ -220,14 +222,16 @@ class Sweep {
         lowest_(scratch.lowest.data()),
         highest_(scratch.highest.data()) {}
 
-  /// Solves all rows. Returns false if that takes more than about `budget` candidates, or the caller has cancelled.
+  /// Solves all rows. Returns false if this would take more than about `budget` candidates, or if the caller has
+  /// cancelled.
   bool run(std::size_t budget) {
     constexpr std::size_t candidates_between_checks = std::size_t{1} << 22U;
     const std::size_t n = columns_.length;
     std::size_t spent = 0;
     std::size_t next_check = std::min(budget, candidates_between_checks);
     for (std::size_t step = std::bit_floor(n); step > 0; step /= 2) {
-      // Row p - 1 lies between rows p - step - 1 and p + step - 1, which are solved or outside.
+      // Row p - 1 lies between rows p - step - 1 and p + step - 1. Each of these is already solved or outside the
+      // column.
       for (std::size_t p = step; p <= n; p += 2 * step) {
         std::size_t low = p == step ? columns_.lowest_candidate : static_cast<std::size_t>(lowest_[p - step - 1]);
         std::size_t high = p + step > n ? columns_.highest_candidate : static_cast<std::size_t>(highest_[p + step - 1]);
@@ -283,10 +287,10 @@ class Sweep {
     }
   }
 
-  /// Returns all ones for negative values.
+  /// Returns all ones in lanes with negative values, else 0.
   static HWY_INLINE VI kind(VI value) { return hn::ShiftRight<31>(value); }
 
-  /// Returns words[(row * stride + lane) * step] with each lane's own row.
+  /// Returns words[(row * stride + lane) * step], with a separate row for each lane.
   HWY_INLINE VI gather(const std::int32_t* words, std::size_t step, VI row) const {
     const DI di;
     const std::size_t stride = columns_.stride * step;
@@ -298,7 +302,8 @@ class Sweep {
     }
   }
 
-  /// Replaces the site by the closest row itself, if that is of the other kind. The sign bit of a cost is its kind.
+  /// In lanes whose closest row is of the other kind, replaces the partial site by that row. The sign bit of a cost
+  /// indicates the kind.
   HWY_INLINE VI replace_other_kind(VI partial, VI closest_row, VI negative) const {
     const DI di;
     // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be std::int32_t itself
@@ -342,7 +347,7 @@ class Sweep {
     store(di, site, reinterpret_cast<std::int32_t*>(plan_.site) + out);
   }
 
-  /// Returns the distances of squared distances.
+  /// Converts squared distances to distances.
   HWY_INLINE hn::Vec<DF> root(V best) const {
     const DF df;
     if constexpr (std::is_same_v<T, double>) {
@@ -370,7 +375,8 @@ class Sweep {
   template <class DT, class VT>
   HWY_INLINE void store(DT dt, VT value, hn::TFromD<DT>* out) const {
     if (lanes_ == hn::Lanes(dt)) {
-      // Whole cache lines of the result are not read again soon, and need not be read before they are written.
+      // Results are written past the caches if they fill whole cache lines. Such lines are not read again soon, and
+      // their old content need not be read.
       constexpr bool whole_line = kFinal && hn::MaxLanes(dt) * sizeof(*out) == 64;
       if (whole_line && reinterpret_cast<std::uintptr_t>(out) % 64 == 0) {
         hn::Stream(value, dt, out);
@@ -395,11 +401,12 @@ class Sweep {
   std::int32_t* highest_;
 };
 
-/// Solves columns that fill at most one vector: together, or one by one if that is cheaper.
+/// Solves at most one vector of columns: together, or one by one if that is cheaper.
 template <class D, bool kFinal, bool kMixed>
 void solve_columns(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, Columns& columns) {
   load_columns<D, kFinal, kMixed>(plan, scratch, columns);
-  if (columns.lowest_candidate > columns.highest_candidate) return;  // no site in this plane: all is none already
+  // No site in these columns: the results already stand for none.
+  if (columns.lowest_candidate > columns.highest_candidate) return;
   const std::size_t lanes = columns.lanes;
   const std::size_t one_column = columns.length * (static_cast<std::size_t>(std::bit_width(columns.length)) + 2);
   if (Sweep<D, kFinal, kMixed>(plan, squares, scratch, columns, 0).run(lanes == 1 ? SIZE_MAX : lanes * one_column)) {
@@ -416,7 +423,7 @@ void columns_of(const TransformPlan& plan, const SquareTable& squares, PassScrat
                 std::size_t x_end) {
   using Wide = hn::CappedTag<T, 16>;
   using One = hn::CappedTag<T, 1>;
-  // Offsets into scratch must fit 32 bits in the gathers, and few columns of great length should not be padded.
+  // Gathers need scratch offsets that fit in 32 bits. A few very long columns should not be padded to a whole vector.
   constexpr std::size_t longest_wide_column = std::size_t{1} << 24U;
   const std::size_t width = columns.length <= longest_wide_column ? hn::Lanes(Wide()) : 1;
   columns.stride = width;
@@ -459,7 +466,7 @@ void columns_z(const TransformPlan& plan, const SquareTable& squares, PassScratc
   columns.mask_stride = plan.size[1] * plan.mask_words_per_row;
   plan.integer ? columns_of<std::int32_t, true>(plan, squares, scratch, columns, x_end)
                : columns_of<double, true>(plan, squares, scratch, columns, x_end);
-  hwy::FlushStream();  // streamed values become visible before other threads see this task as done
+  hwy::FlushStream();  // makes streamed values visible before other threads see this task as done
 }
 
 }  // namespace

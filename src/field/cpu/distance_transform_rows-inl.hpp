@@ -25,14 +25,14 @@ constexpr std::uint32_t no_site = 0xffffffffU;
 
 using RowTag = hn::CappedTag<std::int32_t, 16>;
 
-/// Returns the bits of 16 voxels of a row.
+/// Returns the mask bits of one group of 16 voxels of a row.
 HWY_INLINE std::uint32_t group_bits(const std::uint64_t* words, std::size_t group) {
   return static_cast<std::uint32_t>(words[group / 4] >> (16 * (group % 4))) & 0xffffU;
 }
 
-/// The closest target in a row lies left (last target up to x) or right (first target from x on). `no_left` and
-/// `no_right` stand for a missing one. In unsigned arithmetic they are further away than any voxel, because rows are
-/// shorter than 2^31.
+/// Positions of a missing target. The closest target in a row is the last one up to x (left) or the first one from x
+/// (right). `no_left` and `no_right` mean that this side has none. In unsigned arithmetic their distance exceeds that
+/// of any voxel, because rows are shorter than 2^31.
 constexpr std::uint32_t no_left = 0x80000000U;
 constexpr std::uint32_t no_right = 0xffffffffU;
 
@@ -41,7 +41,7 @@ struct RowState {
   std::uint32_t last_other = no_left;
 };
 
-/// Returns the position of the highest set bit of small positive integers (below 2^24), from the exponent of a float.
+/// Returns the index of the highest set bit of positive integers below 2^24, read from the exponent of a float.
 template <class V>
 HWY_INLINE V highest_bit(V bits) {
   const RowTag d;
@@ -63,7 +63,7 @@ HWY_INLINE auto as_lanes(std::uint32_t value) {
   return hn::Set(RowTag(), static_cast<std::int32_t>(value));
 }
 
-/// Writes the closest targets of `lanes` voxels. At the end of a row these may be fewer than a vector holds.
+/// Writes the closest targets of `lanes` voxels. At the end of a row, `lanes` may be smaller than a vector.
 template <class V>
 HWY_INLINE void store_lanes(V value, std::uint32_t* out, std::size_t lanes) {
   const RowTag d;
@@ -76,7 +76,8 @@ HWY_INLINE void store_lanes(V value, std::uint32_t* out, std::size_t lanes) {
   }
 }
 
-/// Transforms one group of 16 voxels that starts at x0. `bits` are the selected ones, `valid` those inside the row.
+/// Transforms one group of 16 voxels that starts at x0. `bits` marks the selected voxels, `valid` the voxels inside the
+/// row.
 template <bool kSigned>
 HWY_INLINE void transform_group(std::uint32_t bits, std::uint32_t valid, std::uint32_t x0, const RowState& state,
                                 std::uint32_t next_selected, std::uint32_t next_other, std::uint32_t* out,
@@ -165,4 +166,4 @@ void rows(const TransformPlan& plan, PassScratch& scratch, std::size_t begin, st
 }  // namespace
 }  // namespace blum::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif  // include guard of the target
+#endif  // end of the per-target include guard

@@ -36,7 +36,8 @@ void copy_set(const RecordSet& from, const Context& context, RecordSet& to) {
   copy_floats(from.cluster_cones.sine, to.cluster_cones.sine);
 }
 
-/// Removes the reaches of sites. Beyond its reach a site is beaten by a surface point, but that point may be excluded.
+/// Removes the reaches of sites (limits beyond which some surface point is closer). In the second order, that surface
+/// point may be excluded.
 void remove_reaches(SiteRecords& sites, const Context& context) {
   for (std::size_t kind = 0; kind < kind_count; ++kind) {
     RecordSet& set = sites.kinds[kind];
@@ -61,8 +62,8 @@ bool has_mixed_edges(const SiteTable& sites, const SecondLabels& labels) {
                      [&](const Segment& edge) { return labels.of_vertex(edge[0]) != labels.of_vertex(edge[1]); });
 }
 
-/// Returns the neighbours and faces of each site that have no labels but its own. They bound its domain whatever is
-/// first.
+/// For each site, returns only those neighbours and faces all of whose labels the site has too. These bound the site's
+/// domain, whichever site is first.
 Adjacency without_other_labels(const FirstSites& first, const SecondLabels& labels) {
   Adjacency out;
   const Adjacency& all = first.adjacency;
@@ -91,10 +92,10 @@ Adjacency without_other_labels(const FirstSites& first, const SecondLabels& labe
   return out;
 }
 
-/// Fields of more nodes, above 16 MB, are not expected to stay in the caches.
+/// Fields with more nodes (over 16 MB) are written past the caches, because they are not expected to fit there.
 constexpr std::size_t fewest_streamed_nodes = std::size_t{1} << 21;
 
-/// Returns the unit vertex pseudonormals in the grid's axes.
+/// Returns the unit vertex pseudonormals, in the coordinate axes of the grid.
 std::vector<Vec3f> vertex_sides(const MeshView& mesh, const SiteTable& sites, const NormalFrame& frame,
                                 const Context& context) {
   const Pseudonormals normals(mesh, sites, context);
@@ -112,7 +113,7 @@ std::vector<Vec3f> vertex_sides(const MeshView& mesh, const SiteTable& sites, co
   return sides;
 }
 
-/// Cuts a grid into tiles of at most `size` nodes per side.
+/// Divides a grid into tiles of at most `size` nodes per side.
 struct Tiling {
   std::array<std::int64_t, 3> grid;
   std::int64_t size;

@@ -21,7 +21,7 @@
 
 namespace blum::cpu {
 
-/// First-order data of a mesh.
+/// Data of a mesh for the first order (closest sites).
 struct FirstSites {
   const MeshView& mesh;
   const SiteTable& sites;
@@ -31,14 +31,14 @@ struct FirstSites {
   const SiteRecords& records;
 };
 
-/// Records, labels and links that tiles of the second order read.
+/// Records, labels and links that the tiles of the second order (second-closest sites) read.
 class SecondSites {
  public:
   void build(const FirstSites& first, const SecondLabels& labels, const Context& context);
 
   [[nodiscard]] const SiteRecords& records() const { return records_; }
   [[nodiscard]] const ClusterForest& forest() const { return forest_; }
-  /// Returns a job without the field and its request. It is valid until the next build().
+  /// Returns a job whose field and request are not set. It is valid until the next build().
   [[nodiscard]] SecondJob job() const;
 
  private:
@@ -65,7 +65,8 @@ class Engine final : public FieldBackend {
 
  private:
   void build_records(const FieldRequest& request, const Context& context);
-  /// Returns the job of a field, without its request and signs.
+  /// Returns a job for the tiles of a grid. Sets only the grid, its place and scale, and the cancellation; the caller
+  /// sets the rest.
   [[nodiscard]] FieldJob make_job(const GridSpec& grid, const Context& context) const;
 
   MeshView mesh_;

@@ -14,7 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Calls use(lane offset of the loaded boxes, lower corners, upper corners) for sixteen consecutive boxes.
+/// Calls use(offset, lower corners, upper corners) for sixteen consecutive boxes, one vector at a time. The offset is
+/// that of the vector's first box.
 template <class Use>
 HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, Use use) {
   for (std::size_t offset = 0; offset < cluster_size; offset += lanes) {
@@ -24,10 +25,10 @@ HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, U
   }
 }
 
-/// Tests boxes of surface against a tile. A box is dropped if p0 is closer than all of it to every point x of the tile.
-/// This holds if |x - p|^2 - |x - p0|^2 is positive for all x, and for all p in the box. The minimum is separable.
-/// Along an axis the difference is linear in x and convex in p. So its minimum is at an end of the tile, with p as near
-/// to it as can be.
+/// Tests boxes around parts of the surface against a tile. Let p0 be a known surface point, x a point of the tile and p
+/// one of the box. The box is dropped if p0 is closer to x than p for all x and p. This holds if |x - p|^2 - |x - p0|^2
+/// is positive for all x and p. The minimum is separable by axis. Along an axis the difference is linear in x and
+/// convex in p. So the minimum is at an end of the tile, with p as close to that end as the box allows.
 struct TileTest {
   Vec low, high, low_p0, high_p0;
   V tolerance;
@@ -55,7 +56,7 @@ struct TileTest {
     return hn::Min(hn::MulSub(from_low, from_low, low_to_p0), hn::MulSub(from_high, from_high, high_to_p0));
   }
 
-  /// Returns one bit per box of sixteen.
+  /// Returns one bit for each of sixteen boxes, set if the box is kept.
   HWY_INLINE std::uint32_t keeps(const BoxArrays& boxes, std::size_t first) const {
     std::uint32_t result = 0;
     for_each_box_vector(boxes, first, [&](std::size_t offset, const Vec& lower, const Vec& upper) {
@@ -75,9 +76,9 @@ struct TileTest {
   }
 };
 
-/// Returns one bit per cluster. A cluster is dropped if the tile lies outside of every direction in which its sites can
-/// be closest. Tile and cluster count as spheres: the test compares the distance from the tile's centre to the cone
-/// with the sum of both radii.
+/// Returns one bit per cluster (group of sixteen sites), set if the cluster is kept. A cluster is dropped if no
+/// direction in which its sites can be closest leads to the tile. Tile and cluster are treated as spheres. The test
+/// compares the distance between the tile's centre and the cluster's cone with the sum of the radii.
 template <class Test>
 HWY_INLINE std::uint32_t meets_cones(const Test& tile, const BoxArrays& boxes, const ConeArrays& cones,
                                      std::size_t first) {
@@ -105,7 +106,7 @@ HWY_INLINE std::uint32_t existing_boxes(std::size_t first, std::size_t count) {
   return count - first >= cluster_size ? 0xffffU : (1U << (count - first)) - 1;
 }
 
-/// Finds the clusters that may matter to a tile by depth-first search, in storage order.
+/// Finds the clusters that may contain a closest site of the tile's nodes, by depth-first search in storage order.
 template <class Test>
 HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of_kind, const Test& test,
                                 std::size_t level, std::size_t first, std::vector<std::uint32_t>& out) {
@@ -123,7 +124,8 @@ HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of
   }
 }
 
-/// Nearest-first search for the closest record to a point, among those for which may_be(site id) is true.
+/// Finds the record closest to a point, among those for which may_be(site id) is true. The search visits the nearest
+/// boxes first.
 template <class MayBe>
 struct NearestSearch {
   const SiteRecords& sites;
@@ -190,7 +192,7 @@ HWY_INLINE Witness nearest_record(const FieldJob& job, const Vec3f& query) {
   return nearest_record(job, query, [](std::uint32_t) { return true; });
 }
 
-/// Finds the clusters of all kinds that matter to a tile. Returns their number.
+/// Finds the clusters of all kinds that may contain a closest site of the tile's nodes. Returns their number.
 template <class Test>
 HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test, TileScratch::Impl& scratch) {
   std::size_t total = 0;
@@ -206,14 +208,15 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test,
   return total;
 }
 
-/// Appends the records of the found clusters that may matter to the tile. They are sorted later.
+/// Appends the records of the found clusters that may be closest somewhere in the tile. They are sorted later.
 template <Kind kind, class Test>
 HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
                                std::vector<detail::KeyedIndex>& out) {
   const Record* records = job.sites->kinds[kind].records.data();
   NoClosest closest;
   for (const std::uint32_t cluster : clusters) {
-    if (job.cancel.stop_requested()) return;  // in the middle of a sphere all of its sites are tested
+    // Cancellation is checked here because at the centre of a sphere no site can be dropped.
+    if (job.cancel.stop_requested()) return;
     for (std::size_t first = cluster * cluster_size; first < (cluster + std::size_t{1}) * cluster_size;
          first += lanes) {
       Columns columns;
@@ -232,7 +235,7 @@ HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std:
   }
 }
 
-/// Copies the records that may matter to a tile, in ascending order of site id.
+/// Copies the records that may be closest somewhere in a tile, in ascending order of site id.
 template <class Test>
 HWY_INLINE void gather_records(const FieldJob& job, const Test& test, TileScratch::Impl& scratch, Candidates& out) {
   for (std::size_t kind = 0; kind < kind_count; ++kind) {

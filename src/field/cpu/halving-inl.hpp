@@ -1,4 +1,4 @@
-// Blum: culls a box's candidates for its eight halves. SPDX-License-Identifier: Apache-2.0
+// Blum: culls a box's candidate sites for its eight children. SPDX-License-Identifier: Apache-2.0
 #if defined(BLUM_FIELD_CPU_HALVING_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef BLUM_FIELD_CPU_HALVING_INL
 #undef BLUM_FIELD_CPU_HALVING_INL
@@ -17,20 +17,21 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Surface points near a box: first the closest to its centre, then those of neighbouring boxes.
+/// Surface points near a box, used to drop sites that are further away. The first one is the closest to the box's
+/// centre; the others come from neighbouring boxes.
 struct Dominators {
   static constexpr std::size_t most = 4;
   std::array<Vec3f, most> point{};
   std::size_t count = 1;
 };
 
-/// Drops sites that a known surface point p0 beats everywhere in the box center +- reach. Let pi be the projection of
-/// the centre c on a site's flat. Then |x - p0|^2 < distance(x, flat)^2 for all x of the box if |c - pi|^2 > |c - p0|^2
-/// + 2 reach . |p0 - pi| + (largest squared offset along the flat).
+/// Drops sites that are further than a known surface point p0 everywhere in the box center +- reach. Let pi be the
+/// projection of the centre c on a site's flat (its line or plane). Then |x - p0|^2 < distance(x, flat)^2 for all x of
+/// the box if |c - pi|^2 > |c - p0|^2 + 2 reach . |p0 - pi| + (largest squared offset along the flat).
 struct Domination {
   struct Point {
     Vec center_to_p0;  // c - p0
-    V limit;           // |c - p0|^2 and rounding
+    V limit;           // |c - p0|^2, plus room for rounding
   };
   Point point[Dominators::most];
   std::size_t count;
@@ -46,7 +47,7 @@ struct Domination {
     }
   }
 
-  /// Returns the lanes whose sites no surface point beats everywhere in the box.
+  /// Returns the lanes with sites that no surface point beats everywhere in the box ("beats": is closer).
   /// @param to_flat  c - pi, per lane.
   HWY_INLINE M keeps(const Vec& to_flat, V squared_distance, V along_flat) const {
     const V rest = hn::Sub(squared_distance, along_flat);
@@ -87,7 +88,7 @@ struct ChildOffsets {
   }
 };
 
-/// Per child: the closest site at its centre that has been seen so far.
+/// For each child of a box: the closest site to its centre found so far.
 struct ClosestAtCenters {
   static constexpr bool is_asked = true;
   V squared[8];
@@ -106,13 +107,13 @@ struct ClosestAtCenters {
   }
 };
 
-/// Takes the place of ClosestAtCenters if closest sites are not needed.
+/// Replaces ClosestAtCenters if closest sites are not needed.
 struct NoClosest {
   static constexpr bool is_asked = false;
   HWY_INLINE void offer(int, V, M, VI) {}
 };
 
-/// Block of vertices seen from a point m, with the data that the tests and the leaves need of each.
+/// One vector of vertex records relative to a point m, with the data that the tests and the leaves need.
 struct VertexBlock {
   Vec to_site;       // m - p
   Vec direction[4];  // of the domain's planes
@@ -125,7 +126,7 @@ struct VertexBlock {
   }
 };
 
-/// Block of edges seen from a point m.
+/// One vector of edge records relative to a point m.
 struct EdgeBlock {
   Vec t, b, n;
   V along, across_b, across_n;  // components of m - midpoint
@@ -155,10 +156,10 @@ struct EdgeBlock {
   }
 };
 
-/// Block of faces seen from a point m.
+/// One vector of face records relative to a point m.
 struct FaceBlock {
   Vec n, gradient_u, gradient_v;
-  V height, minus_u, minus_v;  // at m
+  V height, minus_u, minus_v;  // evaluated at m
   V reach_above, reach_below;
 
   FaceBlock(const Columns& columns, const Vec& m)
@@ -178,8 +179,9 @@ struct FaceBlock {
   }
 };
 
-/// Tests blocks of candidates against a box's eight children, or the box itself (boxes = 1). Sets worst[c] to a
-/// positive value if the site's domain misses the child. Offers distances at the children's centres.
+/// Tests vectors of candidates against a box's eight children, or against the box itself (boxes = 1). Sets worst[c] to
+/// a positive value if the site's domain does not meet child c. Offers each site as the closest one at the children's
+/// centres.
 template <int boxes>
 struct BlockTest {
   Domination domination;
@@ -194,13 +196,13 @@ struct BlockTest {
   BlockTest(const CenteredBox& box, const Dominators& dominators)
       : BlockTest(box.center, box.half + Vec3f{box_slack, box_slack, box_slack}, dominators) {}
 
-  /// Returns the lanes that are not beaten everywhere in the box.
+  /// Returns the lanes with sites that no dominator beats everywhere in the box.
   template <class Block>
   HWY_INLINE M keeps(const Block& block) const {
     return block.keeps(domination);
   }
 
-  /// Adds the test value <= limit of an affine function for every child.
+  /// Adds the condition value <= limit, for an affine function, to the test of every child.
   HWY_INLINE void bound(V base, const Vec& gradient, V limit, V worst[boxes]) const {
     V value[boxes];
     offsets.values(hn::Sub(base, limit), gradient, value);
@@ -244,7 +246,7 @@ struct BlockTest {
       worst[c] = hn::Sub(distance_along, longest);
       excess[c] = hn::Max(hn::Sub(distance_along, block.half_length), hn::Zero(d));
     }
-    // Sides: the planes of both faces, and the sum of both, which cuts the corner that the box test leaves.
+    // Sides: the planes towards both faces, and the sum of both. The sum cuts off the corner that the box test leaves.
     const Vec second = {hn::MulAdd(block.second_b, block.b.x, hn::Mul(block.second_n, block.n.x)),
                         hn::MulAdd(block.second_b, block.b.y, hn::Mul(block.second_n, block.n.y)),
                         hn::MulAdd(block.second_b, block.b.z, hn::Mul(block.second_n, block.n.z))};
@@ -253,8 +255,8 @@ struct BlockTest {
     const V slack = set(2 * plane_slack);
     bound(block.across_b, block.b, hn::Add(support(block.b, half), block.first_limit), worst);
     bound(across_second, second, hn::Add(support(second, half), slack), worst);
-    // The middle of the wedge lies against the sum's direction: going that way by more than the reach leaves the
-    // region.
+    // The middle of the wedge is opposite to the sum's direction. A point that is further than the reach along the sum
+    // lies outside of the domain.
     const V sum_support = hn::Add(support(sum, half), slack);
     const V forward = hn::Add(sum_support, block.first_limit);
     const V backward = hn::MulAdd(block.reach, hn::Sqrt(dot(sum, sum)), sum_support);
@@ -327,7 +329,7 @@ struct BlockOf<face_kind> {
   using type = FaceBlock;
 };
 
-/// Indices of the lanes of a block of candidates, and which of them exist.
+/// Lane indices of one vector of candidates, and a mask of the lanes that contain one.
 struct Lanes {
   VI index;
   M valid;
@@ -341,8 +343,8 @@ HWY_INLINE void load_block(const RecordList& list, std::size_t b, Columns& out) 
   load_columns(list.data() + b * lanes, out);
 }
 
-/// Tests all candidates of a kind against the eight children, and offers distances at their centres. Calls `store` with
-/// each block that has a candidate left, for the leaves to read.
+/// Tests all candidates of one kind against the eight children, and offers them as closest sites at the children's
+/// centres. Passes each vector with a remaining candidate to `store`, for the leaves to read.
 /// @param parent  list of records, or another type that has count() and load_block(it, number, columns).
 template <Kind kind, class Test, class List, class Closest, class Store>
 HWY_INLINE void halve_kind(const Test& test, const List& parent, ChildBits& out, Closest& closest, Store store) {
@@ -368,7 +370,7 @@ HWY_INLINE void halve_kind(const Test& test, const List& parent, ChildBits& out,
   }
 }
 
-/// Runs halve_kind for vertices, edges and faces. `store_of(kind)` makes each kind's store.
+/// Runs halve_kind for vertices, edges and faces. `store_of(kind)` returns the store for one kind.
 template <class Test, class Lists, class Closest, class StoreOf>
 HWY_INLINE void halve_kinds(const Test& test, const Lists& parent, std::array<ChildBits, kind_count>& out,
                             Closest& closest, StoreOf store_of) {
@@ -377,7 +379,7 @@ HWY_INLINE void halve_kinds(const Test& test, const Lists& parent, std::array<Ch
   halve_kind<face_kind>(test, parent[face_kind], out[face_kind], closest, store_of(face_kind));
 }
 
-/// Lists the candidates whose bit is set for a child.
+/// Copies the candidates whose bit is set for a child to `out`.
 HWY_INLINE void list_child(const RecordList& parent, const ChildBits& child_bits, std::size_t child, RecordList& out) {
   const std::uint16_t* words = child_bits.child(child);
   std::size_t total = 0;

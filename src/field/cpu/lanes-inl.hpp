@@ -48,7 +48,8 @@ HWY_INLINE Vec operator+(const Vec& a, const Vec& b) {
 HWY_INLINE V dot(const Vec& a, const Vec& b) {
   return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
 }
-/// Returns the sum of |a_i b_i|: how far a linear function of gradient a gets over a box of half-size b >= 0.
+/// Returns the sum of |a_i b_i|: the largest change of a linear function with gradient a from the centre of a box with
+/// half-size b >= 0.
 HWY_INLINE V support(const Vec& a, const Vec& b) {
   return hn::MulAdd(hn::Abs(a.z), b.z, hn::MulAdd(hn::Abs(a.y), b.y, hn::Mul(hn::Abs(a.x), b.x)));
 }
@@ -60,8 +61,8 @@ HWY_INLINE V square(V a) {
   return hn::Mul(a, a);
 }
 
-/// Returns `yes` where the sign bit of v is set, else `no`. Highway's own function tests the value on some targets.
-/// There -0 is not a negative number, and the bits of an id may be a NaN.
+/// Selects by the sign bit of v: `yes` in lanes where it is set, else `no`. Highway's own function compares values on
+/// some targets. A comparison does not treat -0 as negative, and fails if the bits of an id are a NaN.
 HWY_INLINE V if_sign_bit(V v, V yes, V no) {
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
   return hn::IfNegativeThenElse(v, yes, no);
@@ -80,8 +81,8 @@ struct Columns {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// Loads four floats of `lanes / 4` records: of every fourth record from the first on. record_at(k) returns the floats
-/// of record k.
+/// Loads four floats from every fourth record, starting with the first: `lanes / 4` records. record_at(k) returns the
+/// floats of record k.
 template <std::size_t lane_count = lanes, class RecordAt>
 HWY_INLINE auto load_quarters(RecordAt record_at, std::size_t first) {
   constexpr hn::FixedTag<float, 4> d4;
@@ -100,7 +101,7 @@ HWY_INLINE auto load_quarters(RecordAt record_at, std::size_t first) {
 }
 #endif
 
-/// Transposes `lanes` records. record_at(k) returns the floats of record k.
+/// Transposes `lanes` records into columns. record_at(k) returns the floats of record k.
 template <class RecordAt>
 HWY_INLINE void load_columns_of(RecordAt record_at, Columns& out) {
 #if HWY_TARGET == HWY_SCALAR
@@ -129,13 +130,13 @@ HWY_INLINE void load_columns_of(RecordAt record_at, Columns& out) {
 #endif
 }
 
-/// Transposes `lanes` consecutive records.
+/// Transposes `lanes` consecutive records into columns.
 HWY_INLINE void load_columns(const Record* records, Columns& out) {
   const float* base = records->column.data();
   load_columns_of([base](std::size_t k) { return base + 16 * k; }, out);
 }
 
-/// Returns one bit per lane.
+/// Converts a mask to an integer with one bit per lane.
 HWY_INLINE std::uint32_t bits(M mask) {
   alignas(8) std::array<std::uint8_t, 8> bytes{};
   hn::StoreMaskBits(d, mask, bytes.data());

@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Node l of a leaf is at (l % 4, l / 4 % 4, l / 16). Four vectors are computed at a time. `planar` of them differ in x
-/// and y only, and that pattern repeats over `slabs` values of z.
+/// Nodes of a leaf. Node l is at (l % 4, l / 4 % 4, l / 16). One pass computes four vectors of nodes. The first
+/// `planar` vectors differ in x and y only; this pattern repeats for `slabs` values of z.
 constexpr std::size_t leaf_nodes = 64;
 constexpr std::size_t pass_vectors = 4;
 constexpr std::size_t planar = lanes >= 16 ? 1 : (lanes >= 4 ? 16 / lanes : 4);
@@ -21,17 +21,18 @@ constexpr std::size_t slabs = pass_vectors / planar;
 constexpr std::size_t pass_nodes = pass_vectors * lanes;
 constexpr std::size_t passes = leaf_nodes / pass_nodes;
 
-/// Closest sites of a leaf's nodes so far.
+/// Closest sites of a leaf's nodes found so far.
 struct LeafState {
   alignas(64) std::array<float, leaf_nodes> squared;
   alignas(64) std::array<std::uint32_t, leaf_nodes> id;
-  alignas(64) std::array<float, leaf_nodes> side;  ///< affine side function of the closest site, if asked for
+  /// For each node: affine side function of the closest site, if requested.
+  alignas(64) std::array<float, leaf_nodes> side;
 };
 
-/// Columns of prepared candidates. Each affine function is stored as its value at the middle of the leaf's parent, and
-/// its gradient.
+/// Layout of prepared candidates as columns. Each affine function is stored as its value at the centre of the leaf's
+/// parent box, and its gradient.
 struct LeafVertex {
-  enum { to_site = 0, planes = 3, id = 19, count = 20 };  // middle - p; four planes of 4
+  enum { to_site = 0, planes = 3, id = 19, count = 20 };  // centre - p; four planes of 4 values each
 };
 struct LeafEdge {
   enum {
@@ -52,7 +53,7 @@ struct LeafFace {
   enum { height = 0, minus_u = 4, minus_v = 8, id = 12, count };
 };
 
-/// Writes blocks of candidates, seen from the middle of a box of 8 x 8 x 8 nodes, for its leaves to read.
+/// Writes blocks of candidates, relative to the centre of a box of 8 x 8 x 8 nodes, for the box's leaves to read.
 struct LeafStore {
   LeafColumns& out;
 
@@ -83,8 +84,8 @@ struct LeafStore {
     put(LeafEdge::second_b, b, block.second_b);
     put(LeafEdge::second_n, b, block.second_n);
     put(LeafEdge::first_limit, b, block.first_limit);
-    // The pseudonormal is the sum of the faces' normals. In the frame of b and n, it is side * (second_n, 1 -
-    // second_b), of squared length 2 (1 - second_b).
+    // The edge's pseudonormal is the sum of the normals of its two faces. In the frame of b and n, it is side *
+    // (second_n, 1 - second_b), of squared length 2 (1 - second_b).
     const V rest = hn::Sub(set(1.0F), block.second_b);
     const V scale = hn::Div(block.side, hn::Sqrt(hn::Max(hn::Add(rest, rest), set(1e-12F))));
     put(LeafEdge::side_b, b, hn::Mul(scale, block.second_n));
@@ -99,8 +100,8 @@ struct LeafStore {
   }
 };
 
-/// Finds which of a block's candidates a leaf's dominators leave. All values are read at the leaf's centre, at `offset`
-/// from the middle that the columns were written for.
+/// Finds the candidates of a block that no dominator of a leaf beats (is closer than). All values are evaluated at the
+/// leaf's centre. `offset` is its position relative to the point that the columns are relative to.
 struct LeafDomination {
   Domination domination;
   Vec offset;
@@ -135,7 +136,8 @@ struct LeafDomination {
   }
 };
 
-/// Positions of the nodes of a pass, relative to the middle of the leaf's parent. Affine functions are evaluated there.
+/// Positions of the nodes of a pass, relative to the centre of the leaf's parent box. Affine functions are evaluated at
+/// these positions.
 struct LatticeNodes {
   static constexpr std::size_t vectors = pass_vectors;
   V x[planar], y[planar], z[slabs];
@@ -158,13 +160,13 @@ struct LatticeNodes {
   }
 };
 
-/// Positions of a leaf's nodes relative to the middle of its parent, for each pass.
+/// Positions of a leaf's nodes relative to the centre of its parent box, for each pass.
 struct LeafPattern {
   using Pass = LatticeNodes;
   Pass pass[passes];
 
   LeafPattern() = default;
-  /// @param first_node  position of the first node, relative to the parent's middle.
+  /// @param first_node  position of the first node, relative to the centre of the parent box.
   LeafPattern(const Vec3d& first_node, const Vec3d& spacing) {
     std::array<std::array<float, 4>, 3> at{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -190,7 +192,7 @@ struct LeafPattern {
   }
 };
 
-/// Evaluates candidates at the nodes of one pass, and offers each to the winners, which the derived class keeps.
+/// Evaluates candidates at the nodes of one pass. Offers each of them to the derived class, which keeps the winners.
 template <class Winners, bool with_sides, class Nodes = LatticeNodes>
 struct LeafEvaluation {
   static constexpr std::size_t vectors = Nodes::vectors;
@@ -242,7 +244,8 @@ struct LeafEvaluation {
     const V new_id = set(in.column(LeafEdge::id)[at]);
     const V slack = set(plane_slack);
     for (std::size_t k = 0; k < vectors; ++k) {
-      // Beyond its ends the edge is as far as its end. The excess keeps the distance exact within the slack.
+      // Beyond an end, the distance from the edge is that from the end. The term `beyond` keeps the distance exact also
+      // within the slack beyond the ends.
       const V excess = hn::Sub(hn::Abs(along[k]), half_length);
       const V beyond = hn::Max(excess, hn::Zero(d));
       const V across =
@@ -279,7 +282,7 @@ struct LeafEvaluation {
   explicit LeafEvaluation(const Nodes& of_pass) : nodes(of_pass) {}
 };
 
-/// Winners of one pass so far, in registers.
+/// Closest candidates of one pass found so far, in registers.
 template <bool with_sides, class Nodes = LatticeNodes>
 struct LeafPass : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes> {
   static constexpr std::size_t vectors = Nodes::vectors;
@@ -295,7 +298,8 @@ struct LeafPass : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes>
     }
   }
 
-  /// Lets a candidate win the nodes at which `inside` is negative and it is strictly closer.
+  /// Makes a candidate the winner at those nodes where `inside` is negative and the candidate is closer than the winner
+  /// so far.
   HWY_INLINE void take(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
     const V wins = hn::And(inside, hn::Sub(candidate, squared[k]));
     squared[k] = if_sign_bit(wins, candidate, squared[k]);
@@ -314,14 +318,15 @@ HWY_INLINE void finish_pass(const LeafPass<with_sides>& pass, std::size_t index,
   }
 }
 
-/// Data that a box of 8 x 8 x 8 nodes hands to its leaves: prepared candidates, and which matter to which leaf.
+/// Data that a box of 8 x 8 x 8 nodes passes to its leaves. They are prepared candidates, and bits that mark those of
+/// each leaf.
 struct LeafInput {
   const std::array<LeafColumns, 3>& columns;
   std::array<ChildBits, kind_count>& bits;
   std::size_t child;
 };
 
-/// Returns the number of candidates of the leaf, without slivers.
+/// Returns the number of candidates of the leaf, not counting slivers (faces too flat for float32).
 HWY_INLINE std::size_t candidate_count(const LeafInput& input) {
   std::size_t count = 0;
   for (std::size_t kind = 0; kind < sliver_kind; ++kind) {

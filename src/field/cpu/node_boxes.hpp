@@ -1,4 +1,4 @@
-// Blum: boxes of nodes and their halves. SPDX-License-Identifier: Apache-2.0
+// Blum: boxes of nodes and their division into eight children. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,14 @@
 
 namespace blum::cpu {
 
-/// Boxes are widened by this length (normalised units). It covers all rounding in the tests that cull against them.
+/// Length by which boxes are widened (normalised units). It covers all rounding in the tests that cull sites against
+/// boxes.
 inline constexpr float box_slack = 3e-6F;
 
-/// Box of nodes as a centre and half-sizes in the normalised frame.
+/// Box around nodes: centre and half-sizes in the normalised frame.
 struct CenteredBox {
   Vec3f center;
-  Vec3f half;  ///< to the outermost nodes, not widened
+  Vec3f half;  ///< reaches to the outermost nodes; not widened
 };
 
 inline CenteredBox centered(const FieldJob& job, const NodeBox& box) {
@@ -29,14 +30,15 @@ inline CenteredBox centered(const FieldJob& job, const NodeBox& box) {
   return out;
 }
 
-/// Up to eight halves of a box of `size` nodes per side (clipped by the grid), in one symmetric form. Child c is
-/// centred at middle +- offset (plus along axis a if bit a of c is set). It lies within `half` of its centre.
+/// The up to eight children of a box of `size` nodes per side (clipped by the grid), in symmetric form. The centre of
+/// child c is middle +- offset: plus along axis a if bit a of c is set, else minus. All nodes of child c lie within
+/// `half` of its centre.
 struct Halving {
   std::array<NodeBox, 8> child{};
   std::array<bool, 8> exists{};
   Vec3f middle, offset, half;
 
-  /// Returns the distance from the middle, per axis, within which the whole box lies.
+  /// Returns the largest distance, per axis, of the box's nodes from `middle`.
   [[nodiscard]] Vec3f reach() const { return offset + half; }
 };
 

@@ -1,4 +1,4 @@
-// Blum: the sites of a mesh in the frame of the computation. SPDX-License-Identifier: Apache-2.0
+// Blum: the sites of a mesh in the normalised frame. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@ namespace blum::cpu {
 
 using kernels::NormalFrame;
 
-/// Returns the frame of a mesh and a grid.
-/// @param named  the vertices that the mesh names.
-/// @throws InvalidGrid if the common box is too large or too small for float32 distances.
+/// Returns the normalised frame of a mesh and a grid.
+/// @param named  the vertices that the mesh uses.
+/// @throws InvalidGrid if the box around mesh and grid is too large or too small for float32 distances.
 [[nodiscard]] NormalFrame make_normal_frame(const MeshView& mesh, std::span<const std::uint32_t> named,
                                             const GridSpec& grid);
 
-/// Data of a mesh that kernels read.
+/// Data that the kernels read of a mesh.
 struct PlacedSites {
-  std::vector<Vec3d> positions;  ///< of all vertices that the mesh names, normalised
+  std::vector<Vec3d> positions;  ///< of all vertices, in the normalised frame; only those in use are set
   SiteOrder order;
   SiteRecords records;
   ClusterForest forest;
 
-  /// Builds all members, reusing their memory.
+  /// Builds all members. Reuses their memory.
   /// @throws Cancelled.
   void build(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency, const NormalFrame& frame,
              const Context& context);

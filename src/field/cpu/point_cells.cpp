@@ -7,8 +7,8 @@
 namespace blum::cpu {
 namespace {
 
-/// Limits of the points of a cell. More points do not stay in caches. Fewer have too many candidates in common with
-/// their neighbours, but give each thread some work.
+/// Largest number of points of a cell. More points would not stay in the caches. Smaller cells share too many
+/// candidates with their neighbours; they are used only to give each thread some work.
 constexpr std::size_t most_per_cell = 16384;
 constexpr std::size_t least_per_cell = 1024;
 constexpr std::size_t cells_per_thread = 8;

@@ -23,18 +23,18 @@ Vec3d clamped(const Vec3d& p, const Box3& box) {
   return out;
 }
 
-/// Queries are scattered in memory, so they are prefetched while their group is put together.
+/// Queries are scattered in memory, so they are prefetched while their group is assembled.
 void prefetch(const Vec3d& query) {
   hwy::Prefetch(&query.x);
-  hwy::Prefetch(&query.z);  // may be in the next cache line
+  hwy::Prefetch(&query.z);  // the end of the query may be in the next cache line
 }
 
 SiteId known_site(std::uint32_t record) {
   return record == dead_record ? SiteId::none() : SiteId(record);
 }
 
-/// Returns a grid of two nodes per side. Its box is the mesh's, widened on each side by a quarter of the longest side:
-/// most queries are that close.
+/// Returns a grid of two nodes per side. Its box is the mesh's box, widened on each side by a quarter of the longest
+/// side. Most queries are expected to lie within it.
 GridSpec frame_grid(const Box3& bounds) {
   const Vec3d size = bounds.size();
   const double margin = 0.25 * std::max({size.x, size.y, size.z});
@@ -65,9 +65,9 @@ double PointEngine::margin() const {
   return slack / frame_.scale;
 }
 
-/// Queries in the order of the curve.
+/// Queries in the order of a Morton curve.
 struct PointEngine::Ordered {
-  std::vector<detail::KeyedIndex> order;  ///< key: the code of the cell
+  std::vector<detail::KeyedIndex> order;  ///< the key is the Morton code of the query's cell
   MortonPoints points;
 };
 

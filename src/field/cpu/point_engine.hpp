@@ -17,50 +17,53 @@
 
 namespace blum::cpu {
 
-/// Result for a query. If the query lies outside of the frame, the result is that of the closest point in the frame.
+/// Result for a query. If the query lies outside of the engine's box, the result is that of the point of the box
+/// closest to the query.
 struct FoundSite {
   std::uint32_t query = 0;  ///< Index of the query.
-  SiteId site;              ///< The closest one, or one that touches it; none if it is not known.
-  SiteId other;             ///< Alternative to `site`, if both are equally close within rounding.
-  float squared = 0;        ///< Squared distance to a point of the surface, in the engine's units; see at_most().
+  SiteId site;              ///< The closest site, or one that touches it; none if unknown.
+  SiteId other;             ///< A second site as close as `site` within rounding; none otherwise.
+  /// Squared distance from the query to some point of the surface, in the engine's units; see at_most().
+  float squared = 0;
 };
 
-/// Finds the closest sites of many points at once. Points are ordered so that neighbours follow each other, and are
-/// culled as tiles of a field are, so that common work is done once. Results are in single precision. Callers decide in
-/// double precision, and none of their results may depend on this engine.
+/// Finds the closest sites of many points at once. Points are sorted so that neighbours follow each other. Sites are
+/// culled for groups of points, as for the tiles of a field, so that the groups share work. The engine computes in
+/// single precision. Callers must confirm each result in double precision, so that their results do not depend on this
+/// engine.
 class PointEngine {
  public:
-  /// Builds the records of a mesh. Cost: that of the records of a field, 0.5 us per triangle and core.
-  /// @param mesh, sites  are not used later.
+  /// Builds the records of a mesh. Cost: as for a field, 0.5 us per triangle and core.
+  /// @param mesh, sites  used during construction only.
   /// @throws Cancelled.
   PointEngine(const MeshView& mesh, const SiteTable& sites, const Context& context);
 
-  /// Largest number of queries in a group. Their data then stay in the nearest cache.
+  /// Largest number of queries in a group. The data of a group fit in the L1 cache.
   static constexpr std::size_t most_per_group = 256;
 
-  /// Calls use(results) for groups of queries that lie close together, on many threads at once. Each query is in
-  /// exactly one group.
+  /// Calls use(results) for groups of queries that lie close together. Calls are made on many threads at once. Each
+  /// query is in exactly one group.
   /// @param queries  finite; fewer than 2^32.
   /// @throws Cancelled.
   void for_each_group(std::span<const Vec3d> queries, const Context& context,
                       FunctionRef<void(std::span<const FoundSite>)> use) const;
 
-  /// Returns true if the result for a query is that of the query itself.
+  /// Returns true if the query lies in the engine's box, so that its result is not that of another point.
   [[nodiscard]] bool is_in_frame(const Vec3d& query) const { return box_.contains(query); }
 
-  /// Returns an upper bound on the distance of a query from the surface, with room for rounding, mesh units; infinite
-  /// if it is not known.
+  /// Returns an upper bound on the distance from a query to the surface, mesh units. The bound includes room for
+  /// rounding; it is infinite if the distance is unknown.
   [[nodiscard]] double at_most(const Vec3d& query, const FoundSite& found) const;
 
-  /// Returns the error bound of distances, and of planes between the domains of sites, mesh units.
+  /// Returns a bound on the errors of distances and of the planes that separate the domains of sites, mesh units.
   [[nodiscard]] double margin() const;
 
  private:
   struct Ordered;
   [[nodiscard]] Ordered order(std::span<const Vec3d> queries, const Context& context) const;
 
-  bool is_usable_ = false;  ///< False for meshes without extent, or too large or small for single precision.
-  Box3 box_;                ///< Box of the frame, mesh units: queries beyond are moved to its border.
+  bool is_usable_ = false;  ///< False if the mesh has no extent, or is too large or too small for single precision.
+  Box3 box_;                ///< The engine's box, mesh units. Queries outside are moved to its border.
   NormalFrame frame_;
   PlacedSites placed_;
 };

@@ -14,14 +14,14 @@ namespace blum::cpu {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A cell with more clusters than this is divided before its records are gathered, if it can be.
+/// A cell with more clusters than this is divided before its records are gathered, if it can be divided.
 constexpr std::size_t most_clusters = 8000;
-/// With more clusters, or candidates, per point than this, points are left to searches of their own.
+/// If there are more clusters, or more candidates, per point than this, each point is left to a search of its own.
 constexpr std::size_t clusters_per_point = 64;
 constexpr std::size_t candidates_per_point = 256;
 /// Points with at most this many candidates are not divided further.
 constexpr std::size_t few_candidates = 16;
-/// Distances that differ by at most this are equal within rounding, in the normalised frame.
+/// Two distances are equal within rounding if they differ by at most this, in the normalised frame.
 constexpr float tie = 2e-6F;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
@@ -29,7 +29,7 @@ HWY_INLINE V nobody() {
   return hn::BitCast(d, hn::Set(di, dead_record));
 }
 
-/// Points of a pass, relative to a middle.
+/// Points of a pass, relative to a given centre.
 template <std::size_t count>
 struct PointNodes {
   static constexpr std::size_t vectors = count;
@@ -56,7 +56,8 @@ struct PointNodes {
   }
 };
 
-/// Winners of a pass, the next best ones, and the distance of the third best.
+/// For each point of a pass: the closest candidate, the second-closest candidate, and the distance of the third-closest
+/// one.
 template <std::size_t count>
 struct PointPass : LeafEvaluation<PointPass<count>, false, PointNodes<count>> {
   V squared[count];
@@ -85,14 +86,14 @@ struct PointPass : LeafEvaluation<PointPass<count>, false, PointNodes<count>> {
   }
 };
 
-/// Computes one cell. It owns nothing, and holds the data that the recursion passes along.
+/// Computes one cell. It owns no results; it holds data that the recursion passes along.
 class PointWorker {
  public:
   PointWorker(const PointJob& job, PointScratch& scratch)
       : job_(job), points_(*job.points), mine_(scratch.impl()), scratch_(mine_.tile.impl()) {}
 
   /// Finds the closest sites of the points of a cell.
-  /// @param cell  not of the last level.
+  /// @param cell  must not be of the last level.
   void cell(const PointCell& cell) {
     if (job_.field.cancel.stop_requested()) return;
     const CenteredBox place{cell.center, Vec3f{cell.half, cell.half, cell.half}};
@@ -120,7 +121,7 @@ class PointWorker {
            candidates[sliver_kind].count();
   }
 
-  /// Bounds the distances of points by that of a point of the surface, and names no sites.
+  /// Sets an upper bound on the distance of each point, from a given surface point. Leaves the sites unknown.
   void give_up(const PointCell& cell, const Vec3f& surface_point) {
     const Vec p0 = set(surface_point);
     for (std::size_t at = cell.begin; at < cell.end; at += lanes) {
@@ -139,7 +140,7 @@ class PointWorker {
   template <class Tag, class Vector, class T>
   static void put(std::size_t at, std::size_t end, Tag tag, Vector values, Buffer<T>& out) {
     if (end - at >= lanes) return hn::StoreU(values, tag, out.data() + at);
-    // Memory beyond the end belongs to other threads.
+    // The values past the end belong to other threads, so only `count` of them are copied.
     alignas(64) std::array<T, lanes> here;
     hn::Store(values, tag, here.data());
     std::copy_n(here.data(), end - at, out.data() + at);
@@ -194,7 +195,7 @@ class PointWorker {
     return !can_divide(cell) || candidate_count(input) <= few_candidates;
   }
 
-  /// Returns a box around the points of a cell, not widened.
+  /// Returns the box around the points of a cell, not widened.
   [[nodiscard]] CenteredBox box_around(const PointCell& cell) const {
     Vec3f low;
     Vec3f high;
@@ -252,7 +253,7 @@ class PointWorker {
     for_each_candidate<edge_kind>(input, [&](std::size_t i) { pass.edge(input.columns[1], i); });
     for_each_candidate<face_kind>(input, [&](std::size_t i) { pass.face(input.columns[2], i); });
     for (std::size_t k = 0; k < vectors; ++k) {
-      // Distances x and y are too close to distinguish if y^2 <= (x + tie)^2.
+      // Distances x <= y cannot be distinguished if y^2 <= (x + tie)^2.
       const V reach = square(hn::Add(hn::Sqrt(pass.squared[k]), set(tie)));
       const M has_other = hn::Le(pass.second[k], reach);
       const M has_third = hn::Le(pass.third[k], reach);
@@ -266,7 +267,8 @@ class PointWorker {
       const Vec3d query{points_.coordinate[0][k], points_.coordinate[1][k], points_.coordinate[2][k]};
       const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
       float& best = job_.results->squared[k];
-      // Slivers stand for their borders, too. If another site is as close, the point is left to a search in double.
+      // A sliver also represents its border. If another site is equally close within rounding, the point is left to a
+      // search in double precision.
       if (squared <= best + 2 * tie * std::sqrt(best) + tie * tie) job_.results->site[k] = dead_record;
       best = std::min(best, squared);
     }

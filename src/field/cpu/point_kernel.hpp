@@ -13,25 +13,27 @@
 
 namespace blum::cpu {
 
-/// Points in the normalised frame, along a Morton curve through the cells of a cube.
+/// Points in the normalised frame, sorted along a Morton curve through the cells of a cube.
 struct MortonPoints {
   static constexpr unsigned levels = 10;
-  /// Whole vectors may be read past the end.
+  /// Vectors may be read this far past the end.
   static constexpr std::size_t padding = 64;
 
   std::array<Buffer<float>, 3> coordinate;
-  std::vector<std::uint32_t> code;  ///< Code of each point's cell, of 2^levels per side; ascending.
-  Vec3d lower;                      ///< Corner of the cube.
-  double side = 0;                  ///< Side of the cube.
+  /// Morton code of each point's cell, ascending. The cube has 2^levels cells per side.
+  std::vector<std::uint32_t> code;
+  Vec3d lower;      ///< Corner of the cube.
+  double side = 0;  ///< Side of the cube.
 
   [[nodiscard]] std::size_t size() const { return code.size(); }
 };
 
-/// Points that lie in one cube: a cell of some level, or a part of its points if they are many.
+/// Points that lie in one cube: a cell of some level. If a cell of the last level has too many points, this is a part
+/// of them.
 struct PointCell {
   std::size_t begin = 0;
   std::size_t end = 0;
-  unsigned level = 0;  ///< 0: the cube of all points
+  unsigned level = 0;  ///< level 0 is the cube of all points
   Vec3f center;
   float half = 0;
 
@@ -40,16 +42,16 @@ struct PointCell {
 
 /// Results for each point.
 struct PointResults {
-  /// Squared distance to a point of the surface, normalised. If the site is known, it is the closest point, within
+  /// Squared distance to a point of the surface, normalised. If `site` is known, the point is the closest one within
   /// rounding.
   Buffer<float> squared;
-  Buffer<std::uint32_t> site;   ///< dead_record if it is left to a search of its own
-  Buffer<std::uint32_t> other;  ///< as close within rounding; dead_record if none
+  Buffer<std::uint32_t> site;   ///< dead_record if the point is left to a search of its own
+  Buffer<std::uint32_t> other;  ///< another site as close within rounding; dead_record if none
 };
 
-/// Input of all cells, and the output of their results.
+/// Input of all cells, and the memory for their results.
 struct PointJob {
-  FieldJob field;  ///< only its sites, hierarchies and cancellation are used
+  FieldJob field;  ///< only its sites, forest and cancellation are used
   const MortonPoints* points = nullptr;
   PointResults* results = nullptr;
 };
@@ -69,11 +71,11 @@ class PointScratch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Returns cells that together hold all points. Each has at most some thousand points, and there are enough for this
-/// many threads.
+/// Returns cells that together contain all points. Each has at most 16384 points. If possible, there are enough cells
+/// for the given number of threads.
 [[nodiscard]] std::vector<PointCell> point_cells(const MortonPoints& points, int threads);
 
-/// Finds the closest sites of the points of a cell, by culling as for the tiles of a field.
+/// Finds the closest sites of the points of a cell. Culls sites as for the tiles of a field.
 void compute_point_cell(const PointJob& job, const PointCell& cell, PointScratch& scratch);
 
 }  // namespace blum::cpu

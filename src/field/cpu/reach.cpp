@@ -11,12 +11,13 @@ namespace blum::cpu {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Bound, with margin, on the rounding of w . (y - p) in float32.
+/// Bound, with margin, on the rounding error of w . (y - p) in float32.
 constexpr float rounding = 6e-7F;
-/// Covers the approximate reciprocal (relative error below 1e-3 on every target).
+/// Factor that covers the error of the approximate reciprocal (relative error below 1e-3 on every target).
 constexpr float safety = 1.002F;
 
-/// Returns the next offset along the Morton curve at which vertices are tried: near ones first, then with growing gaps.
+/// Returns the next offset along the Morton curve at which vertices are tried. Offsets start small, and their gaps
+/// grow.
 std::size_t next_offset(std::size_t offset) {
   return offset + 1 + offset / 6;
 }
@@ -29,11 +30,11 @@ struct Reaches {
   V first, second;
 };
 
-/// Bounds that one surface point gives, for the lanes from `lane` on.
+/// For `lanes` sites, starting with site `lane`: the bound on the reach that one surface point gives.
 struct LaneSites {
   Vec corner[3];
   Vec direction[2];
-  V base[2];  // min over corners of - w . p; the same for all corners up to rounding
+  V base[2];  // min over corners p of - w . p; equal for all corners up to rounding
 
   LaneSites(const ReachInput& input, std::size_t lane) {
     for (std::size_t k = 0; k < 3; ++k) corner[k] = load(input.corner[k], lane);

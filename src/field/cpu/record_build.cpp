@@ -19,12 +19,13 @@ std::span<const std::uint32_t> neighbours_of(const RecordInput& input, std::uint
   return std::span(input.adjacency.neighbours).subspan(first, input.adjacency.first_neighbour[vertex + 1] - first);
 }
 
-/// Returns true if edges are few enough for the sixteen-at-a-time path, and enough to bound a cone.
+/// Returns true if a vertex has enough edges to bound a cone, and few enough for the code that processes sixteen
+/// vertices at a time.
 bool fits_fan(std::size_t edge_count) {
   return edge_count >= 3 && edge_count <= VertexFans::most;
 }
 
-/// Puts a vertex into a lane. Edges without extent are left out.
+/// Writes a vertex and its edges into a lane. Edges without length are left out.
 void add_fan(const RecordInput& input, std::uint32_t vertex, std::size_t lane, VertexFans& fans) {
   const Vec3d& p = input.positions[vertex];
   std::size_t count = 0;
@@ -40,7 +41,7 @@ void add_fan(const RecordInput& input, std::uint32_t vertex, std::size_t lane, V
   fans.count[lane] = static_cast<std::uint32_t>(count);
 }
 
-/// Writes a vertex whose planes are chosen.
+/// Writes the record of a vertex whose bounding planes have been chosen.
 template <class Direction>
 void finish_vertex(const RecordInput& input, std::uint32_t vertex, const ChosenPlanes& planes, Direction direction,
                    std::span<const Vec3f> rays, Record& record, ClusterBuild& cluster) {
@@ -85,8 +86,8 @@ void build_from_fan(const RecordInput& input, std::uint32_t vertex, std::size_t 
 
 using kernels::EdgeShape;
 
-/// Finds the unit direction that leaves an edge into one of its triangles. Returns false if the triangle is missing or
-/// too flat to have one.
+/// Finds the unit direction that leads from an edge into one of its triangles, perpendicular to the edge. Returns false
+/// if the triangle is missing or too flat.
 bool in_face_direction(const RecordInput& input, const FaceFacts& facts, std::uint32_t triangle, const Segment& edge,
                        const Vec3d& tangent, Vec3d& direction) {
   if (triangle == no_index) return false;
@@ -97,8 +98,8 @@ bool in_face_direction(const RecordInput& input, const FaceFacts& facts, std::ui
   return true;
 }
 
-/// Sets the directions between which an edge's domain lies. A zero direction stands for a domain without such bounds,
-/// whose reach is unlimited.
+/// Sets the two directions that bound an edge's domain. If the domain is not bounded by two directions, they are set to
+/// zero; the reach is then unlimited.
 void set_edge_reach(const EdgeShape& edge, std::size_t lane, ClusterBuild& cluster) {
   Vec3d border[2];
   const bool is_clear = kernels::edge_borders(edge, border);

@@ -16,11 +16,11 @@
 
 namespace blum::cpu {
 
-/// Collects the domains of a cluster's sites, each given by the unit rays that span it. Bounds them all, or their
-/// opposites, by one cone.
+/// Finds one cone that bounds the domains of all sites of a cluster. Each domain is given by the unit rays that span
+/// it. A domain may also lie in the opposite cone.
 class DirectionCone {
  public:
-  /// @param rays  rays that span one site's domain; an empty span stands for a domain that may be anything.
+  /// @param rays  unit rays that span one site's domain. If empty, the domain is unbounded.
   void add(std::span<const Vec3f> rays) {
     if (rays.empty() || count_ + rays.size() > rays_.size()) is_bounded_ = false;
     if (!is_bounded_) return;
@@ -38,9 +38,10 @@ class DirectionCone {
     float sine = 1;
   };
 
-  /// Returns the double cone. Every direction of every domain makes an angle with the axis, or with its opposite, whose
-  /// cosine is at least `cosine`. A spherical cap of less than a half-sphere is convex, so a domain whose rays lie in
-  /// one cap lies in it. Rays on both sides of the axis would not suffice.
+  /// Returns the double cone. For every direction of every domain, the angle with the axis or its opposite has a cosine
+  /// of at least `cosine`. A spherical cap smaller than a half-sphere is convex. So if all rays of a domain lie in one
+  /// cap, the whole domain does. If rays of one domain lie on both sides of the axis, there is no such cap and the cone
+  /// is not bounded.
   [[nodiscard]] Result finish() const {
     constexpr float margin = 2e-3F;
     const float size = length(axis_);
@@ -72,9 +73,9 @@ using kernels::negligible_length;
 using kernels::store;
 using kernels::unit;
 
-/// Facts of each triangle, found when its record is built, and read for the records of its edges.
+/// Data of each triangle, written when its record is built. They are read when the records of its edges are built.
 struct FaceFacts {
-  /// Unit normals; zero for triangles too flat for a reliable one.
+  /// Unit normals; zero for triangles too flat for a reliable normal.
   std::vector<Vec3d> normals;
   std::vector<std::uint8_t> is_sliver;
 };
@@ -92,7 +93,7 @@ struct RecordInput {
   }
 };
 
-/// Cluster while it is built.
+/// Cluster under construction.
 struct ClusterBuild {
   Box3 box;
   ReachInput reach;
@@ -107,8 +108,9 @@ struct ClusterBuild {
   }
 };
 
-/// Sites are stored along a curve, but the arrays they are built from are in the mesh's order. So the data that a
-/// cluster reads are prefetched. Far ahead, these are the data that name others; nearer, the data named.
+/// Distance of a prefetch. Sites are stored along a curve, but the arrays they are built from are in the mesh's order.
+/// So data are prefetched before their cluster is built: index arrays first (far), later the data at those indices
+/// (near).
 enum class Ahead : std::uint8_t { far, near };
 inline void prefetch(const void* at) {
   __builtin_prefetch(at);
@@ -118,8 +120,8 @@ void prefetch_edges(const RecordInput& input, const FaceFacts& facts, std::span<
                     Ahead ahead);
 void prefetch_faces(const RecordInput& input, std::span<const std::uint32_t> sites, Ahead ahead);
 
-/// Build the records of up to sixteen sites and add them to their cluster. A site that can own no node leaves its
-/// record dead. Faces come before edges, which read the facts that faces write.
+/// The following functions build the records of up to sixteen sites and add them to a cluster. If a site cannot be
+/// closest to any node, its record stays dead. Faces must be built before edges, which read the FaceFacts.
 void build_vertices(const RecordInput& input, std::span<const std::uint32_t> sites, std::span<Record> records,
                     ClusterBuild& cluster);
 void build_edges(const RecordInput& input, const FaceFacts& facts, std::span<const std::uint32_t> sites,

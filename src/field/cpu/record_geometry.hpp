@@ -18,7 +18,7 @@ using kernels::to_float;
 using kernels::value_at;
 using kernels::vec_at;
 
-/// Point of the surface, and the record that it lies on.
+/// Point of the surface, and the record of the site that contains it.
 struct Witness {
   Vec3f point{};
   Kind kind = vertex_kind;
@@ -26,8 +26,8 @@ struct Witness {
   float squared_distance = std::numeric_limits<float>::infinity();  ///< to the query that found it
 };
 
-/// Finds the closest point of a record, by the kernels' function for its kind. Returns false for a face if the query
-/// lies outside of its prism.
+/// Finds the point of a site that is closest to a query, by the kernels' function for the site's kind. Returns false
+/// for a face if the query does not project into it.
 inline bool closest_on_record(Kind kind, const Record& record, const Vec3f& query, Vec3f& point) {
   switch (kind) {
     case vertex_kind:
@@ -45,13 +45,15 @@ inline bool closest_on_record(Kind kind, const Record& record, const Vec3f& quer
   return false;
 }
 
-/// A side is decided only if the pseudonormal is at least this far (as a cosine) from being perpendicular.
+/// Smallest cosine with which a sign is decided. Its angle lies between the pseudonormal (or its opposite) and the
+/// direction to the query.
 inline constexpr float clear_side = 0.01F;
-/// A side is not decided this close to the surface, in the normalised frame.
+/// The sign of a distance is not decided at distances below this, in the normalised frame.
 inline constexpr float smallest_side = 1e-6F;
 
-/// Returns the component of a vector along an edge's unit pseudonormal, the sum of its faces' normals. With the second
-/// face's direction given in the frame of b and n, that sum is side * (second_n b + (1 - second_b) n).
+/// Returns the component of a vector along an edge's unit pseudonormal, the sum of its faces' normals. Let the second
+/// face's direction be (second_b, second_n) in the frame of b and n. Then the sum is side * (second_n b + (1 -
+/// second_b) n).
 inline float edge_side(const Record& record, const Vec3f& from_midpoint) {
   const Vec3f binormal = vec_at(record, EdgeColumns::binormal);
   const Vec3f normal = cross(vec_at(record, EdgeColumns::tangent), binormal);
@@ -61,8 +63,8 @@ inline float edge_side(const Record& record, const Vec3f& from_midpoint) {
          (value_at(record, EdgeColumns::second_n) * dot(from_midpoint, binormal) + rest * dot(from_midpoint, normal));
 }
 
-/// Returns the side of a closed mesh that a query lies on, from its closest site: +1 outside, -1 inside, 0 too close to
-/// call.
+/// Returns the side of a closed mesh on which a query lies: +1 outside, -1 inside, 0 if uncertain. The closest site
+/// decides.
 inline int side_of(const Witness& closest, const Vec3f& query, const std::vector<Vec3f>& vertex_sides) {
   const Record& record = *closest.record;
   float side = 0;

@@ -16,9 +16,10 @@ namespace HWY_NAMESPACE {
 
 using OfSite = SecondLabels::OfSite;
 
-/// Surface points that bound the distance of the second site. If two points are apart, one of them may be second
-/// wherever anything is first. So a second site is no further than the further of the two. A single point suffices if
-/// it may be second at all nodes of the box. Without points, nothing is known.
+/// Surface points that bound the distance of the second site. "Apart" means that no site shares labels with both. If
+/// the sites of two points are apart, one of the two may be second, whichever site is first. So the second site is at
+/// most as far as the further of the two points. A single point suffices if its site may be second at all nodes of the
+/// box. Without points, there is no bound.
 struct Bounds {
   std::array<Vec3f, 2> point{};
   std::array<OfSite, 2> labels{};
@@ -58,7 +59,7 @@ struct BoundedTest : BlockTest<boxes> {
         other(h.middle, Dominators{{bounds.point[1]}, 1}, h.reach()),
         count(bounds.count) {}
 
-  /// Replaces the bounds by one that holds for all nodes.
+  /// Replaces the bounds by a single bound that holds for all nodes of the box.
   void bound_by(const Domination& all) {
     this->domination = all;
     count = 1;
@@ -78,13 +79,13 @@ HWY_INLINE void load_block(const PlaceList& list, std::size_t b, Columns& out) {
   load_columns_of([&](std::size_t k) { return base + std::size_t{16} * places[k]; }, out);
 }
 
-/// Lists the candidates whose bit is set for a child.
+/// Copies the candidates whose bit is set for a child to `out`.
 HWY_INLINE void list_child(const PlaceList& parent, const ChildBits& child_bits, std::size_t child, PlaceList& out) {
   out.reset(parent.records(), parent.count());
   const std::uint16_t* words = child_bits.child(child);
   std::size_t count = 0;
   for (std::size_t b = 0; b < child_bits.blocks(); ++b) {
-    // All lanes are written; the next block overwrites the surplus.
+    // All lanes are written; the next block overwrites the unused ones.
     alignas(8) const std::array<std::uint8_t, 8> word{static_cast<std::uint8_t>(words[b] & 0xff),
                                                       static_cast<std::uint8_t>(words[b] >> 8)};
     const auto mask = hn::LoadMaskBits(di, word.data());

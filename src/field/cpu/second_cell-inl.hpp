@@ -21,14 +21,14 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Ids are compared as signed numbers; this one loses against all others.
+/// Id without a site. Ids are compared as signed numbers, so every other id wins.
 constexpr std::uint32_t nobody = 0x7fffffff;
 constexpr float no_distance = hwy::HighestValue<float>();
 
 using DS = hn::RebindToSigned<D>;
 constexpr DS ds{};
 
-/// Returns the lanes in which a candidate beats the node's best: it is closer, or as close with a smaller id.
+/// Returns the lanes in which a candidate beats the node's best one: it is closer, or equally close with a smaller id.
 HWY_INLINE M is_better(V squared, V id, V best, V best_id) {
   const M has_smaller_id = hn::RebindMask(d, hn::Lt(hn::BitCast(ds, id), hn::BitCast(ds, best_id)));
   return hn::Or(hn::Lt(squared, best), hn::And(hn::Eq(squared, best), has_smaller_id));
@@ -38,17 +38,17 @@ HWY_INLINE V set_id(std::uint32_t id) {
   return hn::BitCast(d, hn::Set(di, id));
 }
 
-/// Returns the positions of `lanes` nodes of a leaf, relative to the origin of its pattern.
+/// Returns the positions of `lanes` nodes of a leaf, starting with `node`, relative to the origin of the pattern.
 HWY_INLINE Vec positions_of(const LeafPattern& pattern, std::size_t node) {
   const LeafPattern::Pass& pass = pattern.pass[node / pass_nodes];
   const std::size_t k = node % pass_nodes / lanes;
   return {pass.x[k % planar], pass.y[k % planar], pass.z[k / planar]};
 }
 
-/// Positions of the nodes of a cell, relative to its middle.
+/// Positions of the nodes of a cell, relative to the cell's centre.
 struct CellPositions {
   alignas(64) std::array<std::array<float, SecondCell::row>, 3> axis;
-  /// x and y of the 16 nodes of a leaf's layer, for each of four leaves along the axis.
+  /// x and y of the 16 nodes of one layer of a leaf, for each of the four leaves along the axis.
   alignas(64) std::array<std::array<float, 16>, 4> x, y;
 
   void find_layers() {
@@ -60,14 +60,14 @@ struct CellPositions {
     }
   }
 
-  /// Returns the positions of `lanes` consecutive nodes.
+  /// Returns the positions of `lanes` consecutive nodes, starting with `node`.
   [[nodiscard]] HWY_INLINE Vec following(std::size_t node) const {
     const std::size_t leaf = node / leaf_nodes;
     return {hn::Load(d, x[leaf % 4].data() + node % 16), hn::Load(d, y[leaf / 4 % 4].data() + node % 16),
             set(axis[2][leaf / 16 * 4 + node / 16 % 4])};
   }
 
-  /// Returns the positions of any nodes.
+  /// Returns the positions of arbitrary nodes.
   [[nodiscard]] HWY_INLINE Vec of(VI nodes) const {
     const auto coordinate = [&](int in_leaf, int of_leaf) {
       const VI low = hn::And(hn::ShiftRightSame(nodes, in_leaf), hn::Set(di, 3));
@@ -95,7 +95,7 @@ struct CellPositions {
   }
 };
 
-/// Sorts the nodes of a cell into groups.
+/// Sorts the nodes of a cell into groups with the same first site.
 class CellSorter {
  public:
   CellSorter(SecondCell& cell, std::span<const SecondLabels::OfSite> labels) : cell_(cell), labels_(labels) {}
@@ -120,7 +120,7 @@ class CellSorter {
     for (std::size_t g = 0; g < cell_.group_count; ++g) cell_.groups[g].labels = labels_[cell_.groups[g].site];
   }
 
-  /// Orders all nodes, group after group.
+  /// Lists the nodes of all groups, group after group.
   void order() {
     std::size_t place = 0;
     for (std::size_t g = 0; g < cell_.group_count; ++g) {
@@ -129,7 +129,8 @@ class CellSorter {
       for (std::size_t i = group.first_item;; i = cell_.items[i].next) {
         const SecondCell::Item& item = cell_.items[i];
         const std::uint32_t first = static_cast<std::uint32_t>(item.leaf * leaf_nodes);
-        // Four at a time, so that the number of turns is easier to predict. The next item overwrites the surplus.
+        // Nodes are written four at a time, so that the number of iterations is easier to predict. The next item
+        // overwrites unused entries.
         std::uint64_t nodes = item.nodes;
         for (std::size_t at = place; nodes != 0; at += 4) {
           for (std::size_t k = 0; k < 4; ++k, nodes &= nodes - 1) {
@@ -145,7 +146,7 @@ class CellSorter {
   }
 
  private:
-  /// Returns one bit per node of a leaf, set if `site` is the node's first site.
+  /// Returns one bit per node of a leaf, set if `site` is the node's first (closest) site.
   static HWY_INLINE std::uint64_t nodes_of(const std::uint32_t* sites, std::uint32_t site) {
     const VI wanted = hn::Set(di, site);
     std::uint64_t found = 0;
@@ -175,7 +176,7 @@ class CellSorter {
     cell_.table[slot] = static_cast<std::uint16_t>(g + 1);
     SecondCell::Group& group = cell_.groups[g];
     group.site = site;
-    hwy::Prefetch(&labels_[site]);  // read by find_labels()
+    hwy::Prefetch(&labels_[site]);  // find_labels() reads it
     group.first_item = group.last_item = static_cast<std::uint16_t>(i);
   }
 
@@ -183,7 +184,8 @@ class CellSorter {
   std::span<const SecondLabels::OfSite> labels_;
 };
 
-/// Vectors of nodes of a cell, from a place of its order on, with the closest of the closed segments offered to them.
+/// Several vectors of nodes, starting at index `at` of the cell's order, and the closest of the segments offered to
+/// each node. Segments include their ends.
 template <std::size_t vectors>
 struct LinkOffers {
   Vec position[vectors];
@@ -198,7 +200,7 @@ struct LinkOffers {
     }
   }
 
-  /// @param middle  point that positions are relative to.
+  /// @param middle  point relative to which the positions are given.
   HWY_INLINE void offer(const LinkSegment& segment, const Vec3f& middle) {
     const Vec center = set(segment.middle - middle);
     const Vec tangent = set(segment.tangent);
@@ -219,7 +221,7 @@ struct LinkOffers {
     }
   }
 
-  /// Writes the results of the nodes, in the order of nodes.
+  /// Writes the results to the nodes listed in the cell's order.
   HWY_INLINE void store(std::size_t at, SecondCell& cell) const {
     alignas(64) std::array<float, vectors * lanes> squared;
     alignas(64) std::array<std::uint32_t, vectors * lanes> id;
@@ -243,8 +245,8 @@ HWY_INLINE void offer_links_at(std::span<const std::uint32_t> links, const Secon
   offers.store(at, cell);
 }
 
-/// Gives the nodes of a group the closest of some closed segments. Whole vectors are written, also to nodes after the
-/// group, so groups are processed in their order.
+/// Gives the nodes of a group the closest of some segments (ends included). Whole vectors are written, so nodes after
+/// the group are overwritten, too. Groups must therefore be processed in order.
 HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const SecondLinks& all, const Vec3f& middle,
                               const CellPositions& positions, const SecondCell::Group& group, SecondCell& cell) {
   for (std::size_t at = group.begin; at < group.end;) {
@@ -258,25 +260,25 @@ HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const Second
   }
 }
 
-/// Upper bound on squared distances at nodes x around a centre c: |x - c|^2 + 2 (x - c) . slope + limit. This has the
-/// form of a squared distance from a point, as a Domination needs it. Any slope is valid with the limit that belongs to
-/// it; a good one follows the distances.
+/// Upper bound on the squared distances of nodes x around a centre c: |x - c|^2 + 2 (x - c) . slope + limit. It has the
+/// form of a squared distance from a point, as Domination requires. For each slope there is a valid limit. The bound is
+/// tight if the slope approximates the gradient of the distances.
 struct DistanceBound {
   Vec3f slope;
   float limit = 0;
-  float largest = 0;  ///< squared distance; rounding is proportional to it
+  float largest = 0;  ///< largest squared distance; rounding is proportional to it
   bool is_known = false;
 
-  /// Returns the same bound around another centre, `offset` further.
+  /// Returns the same bound around the centre c + offset.
   [[nodiscard]] DistanceBound around(const Vec3f& offset) const {
     DistanceBound out = *this;
     out.slope = slope + offset;
     out.limit = limit + squared_length(offset) + 2 * blum::dot(offset, slope);
-    // Rounding is proportional to the larger of the two.
+    // Rounding is proportional to the larger of the two values.
     out.largest = std::max(largest, squared_length(out.slope));
     return out;
   }
-  /// Returns the test that drops sites further than this everywhere in the box center +- reach.
+  /// Returns the test that drops sites whose distance exceeds this bound everywhere in the box center +- reach.
   [[nodiscard]] Domination domination(const Vec3f& center, const Vec3f& reach) const {
     Domination out(center, Dominators{{center}, 1}, reach);
     const float slack = 4e-6F * largest + 2e-6F * std::sqrt(largest) + 1e-12F;
@@ -285,10 +287,10 @@ struct DistanceBound {
   }
 };
 
-/// Returns a bound on the squared distances of nodes.
+/// Returns an upper bound on the squared distances of nodes.
 /// @param count    number of nodes.
-/// @param node_at  callable: first of `lanes` nodes -> their positions from the centre.
-/// @param squared  one per node, read as whole vectors; those below 0 do not count.
+/// @param node_at  callable: index of the first of `lanes` nodes -> their positions relative to the centre.
+/// @param squared  one per node, readable as whole vectors; nodes with negative values are ignored.
 template <class NodeAt>
 HWY_INLINE DistanceBound bound_distances(std::size_t count, const NodeAt& node_at, const float* squared) {
   V worst = hn::Zero(d);
@@ -332,7 +334,7 @@ HWY_INLINE DistanceBound bound_distances(std::size_t count, const NodeAt& node_a
   return out;
 }
 
-/// Ball around the nodes of a group, relative to the cell's middle.
+/// Ball around the nodes of a group, relative to the cell's centre.
 struct GroupBall {
   Vec3f center;
   float radius = 0;
@@ -351,21 +353,21 @@ inline GroupBall ball_of(const SecondCell& cell, const SecondCell::Group& group,
   return {(low + high) * 0.5F, length(high - low) * 0.50001F + box_slack};
 }
 
-/// First sites of a leaf and its second ones so far, which are part of the cell.
+/// First sites of a leaf, and its second sites found so far. They are stored in the cell.
 struct SecondLeaf {
-  /// Labels of the first sites, found on demand.
+  /// Labels of the first sites, filled when needed.
   alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
-  const std::uint32_t* first;  ///< dead_record if none
-  float* squared;              ///< below 0 without a first site, so that nothing can be second
+  const std::uint32_t* first;  ///< per node: first site, or dead_record
+  float* squared;              ///< per node: below 0 without a first site, so that no candidate wins
   std::uint32_t* id;
-  std::uint64_t has_labels = 0;  ///< a bit for each node
+  std::uint64_t has_labels = 0;  ///< one bit per vector of nodes with labels: that of its first node
 
   SecondLeaf(SecondCell& cell, std::size_t leaf)
       : first(cell.first.data() + leaf * leaf_nodes),
         squared(cell.squared.data() + leaf * leaf_nodes),
         id(cell.id.data() + leaf * leaf_nodes) {}
 
-  /// Finds the labels of `lanes` nodes.
+  /// Sets the labels of `lanes` nodes, starting with node `begin`.
   void find_labels(std::size_t begin, std::span<const SecondLabels::OfSite> of_site) {
     has_labels |= std::uint64_t{1} << begin;
     for (std::size_t node = begin; node < begin + lanes; ++node) {
@@ -375,13 +377,13 @@ struct SecondLeaf {
   }
 };
 
-/// Evaluates candidates at the nodes of a leaf. Distances of a candidate are kept, to be examined closely if they are
-/// as small as some node's best. Mostly they are not, except at the nodes whose first site it is.
+/// Evaluates candidates at the nodes of a leaf. If a candidate is at least as close as some node's best one, its
+/// distances are kept and examined later. This is rare, except at nodes whose first site is the candidate.
 struct SecondPass : LeafEvaluation<SecondPass, false> {
   const SecondLeaf& leaf;
   std::size_t first_node;
-  V* offered = nullptr;  ///< Output of squared distances; infinite outside of the candidate's domain.
-  M is_close{};          ///< Lanes with a close one, in any vector.
+  V* offered = nullptr;  ///< Receives the squared distances; infinite outside of the candidate's domain.
+  M is_close{};          ///< Lanes in which the candidate is close enough, in any of the vectors.
 
   SecondPass(const LeafPattern::Pass& pattern, std::size_t node, const SecondLeaf& of_leaf)
       : LeafEvaluation<SecondPass, false>(pattern), leaf(of_leaf), first_node(node) {}
@@ -396,8 +398,8 @@ struct SecondPass : LeafEvaluation<SecondPass, false> {
   }
 };
 
-/// Lets a candidate win the nodes at which it may be second and is better.
-/// @param offered  its squared distances at the nodes of a pass, as SecondPass writes them.
+/// Makes a candidate the second site of the nodes at which it may be second and is better than the best one so far.
+/// @param offered  the candidate's squared distances at the nodes of a pass, as SecondPass writes them.
 HWY_INLINE void settle_second(const V* offered, std::size_t first_node, std::uint32_t candidate,
                               std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
   const SecondLabels::OfSite own = labels[candidate];
@@ -423,8 +425,8 @@ HWY_INLINE void settle_second(const V* offered, std::size_t first_node, std::uin
   }
 }
 
-/// Candidates of a pass that some node may take. They are examined later: if a candidate is among them is hard to
-/// predict, and known late. A branch for each would cost more than its evaluation.
+/// Candidates of a pass that may win at some node, examined later. The outcome for each candidate is hard to predict
+/// and known late. So a branch for each would cost more than its evaluation.
 struct SecondOffers {
   static constexpr std::size_t most = 24;
 
@@ -433,7 +435,7 @@ struct SecondOffers {
   std::size_t count = 0;
 
   HWY_INLINE V* next() { return squared[count]; }
-  /// Keeps the values in next() if some lane is close.
+  /// Keeps the values written to next() if any lane is close.
   HWY_INLINE void add(const float* id, M is_close) {
     std::memcpy(&candidate[count], id, sizeof(std::uint32_t));
     count += static_cast<std::size_t>(!hn::AllFalse(d, is_close));

@@ -12,15 +12,15 @@ namespace blum::cpu {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A tile with more clusters than this is split, so that candidate lists stay in cache.
+/// A tile with more clusters than this is split, so that lists of candidates stay in cache.
 constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
 constexpr std::int64_t leaf_size = 4;
-/// If a site has more links than this, they are first reduced to those that are near.
+/// If a site has more links than this, only those near the nodes are evaluated.
 constexpr std::size_t many_links = 32;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
-/// Computes one tile. It owns nothing, and holds the data that the recursion passes along.
+/// Computes one tile. It owns no results; it holds data that the recursion passes along.
 class SecondWorker {
  public:
   SecondWorker(const SecondJob& job, SecondScratch& scratch)
@@ -66,7 +66,8 @@ class SecondWorker {
  private:
   // --- first sites of a box
 
-  /// Calls visit(first node of a row) for the rows of a box until it returns false. Returns true if it never did.
+  /// Calls visit(index of a row's first node) for the rows of a box, until a call returns false. Returns true if none
+  /// did.
   template <class Visit>
   bool all_rows(const NodeBox& box, Visit visit) const {
     const auto& size = field_.request.grid.size;
@@ -86,7 +87,8 @@ class SecondWorker {
     });
   }
 
-  /// Returns the labels that all first sites of a box have; null if they differ, or without first sites.
+  /// Returns the labels that all first sites of a box share. Returns null if they differ, or if no node has a first
+  /// site.
   [[nodiscard]] const OfSite* only_labels(const NodeBox& box) const {
     const OfSite* only = nullptr;
     const bool is_only = all_rows(box, [&](std::size_t row) {
@@ -109,7 +111,7 @@ class SecondWorker {
     list.shorten(kept);
   }
 
-  /// Gives a box of nodes the limit as distance and no second site.
+  /// Gives all nodes of a box the limit as their second distance, and no second site.
   void fill(const NodeBox& box) const {
     (void)all_rows(box, [&](std::size_t row) {
       std::fill_n(job_.request.distance2 + row, box.count[0], limit());
@@ -118,7 +120,7 @@ class SecondWorker {
     });
   }
 
-  /// Returns the distance of nodes without a second site.
+  /// Returns the second distance of nodes that have no second site.
   [[nodiscard]] float limit() const {
     return job_.request.has_band() ? static_cast<float>(job_.request.band) : std::numeric_limits<float>::infinity();
   }
@@ -144,8 +146,8 @@ class SecondWorker {
     return out;
   }
 
-  /// Returns bounds for a child of a box, from the sites that the lanes have found closest to its centre. Without such
-  /// sites, it returns the parent's bounds.
+  /// Returns bounds for a child of a box. They come from the sites closest to the child's centre, one per lane, that
+  /// the tests found. If these do not suffice, it returns the parent's bounds.
   [[nodiscard]] Bounds bounds_of_child(const SecondCandidates& candidates, const ClosestAtCenters& closest,
                                        std::size_t child, const Vec3f& center, const Bounds& parent) const {
     alignas(64) std::array<float, lanes> squared;
@@ -171,7 +173,7 @@ class SecondWorker {
     if (!take_nearest([](const OfSite&) { return true; })) return parent;
     if (only_ != nullptr) return out;
     if (take_nearest([&](const OfSite& labels) { return job_.are_apart(out.labels[0], labels); })) return out;
-    // The parent's further point serves if it is apart from the child's nearest.
+    // One of the parent's points serves as the further one if its site is apart from that of the child's closest point.
     for (std::size_t k = 0; k < parent.count; ++k) {
       if (!job_.are_apart(out.labels[0], parent.labels[k])) continue;
       out.point[1] = parent.point[k];
@@ -205,7 +207,7 @@ class SecondWorker {
         list_child(candidates[kind], child_bits[kind], c, of_child.places[kind]);
       }
       const CenteredBox place = centered(field_, parts.child[c]);
-      // Within cells, links give better bounds.
+      // In a cell, the links have already given better bounds.
       const bool needs_bounds = !is_cell || job_.links == nullptr;
       const Bounds child_bounds = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
       list_slivers(candidates.slivers, place, child_bounds, of_child.slivers);
@@ -238,7 +240,7 @@ class SecondWorker {
 
   // --- cells
 
-  /// Reads the first sites of a cell, and evaluates links at all of its nodes.
+  /// Reads the first sites of a cell, and evaluates the links at all of its nodes.
   void begin_cell(const NodeBox& box, const Vec3f& middle) {
     cell_box_ = box;
     cell_middle_ = middle;
@@ -274,8 +276,8 @@ class SecondWorker {
     return box.count[0] == side && box.count[1] == side && box.count[2] == side;
   }
 
-  /// Evaluates the links of all groups of a cell.
-  /// @return  upper bound on the distances, around the middle.
+  /// Evaluates the links for all groups of a cell.
+  /// @return  upper bound on the distances, around the cell's centre.
   DistanceBound offer_all_links(const NodeBox& box, const Vec3f& middle) {
     CellSorter sorter(cell_, job_.labels);
     sorter.find_groups();
@@ -293,7 +295,7 @@ class SecondWorker {
         SecondCell::nodes, [&](std::size_t node) { return places.following(node); }, cell_.squared.data());
   }
 
-  /// Prefetches the first sites of a cell that comes soon, because its rows are scattered in memory.
+  /// Prefetches the first sites of the next cell, because its rows are scattered in memory.
   void prefetch_firsts(const NodeBox& box) const {
     (void)all_rows(box, [&](std::size_t node) {
       hwy::Prefetch(job_.request.site + node);
@@ -310,7 +312,7 @@ class SecondWorker {
     });
   }
 
-  /// Calls visit(place of the row's first node in the cell, node index) for the rows of a cell.
+  /// Calls visit(index in the cell, index in the grid) for the first node of each row of a cell.
   template <class Visit>
   void for_each_row(const NodeBox& box, Visit visit) const {
     const auto rows = static_cast<std::size_t>(box.count[1]);
@@ -323,8 +325,8 @@ class SecondWorker {
     });
   }
 
-  /// Calls visit(first node, its place, bytes) for the parts of a row that lie in one leaf each. Places are relative to
-  /// that of the row's first node.
+  /// Calls visit(offset in the row, offset in the cell, bytes) for the parts of a row, one per leaf. Both offsets are
+  /// relative to the row's first node.
   template <class Visit>
   static HWY_INLINE void for_each_part(const NodeBox& box, Visit visit) {
     if (box.count[0] == SecondCell::side) {
@@ -386,7 +388,7 @@ class SecondWorker {
     }
   }
 
-  /// Returns the largest distance that a node has so far; huge if some node has none.
+  /// Returns the largest second distance of the nodes so far; a huge value if some node has none yet.
   static float furthest(const SecondLeaf& state) {
     V worst = hn::Zero(d);
     for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
@@ -413,7 +415,7 @@ class SecondWorker {
     }
   }
 
-  /// Prefetches the links of groups that come soon, because they are scattered in memory.
+  /// Prefetches the links of later groups, because they are scattered in memory.
   void prefetch_links(std::size_t g) const {
     if (g + 8 < cell_.group_count) {
       for (const std::uint32_t v : cell_.groups[g + 8].labels) hwy::Prefetch(&job_.links->first[v]);
@@ -433,7 +435,7 @@ class SecondWorker {
     }
   }
 
-  /// Returns the links of a site's vertices that do not touch it.
+  /// Returns those links of a site's vertices that do not touch the site.
   std::span<const std::uint32_t> find_links(const OfSite& vertices) {
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -443,7 +445,7 @@ class SecondWorker {
       std::uint32_t* out = mine_.links.data();
       for (const SecondLinks::Entry& link : entries) {
         out[count] = link.segment;
-        unsigned is_own = 0;  // without branches, which would be unpredictable
+        unsigned is_own = 0;  // computed without branches, which would be unpredictable
         for (const std::uint32_t v : vertices) {
           is_own |= static_cast<unsigned>(link.start == v) | static_cast<unsigned>(link.end == v);
         }
@@ -453,7 +455,7 @@ class SecondWorker {
     return {mine_.links.data(), count};
   }
 
-  /// Returns those of many links that may be closest to any node of a group. They replace the list.
+  /// Returns those links that may be closest to some node of a group. Overwrites the worker's list of links.
   std::span<const std::uint32_t> near_links(std::span<const std::uint32_t> links, const Vec3f& middle,
                                             const GroupBall& ball) {
     const Vec3f center = middle + ball.center;
@@ -487,7 +489,7 @@ class SecondWorker {
       open = hn::Or(open, has_none);
       hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.squared.data() + node);
       const VI id = hn::Load(di, cell_.id.data() + node);
-      // Nodes that no site has claimed stay open for report_open().
+      // Nodes that no site has claimed keep the id `nobody`, which report_open() looks for.
       const auto is_settled = hn::RebindMask(di, hn::AndNot(has_none, is_beyond));
       hn::Store(hn::IfThenElse(is_settled, hn::Set(di, dead_record), id), di, cell_.id.data() + node);
     }
@@ -501,7 +503,7 @@ class SecondWorker {
     });
   }
 
-  /// Writes a row of a cell to the field, past the caches if it is a whole line.
+  /// Writes a row of a cell to the field. If the row is a whole cache line, it is written past the caches.
   template <class T>
   static HWY_INLINE void put_row(const NodeBox& box, const T* from, T* to, bool is_line) {
     if (!is_line) {
@@ -515,7 +517,7 @@ class SecondWorker {
     }
   }
 
-  /// Reports nodes that no site has claimed, although some site may be second.
+  /// Adds nodes that no site has claimed, although some site may be second, to `unsettled`.
   void report_open(const NodeBox& box, std::size_t at, std::size_t node) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
       const std::size_t place = at + i / 4 * leaf_nodes + i % 4;
@@ -533,11 +535,12 @@ class SecondWorker {
   SecondCell& cell_;
   std::vector<std::size_t>& unsettled_;
   std::array<LeafPattern, 8> full_patterns_;
-  LeafPattern pattern_;  ///< of the current leaf, if it is cut off
+  LeafPattern pattern_;  ///< of the current leaf, if the grid's border cuts it
   NodeBox cell_box_;     ///< the current cell
   Vec3f cell_middle_;
-  DistanceBound cell_bound_;      ///< around its middle
-  const OfSite* only_ = nullptr;  ///< labels of all first sites of the current tile, if the rule is by objects
+  DistanceBound cell_bound_;  ///< around cell_middle_
+  /// Labels shared by all first sites of the current tile; used only if the rule is by objects.
+  const OfSite* only_ = nullptr;
 };
 
 void compute_second_tile_here(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {

@@ -13,25 +13,27 @@
 
 namespace blum::cpu {
 
-/// Input of all tiles of the second order, and the output of their results.
+/// Input of all tiles of the second order, and the memory for their results.
 struct SecondJob {
-  /// Records that may be second, without reaches: the point that beats a site beyond its reach may be excluded. Only
-  /// the grid of its request is used.
+  /// Sites that may be second, as records without reaches. Beyond a site's reach some surface point is closer, but that
+  /// point may be excluded here. Its request is unused, except for the grid.
   FieldJob field;
   SecondRequest request;
-  /// Labels of every site. Records' planes come from sites with the same labels only. If `links` is set, they also come
-  /// from others, and the links of the first site's vertices are evaluated in addition.
+  /// Labels of every site. The planes that bound a record's domain come from sites with the same labels only. If
+  /// `links` is set, they come from all neighbours. Then the links of the first site's vertices are evaluated in
+  /// addition.
   std::span<const SecondLabels::OfSite> labels;
   const SecondLinks* links = nullptr;
-  /// Labels that share some site with label l: others[first_other[l] .. first_other[l + 1]), ascending.
+  /// For each label l, the labels that occur together with l on some site: others[first_other[l] .. first_other[l +
+  /// 1]), ascending.
   std::span<const std::uint32_t> first_other;
   std::span<const std::uint32_t> others;
 
-  /// Returns true if no site has labels of both, so that one of the two may be second wherever anything is first.
+  /// Returns true if no site shares labels with both. Then one of the two sites may be second, whichever site is first.
   [[nodiscard]] bool are_apart(const SecondLabels::OfSite& a, const SecondLabels::OfSite& b) const;
 };
 
-/// Memory that a worker keeps from tile to tile, and the nodes that are left to exact queries.
+/// Memory that a worker keeps from tile to tile, and the nodes left to exact queries.
 class SecondScratch {
  public:
   SecondScratch();
@@ -49,7 +51,7 @@ class SecondScratch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Computes the second distance and site of every node of a box, as compute_tile() does the first.
+/// Computes the second distance and site of every node of a box. compute_tile() does the same for the first.
 void compute_second_tile(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch);
 
 }  // namespace blum::cpu

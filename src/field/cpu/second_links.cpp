@@ -12,13 +12,13 @@ using kernels::to_float;
 
 constexpr std::size_t grain = 1 << 12;
 
-/// Edges opposite to each vertex in its triangles.
+/// For each vertex: the edges opposite to it in its triangles.
 struct Opposite {
   std::vector<std::uint32_t> first;
   std::vector<std::uint32_t> edges;
 };
 
-/// Calls visit(vertex, opposite edge) for every corner of the triangles that name three different vertices.
+/// Calls visit(vertex, opposite edge) for every corner of the triangles with three different vertices.
 template <class Visit>
 void for_each_opposite(const MeshView& mesh, const SiteTable& sites, const Visit& visit) {
   const auto edges = sites.triangle_edges();
@@ -40,8 +40,8 @@ Opposite find_opposite(const MeshView& mesh, const SiteTable& sites) {
   return out;
 }
 
-/// Returns true if the edges in a vertex' link that end at `neighbour` cannot stand for it. This is so if a site with
-/// the vertex, but not the neighbour, may touch all of them.
+/// Returns true if a vertex's link must list `neighbour` as a point. In this case, some site may contain the vertex and
+/// touch all edges of the link that end at `neighbour`, but not contain `neighbour`.
 /// @param link  the edges of the link, by both ends: (neighbour, other end), sorted.
 bool needs_point(const std::vector<Segment>& link, std::uint32_t neighbour) {
   const auto first = std::lower_bound(link.begin(), link.end(), Segment{neighbour, 0});
@@ -49,11 +49,12 @@ bool needs_point(const std::vector<Segment>& link, std::uint32_t neighbour) {
   std::size_t count = 0;
   for (auto at = first; at != link.end() && (*at)[0] == neighbour; ++at) {
     if (count > 0 && (*at)[1] == others[count - 1]) continue;
-    if (count == 2) return false;  // a site has two further vertices at most
+    if (count == 2) return false;  // besides the vertex, a site has at most two vertices
     others[count++] = (*at)[1];
   }
   if (count < 2) return true;
-  return std::binary_search(link.begin(), link.end(), Segment{others[0], others[1]});  // a triangle of all three
+  // True if a triangle has all three vertices.
+  return std::binary_search(link.begin(), link.end(), Segment{others[0], others[1]});
 }
 
 }  // namespace

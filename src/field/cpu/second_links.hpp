@@ -16,24 +16,24 @@
 
 namespace blum::cpu {
 
-/// Closed edge in the normalised frame, or a point (no tangent, no length).
+/// Edge with its ends in the normalised frame, or a point (tangent and length are zero).
 struct LinkSegment {
   Vec3f middle;
-  Vec3f tangent;  ///< unit
+  Vec3f tangent;  ///< unit vector; zero for a point
   float half_length = 0;
-  std::uint32_t id = 0;     ///< SiteId of the part between the ends.
-  std::uint32_t start = 0;  ///< Vertex at middle - tangent * half_length; its id is below that of the other end.
+  std::uint32_t id = 0;     ///< SiteId of the open edge, without its ends.
+  std::uint32_t start = 0;  ///< Vertex at middle - tangent * half_length. Its id is below that of the other end.
   std::uint32_t end = 0;
 };
 
-/// Link of every vertex: the edges opposite to it in its triangles, and other ends of its edges. The latter are listed
-/// only if those opposite edges may not stand for them.
+/// Links of all vertices. A vertex's link consists of the edges opposite to it in its triangles, and of the other ends
+/// of its edges. An end is listed only if the opposite edges may not represent it.
 ///
-/// The second order leaves out every site that touches a vertex of the first site. Sites along this hole then have
-/// planes from sites that are left out, so they must be evaluated without these planes. They lie in the links of the
-/// first site's vertices.
+/// The second order excludes every site that touches a vertex of the first site. The domains of sites along this hole
+/// are bounded by planes from excluded sites. So these sites must be evaluated without such planes. They lie in the
+/// links of the first site's vertices.
 struct SecondLinks {
-  /// Segments of the edges, in their order, then of the vertices, as points.
+  /// First the segments of all edges, in their order, then all vertices, as points.
   Buffer<LinkSegment> segments;
   /// Segment and its ends.
   struct Entry {
@@ -50,7 +50,7 @@ struct SecondLinks {
   }
 };
 
-/// Builds the entries. They depend on connectivity alone, so that a deforming mesh keeps them.
+/// Builds the entries. They depend only on connectivity, so they stay valid while the mesh deforms.
 void build_link_entries(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                         const Context& context, SecondLinks& out);
 /// Builds the segments.

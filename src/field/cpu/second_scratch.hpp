@@ -12,8 +12,8 @@
 
 namespace blum::cpu {
 
-/// Box of up to 16^3 nodes, leaf after leaf: node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k + 64 (a + 4 b + 16 c).
-/// Its nodes are also sorted by first sites.
+/// Box of up to 16^3 nodes, stored leaf after leaf. The index of node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k +
+/// 64 (a + 4 b + 16 c). Its nodes are also grouped by first site.
 struct SecondCell {
   static constexpr std::int64_t side = 16;
   static constexpr std::size_t row = 16;
@@ -21,13 +21,13 @@ struct SecondCell {
   static constexpr std::uint32_t nodes = 4096;
   static constexpr std::size_t padding = 32;
 
-  /// Nodes of a leaf with the same first site.
+  /// Nodes of one leaf with the same first site.
   struct Item {
-    std::uint64_t nodes = 0;  ///< a bit for each node
+    std::uint64_t nodes = 0;  ///< one bit for each node of the leaf
     std::uint16_t leaf = 0;
     std::uint16_t next = 0;  ///< next item of the same group
   };
-  /// Nodes with the same first site.
+  /// All nodes of the cell with the same first site.
   struct Group {
     std::uint32_t site = 0;
     SecondLabels::OfSite labels{};
@@ -35,26 +35,28 @@ struct SecondCell {
     std::uint16_t begin = 0, end = 0;  ///< range in `order`
   };
 
-  alignas(64) std::array<std::uint32_t, nodes> first;  ///< First sites; dead_record: none, or not a node.
-  /// Squared distances and ids of the second sites so far; the former are below 0 without a first site.
+  /// First sites. dead_record: the node has none, or does not exist.
+  alignas(64) std::array<std::uint32_t, nodes> first;
+  /// Squared distances and ids of the second sites found so far. The distance is below 0 if the node has no first site.
   alignas(64) std::array<float, nodes + padding> squared;
   alignas(64) std::array<std::uint32_t, nodes + padding> id;
   std::array<Item, nodes> items;
   std::size_t item_count = 0;
   std::array<Group, nodes> groups;
   std::size_t group_count = 0;
-  std::array<std::uint16_t, 8192> table;  ///< Hash table of groups: number of the group + 1.
-  /// Nodes that have a first site, group after group. Past the end comes a node that does not exist, for whole vectors.
+  std::array<std::uint16_t, 8192> table;  ///< Hash table of groups. An entry is the group's index + 1.
+  /// Nodes that have a first site, group after group. They are followed by indices of a node that does not exist, so
+  /// that whole vectors can be read.
   alignas(64) std::array<std::uint32_t, nodes + padding> order{};
 };
 
-/// Candidates of one kind, as places in the list of a tile's records. Children share that list, because copies of
-/// records would cost more than all tests of them.
+/// Candidates of one kind, as indices into the list of the tile's records. Boxes within the tile use the same list,
+/// because copying records would cost more than all tests of them.
 class PlaceList {
  public:
   static constexpr std::size_t padding = 16;
 
-  /// Empties the list and makes room for `capacity` places.
+  /// Empties the list and makes room for `capacity` indices.
   void reset(const RecordList& records, std::size_t capacity) {
     records_ = &records;
     if (places_.size() < capacity + 2 * padding) places_ = Buffer<std::uint32_t>(capacity + capacity / 2 + 4 * padding);
@@ -65,10 +67,11 @@ class PlaceList {
     std::iota(places_.begin(), places_.begin() + records.count(), 0U);
     finish(records.count());
   }
-  /// Returns the memory to which up to `padding` places at a time are written, before finish() sets their number.
+  /// Returns the memory for the indices. It is written before finish() sets their number; up to `padding` indices may
+  /// be written at a time.
   [[nodiscard]] std::uint32_t* places() { return places_.data(); }
   [[nodiscard]] const std::uint32_t* places() const { return places_.data(); }
-  /// Sets the number of places, and makes the padding readable.
+  /// Sets the number of indices, and makes the padding readable.
   void finish(std::size_t count) {
     count_ = count;
     std::fill_n(places_.data() + count, padding, 0U);
@@ -95,7 +98,7 @@ struct SecondCandidates {
 struct SecondScratch::Impl {
   TileScratch tile;
   SecondCandidates all;                    ///< of the current tile
-  std::array<SecondCandidates, 4> levels;  ///< of the current child, for each level of the tile's
+  std::array<SecondCandidates, 4> levels;  ///< of the current child, for each level of the recursion in the tile
   SecondCell cell;
   std::vector<std::uint32_t> links;  ///< of the current first site; never shrinks
   std::vector<float> link_distances;

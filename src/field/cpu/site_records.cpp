@@ -28,7 +28,7 @@ void store_cone(ConeArrays& cones, std::size_t index, const DirectionCone::Resul
   cones.sine[index] = cone.sine;
 }
 
-/// Writes the reaches of a cluster's records into them. Returns the largest.
+/// Writes the reaches of a cluster's sites into their records. Returns the largest reach.
 template <Kind kind>
 float store_reaches(const ClusterBuild& cluster, const SurfacePoints& points, std::size_t rank,
                     std::span<Record> records) {
@@ -56,9 +56,9 @@ constexpr std::string_view phase_of(Kind kind) {
 }
 
 /// Builds all records of a kind.
-/// @param prefetch_sites  callable: up to sixteen sites that are built soon, and how soon.
-/// @param build    callable: up to sixteen sites, their records, their cluster.
-/// @param rank_of  callable: site index -> a place on the Morton curve near it.
+/// @param prefetch_sites  callable: up to sixteen sites to be built later, and how soon (Ahead).
+/// @param build    callable: up to sixteen sites, their records, their ClusterBuild.
+/// @param rank_of  callable: site index -> an index on the Morton curve near it.
 template <Kind kind, class Prefetch, class Build, class RankOf>
 void build_set(std::span<const std::uint32_t> order, const SurfacePoints& points, const Context& context,
                RecordSet& set, Prefetch prefetch_sites, Build build, RankOf rank_of) {
@@ -88,7 +88,7 @@ void build_set(std::span<const std::uint32_t> order, const SurfacePoints& points
   });
 }
 
-/// Returns the vertex positions along the Morton curve.
+/// Returns the vertex positions, sorted along the Morton curve.
 SurfacePoints surface_points(std::span<const Vec3d> positions, const SiteOrder& order, const Context& context) {
   SurfacePoints points;
   for (auto& coordinate : points.coordinate) coordinate.resize(order.vertices.size());
@@ -101,7 +101,7 @@ SurfacePoints surface_points(std::span<const Vec3d> positions, const SiteOrder& 
   return points;
 }
 
-/// Bounds each sixteen consecutive boxes. Empty boxes do not count, unless all are empty.
+/// Computes the bounding box of each sixteen consecutive boxes. Empty boxes are ignored, unless all sixteen are empty.
 void bound_children(const BoxArrays& children, const Context& context, BoxArrays& parents) {
   const std::size_t count = (children.count + cluster_size - 1) / cluster_size;
   parents.resize(count);
@@ -128,7 +128,7 @@ void bound_children(const BoxArrays& children, const Context& context, BoxArrays
 }  // namespace
 
 void BoxArrays::resize(std::size_t new_count) {
-  // Whole vectors of boxes are read at a time, so the tail is padded with empty boxes.
+  // Boxes are read as whole vectors, so the array is padded with empty boxes.
   const std::size_t padded = (new_count + cluster_size - 1) / cluster_size * cluster_size;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (auto* side : {&lower[axis], &upper[axis]}) {
@@ -189,7 +189,7 @@ void build_cluster_forest(const SiteRecords& sites, const Context& context, Clus
     std::size_t depth = 0;
     do {
       if (tree.levels.size() == depth) tree.levels.emplace_back();
-      // emplace_back may have moved the level that `children` points to.
+      // `children` must be set again, because emplace_back may have moved the level.
       if (depth > 0) children = &tree.levels[depth - 1];
       bound_children(*children, context, tree.levels[depth]);
       children = &tree.levels[depth];

@@ -27,21 +27,21 @@ using kernels::VertexColumns;
 enum Kind : std::uint8_t { vertex_kind, edge_kind, face_kind, sliver_kind };
 inline constexpr std::size_t kind_count = 4;
 
-/// Records per cluster. Clusters are the leaves of the tree that tiles are culled with.
+/// Number of records per cluster. Clusters are the leaves of the tree that is used to cull sites for a tile.
 inline constexpr std::size_t cluster_size = 16;
 
-/// Boxes as structure of arrays, in the normalised frame, rounded outwards. An empty box lies far away.
+/// Boxes as a structure of arrays, in the normalised frame, rounded outwards. An empty box is placed far away.
 struct BoxArrays {
   std::array<Buffer<float>, 3> lower;
   std::array<Buffer<float>, 3> upper;
-  Buffer<float> reach;  ///< the content of the box affects nothing further away than this
+  Buffer<float> reach;  ///< sites in the box cannot be closest to any point further away than this
   std::size_t count = 0;
 
   void resize(std::size_t new_count);
 };
 
-/// Per cluster: the double cone about an axis that holds every direction in which its sites can be closest. A sine of
-/// one and a cosine of zero make it the whole space.
+/// Double cone of each cluster, about an axis. It contains every direction, from any site of the cluster, in which this
+/// site can be closest. If the sine is one and the cosine zero, the cone is the whole space.
 struct ConeArrays {
   std::array<Buffer<float>, 3> axis;
   Buffer<float> cosine;
@@ -50,13 +50,13 @@ struct ConeArrays {
   void resize(std::size_t count);
 };
 
-/// Records of one kind in a spatially coherent order, and a box around each cluster of consecutive records. Sites that
-/// can own no node keep their place, as records with id `dead_record`.
+/// Records of one kind in a spatially coherent order, and a box around each cluster of consecutive records. A site that
+/// cannot be closest to any node keeps its position, as a record with the id `dead_record`.
 struct RecordSet {
   Buffer<Record> records;
   std::size_t count = 0;
   ConeArrays cluster_cones;
-  BoxArrays cluster_boxes;  ///< with the largest reach of each cluster's sites
+  BoxArrays cluster_boxes;  ///< `reach` is the largest reach of each cluster's sites
 };
 
 /// All records of a mesh.
@@ -64,16 +64,17 @@ struct SiteRecords {
   std::array<RecordSet, kind_count> kinds;
 };
 
-/// Builds the records of every site that can own a node. Vertices whose domain is only themselves get none. Nor do
-/// edges or faces of negligible extent, for which their borders stand. Reuses the memory of `out`.
+/// Builds the records of every site that can be closest to a node. A vertex whose domain is only the vertex itself gets
+/// no record. Edges and faces of negligible extent get none either; their borders represent them. Reuses the memory of
+/// `out`.
 /// @param positions  of all vertices, in the normalised frame.
 /// Cost: O(sites), threaded. Method: docs/theory/fields.md.
 void build_site_records(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                         std::span<const Vec3d> positions, const SiteOrder& order, const Context& context,
                         SiteRecords& out);
 
-/// Sixteen-ary tree of boxes above the clusters of one kind. Boxes of levels[0] bound 16 clusters each; the last level
-/// has at most 16 boxes.
+/// 16-ary tree of boxes above the clusters of one kind. Each box of levels[0] bounds 16 clusters, each box of a higher
+/// level 16 boxes. The last level has at most 16 boxes.
 struct ClusterTree {
   std::vector<BoxArrays> levels;
 };
@@ -82,7 +83,7 @@ struct ClusterForest {
   std::array<ClusterTree, kind_count> trees;
 };
 
-/// Builds the trees above all clusters. Cost: O(clusters). Reuses the memory of `out`.
+/// Builds the trees for all kinds. Cost: O(clusters). Reuses the memory of `out`.
 void build_cluster_forest(const SiteRecords& sites, const Context& context, ClusterForest& out);
 
 }  // namespace blum::cpu

@@ -15,20 +15,21 @@ namespace blum::cpu {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// A tile with more clusters than this is split, so that candidate lists stay in cache.
+/// A tile with more clusters than this is split, so that lists of candidates stay in cache.
 constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
 constexpr std::int64_t leaf_size = 4;
-constexpr std::size_t fewest_worth_culling = 12;         // candidates of a leaf
-constexpr std::size_t fewest_worth_culling_in_box = 64;  // candidates of a box of 8^3 nodes
+constexpr std::size_t fewest_worth_culling = 12;         // candidates in a leaf
+constexpr std::size_t fewest_worth_culling_in_box = 64;  // candidates in a box of 8^3 nodes
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
-/// Returns true if no surface meets a box. A distance at the box's centre proves this only beyond a margin.
+/// Returns true if it is certain that no surface meets a box. The distance at the box's centre must exceed the box's
+/// radius by a margin.
 bool is_free_of_surface(float distance_at_center, const Vec3f& half) {
   return distance_at_center > length(half) * 1.0001F + box_slack;
 }
 
-/// Computes one tile. It owns nothing, and holds the data that the recursion passes along.
+/// Computes one tile. It owns no results; it holds data that the recursion passes along.
 class TileWorker {
  public:
   TileWorker(const FieldJob& job, TileScratch& scratch)
@@ -64,8 +65,8 @@ class TileWorker {
   }
 
  private:
-  /// Finds what the closest site at a box's centre implies for the whole box. If no surface meets the box, its side
-  /// follows, and `side` is set. If the box lies beyond the band, it is written and true is returned.
+  /// Uses the closest site of a box's centre to decide the whole box if possible. If no surface meets the box, sets
+  /// `side` for all of its nodes. If the box also lies beyond the band, writes its nodes and returns true.
   bool settle(const NodeBox& box, const Vec3f& half, const Witness& closest, const Vec3f& center, int& side) {
     const float distance = std::sqrt(closest.squared_distance);
     if (!is_free_of_surface(distance, half)) return false;
@@ -76,7 +77,7 @@ class TileWorker {
     return true;
   }
 
-  /// Gives a box of nodes beyond the band this distance and no site.
+  /// Gives all nodes of a box beyond the band this distance and no site.
   void fill(const NodeBox& box, float distance) {
     if (is_buffered_) {
       for_each_row(box, [&](std::size_t at, std::size_t) {
@@ -91,7 +92,7 @@ class TileWorker {
     });
   }
 
-  /// Writes the buffered box to the field. Rows that are whole aligned lines are written past the caches.
+  /// Writes the buffered box to the field. Rows that are whole, aligned cache lines are written past the caches.
   void flush(const NodeBox& box) {
     constexpr std::size_t line = 64;
     const bool is_streamed = job_.is_streamed && box.count[0] == BoxOutput::side;
@@ -115,7 +116,7 @@ class TileWorker {
     }
   }
 
-  /// Calls visit(place in the output buffer, node index) for the first node of each row of a box.
+  /// Calls visit(index in the output buffer, index in the grid) for the first node of each row of a box.
   template <class Visit>
   void for_each_row(const NodeBox& box, Visit visit) const {
     for (std::int64_t k = 0; k < box.count[2]; ++k) {
@@ -130,20 +131,21 @@ class TileWorker {
     }
   }
 
-  /// Returns the start in a leaf of the row that has this place in the output buffer.
+  /// Returns the index in its leaf of the node with this index in the output buffer. The node must be the first of its
+  /// row in the leaf.
   static std::size_t leaf_row(std::size_t place) { return place / 16 % 4 * 4 + place / 256 % 4 * 16; }
 
-  /// State of a child before its candidates are listed.
+  /// State of a child box before its candidates are listed.
   struct Child {
     CenteredBox place;
     Vec3f p0;
     int side = 0;
-    bool is_open = false;  ///< exists, and is not settled yet
+    bool is_open = false;  ///< the child exists and is not settled yet
   };
 
   using Children = std::array<Child, 8>;
 
-  /// Finds where the children lie, their surface points, and which of them are settled.
+  /// Finds the positions of the children and a surface point near each. Settles those that the point decides.
   Children meet_children(const Halving& parts, const Candidates& candidates, const ClosestAtCenters& closest,
                          const Vec3f& parent_p0, int side) {
     Children children;
@@ -165,7 +167,7 @@ class TileWorker {
     return children;
   }
 
-  /// Returns the points of a child and of those next to it, which are the best at beating sites beyond them.
+  /// Returns the surface points of a child and of its three neighbours in the same box.
   static Dominators dominators_of(const Children& children, std::size_t c) {
     return {{children[c].p0, children[c ^ 1].p0, children[c ^ 2].p0, children[c ^ 4].p0}, Dominators::most};
   }
@@ -201,7 +203,7 @@ class TileWorker {
     const Halving parts = halve(job_, box, 2 * leaf_size);
     const BlockTest<8> test(parts, dominators);
     TileScratch::Impl::Level& here = scratch_.levels.back();
-    // With few candidates, evaluating them costs less than finding the surface point that would beat some of them.
+    // With few candidates, it is cheaper to evaluate all of them than to find a surface point that excludes some.
     const std::size_t count =
         candidates[vertex_kind].count() + candidates[edge_kind].count() + candidates[face_kind].count();
     const bool is_worth_culling =
@@ -234,7 +236,7 @@ class TileWorker {
     }
   }
 
-  /// Tests the candidates of a box of 8^3 nodes against its leaves, and writes them out for the leaves.
+  /// Tests the candidates of a box of 8^3 nodes against its leaves, and prepares them for the leaves.
   template <class Closest>
   void prepare_leaves(const BlockTest<8>& test, const Candidates& candidates, Closest& closest) {
     halve_kinds(test, candidates, scratch_.levels.back().bits, closest,
@@ -254,7 +256,8 @@ class TileWorker {
     return {first, job_.spacing};
   }
 
-  /// Drops candidates that a leaf's dominators beat, if there are enough candidates to pay for the test.
+  /// Drops the candidates of a leaf that are further away than one of its dominators everywhere. Does nothing if there
+  /// are too few candidates for the test to pay.
   void dominate_leaf(const LeafInput& input, const Halving& parts, const Child& child,
                      const Dominators& dominators) const {
     if (candidate_count(input) < fewest_worth_culling) return;
@@ -291,7 +294,8 @@ class TileWorker {
       if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
       state.squared[node] = squared;
       state.id[node] = sliver.id;
-      if (asks_sides) state.side[node] = 0;  // too flat to decide: left to the exact query
+      // A sliver is too flat to decide the side: the node is left to the exact query.
+      if (asks_sides) state.side[node] = 0;
     }
   }
 
@@ -318,7 +322,8 @@ class TileWorker {
     const std::uint32_t* ids = state.id.data();
     for_each_row(box, [&](std::size_t place, std::size_t) {
       const std::size_t row = leaf_row(place);
-      // Whole rows of four, also where the grid ends: the buffer has room, and flush() leaves the rest out.
+      // Whole rows of four nodes are copied, even if the grid ends within the row. The buffer has room, and flush()
+      // skips nodes beyond the grid.
       std::memcpy(scratch_.output.distance.data() + place, values + row, leaf_size * sizeof(float));
       std::memcpy(scratch_.output.site.data() + place, ids + row, leaf_size * sizeof(std::uint32_t));
     });
@@ -350,7 +355,7 @@ class TileWorker {
   TileScratch::Impl& scratch_;
   std::vector<std::size_t>& unsettled_;
   bool needs_settling_;
-  bool is_buffered_ = false;  ///< results go to the output buffer of a box of 16^3 nodes
+  bool is_buffered_ = false;  ///< true if results are written to the output buffer of a box of 16^3 nodes
   std::array<LeafPattern, 8> full_patterns_;
 };
 

@@ -1,4 +1,4 @@
-// Blum: lists of candidates that shrink from tile to leaf. SPDX-License-Identifier: Apache-2.0
+// Blum: lists of candidate sites for tiles and their subdivisions. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace blum::cpu {
 
-/// Records of one kind that may matter in a box, in ascending order of site id (so that ties go to the smaller id).
-/// Once finished, whole vectors may be read past the end.
+/// Records of one kind that may be closest somewhere in a box. They are in ascending order of site id, so that ties go
+/// to the smaller id. After finish(), whole vectors may be read past the end.
 class RecordList {
  public:
   static constexpr std::size_t padding = 16;
@@ -28,14 +28,14 @@ class RecordList {
     for (; lane_bits != 0; lane_bits &= lane_bits - 1) append(block[std::countr_zero(lane_bits)]);
   }
 
-  /// Moves a record to an earlier place, to thin out the list; shorten() ends that.
+  /// Moves a record to an earlier index, to remove others; shorten() must follow.
   void move(std::size_t from, std::size_t to) { records_[to] = records_[from]; }
   void shorten(std::size_t count) {
     count_ = count;
     finish();
   }
 
-  /// Makes the padding readable. It is called once the list is complete.
+  /// Makes the padding readable. Must be called when the list is complete.
   void finish() { std::memset(static_cast<void*>(records_.data() + count_), 0, padding * sizeof(Record)); }
 
   [[nodiscard]] std::size_t count() const { return count_; }
@@ -50,8 +50,8 @@ class RecordList {
 /// Candidates of all kinds for one box.
 using Candidates = std::array<RecordList, kind_count>;
 
-/// Per child of a box: one bit for each candidate of the box, set if it may matter there. Bits are kept in one word per
-/// block of `lanes` candidates.
+/// For each child of a box: one bit for each candidate of the box, set if it may be closest somewhere in the child. A
+/// word holds the bits of one block of `lanes` candidates.
 class ChildBits {
  public:
   void reset(std::size_t blocks) {
@@ -67,7 +67,7 @@ class ChildBits {
   std::size_t stride_ = 0;
 };
 
-/// Prepared candidates of a leaf: structure of arrays, read lane by lane.
+/// Prepared candidates of a leaf, as a structure of arrays.
 class LeafColumns {
  public:
   static constexpr std::size_t padding = 16;
@@ -84,7 +84,8 @@ class LeafColumns {
   std::size_t stride_ = 0;
 };
 
-/// Results of a box of up to 16^3 nodes, before they are written to the field as whole cache lines.
+/// Results of a box of up to 16^3 nodes. They are buffered so that they can be written to the field as whole cache
+/// lines.
 struct BoxOutput {
   static constexpr std::int64_t side = 16;
   alignas(64) std::array<float, side * side * side> distance;
@@ -93,16 +94,16 @@ struct BoxOutput {
 
 struct TileScratch::Impl {
   BoxOutput output;
-  /// Data of one level of the recursion: which candidates go to which child, and the list of the current child.
+  /// Data of one level of the recursion: bits that assign candidates to children, and the list of the current child.
   struct Level {
     std::array<ChildBits, kind_count> bits;
     Candidates child;
   };
-  std::array<Level, 4> levels;  // boxes of 64, 32 and 16 nodes, and last those of 8, have children
+  std::array<Level, 4> levels;  // boxes with children have 64, 32, 16 or 8 nodes per side; the last entry is for 8
   Candidates gathered;
   std::array<std::vector<std::uint32_t>, kind_count> clusters;  // of the current tile
   std::vector<detail::KeyedIndex> order, order_scratch;
-  std::array<LeafColumns, 3> leaf;  // vertices, edges, faces
+  std::array<LeafColumns, 3> leaf;  // columns of vertices, edges and faces
 };
 
 }  // namespace blum::cpu

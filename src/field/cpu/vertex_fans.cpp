@@ -21,7 +21,7 @@ HWY_INLINE Vec unit(const Vec& v) {
   return {hn::Mul(v.x, scale), hn::Mul(v.y, scale), hn::Mul(v.z, scale)};
 }
 
-/// Fans of `lanes` vertices, from `lane` on.
+/// Processes `lanes` of the sixteen vertices, starting with vertex `lane`.
 class FanLanes {
  public:
   FanLanes(const VertexFans& fans, std::size_t lane, VertexFanCones& out)
@@ -97,7 +97,7 @@ class FanLanes {
   std::size_t lane_;
   VertexFanCones& out_;
   VI counts_;
-  std::size_t end_ = 1;  ///< largest number of directions of a lane
+  std::size_t end_ = 1;  ///< largest number of directions in any of the lanes
   Vec e_[VertexFans::most];
 };
 

@@ -8,29 +8,30 @@
 
 namespace blum::cpu {
 
-/// Sixteen vertices with three to `most` edges each; a lane without a vertex has no edges.
+/// Sixteen vertices with three to `most` edges each. A lane without a vertex has no edges.
 struct alignas(64) VertexFans {
   static constexpr std::size_t most = 8;
-  /// Vectors from the vertex along its edges, of any length but zero. Those beyond a lane's count repeat its first.
+  /// Vectors from the vertex along its edges, of any non-zero length. Entries beyond a lane's count repeat its first
+  /// vector.
   std::array<SixteenVectors, most> along{};
   std::array<std::uint32_t, cluster_size> count{};
 };
 
-/// Cones {w : w . e <= 0 for all edge directions e} of the sixteen vertices.
+/// Cones {w : w . e <= 0 for all edge directions e}, one for each of the sixteen vertices.
 struct alignas(64) VertexFanCones {
   static constexpr std::size_t most_rays = 8;
-  /// Unit vectors of `along`.
+  /// Normalised vectors of `along`.
   std::array<SixteenVectors, VertexFans::most> direction;
-  /// Bit k is set if direction k bounds the cone.
+  /// Per vertex: bit k is set if direction k bounds the cone.
   std::array<std::uint32_t, cluster_size> facets;
-  /// Number of extreme rays found (those beyond most_rays are not kept), and the rays.
+  /// Per vertex: number of extreme rays found, and the first most_rays of them.
   std::array<std::uint32_t, cluster_size> ray_count;
   std::array<std::array<Vec3f, most_rays>, cluster_size> rays;
-  /// One bit per lane, set if two directions are nearly parallel, so that a ray may be missing.
+  /// One bit per vertex, set if two directions are nearly parallel, so that a ray may be missing.
   std::uint32_t is_uncertain = 0;
 };
 
-/// Computes for sixteen vertices, up to rounding, what kernels::VertexCone::find_facets computes for one.
+/// Computes for sixteen vertices what kernels::VertexCone::find_facets computes for one. Results agree up to rounding.
 void find_fan_cones(const VertexFans& fans, VertexFanCones& out);
 
 }  // namespace blum::cpu

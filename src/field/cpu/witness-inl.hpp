@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
-/// Returns the closest site at a child's centre, among those that the lanes have seen.
+/// Returns the closest of the sites found for a child's centre, one per lane.
 HWY_INLINE Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
                                      const Vec3f& center) {
   alignas(64) std::array<std::uint32_t, lanes> index;
@@ -26,7 +26,8 @@ HWY_INLINE Witness closest_candidate(const Candidates& candidates, const Closest
   witness.kind = static_cast<Kind>(index[best] >> 28);
   witness.record = &candidates[witness.kind][index[best] & 0x0fffffffU];
   if (!closest_on_record(witness.kind, *witness.record, center, witness.point)) {
-    // Rounding put the centre just outside of the prism. Its projection still lies on the face, within rounding.
+    // The centre lies just outside of the prism, because of rounding. Its projection still lies on the face, within
+    // rounding.
     const Vec3f normal = vec_at(*witness.record, FaceColumns::normal);
     witness.point = center - normal * dot(center - vec_at(*witness.record, FaceColumns::anchor), normal);
   }
@@ -34,7 +35,7 @@ HWY_INLINE Witness closest_candidate(const Candidates& candidates, const Closest
   return witness;
 }
 
-/// Offers slivers one by one, because they are rare.
+/// Offers slivers (faces too flat for float32) one by one, because they are rare.
 HWY_INLINE void offer_slivers(const RecordList& slivers, const Vec3f& center, Witness& witness) {
   for (std::size_t k = 0; k < slivers.count(); ++k) {
     const Vec3d query = to_double(center);
@@ -45,7 +46,7 @@ HWY_INLINE void offer_slivers(const RecordList& slivers, const Vec3f& center, Wi
 }
 
 /// Lists the slivers that may be closest somewhere in a box.
-/// @param p0  a point of the surface.
+/// @param p0  any point of the surface; it bounds the distance of closer sites.
 HWY_INLINE void list_slivers(const RecordList& slivers, const CenteredBox& box, const Vec3f& p0, RecordList& out) {
   out.reset(slivers.count());
   const Vec3d center = to_double(box.center);

@@ -9,7 +9,7 @@ namespace blum::cuda {
 
 inline constexpr unsigned whole_warp = 0xffffffffU;
 
-/// See EmulatedWarp.
+/// Device counterpart of EmulatedWarp, which describes the members.
 class CudaWarp {
  public:
   template <class T>
@@ -71,7 +71,7 @@ class CudaWarp {
   [[nodiscard]] static __device__ std::uint32_t lane() { return threadIdx.x % kernels::warp_size; }
 };
 
-/// See EmulatedBlock.
+/// Device counterpart of EmulatedBlock, which describes the members.
 template <std::uint32_t threads>
 class CudaBlock {
  public:

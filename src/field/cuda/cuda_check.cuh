@@ -13,7 +13,7 @@ namespace blum::cuda {
 /// @throws OutOfMemory, DeviceError.
 inline void check(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
-  (void)cudaGetLastError();  // clears the error, or the next call would report it again
+  (void)cudaGetLastError();  // clears the error; otherwise the next call would report it again
   const std::string text = std::string("CUDA: ") + what + ": " + cudaGetErrorString(status);
   if (status == cudaErrorMemoryAllocation) throw OutOfMemory(text);
   throw DeviceError(text);

@@ -22,7 +22,7 @@
 
 namespace blum::cuda {
 
-/// Memory of the current device. It grows and never shrinks, so that frames that follow each other allocate nothing.
+/// Memory of the current device. It grows and never shrinks, so that later frames allocate nothing.
 template <class T>
 class CudaArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -38,8 +38,8 @@ class CudaArray {
   CudaArray& operator=(const CudaArray&) = delete;
   ~CudaArray() { (void)cudaFree(data_); }
 
-  /// Sets the size. If the array grows beyond its capacity, its content is lost.
-  /// @param room  least capacity to allocate.
+  /// Sets the size. If the size exceeds the capacity, new memory is allocated and the content is lost.
+  /// @param room  smallest capacity to allocate.
   /// @throws OutOfMemory.
   void resize(std::size_t count, std::size_t room = 0) {
     room = std::max(room, count);
@@ -82,7 +82,7 @@ __global__ void for_each_kernel(const __grid_constant__ Body body, const std::si
   if (index < count) body(index);
 }
 
-/// Checks that the current device can run the code that this file was compiled to.
+/// Checks that the current device can run the compiled code of this file.
 /// @throws DeviceError.
 template <class Body>
 void expect_runnable() {
@@ -99,8 +99,8 @@ __global__ void __launch_bounds__(Body::threads, Body::blocks_per_processor)
   body(CudaBlock<Body::threads>{}, shared, blockIdx.x);
 }
 
-/// Queues everything on one stream. download() and wait() wait for all of it, await() for a mark. fetch() copies on a
-/// stream of its own.
+/// Queues all work on one stream. To wait for all of it, use download() or wait(); for the work before a mark, await().
+/// Only fetch() copies on a separate stream.
 class CudaDevice {
  public:
   template <class T>
@@ -117,7 +117,7 @@ class CudaDevice {
     (void)cudaStreamDestroy(copies_);
   }
   [[nodiscard]] cudaStream_t stream() const { return stream_; }
-  /// Queues later work on another stream.
+  /// Queues all later work on another stream.
   void use(cudaStream_t stream) { stream_ = stream; }
 
   template <class T>
@@ -157,7 +157,8 @@ class CudaDevice {
   template <class Key>
   void sort_pairs(Array<Key>& keys, Array<std::uint32_t>& values, int bits) {
     Array<Key>& sorted_keys = sorted_keys_of(Key{});
-    // Buffers are swapped below. With room for the largest sort in each, later frames allocate nothing.
+    // Keys and scratch buffers are swapped below. Each gets room for the largest sort so far, so that later frames
+    // allocate nothing.
     largest_sort_ = std::max(largest_sort_, keys.size());
     sorted_keys.resize(keys.size(), largest_sort_);
     sorted_values_.resize(keys.size(), largest_sort_);
@@ -176,8 +177,8 @@ class CudaDevice {
   }
   template <class T, class Load, class Combine>
   void reduce(std::size_t count, const Load& load, const T& first, const Combine& combine, T* out) {
-    // DeviceReduce::TransformReduce exists only from CUDA 12.5 on. Counts fit an int, because there are fewer than 2^31
-    // ids.
+    // DeviceReduce::TransformReduce requires CUDA 12.5 or later. Counts fit in an int, because there are fewer than
+    // 2^31 ids.
     const auto values = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0), load);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceReduce::Reduce(scratch, bytes, values, out, static_cast<int>(count), combine, first, stream_);
@@ -193,7 +194,7 @@ class CudaDevice {
   }
 
  private:
-  /// Calls work twice, as CUB requires: first for the size of its scratch memory, then with that memory.
+  /// Calls `work` twice, as CUB requires: first to get the size of its scratch memory, then with that memory.
   template <class Work>
   void with_scratch(const Work& work) {
     std::size_t bytes = 0;

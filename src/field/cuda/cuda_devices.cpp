@@ -19,7 +19,7 @@ CudaDevices cuda_devices() {
       cuda::check(module.describe_device(index, name.data(), name.size(), &memory, &call), call);
       out.devices.push_back({to_string(Device::cuda(index)), name.data(), memory});
     }
-  } catch (const DeviceError& error) {  // also for the index after the last device
+  } catch (const DeviceError& error) {  // also thrown for the index after the last device
     if (out.devices.empty()) out.reason = error.what();
   }
   return out;

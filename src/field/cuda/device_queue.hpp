@@ -15,7 +15,7 @@ namespace blum::cuda {
 /// @throws InvalidOption for the CPU.
 [[nodiscard]] int cuda_index(const Device& device);
 
-/// Common part of the solvers of device_*.hpp.
+/// Base of the solvers that keep results on a device (device_*.hpp).
 class DeviceQueue {
  public:
   /// @throws DeviceError, OutOfMemory, InvalidOption.

@@ -1,4 +1,4 @@
-// The CUDA module. No exception crosses its border.
+// The CUDA module, a shared library. No exception leaves its functions.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 namespace blum::cuda {
 namespace {
 
-/// Stream that is destroyed with its owner.
+/// Stream that is destroyed with this object.
 class Stream {
  public:
   Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream"); }
@@ -22,7 +22,7 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// Event that is destroyed with its owner.
+/// Event that is destroyed with this object.
 class Event {
  public:
   Event() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
@@ -35,7 +35,8 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-/// Queues work on a stream of its own, or on one that is lent. One piece of work after the other uses its memory.
+/// Queues work on its own stream, or on a stream that the caller lends. All work uses the same memory, so each task
+/// waits for the one before.
 class CudaQueue {
  public:
   CudaQueue() : device_(stream_.get()) {}
@@ -49,13 +50,13 @@ class CudaQueue {
     device_.use(other);
   }
   void leave() {
-    // If all events are in use, wait for the oldest one before it is used again.
+    // If all events are in use, wait for the oldest one before reusing it.
     if (queued_ - finished_ == events) {
       (void)cudaEventSynchronize(event_of(finished_));
       ++finished_;
     }
-    // If the event cannot be recorded, wait for the device, so that the slot's older event does not stand for this
-    // work.
+    // If the event cannot be recorded, wait for the whole device. Otherwise the older event of this slot would stand
+    // for this work.
     if (cudaEventRecord(event_of(queued_++), device_.stream()) != cudaSuccess) (void)cudaDeviceSynchronize();
     device_.use(stream_.get());
   }
@@ -82,8 +83,8 @@ class CudaQueue {
   [[nodiscard]] cudaEvent_t event_of(std::uint64_t number) const { return done_[number % events].get(); }
 
   Stream stream_;
-  Event done_[events];  ///< one per recent piece of work on lent streams
-  Event other_;         ///< for the streams of others
+  Event done_[events];  ///< one for each recent task on a lent stream
+  Event other_;         ///< used for streams that belong to others
   std::uint64_t queued_ = 0;
   std::uint64_t finished_ = 0;
   CudaDevice device_;
@@ -93,7 +94,7 @@ struct CudaPlatform {
   using Device = CudaDevice;
   using Queue = CudaQueue;
 
-  /// Makes a device the current one, and restores the host's choice at its end.
+  /// Makes a device the current one, and restores the previous choice when destroyed.
   class Choice {
    public:
     explicit Choice(int device) : device_(device) {
@@ -104,7 +105,7 @@ struct CudaPlatform {
     Choice& operator=(const Choice&) = delete;
     ~Choice() {
       if (had_device_ && before_ != device_) (void)cudaSetDevice(before_);
-      (void)cudaGetLastError();  // clears ignored errors, or the next launch would report them
+      (void)cudaGetLastError();  // clears ignored errors; otherwise the next launch would report them
     }
 
    private:

@@ -18,7 +18,7 @@ std::filesystem::path own_folder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0 || info.dli_fname == nullptr) return {};
   const std::filesystem::path name = info.dli_fname;
-  // A program has the name that it was called by. A name without a folder was looked up in PATH.
+  // A program has the path with which it was called. A path without a folder was found through PATH.
   std::error_code error;
   const std::filesystem::path file =
       std::filesystem::canonical(name.has_parent_path() ? name : "/proc/self/exe", error);
@@ -29,7 +29,7 @@ std::vector<std::string> places() {
   if (const char* named = std::getenv("BLUM_CUDA_MODULE"); named != nullptr && *named != '\0') return {named};
   std::vector<std::string> result;
   if (const std::filesystem::path folder = own_folder(); !folder.empty()) {
-    // Programs lie in bin beside lib. In Python's package they lie one folder below the library.
+    // Programs are installed in bin, next to lib. In the Python package they are one folder below the library.
     for (const char* where : {".", "../lib", ".."}) {
       result.push_back((folder / where / module_file).lexically_normal().string());
     }
@@ -38,7 +38,7 @@ std::vector<std::string> places() {
   return result;
 }
 
-/// Collects the reasons why no module was found.
+/// Collects the reasons why each candidate for the module could not be loaded.
 class Reasons {
  public:
   void missing(const std::string& place) { missing_ += (missing_.empty() ? "" : ", ") + place; }
@@ -64,7 +64,7 @@ const Module& find_module() {
       reasons.missing(place);
       continue;
     }
-    // Stays loaded until the process ends, because the CUDA runtime in it must.
+    // The library stays loaded until the process ends, because the CUDA runtime in it requires that.
     void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
       const char* why = dlerror();

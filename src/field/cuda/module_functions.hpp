@@ -15,19 +15,20 @@
 
 namespace blum::cuda {
 
-/// Functions of the module. Exceptions become a status. Platform is CudaPlatform; the tests have one that runs on the
-/// host. It has these members:
+/// Functions of the module. Exceptions are turned into a Status. Platform is CudaPlatform, or in the tests a platform
+/// that runs on the host. It must have these members:
 ///
 ///   `Device` launches kernels.
-///   `Queue` holds a Device and the stream it queues on. Members: device(), enter(stream), leave(), queued(),
+///   `Queue` owns a Device and the stream on which it queues work. Members: device(), enter(stream), leave(), queued(),
 ///     finished(), wait(), follow(pieces, stream), order(before, after).
 ///   `Choice` makes a device the current one while it is alive.
-///   `static void expect_device(int index)` throws DeviceError, as does the next one.
-///   `static void expect_runnable()` checks the current device.
-///   `static int device_of(const void* memory)` returns -1 for the host's memory.
+///   `static void expect_device(int index)` throws DeviceError if the device does not exist.
+///   `static void expect_runnable()` throws DeviceError if the current device cannot run the module.
+///   `static int device_of(const void* memory)` returns the index of the device that owns memory, -1 for the host's.
 ///   `static void* allocate(std::size_t bytes)`, `static void release(void*)`.
 ///   `static std::string name_of(int index)`, `static std::uint64_t memory_of(int index)`.
-///   `static std::size_t slab_nodes()` is for fields that go to the host's memory.
+///   `static std::size_t slab_nodes()` returns the number of nodes per slab for fields that are copied to the host's
+///     memory.
 template <class Platform>
 class ModuleFunctions {
  public:
@@ -40,7 +41,7 @@ class ModuleFunctions {
   }
 
  private:
-  /// One device, and the data it keeps for a solver.
+  /// One device, its queue, and the data that it keeps for a solver.
   struct Engine {
     explicit Engine(int device_index)
         : index(device_index), fields(queue.device(), Platform::slab_nodes()), images(queue.device()) {}
@@ -51,7 +52,7 @@ class ModuleFunctions {
     kernels::ImageEngine<typename Platform::Device> images;
   };
 
-  /// Lets an engine queue its work on a stream of the caller.
+  /// While alive, makes an engine queue its work on a stream of the caller.
   class Visit {
    public:
     Visit(Engine& engine, void* stream) : engine_(engine) { engine_.queue.enter(stream); }
@@ -90,7 +91,7 @@ class ModuleFunctions {
     }
     return Status::done;
   }
-  /// Runs work with an engine, on its device.
+  /// Runs work(engine), with the engine's device as the current one.
   template <class Work>
   static Status with(void* engine, Call* call, const Work& work) {
     auto& own = *static_cast<Engine*>(engine);

@@ -11,11 +11,11 @@
 
 namespace blum::kernels {
 
-/// Edge that triangles do not run along equally often in both directions.
+/// Boundary edge: an edge that triangles do not traverse equally often in both directions.
 struct BoundaryEdge {
   std::uint32_t from;
   std::uint32_t to;
-  double count;  ///< surplus of triangles that run from `from` to `to`; may be negative
+  double count;  ///< traversals by triangles from `from` to `to`, minus those in the other direction
 };
 
 struct FlagBoundary {
@@ -34,10 +34,10 @@ struct ListBoundary {
   }
 };
 
-/// The two ends of an edge by position, in an order that does not depend on its direction.
+/// Positions of the two ends of an edge, in an order that does not depend on its direction.
 struct EdgePositions {
   Vec3d low, high;
-  bool is_reversed;  ///< `from` is the higher end
+  bool is_reversed;  ///< true if `from` is the higher end
 
   BLUM_HD EdgePositions(const Vec3d* vertices, const BoundaryEdge& edge)
       : low(vertices[edge.from]), high(vertices[edge.to]), is_reversed(is_before(high, low)) {
@@ -70,7 +70,7 @@ struct EdgePositions {
     return std::bit_cast<std::uint64_t>(x);
 #endif
   }
-  /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+  /// Finaliser of SplitMix64 (Steele, Lea, Flood 2014).
   [[nodiscard]] BLUM_HD static std::uint64_t mixed(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15U;
     x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -90,7 +90,8 @@ struct HashEdges {
   }
 };
 
-/// Gives the sum of the counts of edges at one place to the first of them, in the order of their keys.
+/// Adds the counts of all edges with the same end positions to the first of them, in the order of their keys. Edges in
+/// the opposite direction count negatively.
 struct SumCoincident {
   const BoundaryEdge* edges;
   const Vec3d* vertices;
@@ -106,7 +107,7 @@ struct SumCoincident {
     const EdgePositions at(vertices, own);
     if (at.low == at.high) return;
     for (std::size_t before = k; before > 0 && key[before - 1] == key[k];) {
-      if (EdgePositions(vertices, edges[edge[--before]]) == at) return;  // that one has the sum
+      if (EdgePositions(vertices, edges[edge[--before]]) == at) return;  // that edge has the sum
     }
     for (std::size_t next = k + 1; next < count && key[next] == key[k]; ++next) {
       const BoundaryEdge& other = edges[edge[next]];
@@ -131,14 +132,14 @@ struct KeepEdges {
   }
 };
 
-/// Boundary of a mesh. Its edges by index are found once per connectivity. Each frame removes edges that lie upon each
-/// other and cancel, as between triangles that do not share their vertices.
+/// Boundary of a mesh. Boundary edges by vertex index are found once per connectivity. In each frame, edges at the same
+/// position whose counts cancel are removed. Such edges lie between triangles that do not share their vertices.
 template <class Device>
 class Boundary {
  public:
   explicit Boundary(Device& device) : device_(device) {}
 
-  /// Finds the edges by index. Waits for the device.
+  /// Finds the boundary edges by vertex index. Waits for the device.
   void set_connectivity(const ConnectivityView& connectivity) {
     flags_.resize(connectivity.edge_count);
     device_.for_each(connectivity.edge_count, FlagBoundary{connectivity.balance, flags_.data()});
@@ -149,10 +150,10 @@ class Boundary {
     device_.for_each(connectivity.edge_count,
                      ListBoundary{connectivity.edges, connectivity.balance, sums_.data(), edges_.data()});
   }
-  /// Returns the number of edges by index. Without any, winding numbers are whole.
+  /// Returns the number of boundary edges by vertex index. If it is 0, winding numbers are whole.
   [[nodiscard]] std::uint32_t count() const { return count_; }
 
-  /// Removes the edges that cancel, once per frame. Cost: a sort.
+  /// Removes the edges that cancel at these positions, once per frame. Cost: a sort.
   void place(const Vec3d* vertices) {
     key_.resize(count_);
     edge_.resize(count_);
@@ -167,10 +168,10 @@ class Boundary {
     device_.for_each(count_,
                      KeepEdges{sum_.data(), flags_.data(), sums_.data(), count_, kept_.data(), kept_count_.data()});
   }
-  /// Returns the edges of the last place(), in the device's memory.
+  /// Returns the edges that the last place() kept, in the device's memory.
   [[nodiscard]] const BoundaryEdge* kept() const { return kept_.data(); }
   [[nodiscard]] const std::uint32_t* kept_count() const { return kept_count_.data(); }
-  /// Returns their number. Waits for the device.
+  /// Returns the number of kept edges. Waits for the device.
   [[nodiscard]] std::uint32_t download_kept_count() {
     std::uint32_t count = 0;
     device_.download(kept_count_.data(), 1, &count);
@@ -190,7 +191,7 @@ class Boundary {
 
 inline constexpr double pi = 3.141592653589793;
 
-/// Direction u to a vertex as a quotient (y, z) / weight, so that it may be infinite.
+/// Projected direction u to a vertex, as the quotient (y, z) / weight, so that it may be infinite.
 struct ProjectedDirection {
   double weight = 1;
   double y = 0;
@@ -212,43 +213,47 @@ struct ProjectedDirection {
       y = v.y / across * scale;
       z = v.z / across * scale;
     } else if (scale > 0) {
-      // On the ray itself. Crossings are counted for rays that are shifted towards larger y and, by less, larger z.
+      // The vertex lies on the ray itself. It is treated as if the ray were shifted towards larger y and, by less,
+      // larger z, as for crossings.
       weight = 0;
       y = -scale;
     }
   }
 };
 
-/// Terms that the edges of the boundary add to the winding number at a node, with bounds on their gradient.
+/// Terms of the boundary edges in the winding number of a node, and bounds on their gradients. The winding number is
+/// the sum of the crossings of the node's ray to -x and these terms. A term jumps at its strip: the edge swept along
+/// +x.
 class BoundaryTerms {
  public:
   BoundaryTerms() = default;
   /// @param edges, count  in the device's memory.
-  /// @param places        positions of the vertices, in units of nodes.
+  /// @param places        positions of the vertices, in node units.
   BoundaryTerms(const BoundaryEdge* edges, const std::uint32_t* count, const Vec3d* places, const Vec3d& spacing,
                 bool is_mirrored)
       : edges_(edges), count_(count), places_(places), spacing_(spacing), is_mirrored_(is_mirrored) {}
 
   [[nodiscard]] BLUM_HD std::uint32_t count() const { return *count_; }
 
-  /// Returns the term of an edge at a node.
-  /// @param node  in units of nodes: whole numbers.
+  /// Returns an edge's term at a node.
+  /// @param node  in node units: integers.
   [[nodiscard]] BLUM_HD double term(std::uint32_t index, const Vec3d& node) const {
     const BoundaryEdge edge = edges_[index];
     const double winding = edge.count * angle(places_[edge.from], places_[edge.to], node) * (0.5 / pi);
     return is_mirrored_ ? -winding : winding;
   }
 
-  /// Returns a bound on the gradient of the term within a distance of a node, along paths that cross no strip. It is
-  /// infinite if the edge may be that close. The winding number's gradient is the Biot-Savart field of the boundary.
-  /// @param reach  that distance, mesh units.
+  /// Returns a bound on the gradient of an edge's term at all points within a distance of a node, apart from jumps at
+  /// strips. It is infinite if the edge may be that close. The winding number's gradient is the Biot-Savart field of
+  /// the boundary.
+  /// @param reach  the distance, mesh units.
   [[nodiscard]] BLUM_HD double gradient_bound(std::uint32_t index, const Vec3d& node, double reach) const {
     const BoundaryEdge edge = edges_[index];
     const Vec3d a = scaled(places_[edge.from] - node);
     const Vec3d along = scaled(places_[edge.to] - node) - a;
     const double squared = squared_length(along);
     const double t = squared > 0 ? clamped(-dot(a, along) / squared, 0.0, 1.0) : 0.0;
-    // Rounding of places and of this sum stays far below a hundredth of a percent of the distance and the edge.
+    // The factors cover rounding of places and of this sum, which is far below 0.01 % of the distance and of the edge.
     const double gap = 0.9999 * norm(a + along * t) - 1e-9 * root(squared) - reach;
     if (!(gap > 0)) return HUGE_VAL;
     return magnitude(edge.count) * root(squared) / (4 * pi * gap * gap);
@@ -259,12 +264,12 @@ class BoundaryTerms {
     return {v.x * spacing_.x, v.y * spacing_.y, v.z * spacing_.z};
   }
 
-  /// Returns the angle by which the edge turns to the left around the ray of a node, seen from +x (y to the right, z
-  /// up).
+  /// Returns the angle by which the edge turns to the left around the ray of a node. The ray is viewed from +x, with y
+  /// to the right and z up.
   ///
-  /// Edges that share a vertex use the same rounded direction to it. So the sum of their angles is right except for
-  /// whole turns, however close the ray comes to the vertex. The crossings decide which whole turn is due. They use the
-  /// comparison that finds the rows that cross a triangle with this edge, not the sign of a rounded angle.
+  /// Edges that share a vertex use the same rounded direction to it. So the sum of their angles is correct up to whole
+  /// turns, even if the ray passes very close to the vertex. The whole turn is chosen by the comparison that decides
+  /// which rows cross a triangle with this edge. The sign of a rounded angle would not be reliable.
   [[nodiscard]] BLUM_HD double angle(const Vec3d& from, const Vec3d& to, const Vec3d& node) const {
     const Vec3d a = from - node;
     const Vec3d b = to - node;
@@ -280,9 +285,9 @@ class BoundaryTerms {
       return (b.y > a.y) != is_a_above ? magnitude(angle) : -magnitude(angle);
     }
     const SlicePoint cut = is_b_above ? edge_point(from, to, node.z) : edge_point(to, from, node.z);
-    if (!(cut.x < node.x)) return angle;  // no strip here
+    if (!(cut.x < node.x)) return angle;  // the node is not behind the edge, so there is no jump
     const bool is_left = (cut.y <= node.y) != is_b_above;
-    // The sign of `turned` is that of the angle, which may underflow.
+    // The angle may underflow, so its sign is taken from `turned`.
     const bool is_contradicted = turned != 0 ? is_left != (turned > 0) : real < 0 && is_left != (angle > 0);
     if (!is_contradicted) return angle;
     return angle + (is_left ? 2 * pi : -2 * pi);
@@ -295,20 +300,22 @@ class BoundaryTerms {
   bool is_mirrored_ = false;
 };
 
-/// Negates the distances of nodes whose winding number is above level + 1/2. One block computes a tile of 8^3 nodes.
+/// Negates the distances of nodes whose winding number is above level + 1/2. One thread block processes a tile of 8^3
+/// nodes.
 ///
-/// In a tile without triangles, winding numbers differ by less than the bound on their gradient allows. Most of these
-/// tiles evaluate one node. In other tiles each row evaluates one node, because the winding number changes along it by
-/// the counted crossings and at most that bound. Nodes too close to call are evaluated themselves.
+/// In a tile without triangles, winding numbers differ by at most the bound on their gradient times the distance. Most
+/// of these tiles evaluate one node. In other tiles one node per row is evaluated. Along the row the winding number
+/// changes by the counted crossings, and otherwise by at most this bound. If that does not decide a node, the node is
+/// evaluated separately.
 ///
-/// Cost: tiles, and rows of tiles with triangles, times edges of the boundary. If the boundary is all over, as in
-/// soups: nodes times edges.
+/// Cost: (number of tiles, plus rows of tiles with triangles) times the number of boundary edges. If the boundary is
+/// everywhere, as in soups: nodes times boundary edges.
 struct SignTiles {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 2;
   static constexpr std::uint32_t warps = threads / warp_size;
   static constexpr std::int32_t side = 8;
-  /// Bound on the rounding of a winding number, far above the real error.
+  /// Bound on the rounding error of a winding number, far above the real error.
   static constexpr double slack = 1e-9;
 
   struct Sum {
@@ -332,13 +339,13 @@ struct SignTiles {
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
     using Warp = typename Block::Warp;
-    if (frame->fault != NormalFrame::Fault::none) return;  // no distances exist
+    if (frame->fault != NormalFrame::Fault::none) return;  // a faulty frame has no distances
     const NodeBox nodes = tiles.box(static_cast<std::uint32_t>(index));
     const GridIndex middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
                             nodes.first[2] + nodes.count[2] / 2}};
     const double reach = norm(
         Vec3d{spacing.x * (nodes.count[0] / 2), spacing.y * (nodes.count[1] / 2), spacing.z * (nodes.count[2] / 2)});
-    // Distances are accurate to 1e-6 of the diagonal, which is at most 1 in normalised units.
+    // The slack covers the errors of distances: 1e-6 of the diagonal, which is at most 1 in normalised units.
     const bool may_be_crossed = !(static_cast<double>(distance[offset(middle)]) > reach + 4e-6 / frame->scale);
     block.each_warp([&](const Warp& warp) {
       Sum sum;
@@ -385,7 +392,7 @@ struct SignTiles {
     return static_cast<double>(crossings[offset(p)] - level) - 0.5 + of_boundary;
   }
 
-  /// Sums the terms of edges first, first + step, and so on. Each lane takes its share.
+  /// Sums the terms of the edges with indices first, first + step, and so on. The edges are divided among the lanes.
   template <class Warp>
   [[nodiscard]] BLUM_HD Sum sum_over_edges(const Warp& warp, const GridIndex& place, double reach, std::uint32_t first,
                                            std::uint32_t step) const {
@@ -426,7 +433,7 @@ struct SignTiles {
       const auto x = static_cast<std::int32_t>(lane);
       if (x >= count) return false;
       const double above = winding_above(moved(first, x), sum.winding);
-      // A row of one node has nothing to bound.
+      // In a row of one node, reach is 0 and the gradient may be infinite, so the product is not used.
       if (magnitude(above) <= (reach > 0 ? sum.gradient * reach : 0.0) + slack) return true;
       if (above > 0) negate(moved(first, x));
       return false;

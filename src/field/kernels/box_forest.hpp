@@ -12,10 +12,10 @@ namespace blum::kernels {
 enum Kind : std::uint8_t { vertex_kind, edge_kind, face_kind };
 inline constexpr std::uint32_t kind_count = 3;
 
-/// Box in the normalised frame, rounded outwards. An empty box lies far away.
+/// Box in the normalised frame, rounded outwards. An empty box is placed far away.
 struct alignas(32) ReachBox {
   Vec3f lower{far_away, far_away, far_away};
-  float reach = 0;  ///< the content of the box affects nothing further away than this
+  float reach = 0;  ///< sites in the box cannot be closest to any point further away than this
   Vec3f upper{far_away, far_away, far_away};
   float unused = 0;
 
@@ -28,7 +28,7 @@ struct alignas(32) ReachBox {
   [[nodiscard]] BLUM_HD bool is_empty() const { return lower.x >= far_away; }
 };
 
-/// Makes the boxes around warp_size consecutive boxes each.
+/// Computes the bounding box of each warp_size consecutive boxes.
 struct BoundBoxes {
   const ReachBox* children;
   std::size_t child_count;
@@ -49,14 +49,14 @@ struct BoundBoxes {
   }
 };
 
-/// Records of one kind, and a tree above them. Boxes of level 0 bound clusters of warp_size records. Boxes of level l +
-/// 1 bound warp_size boxes of level l. The last level has at most warp_size boxes.
+/// Tree above records of one kind. Each box of level 0 bounds a cluster of warp_size records. Each box of level l + 1
+/// bounds warp_size boxes of level l. The last level has at most warp_size boxes.
 struct Tree {
   static constexpr std::uint32_t most_levels = 7;
 
   const Record* records = nullptr;
   std::uint32_t record_count = 0;
-  std::uint32_t levels = 0;  ///< 0 without records
+  std::uint32_t levels = 0;  ///< 0 if there are no records
   std::array<const ReachBox*, most_levels> boxes{};
   std::array<std::uint32_t, most_levels> box_count{};
 };
@@ -65,8 +65,8 @@ struct Forest {
   std::array<Tree, kind_count> trees;
 };
 
-/// Part of a tree that is still to be searched: a cluster of records, or a box with its children. A root stands above
-/// the boxes of the last level.
+/// Entry of a search: a cluster of records, or a box whose children are still to be searched. The root is the parent of
+/// all boxes of the last level.
 struct Entry {
   std::uint32_t code;
 
@@ -77,7 +77,7 @@ struct Entry {
     return {(kind << (level_bits + index_bits)) | (level << index_bits) | index};
   }
   [[nodiscard]] BLUM_HD constexpr std::uint32_t kind() const { return code >> (level_bits + index_bits); }
-  /// Returns 0 for a cluster of records. At a level l > 0, the children are boxes of level l - 1.
+  /// Returns 0 for a cluster of records. For a result l > 0, the children are boxes of level l - 1.
   [[nodiscard]] BLUM_HD constexpr std::uint32_t level() const {
     return (code >> index_bits) & ((1U << level_bits) - 1U);
   }
@@ -91,7 +91,7 @@ struct RecordSet {
   std::array<typename Device::template Array<ReachBox>, Tree::most_levels> boxes;
 };
 
-/// Builds the tree above records whose boxes are known. Cost: O(records).
+/// Builds the tree above records. Their boxes must be set. Cost: O(records).
 template <class Device>
 Tree build_tree(Device& device, RecordSet<Device>& set) {
   Tree tree;

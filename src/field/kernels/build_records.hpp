@@ -15,7 +15,7 @@
 
 namespace blum::kernels {
 
-/// Computes the normalised positions of the named vertices, and their places on the curve.
+/// Computes the normalised positions of the vertices in use, and their Morton codes.
 struct PlaceVertices {
   const NormalFrame* frame;
   const Vec3d* vertices;
@@ -33,7 +33,7 @@ struct PlaceVertices {
   }
 };
 
-/// Stores the rank of each vertex on the curve, and the surface's vertices in that order.
+/// Stores each vertex's index along the curve, and the vertex positions in that order.
 struct RankVertices {
   const std::uint32_t* vertex;
   const Vec3d* positions;
@@ -46,7 +46,7 @@ struct RankVertices {
   }
 };
 
-/// Keys that order edges, and below faces, by their first vertex on the curve.
+/// Computes keys that sort edges by their first vertex on the curve. FaceKeys does this for faces.
 struct EdgeKeys {
   const Segment* edges;
   const std::uint32_t* rank;
@@ -71,20 +71,20 @@ struct FaceKeys {
   }
 };
 
-/// Spatially coherent orders of the sites. Ties keep the sites' own order.
+/// Orders of the sites in which sites that lie close together follow each other. Ties are sorted by site id.
 template <class Device>
 struct SiteOrder {
   template <class T>
   using Array = typename Device::template Array<T>;
 
   Array<std::uint32_t> vertices, edges, faces;
-  Array<std::uint32_t> rank;    ///< place of each named vertex in `vertices`
-  Array<Vec3d> positions;       ///< normalised positions of named vertices
-  Array<Vec3f> surface_points;  ///< positions of `vertices`, in their order
+  Array<std::uint32_t> rank;    ///< index of each vertex in use in `vertices`
+  Array<Vec3d> positions;       ///< normalised positions of the vertices in use
+  Array<Vec3f> surface_points;  ///< positions of `vertices`, in the same order
   Array<std::uint32_t> key;     ///< scratch
 };
 
-/// Orders the sites. Cost: a radix sort of the sites of each kind.
+/// Computes the orders. Cost: a radix sort for each kind of site.
 template <class Device>
 void order_sites(Device& device, const DeviceMesh& mesh, const ConnectivityView& connectivity, const NormalFrame* frame,
                  SiteOrder<Device>& out) {
@@ -112,17 +112,17 @@ void order_sites(Device& device, const DeviceMesh& mesh, const ConnectivityView&
   device.sort_pairs(out.key, out.faces, rank_bits);
 }
 
-/// Finds how far a Voronoi region can extend from its site. Let p be the corners of the site, and w the directions of
-/// its domain. Beyond this rho a surface point y is closer:
+/// Finds an upper bound on the distance from a site at which it can be closest. Let p be the corners of the site, and w
+/// the directions of its domain. Then a surface point y is closer beyond the distance rho:
 ///   rho = max over p of |y - p|^2 / (2 min over p, w of w . (y - p)).
-/// The reason: |y - (p + r w)|^2 < r^2 is linear in r, p varies over a convex set, and w over a cone. The search takes
-/// the smallest rho over some dozens of vertices near `rank` on the Morton curve.
+/// The reason: for a point p + r w of the domain, |y - (p + r w)|^2 < r^2 is linear in r. Here p varies over a convex
+/// set, and w over a cone. The search takes the smallest rho over a few dozen vertices near `rank` on the Morton curve.
 struct ReachSearch {
   const Vec3f* points;
   std::uint32_t count;
 
-  /// Returns that bound for one site.
-  /// @param directions  unit vectors: the domain lies between the two of them, or along the only one.
+  /// Returns this bound for one site.
+  /// @param directions  one or two unit vectors: the domain's only direction, or the two that bound it.
   BLUM_HD float reach(const Vec3f* corners, int corner_count, const Vec3f* directions, int direction_count,
                       std::uint32_t rank) const {
     float best = far_away;
@@ -154,19 +154,21 @@ struct ReachSearch {
   }
 };
 
-/// Input of the builders of all kinds.
+/// Input of the kernels that build records.
 struct RecordSource {
   DeviceMesh mesh;
   ConnectivityView connectivity;
   const Vec3d* positions;
   const std::uint32_t* rank;
   ReachSearch reach;
-  Vec3d* face_normals;  ///< written by faces, read by edges; zero for triangles too flat for a normal
+  /// Written by the kernel of faces, read by that of edges; zero for triangles too flat for a reliable normal.
+  Vec3d* face_normals;
 
   [[nodiscard]] BLUM_HD std::uint32_t first_face() const { return mesh.vertex_count + connectivity.edge_count; }
 };
 
-/// Builds the records of faces. Sites that can own no node keep their place, as dead records in empty boxes.
+/// Builds the records of faces. A site that cannot be closest to any node keeps its position, as a dead record in an
+/// empty box.
 struct BuildFaces {
   RecordSource source;
   const std::uint32_t* order;
@@ -326,7 +328,7 @@ Forest build_records(Device& device, const DeviceMesh& mesh, const ConnectivityV
     device.for_each(sites.size(), Body{source, sites.data(), set.records.data(), set.site_boxes.data()});
     forest.trees[kind] = build_tree(device, set);
   };
-  // Faces come first, because edges read the normals that faces write.
+  // Faces are built first, because edges read the normals that faces write.
   build(face_kind, order.faces, BuildFaces{});
   build(edge_kind, order.edges, BuildEdges{});
   build(vertex_kind, order.vertices, BuildVertices{});

@@ -14,12 +14,12 @@
 
 namespace blum::kernels {
 
-/// Closest site of a node so far.
+/// Closest site of a node found so far.
 struct Winner {
   float squared = std::numeric_limits<float>::max();
   std::uint32_t id = dead_record;
 
-  /// Offers a site. Equal distances go to the smaller id, so that the order of the offers does not matter.
+  /// Offers a site. Among equally close sites the smaller id wins, so the order of offers does not matter.
   BLUM_HD void offer(float candidate, std::uint32_t candidate_id) {
     if (candidate < squared || (candidate == squared && candidate_id < id)) {
       squared = candidate;
@@ -43,7 +43,8 @@ BLUM_HD inline void offer_edge(const Record& record, const Vec3f& node, Winner& 
   const Vec3f b = vec_at(record, EdgeColumns::binormal);
   const float across_b = dot(to, b);
   const float across_n = dot(to, cross(t, b));
-  // Beyond its ends the edge is as far as its end. The excess keeps the distance exact within the slack.
+  // Beyond an end, the distance from the edge is that from the end. The term with `excess` keeps the distance exact
+  // also within the slack beyond the ends.
   const float excess = magnitude(dot(to, t)) - value_at(record, EdgeColumns::half_length);
   const float second =
       value_at(record, EdgeColumns::second_b) * across_b + value_at(record, EdgeColumns::second_n) * across_n;
@@ -66,7 +67,7 @@ BLUM_HD inline void offer_face(const Record& record, const Vec3f& node, Winner& 
   winner.offer(height * height, record.id);
 }
 
-/// Offers a site to a node; the site takes the node if the node lies in its domain.
+/// Offers a site to a node. The site wins if the node lies in its domain and the site is closer than the one so far.
 BLUM_HD inline void offer_site(std::uint32_t kind, const Record& record, const Vec3f& node, Winner& winner) {
   if (kind == vertex_kind) {
     offer_vertex(record, node, winner);
@@ -79,7 +80,8 @@ BLUM_HD inline void offer_site(std::uint32_t kind, const Record& record, const V
   }
 }
 
-/// Record in shared memory. Records are 80 bytes apart, so that the lanes of a warp read from different banks.
+/// Record in shared memory. Records are stored 80 bytes apart, so that the lanes of a warp read from different memory
+/// banks.
 struct alignas(16) PackedRecord {
   float column[15];
   std::uint32_t id;
@@ -97,23 +99,25 @@ struct alignas(16) PackedRecord {
   }
 };
 
-/// Computes a field, with one block per tile of 8^3 nodes. The block's warps search the trees for sites that can matter
-/// to the tile, from a shared stack, and collect their records. Then each warp takes one leaf of 4^3 nodes, drops
-/// records that cannot matter to it, and evaluates the rest at two nodes per lane.
+/// Computes a field, with one thread block per tile of 8^3 nodes. The block's warps search the trees for sites that may
+/// be closest to a node of the tile, and collect their records. They share one stack of entries. Then each warp
+/// processes one leaf of 4^3 nodes. It drops records that cannot be closest in the leaf, and evaluates the others at
+/// two nodes per lane.
 ///
-/// If more sites matter than there is room for, the collected ones are evaluated before the search goes on. So no list
-/// can overflow. A field does not depend on the order in which sites are met.
+/// If the list of records is full, its records are evaluated before the search continues. So no list can overflow. The
+/// result does not depend on the order in which sites are found.
 struct ComputeTiles {
   static constexpr std::uint32_t threads = 256;
-  static constexpr std::uint32_t blocks_per_processor = 3;  ///< at least this many, by registers
+  static constexpr std::uint32_t blocks_per_processor = 3;  ///< registers are limited so that at least this many fit
   static constexpr std::uint32_t warps = threads / warp_size;
   static constexpr std::int32_t side = 8;
   static constexpr std::int32_t leaf_side = 4;
   static constexpr std::uint32_t list_capacity = 512;
   static constexpr std::uint32_t stack_capacity = 1024;
-  /// Largest number of entries that taking one entry at a time can add to the stack, all the way down a tree.
+  /// Upper bound on the entries that the stack gains while one entry and all of its descendants are processed one by
+  /// one.
   static constexpr std::uint32_t stack_reserve = (warp_size - 1) * (Tree::most_levels + 1);
-  /// With fewer sites, evaluating them costs less than finding the surface point that would beat some of them.
+  /// With fewer records, it is cheaper to evaluate all of them than to find a surface point that excludes some.
   static constexpr std::uint32_t fewest_worth_dominating = 24;
   static_assert(warps * warp_size <= list_capacity && stack_reserve + warps * warp_size <= stack_capacity);
 
@@ -124,7 +128,7 @@ struct ComputeTiles {
     std::uint32_t taken_count;
     std::uint32_t list_count;
     std::uint32_t kind_count_of[kind_count];
-    std::uint16_t place[kind_count][list_capacity];  ///< per kind: places of its records in `list`
+    std::uint16_t place[kind_count][list_capacity];  ///< per kind: indices of its records in `list`
     SurfacePoint leaf_point[warps];
     CenteredBox box;  ///< of the tile, widened
     TileTest test;
@@ -141,7 +145,7 @@ struct ComputeTiles {
   const NormalFrame* frame;
   TileGrid tiles;
   const SurfacePoint* tile_points;
-  FieldRequest request;  ///< with the memory of the slab's nodes
+  FieldRequest request;  ///< its memory is that of the slab's nodes
 
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
@@ -149,13 +153,13 @@ struct ComputeTiles {
   }
 
  private:
-  /// Two nodes of a leaf that one lane computes, and their closest sites so far.
+  /// Two nodes of a leaf that one lane computes, and their closest sites found so far.
   struct LaneNodes {
     Vec3f node[2];
     Winner winner[2];
   };
 
-  /// Work of one block.
+  /// State and work of one thread block.
   template <class Block>
   class Run {
     using Warp = typename Block::Warp;
@@ -205,8 +209,8 @@ struct ComputeTiles {
       return distance - norm(box_.half) * 1.0001F - box_slack > static_cast<float>(job_.request.band * scale());
     }
 
-    /// Returns the surface points of this tile and of the tiles next to it. They are the best at beating sites beyond
-    /// them.
+    /// Returns surface points near this tile and its neighbours. Sites that are further away than these points
+    /// everywhere in the tile can be dropped.
     [[nodiscard]] BLUM_HD Dominators tile_dominators() const {
       Dominators out;
       out.point[0] = nearest_.point;
@@ -258,8 +262,8 @@ struct ComputeTiles {
       });
     }
 
-    /// Takes entries off the stack: one for each warp if the stack has room for the entries that they may add. Returns
-    /// false if the stack is empty.
+    /// Takes entries from the stack: one for each warp if the stack has room for all entries that they may add,
+    /// otherwise fewer. Returns false if the stack is empty.
     BLUM_HD bool take() {
       const std::uint32_t top = block_.read(shared_.top);
       const std::uint32_t room = stack_capacity - stack_reserve;
@@ -273,7 +277,7 @@ struct ComputeTiles {
       return count > 0;
     }
 
-    /// Puts the children of a box that can matter to the tile on the stack.
+    /// Pushes those children of a box onto the stack that may contain a closest site of the tile's nodes.
     BLUM_HD void descend(const Warp& warp, const Entry& entry) {
       const Tree& tree = job_.forest.trees[entry.kind()];
       const std::uint32_t level = entry.level() - 1;
@@ -289,7 +293,7 @@ struct ComputeTiles {
       });
     }
 
-    /// Lists the records of a cluster that can matter to the tile.
+    /// Lists the records of a cluster that may be closest somewhere in the tile.
     BLUM_HD void collect(const Warp& warp, const Entry& entry) {
       const std::uint32_t kind = entry.kind();
       const Tree& tree = job_.forest.trees[kind];
@@ -311,7 +315,7 @@ struct ComputeTiles {
       });
     }
 
-    /// Evaluates the listed sites and empties the list.
+    /// Evaluates the listed records and empties the list.
     BLUM_HD void evaluate() {
       if (block_.read(shared_.list_count) >= fewest_worth_dominating) {
         block_.each_warp([&](const Warp& warp) { find_leaf_point(warp); });
@@ -323,7 +327,7 @@ struct ComputeTiles {
       });
     }
 
-    /// Looks among the listed sites for a surface point closer to the leaf's centre.
+    /// Searches the listed records for a surface point closer to the leaf's centre than the one so far.
     BLUM_HD void find_leaf_point(const Warp& warp) {
       const NodeBox leaf = leaf_box(warp.index());
       if (leaf.is_empty()) return;
@@ -389,7 +393,8 @@ struct ComputeTiles {
       }
     }
 
-    /// Settles nodes that rounding left between the domains of all sites: each gets the closest of the closed sites.
+    /// Settles nodes that lie in no site's domain because of rounding: each gets the closest of all sites, borders
+    /// included.
     BLUM_HD void settle(const Warp& warp, const NodeBox& leaf) {
       for (std::uint32_t k = 0; k < 2; ++k) {
         std::uint32_t open = warp.ballot([&](std::uint32_t lane) {
@@ -408,7 +413,7 @@ struct ComputeTiles {
       }
     }
 
-    /// Not inlined: it is rare, and must not cost the other code registers.
+    /// Not inlined: the code is rarely used, and must not increase the registers of other code.
     BLUM_HD BLUM_NOINLINE static SurfacePoint search(const Warp& warp, const Forest& forest, const Vec3f& query,
                                                      SurfacePoint best, SearchStack& stack) {
       best.squared_distance = squared_length(query - best.point);
@@ -416,7 +421,8 @@ struct ComputeTiles {
       return best;
     }
 
-    /// Returns the k-th node of a lane. Lanes differ in x, y and z; the two nodes of a lane differ by two in z.
+    /// Returns the k-th node of a lane. Nodes are distributed over the lanes; the two nodes of one lane differ by two
+    /// in z.
     [[nodiscard]] BLUM_HD static GridIndex place_in(const NodeBox& leaf, std::uint32_t lane, std::uint32_t k) {
       return {{leaf.first[0] + static_cast<std::int32_t>(lane % 4),
                leaf.first[1] + static_cast<std::int32_t>(lane / 4 % 4),
@@ -430,7 +436,7 @@ struct ComputeTiles {
     [[nodiscard]] BLUM_HD float coordinate(int axis, const GridIndex& place) const {
       return static_cast<float>(job_.frame->at(axis, static_cast<double>(place.at[axis])));
     }
-    /// Returns the index of a node in the output.
+    /// Returns the index of a node in the request's memory.
     [[nodiscard]] BLUM_HD std::size_t offset(const GridIndex& place) const {
       const auto slice = static_cast<std::size_t>(place.at[2] - job_.tiles.first_slice);
       const auto row = slice * static_cast<std::size_t>(job_.tiles.size[1]) + static_cast<std::size_t>(place.at[1]);
@@ -459,7 +465,7 @@ struct ComputeTiles {
       });
     }
 
-    /// Gives all nodes one distance and no site.
+    /// Gives all nodes of the tile this distance and no site.
     BLUM_HD void fill(float distance) {
       block_.each_warp([&](const Warp& warp) {
         warp.each([&](std::uint32_t lane) {
@@ -479,7 +485,7 @@ struct ComputeTiles {
     Shared& shared_;
     std::uint32_t tile_;
     NodeBox nodes_;
-    CenteredBox box_;  ///< widened
+    CenteredBox box_;  ///< widened by box_slack
     SurfacePoint nearest_;
     typename Block::template PerThread<LaneNodes> lanes_;
   };

@@ -24,12 +24,13 @@ struct DeviceMesh {
   std::uint32_t segment_count = 0;
   std::uint32_t point_count = 0;
 
-  /// Returns the number of borders: three per triangle, then one per segment.
+  /// Returns the number of borders: three sides per triangle, and one border per segment.
   [[nodiscard]] std::size_t border_count() const { return std::size_t{3} * triangle_count + segment_count; }
   [[nodiscard]] std::size_t corner_count() const {
     return std::size_t{3} * triangle_count + std::size_t{2} * segment_count + point_count;
   }
-  /// Returns the k-th vertex that the mesh names. A vertex appears as often as the mesh names it.
+  /// Returns the k-th entry of the list of all corners. A vertex occurs once for each triangle corner, segment end or
+  /// point that uses it.
   [[nodiscard]] BLUM_HD std::uint32_t corner(std::size_t k) const {
     const std::size_t of_triangles = std::size_t{3} * triangle_count;
     if (k < of_triangles) return triangles[k / 3][k % 3];
@@ -39,22 +40,22 @@ struct DeviceMesh {
   }
 };
 
-/// Connectivity of a mesh. It depends on the mesh's indices alone, so a deforming mesh keeps it. Edges are numbered as
-/// SiteTable numbers them.
+/// Connectivity of a mesh. It depends only on the mesh's indices, so it stays valid while the mesh deforms. Edges have
+/// the same numbers as in SiteTable.
 struct ConnectivityView {
   const Segment* edges = nullptr;  ///< smaller vertex first, sorted
-  /// Up to two triangles of each edge; no_index if there are fewer.
+  /// Two triangles of each edge, further ones are left out. no_index fills missing entries.
   const std::array<std::uint32_t, 2>* edge_faces = nullptr;
   const std::uint32_t* named_vertices = nullptr;  ///< ascending
   const std::uint32_t* first_neighbour = nullptr;
-  const std::uint32_t* neighbours = nullptr;  ///< those of v: [first_neighbour[v], first_neighbour[v + 1]).
-  /// Per edge: how many more triangles run from its smaller to its larger vertex than back.
+  const std::uint32_t* neighbours = nullptr;  ///< neighbours of vertex v: [first_neighbour[v], first_neighbour[v + 1]).
+  /// For each edge: traversals by triangles from its smaller to its larger vertex, minus those in the other direction.
   const std::int32_t* balance = nullptr;
   std::uint32_t edge_count = 0;
   std::uint32_t named_count = 0;
 };
 
-/// Marks the named vertices.
+/// Marks the vertices in use.
 struct MarkNamed {
   DeviceMesh mesh;
   std::uint32_t* is_named;
@@ -70,8 +71,8 @@ struct ListNamed {
   }
 };
 
-/// Computes the key of each side of each triangle, and of each segment: both ends, the smaller one first. Sides without
-/// two ends come last.
+/// Computes a key for each side of each triangle, and for each segment. It consists of both ends, the smaller one
+/// first. Sides whose ends are equal are sorted to the end.
 struct BorderKeys {
   DeviceMesh mesh;
   int vertex_bits;
@@ -137,7 +138,7 @@ struct WriteEdges {
   }
 };
 
-/// Lists both ends of each edge, to be sorted by the first.
+/// Lists the pair (end, other end) for both ends of each edge. The pairs are sorted later.
 struct NeighbourPairs {
   const Segment* edges;
   std::uint32_t* key;
@@ -148,7 +149,7 @@ struct NeighbourPairs {
   }
 };
 
-/// Finds the start of the pairs of each vertex.
+/// Finds the index of the first pair of each vertex.
 struct FirstNeighbour {
   const std::uint32_t* key;
   std::uint32_t count;
@@ -181,7 +182,7 @@ struct Connectivity {
   Array<std::int32_t> balance;
   std::uint32_t edge_count = 0;
   std::uint32_t named_count = 0;
-  /// Scratch memory, kept so that the next mesh allocates nothing.
+  /// Scratch memory. It is kept so that the next mesh allocates nothing.
   struct Scratch {
     Array<std::uint32_t> flags, sums, border;
     Array<std::uint64_t> key;
@@ -200,7 +201,7 @@ struct Connectivity {
   }
 };
 
-/// Returns the sum of flags, from their exclusive sums. Waits for the device.
+/// Returns the sum of all flags, from the flags and their exclusive sums. Waits for the device.
 template <class Device>
 std::uint32_t total_of(Device& device, const typename Device::template Array<std::uint32_t>& flags,
                        const typename Device::template Array<std::uint32_t>& sums) {
@@ -211,7 +212,7 @@ std::uint32_t total_of(Device& device, const typename Device::template Array<std
   return last[0] + last[1];
 }
 
-/// Builds the connectivity of a mesh. Cost: a sort of all sides of triangles, and one of all ends of edges.
+/// Builds the connectivity of a mesh. Cost: two sorts, of all borders and of both ends of all edges.
 template <class Device>
 void build_connectivity(Device& device, const DeviceMesh& mesh, Connectivity<Device>& out) {
   auto& [flags, sums, border, key] = out.scratch;

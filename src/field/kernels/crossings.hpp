@@ -10,8 +10,8 @@
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/row_crossings.hpp"
 
-// The same exact counting as SignScan (field/sign/scan.hpp). Crossings are not sorted, but added up at the nodes behind
-// them. They are whole numbers, so that the order does not matter.
+// Counts exactly the same crossings as SignScan (field/sign/scan.hpp). Crossings are not sorted, but added to the nodes
+// behind them. The counts are integers, so the order of additions does not matter.
 namespace blum::kernels {
 
 template <class T>
@@ -23,7 +23,7 @@ BLUM_HD void add_atomically(T& sum, T value) {
 #endif
 }
 
-/// Adds one to a counter and returns its value before.
+/// Adds one to a counter and returns its previous value.
 BLUM_HD inline std::uint32_t take_number(std::uint32_t& counter) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(&counter, 1U);
@@ -32,7 +32,7 @@ BLUM_HD inline std::uint32_t take_number(std::uint32_t& counter) {
 #endif
 }
 
-/// Places each vertex once, so that all its triangles use the same numbers.
+/// Converts each vertex to node units once, so that all its triangles use the same numbers.
 struct PlaceInNodes {
   NodeUnits units;
   const Vec3d* vertices;
@@ -40,15 +40,16 @@ struct PlaceInNodes {
   BLUM_HD void operator()(std::size_t v) const { places[v] = units.position(vertices[v]); }
 };
 
-/// Counts crossings of triangles with rows.
+/// Counts crossings of triangles with rows (lines of nodes along x).
 struct CrossingCount {
   const Triangle* triangles;
-  const Vec3d* places;  ///< positions of the vertices, in nodes
+  const Vec3d* places;  ///< positions of the vertices, in node units
   bool is_mirrored;
   std::int32_t size[3];
   std::int32_t first_slice;
   std::int32_t last_slice;
-  std::int32_t* change;  ///< of the winding number at each node of the slab; to be added up along rows
+  /// Per node of the slab: change of the winding number along the row; to be summed along the row.
+  std::int32_t* change;
 
   [[nodiscard]] BLUM_HD PlacedTriangle placed(std::uint32_t t) const {
     return {places[triangles[t][0]], places[triangles[t][1]], places[triangles[t][2]]};
@@ -95,7 +96,8 @@ struct CrossTriangles {
   }
 };
 
-/// Counts the crossings of large triangles. Blocks share out the triangles, warps their slices, and lanes the rows.
+/// Counts the crossings of large triangles. Triangles are divided among blocks, slices of a triangle among warps, and
+/// rows of a slice among lanes.
 struct CrossLargeTriangles {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 2;
@@ -129,7 +131,7 @@ struct CrossLargeTriangles {
   }
 };
 
-/// Adds up the changes by crossings along a row. Calls visit(node, sum) for each node.
+/// Sums the changes along a row. Calls visit(node, sum) for each node.
 template <class Warp, class Visit>
 BLUM_HD void add_up_row(const Warp& warp, const std::int32_t* change, std::int32_t width, const Visit& visit) {
   std::int32_t before = 0;
@@ -148,7 +150,7 @@ BLUM_HD void add_up_row(const Warp& warp, const std::int32_t* change, std::int32
   }
 }
 
-/// Common part of the kernels below: one warp per row.
+/// Common part of the kernels that process one row per warp.
 struct RowsOfWarps {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 4;
@@ -156,7 +158,7 @@ struct RowsOfWarps {
   struct Shared {};
 };
 
-/// Replaces the changes by crossings by their sums along each row.
+/// Replaces the changes by their sums along each row.
 struct SumCrossings : RowsOfWarps {
   std::int32_t* change;
   std::size_t rows;
@@ -195,7 +197,8 @@ struct ApplyWinding : RowsOfWarps {
   }
 };
 
-/// Signs of slabs by winding numbers: counted crossings and, for meshes with a boundary, the terms of its edges.
+/// Finds the signs of slabs by winding numbers. They are sums of counted crossings and, for meshes with a boundary, the
+/// terms of its edges.
 template <class Device>
 class CrossingSigns {
  public:
@@ -203,10 +206,10 @@ class CrossingSigns {
 
   /// Finds the boundary, once per connectivity. Waits for the device.
   void set_connectivity(const ConnectivityView& connectivity) { boundary_.set_connectivity(connectivity); }
-  /// Returns the number of boundary edges by index. Without any, winding numbers are whole.
+  /// Returns the number of boundary edges by vertex index. If it is 0, winding numbers are whole.
   [[nodiscard]] std::uint32_t boundary_count() const { return boundary_.count(); }
-  /// Returns the number of boundary edges of the last frame that others at the same place do not cancel. The mesh must
-  /// have boundary edges by index. Waits for the device.
+  /// Returns the number of boundary edges that are left in the last frame, after edges at the same position cancelled.
+  /// The mesh must have boundary edges by vertex index. Waits for the device.
   [[nodiscard]] std::uint32_t download_boundary_count() { return boundary_.download_kept_count(); }
 
   /// Sets the mesh and the grid, once per frame.
@@ -220,10 +223,11 @@ class CrossingSigns {
     if (boundary_.count() > 0) boundary_.place(mesh.vertices);
   }
 
-  /// Negates the unsigned distances of a slab at nodes inside. Their winding number is above the request's level, or
-  /// with a boundary above level + 1/2.
-  /// @param request  of the grid of the last prepare(); its memory is the device's, for these slices only.
-  /// @param frame    frame of the distances, in the device's memory.
+  /// Negates the distances of a slab's nodes inside; they must be unsigned. Nodes are inside if their winding number is
+  /// above the request's level, or above level + 1/2 if the mesh has a boundary.
+  /// @param request  must be for the grid of the last prepare(). Its memory is on the device and holds these slices
+  /// only.
+  /// @param frame    normalised frame of the distances, in the device's memory.
   void apply(std::int64_t first_slice, std::int64_t last_slice, const FieldRequest& request, const NormalFrame* frame) {
     const GridSpec& grid = request.grid;
     const auto width = static_cast<std::int32_t>(grid.size[0]);

@@ -1,4 +1,4 @@
-// Blum: tests if a site can matter to a box of nodes. SPDX-License-Identifier: Apache-2.0
+// Blum: tests if a site can be closest somewhere in a box of nodes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -8,28 +8,30 @@
 
 namespace blum::kernels {
 
-/// Boxes are widened by this length (normalised units). It covers all rounding in the tests that cull against them.
+/// Length by which boxes are widened (normalised units). It covers all rounding in the tests that cull sites against
+/// boxes.
 inline constexpr float box_slack = 3e-6F;
 
-/// Box of nodes as a centre and half-sizes in the normalised frame.
+/// Box around nodes: centre and half-sizes in the normalised frame.
 struct CenteredBox {
   Vec3f center;
-  Vec3f half;  ///< to the outermost nodes, not widened
+  Vec3f half;  ///< reaches to the outermost nodes; not widened
 
   [[nodiscard]] BLUM_HD CenteredBox widened() const { return {center, half + Vec3f{box_slack, box_slack, box_slack}}; }
 };
 
-/// Surface points near a box, which may beat sites everywhere in it. The best one comes first; points may repeat.
+/// Surface points near a box, used to drop sites that are further away everywhere in it. The first one is closest to
+/// the box's centre; points may repeat.
 struct Dominators {
   static constexpr int count = 4;
   Vec3f point[count];
 };
 
-/// Drops sites that a known surface point p0 beats everywhere in the box. Let pi be the projection of the centre c on a
-/// site's flat. Then |x - p0|^2 < distance(x, flat)^2 for all x of the box if |c - pi|^2 > |c - p0|^2 + 2 half . |p0 -
-/// pi| + (largest squared offset along the flat).
+/// Drops sites that are further than a known surface point p0 everywhere in the box. Let pi be the projection of the
+/// centre c on a site's flat (its line or plane). Then |x - p0|^2 < distance(x, flat)^2 for all x of the box if |c -
+/// pi|^2 > |c - p0|^2 + 2 half . |p0 - pi| + (largest squared offset along the flat).
 struct Domination {
-  /// One surface point: c - p0, and |c - p0|^2 with room for rounding.
+  /// One surface point: c - p0, and |c - p0|^2 plus room for rounding.
   struct alignas(16) Point {
     Vec3f center_to_p0;
     float limit = 0;
@@ -39,7 +41,7 @@ struct Domination {
   float squared_half = 0;
 
   Domination() = default;
-  /// @param box  widened.
+  /// @param box  must be widened by box_slack.
   BLUM_HD Domination(const CenteredBox& box, const Dominators& dominators)
       : half(box.half), squared_half(squared_length(box.half)) {
     for (int k = 0; k < Dominators::count; ++k) {
@@ -49,7 +51,7 @@ struct Domination {
     }
   }
 
-  /// Returns false if a surface point beats the site everywhere in the box.
+  /// Returns false if some surface point is closer than the site everywhere in the box.
   /// @param to_flat  c - pi.
   [[nodiscard]] BLUM_HD bool keeps(const Vec3f& to_flat, float squared_distance, float along_flat) const {
     const float rest = squared_distance - along_flat;
@@ -86,8 +88,8 @@ BLUM_HD inline bool edge_matters(const Record& record, const CenteredBox& box, c
   const float across_second = second_b * across_b + second_n * across_n;
   constexpr float slack = 2 * plane_slack;
   if (across_second > support(second, box.half) + slack) return false;
-  // The sum of both faces' directions cuts the corner that the box leaves. The middle of the wedge lies in the opposite
-  // direction: going that way by more than the reach leaves the region.
+  // The sum of both faces' directions cuts off the corner that the box test leaves. The middle of the wedge is opposite
+  // to this sum. A point that is further than the reach along the sum lies outside of the domain.
   const Vec3f sum = b + second;
   const float across_sum = across_b + across_second;
   const float sum_support = support(sum, box.half) + slack;
@@ -127,8 +129,8 @@ BLUM_HD inline bool face_matters(const Record& record, const CenteredBox& box, c
   return domination.keeps(n * height, height * height, domination.squared_half);
 }
 
-/// Returns true if a live site can be the closest somewhere in a box.
-/// @param box  widened.
+/// Returns true if a site may be the closest one somewhere in a box. Its record must not be dead.
+/// @param box  must be widened by box_slack.
 BLUM_HD inline bool site_matters(std::uint32_t kind, const Record& record, const CenteredBox& box,
                                  const Domination& domination) {
   return kind == vertex_kind ? vertex_matters(record, box, domination)
@@ -136,16 +138,16 @@ BLUM_HD inline bool site_matters(std::uint32_t kind, const Record& record, const
                              : face_matters(record, box, domination);
 }
 
-/// Tests boxes of surface against a tile. A box is dropped if p0 is closer than all of it to every point x of the tile.
-/// This holds if |x - p|^2 - |x - p0|^2 is positive for all x, and for all p in the box. The minimum is separable.
-/// Along an axis the difference is linear in x and convex in p. So its minimum is at an end of the tile, with p as near
-/// to it as can be.
+/// Tests boxes around parts of the surface against a tile. Let p0 be a known surface point, x a point of the tile and p
+/// one of the box. The box is dropped if p0 is closer to x than p for all x and p. This holds if |x - p|^2 - |x - p0|^2
+/// is positive for all x and p. The minimum is separable by axis. Along an axis the difference is linear in x and
+/// convex in p. So the minimum is at an end of the tile, with p as close to that end as the box allows.
 struct TileTest {
   Vec3f low, high, low_p0, high_p0;
   float tolerance = 0;
 
   TileTest() = default;
-  /// @param tile  widened.
+  /// @param tile  must be widened by box_slack.
   BLUM_HD TileTest(const CenteredBox& tile, const Vec3f& p0)
       : low(tile.center - tile.half), high(tile.center + tile.half) {
     const Vec3f from_low = low - p0;

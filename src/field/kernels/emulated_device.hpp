@@ -15,8 +15,8 @@
 
 namespace blum::kernels {
 
-/// Lanes of a warp, run one after the other. A kernel is a sequence of steps that all lanes take together, and of
-/// questions to all of them (ballot, smallest). A lane keeps its values from step to step in Lanes.
+/// Lanes of a warp, run one after the other. A kernel is a sequence of steps that all lanes run together, and of
+/// collective operations (ballot, smallest). Values that a lane keeps between steps are in Lanes.
 class EmulatedWarp {
  public:
   template <class T>
@@ -42,7 +42,7 @@ class EmulatedWarp {
     for (std::uint32_t lane = 0; lane < warp_size; ++lane) result |= question(lane) ? 1U << lane : 0U;
     return result;
   }
-  /// Returns the smallest of all lanes' values.
+  /// Returns the smallest value of all lanes.
   template <class Value>
   [[nodiscard]] BLUM_HD std::uint64_t smallest(const Value& value) const {
     std::uint64_t result = value(0);
@@ -53,12 +53,12 @@ class EmulatedWarp {
   [[nodiscard]] BLUM_HD T broadcast(const Lanes<T>& values, std::uint32_t lane) const {
     return values[lane];
   }
-  /// Replaces each lane's value by the sum over the lanes up to it.
+  /// Replaces each lane's value by the sum of the values of all lanes up to and including it.
   template <class T>
   BLUM_HD void add_up(Lanes<T>& values) const {
     for (std::uint32_t lane = 1; lane < warp_size; ++lane) values[lane] += values[lane - 1];
   }
-  /// Adds to a counter in shared memory and returns its value before.
+  /// Adds `count` to a counter in shared memory and returns its previous value.
   [[nodiscard]] BLUM_HD std::uint32_t claim(std::uint32_t& counter, std::uint32_t count) const {
     return std::exchange(counter, counter + count);
   }
@@ -67,7 +67,7 @@ class EmulatedWarp {
   std::uint32_t index_;
 };
 
-/// Threads of a block, run warp after warp. Everything between two steps of a block must be the same for all threads.
+/// Threads of a block, run warp after warp. Code between two steps of a block must have the same effect on all threads.
 template <std::uint32_t threads>
 class EmulatedBlock {
  public:
@@ -88,19 +88,19 @@ class EmulatedBlock {
   BLUM_HD void each_warp(const Step& step) const {
     for (std::uint32_t w = 0; w < warps; ++w) step(Warp(w));
   }
-  /// Runs a step on one thread, for all threads.
+  /// Runs a step once, on one thread of the block. All threads see its effect.
   template <class Step>
   BLUM_HD void once(const Step& step) const {
     step();
   }
-  /// Returns a value in shared memory. All threads read it before any of them changes it.
+  /// Returns a value in shared memory. All threads read it before any thread can change it.
   template <class T>
   [[nodiscard]] BLUM_HD T read(const T& shared) const {
     return shared;
   }
 };
 
-/// Memory of a device, here of the host.
+/// Memory of a device. Here it is the host's memory.
 template <class T>
 class EmulatedArray {
  public:
@@ -113,7 +113,7 @@ class EmulatedArray {
   std::vector<T> value_;
 };
 
-/// Device that launches kernels as loops: the same bodies, blocks and lists as on a graphics processor.
+/// Device that runs kernels as loops, with the same bodies, blocks and lists as on a GPU.
 class EmulatedDevice {
  public:
   template <class T>
@@ -133,7 +133,7 @@ class EmulatedDevice {
     std::fill_n(array.data(), array.size(), value);
   }
 
-  /// Calls body(index) for all indices below count, in any order.
+  /// Calls body(index) for all indices in [0, count), in any order.
   template <class Body>
   void for_each(std::size_t count, const Body& body) const {
     for (std::size_t k = 0; k < count; ++k) body(k);
@@ -145,7 +145,7 @@ class EmulatedDevice {
     for (std::size_t k = 0; k < count; ++k) body(EmulatedBlock<Body::threads>{}, *shared, k);
   }
 
-  /// Sorts pairs by the lowest `bits` bits of their keys. Equal keys keep their order.
+  /// Sorts pairs by the lowest `bits` bits of their keys. The sort is stable.
   template <class Key>
   void sort_pairs(Array<Key>& keys, Array<std::uint32_t>& values, int bits) const {
     const Key mask = bits >= static_cast<int>(8 * sizeof(Key)) ? ~Key{0} : (Key{1} << bits) - 1;
@@ -167,7 +167,7 @@ class EmulatedDevice {
     std::swap(keys, sorted_keys);
     std::swap(values, sorted_values);
   }
-  /// Sets out[k] = in[0] + ... + in[k - 1].
+  /// Computes exclusive sums: out[k] = in[0] + ... + in[k - 1].
   void exclusive_sum(const Array<std::uint32_t>& in, Array<std::uint32_t>& out) const {
     out.resize(in.size());
     std::exclusive_scan(in.data(), in.data() + in.size(), out.data(), std::uint32_t{0});
@@ -180,10 +180,10 @@ class EmulatedDevice {
     *out = result;
   }
   void wait() const {}
-  /// mark() marks a place in the queue of work; await() waits until the device has reached it.
+  /// mark() marks the current end of the work queue. await() waits until the device has reached the mark.
   void mark(int) const {}
   void await(int) const {}
-  /// Copies complete results to the host, past the queue of work.
+  /// Copies results that are already complete to the host, without waiting for queued work.
   template <class T>
   void fetch(const T* from, std::size_t count, T* to) const {
     download(from, count, to);

@@ -23,7 +23,7 @@ namespace blum::kernels {
 using MemoryArray = DeviceArrayView;
 using MemoryMesh = DeviceMeshView;
 
-/// Copies vertices of either float type as double.
+/// Copies float or double vertices as double.
 struct CopyVertices {
   MemoryArray from;
   Vec3d* to;
@@ -39,7 +39,7 @@ struct CopyVertices {
   }
 };
 
-/// Copies indices as 32-bit numbers. An index without a vertex becomes 0 and sets `faults`.
+/// Copies indices as 32-bit numbers. An index outside of the vertices becomes 0 and sets `faults`.
 struct CopyIndices {
   MemoryArray from;
   std::size_t limit;
@@ -66,7 +66,7 @@ struct CopyIndices {
   }
 };
 
-/// Finds the smallest triangle at each vertex, with one thread per corner.
+/// Finds the smallest index of a triangle at each vertex, with one thread per corner.
 struct FindVertexTriangles {
   const Triangle* triangles;
   std::uint32_t* vertex_triangle;
@@ -82,7 +82,7 @@ struct FindVertexTriangles {
   }
 };
 
-/// Replaces a site by the smallest triangle that it lies on.
+/// Replaces a site by the triangle with the smallest index that contains it.
 struct ShowTriangle {
   const std::uint32_t* vertex_triangle;
   const std::array<std::uint32_t, 2>* edge_faces;
@@ -103,10 +103,11 @@ struct ShowTriangle {
   }
 };
 
-/// Slabs of whole tiles of both sizes, so that slabs do not change which tile a node is in.
+/// Divides a grid into slabs that consist of whole tiles of both sizes. So the tile of a node does not depend on the
+/// slabs.
 class Slabs {
  public:
-  /// @param nodes  largest number of nodes of a slab; grids with too large slices exceed it.
+  /// @param nodes  largest number of nodes of a slab. A slab may exceed it if the grid's slices are too large.
   Slabs(const GridSpec& grid, std::size_t nodes)
       : per_slice_(static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1])),
         size_(grid.size[2]) {
@@ -131,14 +132,15 @@ class Slabs {
   std::int64_t slices_ = 0;
 };
 
-/// Computes fields. Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory,
-/// slab by slab, or stay on the device.
+/// Computes fields. Keeps a mesh's connectivity and working memory from frame to frame. Fields are copied to the host's
+/// memory slab by slab, or stay on the device.
 template <class Device>
 class FieldEngine {
  public:
-  /// Nodes of a slab. Two slabs are on the device at a time, with 8 bytes per node each.
+  /// Number of nodes of a slab. Two slabs are on the device at a time. Each needs 8 bytes per node.
   static constexpr std::size_t default_slab_nodes = std::size_t{1} << 23;
-  /// Nodes of a slab if the field stays on the device. A slab needs 5 bytes more per node while it is computed.
+  /// Number of nodes of a slab if the field stays on the device. While a slab is computed, it needs 5 additional bytes
+  /// per node.
   static constexpr std::size_t device_slab_nodes = std::size_t{1} << 28;
 
   explicit FieldEngine(Device& device, std::size_t slab_nodes = default_slab_nodes)
@@ -151,7 +153,7 @@ class FieldEngine {
     vertices_.resize(mesh.vertices.size());
     build();
   }
-  /// Sets the connectivity from indices in the device's memory, which are copied. Waits for the device.
+  /// Sets the connectivity. Copies the indices, which are in the device's memory. Waits for the device.
   /// @throws InvalidMesh if an index is out of range.
   void set_connectivity(const MemoryMesh& mesh) {
     constexpr std::size_t kinds = 3;
@@ -166,19 +168,20 @@ class FieldEngine {
     for (std::size_t k = 0; k < kinds; ++k) {
       constexpr const char* names[kinds] = {"triangles", "segments", "points"};
       if (faults[k] == 0) continue;
-      throw InvalidMesh(std::string(names[k]) + " have an index that is negative, or not below the " +
-                        std::to_string(mesh.vertices.rows) + " vertices");
+      throw InvalidMesh(std::string(names[k]) +
+                        " have an index that is negative, or not below the number of vertices, " +
+                        std::to_string(mesh.vertices.rows));
     }
     build();
   }
 
-  /// Computes the field of a mesh with the current connectivity.
-  /// @param request     its memory is the host's, and gets feature ids.
-  /// @param is_stopped  callable: returns true to give up.
-  /// @param report      callable: gets the fraction done.
-  /// @return  true if the field has signs. It has those of winding numbers, unless the boundary has too many edges to
-  ///          sum up at every node.
-  /// @throws InvalidGrid, Cancelled, and the errors of the device.
+  /// Computes the field of a mesh. Its connectivity must be the current one.
+  /// @param request     request with host memory. The sites are written as feature ids.
+  /// @param is_stopped  callable: returns true to stop early.
+  /// @param report      callable: receives the fraction done.
+  /// @return  true if the distances have signs. They have those of winding numbers, unless there are too many boundary
+  ///          edges to sum up at every node.
+  /// @throws InvalidGrid, Cancelled, and the device's errors.
   template <class IsStopped, class Report>
   bool compute(const MeshView& mesh, const FieldRequest& request, const IsStopped& is_stopped, const Report& report) {
     check_size(request.grid);
@@ -205,7 +208,7 @@ class FieldEngine {
       part.site = request.site != nullptr ? to.site.data() : nullptr;
       compute_slab(slabs, slab, part, is_signed);
       device_.mark(static_cast<int>(slab % 2));
-      // The slab before this one is copied while this one is computed.
+      // While this slab is computed, the previous one is copied to the host.
       if (slab > 0) {
         device_.await(static_cast<int>((slab - 1) % 2));
         fetch(slab - 1);
@@ -216,15 +219,16 @@ class FieldEngine {
     return is_signed;
   }
 
-  /// Computes the same from vertices in the device's memory to arrays there. The work is queued, without waiting for
-  /// the device. Faulty input gives every node NaN and no site. It is faulty if mesh and grid span too much or too
-  /// little for 32-bit distances, or if a vertex is not finite.
-  /// @throws InvalidGrid; InvalidMesh if there are not as many vertices as in the connectivity.
+  /// Computes the field from vertices in the device's memory, into memory of the device. Queues the work without
+  /// waiting for it. For faulty input, every node gets NaN and no site. Input is faulty if mesh and grid are too large
+  /// or too small for 32-bit distances, or if a vertex is not finite.
+  /// @throws InvalidGrid; InvalidMesh if the number of vertices is not that of the connectivity.
   void compute(const MemoryArray& vertices, const FieldRequest& request) {
     check_size(request.grid);
     if (vertices.rows != mesh_.vertex_count) {
-      throw InvalidMesh(std::to_string(vertices.rows) + " vertices, but the connectivity is that of " +
-                        std::to_string(mesh_.vertex_count));
+      throw InvalidMesh("there are " + std::to_string(vertices.rows) +
+                        " vertices, but triangles, segments and points were given for " +
+                        std::to_string(mesh_.vertex_count) + " vertices");
     }
     copy_vertices(vertices);
     pipeline_.prepare(mesh_, request.grid);
@@ -246,7 +250,8 @@ class FieldEngine {
     typename Device::template Array<std::uint32_t> site;
   };
 
-  /// Replaces sites in the device's memory by the smallest triangle that each lies on. The work is queued.
+  /// Replaces sites in the device's memory: each by the triangle with the smallest index that contains it. Queues the
+  /// work.
   void show_triangles(std::size_t count, std::uint32_t* site) {
     if (!has_vertex_triangles_) {
       vertex_triangle_.resize(mesh_.vertex_count);
@@ -261,13 +266,14 @@ class FieldEngine {
   }
 
   static void check_size(const GridSpec& grid) {
-    constexpr std::int64_t most_nodes = std::numeric_limits<std::int32_t>::max() - 63;  // whole tiles, in 32 bits
+    // A whole number of tiles, below 2^31.
+    constexpr std::int64_t most_nodes = std::numeric_limits<std::int32_t>::max() - 63;
     for (const std::int64_t size : grid.size) {
       if (size > most_nodes) throw InvalidGrid("a device takes at most 2^31 - 64 nodes along an axis");
     }
   }
 
-  /// Builds the connectivity of the current arrays.
+  /// Builds the connectivity of the current index arrays.
   void build() {
     mesh_ = {vertices_.data(),
              triangles_.data(),
@@ -291,13 +297,13 @@ class FieldEngine {
   }
   void copy_vertices(const MemoryArray& from) { device_.for_each(from.rows, CopyVertices{from, vertices_.data()}); }
 
-  /// Returns true if the requested signs are found here, and prepares them.
+  /// Returns true if this class finds the requested signs. Prepares them in this case.
   bool prepare_signs(const FieldRequest& request) {
     if (!sign::is_by_winding(request.sign)) return false;
     signs_.prepare(mesh_, request.grid);
     return true;
   }
-  /// Returns true if the boundary has few enough edges to sum up at every node. Waits for the device.
+  /// Returns true if there are few enough boundary edges to sum up at every node. Waits for the device.
   bool has_few_boundary_edges(const FieldRequest& request) {
     constexpr std::uint32_t most_edges = 1U << 14U;
     constexpr double most_nodes_times_edges = 0x1p36;
@@ -307,7 +313,7 @@ class FieldEngine {
            static_cast<double>(edges) * static_cast<double>(request.grid.node_count()) <= most_nodes_times_edges;
   }
   /// Computes a slab.
-  /// @param request  its memory is the device's, for this slab only.
+  /// @param request  its memory is on the device and holds this slab only.
   void compute_slab(const Slabs& slabs, std::int64_t slab, const FieldRequest& request, bool is_signed) {
     const std::int64_t first = slabs.first_slice(slab);
     const std::int64_t last = slabs.last_slice(slab);

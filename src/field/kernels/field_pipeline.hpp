@@ -14,10 +14,10 @@
 
 namespace blum::kernels {
 
-/// Finds a close surface point for each tile, with one warp per tile.
+/// Finds a surface point close to each tile's centre, with one warp per tile.
 struct FindTilePoints {
   static constexpr std::uint32_t threads = 256;
-  static constexpr std::uint32_t blocks_per_processor = 3;  ///< at least this many, by registers
+  static constexpr std::uint32_t blocks_per_processor = 3;  ///< registers are limited so that at least this many fit
   static constexpr std::uint32_t warps = threads / warp_size;
   struct Shared {
     SearchStack stack[warps];
@@ -26,7 +26,7 @@ struct FindTilePoints {
   Forest forest;
   const NormalFrame* frame;
   TileGrid tiles;
-  const SurfacePoint* coarse;  ///< points of coarser tiles, to begin with; null at the coarsest level
+  const SurfacePoint* coarse;  ///< points of the coarser tiles, used as start; null at the coarsest level
   TileGrid coarse_tiles;
   std::uint32_t count;  ///< number of tiles
   SurfacePoint* out;
@@ -54,7 +54,7 @@ struct FindTilePoints {
   }
 };
 
-/// Returns the box around a named vertex, in the grid's axes.
+/// Computes the bounding box of one vertex in use, in the grid's axes.
 struct VertexBounds {
   const Vec3d* vertices;
   const std::uint32_t* named;
@@ -75,7 +75,7 @@ struct JoinBounds {
   }
 };
 
-/// Computes the frame on the device, so that no step waits for the host.
+/// Computes the normalised frame on the device, so that no step waits for the host.
 struct MakeFrame {
   const Bounds* bounds;
   GridSpec grid;
@@ -83,23 +83,23 @@ struct MakeFrame {
   BLUM_HD void operator()(std::size_t) const { *frame = make_normal_frame(*bounds, grid); }
 };
 
-/// Unsigned fields of a mesh in a device's memory. Device is CudaDevice, or EmulatedDevice in the tests.
+/// Computes unsigned fields of a mesh in a device's memory. Device is CudaDevice, or EmulatedDevice in the tests.
 ///
-/// Call set_connectivity() once per connectivity, and prepare() once per frame. Then call compute() for slabs of the
-/// grid, in any order.
+/// Call set_connectivity() once for each connectivity and prepare() once for each frame. Then call compute() for slabs
+/// of the grid, in any order.
 template <class Device>
 class FieldPipeline {
  public:
   explicit FieldPipeline(Device& device) : device_(device) {}
 
-  /// Builds the connectivity. Waits for the device, because the number of edges decides later sizes.
+  /// Builds the connectivity. Waits for the device, because the number of edges determines later sizes.
   void set_connectivity(const DeviceMesh& mesh) { build_connectivity(device_, mesh, connectivity_); }
   [[nodiscard]] ConnectivityView connectivity() const { return connectivity_.view(); }
-  /// Returns the forest of the last prepare(), in the device's memory. frame() does so for the frame.
+  /// Returns the forest of the last prepare(), in the device's memory; frame() returns the normalised frame.
   [[nodiscard]] const Forest& forest() const { return forest_; }
   [[nodiscard]] const NormalFrame* frame() const { return frame_.data(); }
 
-  /// Builds records and trees of this frame's vertices.
+  /// Builds records and trees for the vertices of this frame.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
     bounds_.resize(1);
     frame_.resize(1);
@@ -119,9 +119,9 @@ class FieldPipeline {
     throw_if_faulty(frame);
   }
 
-  /// Writes the slices [first_slice, last_slice) of the grid of the last prepare(). A faulty frame gives NaN distances
-  /// and no sites.
-  /// @param request  its memory is the device's, for these slices only.
+  /// Writes the slices [first_slice, last_slice) of the grid of the last prepare(). If the frame is faulty, writes NaN
+  /// distances and no sites.
+  /// @param request  its memory is on the device and holds these slices only.
   void compute(std::int64_t first_slice, std::int64_t last_slice, const FieldRequest& request) {
     const std::array<std::int64_t, 3>& size = request.grid.size;
     const TileGrid coarse{size, first_slice, last_slice, 4 * ComputeTiles::side};

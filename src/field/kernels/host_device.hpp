@@ -8,8 +8,8 @@
 
 #include "blum/core/vec3.hpp"
 
-// Functions of kernels also run on the host, where the tests run them through EmulatedDevice (emulated_device.hpp).
-// They may use constexpr functions of the standard library and of Vec3 (nvcc --expt-relaxed-constexpr).
+// Kernel functions also run on the host: the tests run them through EmulatedDevice (emulated_device.hpp). They may use
+// constexpr functions of the standard library and of Vec3 (nvcc --expt-relaxed-constexpr).
 #if defined(__CUDACC__)
 #define BLUM_HD __host__ __device__
 #define BLUM_NOINLINE __noinline__
@@ -20,7 +20,7 @@
 
 namespace blum::kernels {
 
-/// Number of lanes of a warp, of sites of a cluster, and of children of a box.
+/// Number of lanes of a warp. Clusters have this many sites, and boxes this many children.
 inline constexpr std::uint32_t warp_size = 32;
 
 template <class T>
@@ -69,7 +69,7 @@ BLUM_HD inline std::uint32_t count_bits(std::uint32_t x) {
   return static_cast<std::uint32_t>(std::popcount(x));
 #endif
 }
-/// Returns the index of the lowest set bit of x, which is not 0.
+/// Returns the index of the lowest set bit of x. x must not be 0.
 BLUM_HD inline std::uint32_t lowest_bit(std::uint32_t x) {
 #if defined(__CUDA_ARCH__)
   return static_cast<std::uint32_t>(__ffs(static_cast<int>(x)) - 1);
@@ -77,7 +77,7 @@ BLUM_HD inline std::uint32_t lowest_bit(std::uint32_t x) {
   return static_cast<std::uint32_t>(std::countr_zero(x));
 #endif
 }
-/// Returns the index of the highest set bit of x, which is not 0.
+/// Returns the index of the highest set bit of x. x must not be 0.
 BLUM_HD inline std::uint32_t highest_bit(std::uint32_t x) {
 #if defined(__CUDA_ARCH__)
   return static_cast<std::uint32_t>(31 - __clz(static_cast<int>(x)));
@@ -85,11 +85,11 @@ BLUM_HD inline std::uint32_t highest_bit(std::uint32_t x) {
   return static_cast<std::uint32_t>(31 - std::countl_zero(x));
 #endif
 }
-/// Returns the number of set bits below bit `lane`.
+/// Returns the number of set bits of the mask below bit `lane`.
 BLUM_HD inline std::uint32_t bits_below(std::uint32_t mask, std::uint32_t lane) {
   return count_bits(mask & ((1U << lane) - 1U));
 }
-/// Returns the bits of a float that is not negative. They are in the same order as the floats.
+/// Returns the bits of a non-negative float. Compared as integers, they have the order of the floats.
 BLUM_HD inline std::uint32_t bits_of(float x) {
 #if defined(__CUDA_ARCH__)
   return __float_as_uint(x);
@@ -97,7 +97,7 @@ BLUM_HD inline std::uint32_t bits_of(float x) {
   return std::bit_cast<std::uint32_t>(x);
 #endif
 }
-/// Returns the float with these bits, whatever they are.
+/// Returns the float with these bits. Any bits are allowed.
 BLUM_HD inline float float_of(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
   return __uint_as_float(bits);
@@ -106,8 +106,8 @@ BLUM_HD inline float float_of(std::uint32_t bits) {
 #endif
 }
 
-// Sums and products that are rounded by themselves. The compiler must not fuse them where a result must be the same on
-// every device. On the host, none of the flags that kernels are tested with allows fused operations.
+// Sums and products that are rounded separately. They are used where results must be equal on all devices, so the
+// compiler must not fuse them. On the host, no flag with which kernels are tested allows fused operations.
 BLUM_HD inline double rounded_sum(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dadd_rn(a, b);

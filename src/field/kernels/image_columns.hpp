@@ -8,7 +8,7 @@
 
 namespace blum::kernels {
 
-/// Pass along one axis of a transform.
+/// Pass of a transform along one axis, y or z.
 template <class Costs_>
 struct ColumnPass {
   using Costs = Costs_;
@@ -16,16 +16,19 @@ struct ColumnPass {
   ImageShape shape;
   Costs costs;
   std::uint32_t length;       ///< rows of a column
-  std::uint32_t stride;       ///< voxels between rows
-  std::uint32_t mask_stride;  ///< words of the mask between rows
+  std::uint32_t stride;       ///< distance of two rows in the image, in voxels
+  std::uint32_t mask_stride;  ///< distance of two rows in the mask, in words
   std::uint32_t columns;
-  std::uint32_t band_rows;  ///< rows of each band but the last
+  std::uint32_t band_rows;  ///< rows of each band except the last one
   std::uint32_t bands;
-  std::uint32_t* site;  ///< In: nearest in the row or the plane. Out: nearest also along the column.
-  float* slots;         ///< Slots of 32 bits per voxel, held as floats: the memory of the distances.
-  // Per band and column, of the first run in the band, which may continue from the band before:
-  std::uint32_t* bottom;  ///< Slot of its lowest entry.
-  std::uint32_t* change;  ///< Row at which it ends.
+  /// In: closest site in the row (y pass) or plane (z pass). Out: closest site also over the column.
+  std::uint32_t* site;
+  /// One 32-bit slot per voxel. The slots use the memory of the distances, so their type is float.
+  float* slots;
+  // The following two arrays have one entry per band and column. They describe the first run (rows of one kind) in the
+  // band. It may continue the last run of the band before.
+  std::uint32_t* bottom;  ///< Slot of the run's lowest entry in the band.
+  std::uint32_t* change;  ///< Row at which the run ends.
 
   [[nodiscard]] BLUM_HD std::uint32_t band_begin(std::uint32_t band) const { return band * band_rows; }
   [[nodiscard]] BLUM_HD std::uint32_t band_end(std::uint32_t band) const {
@@ -33,7 +36,7 @@ struct ColumnPass {
   }
 };
 
-/// Column as its thread uses it.
+/// One column, with the functions that its thread needs.
 template <class Costs, bool along_z>
 class Column {
  public:
@@ -57,7 +60,7 @@ class Column {
   }
   [[nodiscard]] BLUM_HD bool kind_in(std::uint32_t mask_word) const { return ((mask_word >> (x_ % 32)) & 1U) != 0; }
   [[nodiscard]] BLUM_HD bool kind(std::uint32_t row) const { return kind_in(mask_word(row)); }
-  /// Returns true if voxels of a kind are their own sites.
+  /// Returns true if voxels of this kind are their own sites.
   [[nodiscard]] BLUM_HD bool is_settled(bool kind) const { return kind && !pass_.shape.is_signed; }
 
   [[nodiscard]] BLUM_HD Value height(const Entry& entry, std::uint32_t row) const {
@@ -67,7 +70,7 @@ class Column {
     return pass_.costs.hides(axis, a, b, c);
   }
   [[nodiscard]] BLUM_HD Entry wall(std::uint32_t row) const { return {row, voxel(row), 0}; }
-  /// Returns the entry of the site that the pass before found for a row.
+  /// Returns the entry for the site that the previous pass found for a row.
   [[nodiscard]] BLUM_HD Entry entry(std::uint32_t row, std::uint32_t site) const {
     if constexpr (along_z) {
       const std::uint32_t in_plane = site - row * pass_.shape.plane;
@@ -86,7 +89,8 @@ class Column {
     return entry(pass_.shape.by_row.quotient(site - other_ * pass_.shape.plane), site);
   }
   BLUM_HD void set_slot(std::uint32_t slot, std::uint32_t site) const { pass_.slots[voxel(slot)] = float_of(site); }
-  /// Returns the slot after the last entry of a run, or of its part in a band. The run or part ends before row `end`.
+  /// Returns the slot after the last entry of a run, or of the run's part in a band. `end` is the row after the last
+  /// row of the run or part.
   [[nodiscard]] BLUM_HD std::uint32_t top(std::uint32_t end) const {
     const std::uint32_t last = bits_of(pass_.slots[voxel(end - 1)]);
     return (last & is_top) != 0 ? last & ~is_top : end;
@@ -101,12 +105,14 @@ class Column {
     return pass_.change[std::size_t{band} * pass_.columns + column_];
   }
 
-  /// Place between entries. Below it come slot - 1, slot - 2, ..., then the entries in the bands before `band`.
+  /// Position between the entries of a run. The next lower entries are those in slots slot - 1, slot - 2, ... of the
+  /// band, and then those of the bands before it.
   struct Cursor {
     std::uint32_t slot = 0;
     std::uint32_t band = 0;
   };
-  /// Takes the next lower entry of a run; returns false if none is left. The cursor then points at its slot.
+  /// Takes the next lower entry of a run. Afterwards the cursor is at that entry's slot. Returns false if no entry is
+  /// left.
   template <bool banded>
   BLUM_HD bool descend(Cursor& at, bool run_kind, Entry& out) const {
     while (at.slot > 0) {
@@ -132,34 +138,36 @@ class Column {
   const ColumnPass<Costs>& pass_;
   std::uint32_t column_;
   std::uint32_t x_;
-  std::uint32_t other_;  ///< z of a column along y, y of one along z
-  std::uint32_t first_;  ///< voxel of row 0
+  std::uint32_t other_;  ///< z for columns along y, y for columns along z
+  std::uint32_t first_;  ///< linear index of the voxel of row 0
   const std::uint32_t* mask_;
 };
 
-// A column pass (along y or z) solves the rows r of a column. For each it finds the row s that minimises cost(s) + w (r
-// - s)^2. This is the lower envelope of parabolas (Maurer, Qi, Raghavan 2003). Among equal rows the lowest wins.
+// A column pass (along y or z) processes the rows r of a column. For each r it finds the row s that minimises cost(s) +
+// w (s - r)^2. This is the lower envelope of parabolas (Maurer, Qi, Raghavan 2003). Among equally good rows s the
+// lowest wins.
 //
-// Rows fall into runs of one kind. A voxel next to a run, of the other kind, costs nothing, and hides everything beyond
-// it from the run's rows. So each run has an envelope of its own: of its own rows and the voxels at its ends ("walls",
-// which need no memory). Inside and outside of a signed transform thus take one pass, and the work and memory of one.
-// In an unsigned transform the runs of selected voxels are their own sites.
+// A run consists of consecutive rows of one kind (selected or not). The voxel next to a run is of the other kind. It
+// has cost 0 and hides everything beyond it from the run's rows. So each run has a separate envelope: of its own rows,
+// and of the voxels next to its ends ("walls", which need no memory). Inside and outside of a signed transform thus
+// need only one pass, with the work and memory of one. In an unsigned transform, voxels in runs of selected voxels are
+// their own sites.
 //
-// A thread takes a column, or one band of it if there are few columns. Neighbouring threads take neighbouring columns,
-// so that a warp reads and writes whole lines. The kernels are those of parallel banding (Cao, Tang, Mohamed, Tan
-// 2010).
+// A thread processes a column, or one band of it if there are few columns. Neighbouring threads process neighbouring
+// columns, so that a warp reads and writes whole cache lines. The kernels are those of parallel banding (Cao, Tang,
+// Mohamed, Tan 2010).
 //   BuildEnvelopes  makes the envelopes of each band's rows. Reads 4 + 1/8 bytes per voxel, writes at most 4.
-//   MergeBands      drops parabolas that those of other bands hide. Touches few.
+//   MergeBands      drops parabolas that parabolas of other bands hide. These are few.
 //   AssignSites     walks down the envelopes. Reads at most 4 + 1/8 bytes per voxel, writes 4.
-// An entry takes 4 bytes, because its parabola is computed again from the linear index of its site. Sites are read and
-// written in whole lines. Envelopes of neighbouring columns differ in height, so that 32 threads write 1 to 4 times the
-// 32-byte sectors that 32 entries fill. (This was counted for balls, noise and sparse points of 128^3 voxels.) Most of
-// these writes meet in the cache.
+// An entry (a parabola of the envelope) needs 4 bytes, because it is computed again from the linear index of its site.
+// Sites are read and written in whole cache lines. Envelopes of neighbouring columns differ in height. So the number of
+// 32-byte sectors that 32 threads write is 1 to 4 times that for 32 contiguous entries. (This was counted for balls,
+// noise and sparse points of 128^3 voxels.) Most of these writes are combined in the cache.
 //
-// Entries of a run that begins at row a are in slots a, a + 1, and so on. Where a run ends, or a band cuts it, its last
-// slot holds the end of its entries, unless that slot is an entry itself.
+// Entries of a run that begins at row a are in slots a, a + 1, and so on. The last slot of a run (or of its part in a
+// band) may not be an entry. It then contains the slot after the last entry.
 
-/// Makes the envelopes of a band of a column.
+/// Builds the envelopes of one band of a column.
 template <class Costs, bool along_z>
 struct BuildEnvelopes {
   ColumnPass<Costs> pass;
@@ -183,7 +191,7 @@ struct BuildEnvelopes {
       std::uint32_t change = end;
       kind_ = column_.kind(begin);
       start(begin, begin > 0 && column_.kind(begin - 1) != kind_);
-      // Rows are read some time before they are needed: a thread has little else to do while it waits.
+      // Rows are read before they are needed, because a thread has little other work while it waits.
       Rows next = read(begin, end);
       for (std::uint32_t first = begin; first < end; first += rows_at_once) {
         const Rows now = next;
@@ -232,7 +240,7 @@ struct BuildEnvelopes {
       top_ = column_.wall(row - 1);
       depth_ = 1;
     }
-    /// Drops entries that the wall at the end of a run hides, and stores the end of the others.
+    /// Drops entries that the wall at the end of a run hides, and stores the slot after the last one left.
     BLUM_HD void finish(std::uint32_t row, bool has_wall) {
       if (has_wall) make_room(column_.wall(row));
       column_.set_top(row, slot_);
@@ -244,7 +252,7 @@ struct BuildEnvelopes {
       ++depth_;
       column_.set_slot(slot_++, entry.site);
     }
-    /// Drops entries that the entry below them and a new one hide.
+    /// Drops the uppermost entries that are nowhere lower than both the entry below them and a new entry.
     BLUM_HD void make_room(const Entry& entry) {
       while (depth_ >= 2 && column_.hides(second_, top_, entry)) {
         top_ = second_;
@@ -259,14 +267,15 @@ struct BuildEnvelopes {
     Column<Costs, along_z> column_;
     bool kind_ = false;
     std::uint32_t begin_ = 0;  ///< first row of the run
-    std::uint32_t slot_ = 0;   ///< slot after the last entry
-    std::uint32_t depth_ = 0;  ///< number of entries, with the wall
+    std::uint32_t slot_ = 0;   ///< slot after the last entry of the run
+    std::uint32_t depth_ = 0;  ///< number of entries, including the wall
     Entry top_, second_;
   };
 };
 
-/// Joins the envelopes of runs that bands cut. One thread per column goes from band to band. It drops entries at the
-/// end of the envelope so far, and at the beginning of the next one, while others hide them.
+/// Joins the envelopes of runs that extend over several bands. One thread per column processes one band after the
+/// other. It drops hidden entries at the upper end of the envelope so far, and at the lower end of the next band's
+/// envelope.
 template <class Costs, bool along_z>
 struct MergeBands {
   ColumnPass<Costs> pass;
@@ -287,7 +296,7 @@ struct MergeBands {
     const std::uint32_t change = column.change(band);
     const std::uint32_t top = column.top(change);
     const bool has_wall = change < pass.length && column.kind(change) != kind;
-    // Above: the entries from slot `above` on, then the wall.
+    // Upper envelope: the entries in slots from `above` to `top`, then the wall.
     const auto take = [&](std::uint32_t slot, Entry& out) {
       if (slot < top) {
         out = column.entry_of_slot(slot);
@@ -322,7 +331,7 @@ struct MergeBands {
   }
 };
 
-/// Gives each row of a band the site of the lowest entry.
+/// Writes for each row of a band the site of the entry that is lowest there.
 template <class Costs, bool along_z, bool banded>
 struct AssignSites {
   ColumnPass<Costs> pass;
@@ -365,8 +374,8 @@ struct AssignSites {
    private:
     using Cursor = typename Column<Costs, along_z>::Cursor;
 
-    /// Begins with the rows of a run that end before `end`. It starts from the run's wall, or from the entry that is
-    /// lowest there.
+    /// Starts with the last rows of a run. Their end is `end`. The first entry is the wall there, or else the entry
+    /// that is lowest at row end - 1.
     BLUM_HD void start(std::uint32_t end, bool kind, bool has_wall) {
       if (column_.is_settled(kind)) return;
       cursor_ = {column_.top(end), band_};
@@ -381,7 +390,7 @@ struct AssignSites {
     }
     BLUM_HD bool descend(bool kind, Entry& out) { return column_.template descend<banded>(cursor_, kind, out); }
 
-    /// Looks for lower entries in the bands into which a run continues.
+    /// Searches the later bands of a run for entries that are lower at this row.
     BLUM_HD void climb(std::uint32_t row, bool kind) {
       for (std::uint32_t band = band_ + 1; band < pass_.bands; ++band) {
         const std::uint32_t change = column_.change(band);
@@ -396,7 +405,8 @@ struct AssignSites {
         }
       }
     }
-    /// Returns false if the entry, and so those above it, are higher.
+    /// Offers an entry of a later band. Returns false if it is higher than the best one, so that all entries above it
+    /// are higher, too.
     BLUM_HD bool offer_from_above(std::uint32_t row, const Entry& entry, const Cursor& below) {
       const Value height = column_.height(entry, row);
       const Value lowest = is_empty_ ? height : column_.height(best_, row);
@@ -421,8 +431,8 @@ struct AssignSites {
         has_next_ = descend(kind, next_);
       }
     }
-    /// Looks for an entry as low as the best one, below a next entry that is higher by no more than rounding may make
-    /// it. Makes it the next entry, and returns true if it was found.
+    /// Used if the next entry is higher than the best one, but only within rounding. Searches further below for an
+    /// entry at most as high as `lowest`. If found, makes it the next entry and returns true.
     BLUM_HD bool look_below(std::uint32_t row, bool kind, Value lowest) {
       Cursor cursor = cursor_;
       Entry entry;
@@ -443,7 +453,7 @@ struct AssignSites {
     bool is_empty_ = true;
     bool has_next_ = false;
     Entry best_, next_;
-    Cursor cursor_;  ///< below next_
+    Cursor cursor_;  ///< position below next_
   };
 };
 

@@ -19,7 +19,7 @@ class ImageEngine {
   explicit ImageEngine(Device& device) : device_(device), transform_(device) {}
 
   /// Uploads an image.
-  /// @throws OutOfMemory if the device cannot hold it.
+  /// @throws OutOfMemory if the device's memory is too small.
   void set_image(const VoxelImageView& image, const detail::ImageRequest& request) {
     image_ = image.values;
     transform_.set_request(request);
@@ -39,14 +39,14 @@ class ImageEngine {
     return transform_.selected_count();
   }
 
-  /// Transforms the last selection, into the host's memory.
+  /// Transforms the voxels that the last select() selected. Copies the result to the host's memory.
   void transform(const detail::ImageRequest& request) {
     transform_.run(distance_.data(), site_.data());
     device_.download(distance_.data(), voxels_, request.distance);
     device_.download(site_.data(), voxels_, request.site);
   }
 
-  /// Transforms an image in the device's memory into arrays there. The work is queued, without waiting.
+  /// Transforms an image in the device's memory, and writes to arrays there. Queues the work without waiting for it.
   void transform_there(const DeviceArrayView& values, const detail::ImageRequest& request) {
     transform_.set_request(request);
     with_type(values.type,
@@ -55,7 +55,7 @@ class ImageEngine {
   }
 
  private:
-  /// Calls work with a value of an element type.
+  /// Calls `work` with a value of the element type.
   template <class Work>
   static void with_type(ElementType type, const Work& work) {
     switch (type) {
@@ -84,7 +84,7 @@ class ImageEngine {
 
   Device& device_;
   ImageTransform<Device> transform_;
-  VoxelImageView::Values image_;  ///< used for its type
+  VoxelImageView::Values image_;  ///< only its type is used
   std::size_t voxels_ = 0;
   typename Device::template Array<std::byte> values_;
   typename Device::template Array<float> distance_;

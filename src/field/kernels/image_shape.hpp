@@ -9,17 +9,18 @@
 
 namespace blum::kernels {
 
-/// Stands for no voxel; linear indices of voxels are below 2^31.
+/// Index without a voxel. Linear indices of voxels are below 2^31.
 inline constexpr std::uint32_t no_voxel = 0xffffffffU;
 
-/// Divides numbers below 2^31 by one divisor, with a product and a shift.
+/// Divides numbers below 2^31 by a fixed divisor, with a multiplication and a shift.
 struct Divisor {
   std::uint32_t factor = 0x80000001U;
   std::uint32_t shift = 31;
 
   Divisor() = default;
   explicit Divisor(std::uint32_t by) {
-    // factor = floor(2^shift / by) + 1 is too large by less than by / 2^shift <= 2^-31, so it errs by less than 1 / by.
+    // factor = floor(2^shift / by) + 1 exceeds 2^shift / by by a relative error of at most by / 2^shift <= 2^-31. So
+    // the quotient errs by less than 1 / by before it is rounded down.
     shift = by == 1 ? 31 : 32 + highest_bit(by - 1);
     factor = static_cast<std::uint32_t>((std::uint64_t{1} << shift) / by + 1);
   }
@@ -28,15 +29,16 @@ struct Divisor {
   }
 };
 
-/// Position of a voxel along the axes of the request.
+/// Position of a voxel. Axes are those of the request (those of length one come last).
 struct Voxel {
   std::uint32_t x, y, z;
 };
 
-/// Image of a request, with its selected voxels: bit x % 32 of word x / 32 of a row.
+/// Shape of a request's image, and its mask of selected voxels. Voxel x of a row is bit x % 32 of word x / 32 of the
+/// row.
 struct ImageShape {
   std::uint32_t size[3] = {1, 1, 1};
-  std::uint32_t plane = 1;  ///< voxels of a slice
+  std::uint32_t plane = 1;  ///< voxels per slice
   Divisor by_row, by_plane;
   bool is_signed = true;
   std::uint32_t words_per_row = 1;
@@ -64,7 +66,8 @@ struct ImageShape {
   }
 };
 
-/// Parabola over the rows of a column: `cost` + weight * (row - this row)^2 is the squared distance to `site`.
+/// Parabola over the rows of a column. Its height at a row is the squared distance to `site`: `cost` + weight * (row -
+/// this row)^2.
 template <class Value>
 struct Parabola {
   std::uint32_t row = 0;
@@ -76,7 +79,7 @@ BLUM_HD inline std::int32_t offset(std::uint32_t to, std::uint32_t from) {
   return static_cast<std::int32_t>(to - from);
 }
 
-/// Squared distances that are whole numbers below 2^30, so that nothing is rounded.
+/// Squared distances as integers below 2^30. They are exact.
 struct IntegerCosts {
   using Value = std::int32_t;
   static constexpr bool is_exact = true;
@@ -91,7 +94,7 @@ struct IntegerCosts {
   }
   [[nodiscard]] BLUM_HD Value square(std::size_t axis, std::int32_t step) const { return step * step * weight[axis]; }
   [[nodiscard]] BLUM_HD static Value sum(Value a, Value b) { return a + b; }
-  /// Returns true if the parabola b is nowhere lower than both a, of a lower row, and c, of a higher one.
+  /// Returns true if the parabola b is nowhere lower than both a and c. The rows must satisfy a < b < c.
   [[nodiscard]] BLUM_HD bool hides(std::size_t axis, const Parabola<Value>& a, const Parabola<Value>& b,
                                    const Parabola<Value>& c) const {
     const std::int32_t from_a = offset(b.row, a.row);
@@ -104,19 +107,19 @@ struct IntegerCosts {
   }
 
  private:
-  /// Returns how much higher b is than a at row 0, where all are below 2^30. The two meet at row rise / (2 weight
-  /// step).
+  /// Returns the height of b minus that of a at row 0. All heights are below 2^30. The two parabolas meet at row rise /
+  /// (2 weight step).
   [[nodiscard]] BLUM_HD Value rise(std::size_t axis, const Parabola<Value>& a, const Parabola<Value>& b) const {
     return b.cost - a.cost + weight[axis] * offset(b.row, a.row) * static_cast<std::int32_t>(a.row + b.row);
   }
 };
 
-/// Squared distances in double, rounded as on the CPU. A parabola is dropped only if the others are certainly lower as
-/// computed. If several are about equally low, all of them are evaluated.
+/// Squared distances in double, rounded as on the CPU. A parabola is dropped only if it is certainly higher than the
+/// others, rounding included. If several are about equally low, all of them are evaluated.
 struct RealCosts {
   using Value = double;
   static constexpr bool is_exact = false;
-  Value slack = 0;  ///< many times the rounding error of costs
+  Value slack = 0;  ///< a multiple of the rounding error of squared distances
   Value weight[3];
   double unit;
 
@@ -136,7 +139,7 @@ struct RealCosts {
                                    const Parabola<Value>& c) const {
     const double from_a = offset(b.row, a.row);
     const double to_c = offset(c.row, b.row);
-    // At every row, b minus the lower of a and c is at least this, divided by from_a + to_c.
+    // At every row, the height of b minus that of the lower of a and c is at least this value / (from_a + to_c).
     return rise(axis, a, b) * to_c - rise(axis, b, c) * from_a >= slack * (from_a + to_c);
   }
   [[nodiscard]] BLUM_HD float distance(Value squared) const {

@@ -16,7 +16,7 @@
 
 namespace blum::kernels {
 
-/// Makes the mask of an image, 32 words per warp. Reads the image once; writes 1/8 byte per voxel.
+/// Computes the mask of an image, 32 words per warp. Reads the image once; writes 1/8 byte per voxel.
 template <class T, class Test>
 struct SelectVoxels {
   static constexpr std::uint32_t threads = 256;
@@ -37,7 +37,7 @@ struct SelectVoxels {
       const std::size_t first = index * words_per_block + std::size_t{warp.index()} * warp_size;
       typename Block::Warp::template Lanes<std::uint32_t> mine;
       for (std::uint32_t k = 0; k < warp_size && first + k < words; ++k) {
-        const auto word = static_cast<std::uint32_t>(first + k);  // there are fewer than 2^31
+        const auto word = static_cast<std::uint32_t>(first + k);  // below 2^31
         const std::size_t row = word / words_per_row;
         const std::uint32_t x = word % words_per_row * warp_size;
         const std::uint32_t bits =
@@ -61,9 +61,9 @@ struct AddCounts {
   BLUM_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
 };
 
-/// x pass: finds the nearest target of each voxel in its row, as a linear index. The left one of two equally near
-/// targets wins. Targets are voxels of the other kind, or in an unsigned transform the selected ones. One warp computes
-/// a row. Reads 1/8 byte per voxel (1/4 in rows of more than 1024), writes 4.
+/// x pass: finds the closest target of each voxel in its row, and writes its linear index. If two targets are equally
+/// close, the left one wins. Targets are voxels of the other kind; in an unsigned transform they are the selected
+/// voxels. One warp processes a row. Reads 1/8 byte per voxel (1/4 in rows longer than 1024), writes 4.
 struct TransformRows {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 6;
@@ -83,11 +83,12 @@ struct TransformRows {
   }
 
  private:
-  // Further away than any voxel in unsigned arithmetic, because rows are shorter than 2^31.
+  // Positions of missing targets. In unsigned arithmetic they are further away than any voxel, because rows are shorter
+  // than 2^31.
   static constexpr std::uint32_t no_left = 0x80000000U;
   static constexpr std::uint32_t no_right = 0xffffffffU;
 
-  /// Returns a word of a row's voxels of one kind.
+  /// Returns one word of a row's mask, with bits set for the voxels of one kind.
   [[nodiscard]] BLUM_HD std::uint32_t bits(const std::uint32_t* words, std::uint32_t word, bool selected) const {
     if (word >= shape.words_per_row) return 0;
     if (selected) return words[word];
@@ -95,7 +96,7 @@ struct TransformRows {
     return ~words[word] & (rest >= warp_size ? ~0U : (1U << rest) - 1);
   }
 
-  /// Returns the first voxel of a kind from a word on.
+  /// Returns the x of the first voxel of a kind in the given word or after it.
   template <class Warp>
   [[nodiscard]] BLUM_HD std::uint32_t find(const Warp& warp, const std::uint32_t* words, std::uint32_t word,
                                            bool selected) const {
@@ -109,15 +110,15 @@ struct TransformRows {
     return no_right;
   }
 
-  /// Voxels of one kind around the word that a warp is at.
+  /// Voxels of one kind near the word that a warp processes.
   template <class Warp>
   struct Kind {
     typename Warp::template Lanes<std::uint32_t> word;  ///< 32 words, one per lane.
-    std::uint32_t present = 0;                          ///< Bits of the words that hold any.
-    std::uint32_t bits = 0;                             ///< The word that the warp is at.
-    std::uint32_t left = no_left;                       ///< Last voxel before it.
-    std::uint32_t right = no_right;                     ///< First voxel after it.
-    std::uint32_t beyond = 0;                           ///< First voxel after the 32 words; if before them, not known.
+    std::uint32_t present = 0;                          ///< Bit k is set if word k contains a voxel of the kind.
+    std::uint32_t bits = 0;                             ///< The word that the warp processes.
+    std::uint32_t left = no_left;                       ///< Last voxel of the kind before that word.
+    std::uint32_t right = no_right;                     ///< First voxel of the kind after that word.
+    std::uint32_t beyond = 0;                           ///< First voxel of the kind after all 32 words.
 
     BLUM_HD void go_to(const Warp& warp, std::uint32_t first, std::uint32_t k) {
       bits = warp.broadcast(word, k);
@@ -180,14 +181,14 @@ struct TransformRows {
   }
 };
 
-/// Writes the distances to the sites that the other passes found, and applies the band. Reads 4 bytes per voxel, writes
-/// 4 (8 beyond the band). This is less than carrying distances along. It also lets the passes use the memory of the
-/// distances until now.
+/// Computes the distances from the sites that the passes found, and applies the band. Reads 4 bytes per voxel, writes 4
+/// (8 beyond the band). This moves less memory than storing distances in each pass would. The passes can therefore use
+/// the memory of the distances as working memory.
 template <class Costs>
 struct WriteDistances {
   ImageShape shape;
   Costs costs;
-  float band;  ///< infinite without a band
+  float band;  ///< infinite if the request has no band
   std::uint32_t* site;
   float* distance;
 
@@ -208,25 +209,27 @@ struct WriteDistances {
   }
 };
 
-/// Rules for cutting columns into bands.
+/// Rules that decide into how many bands columns are divided.
 struct BandTuning {
-  std::size_t threads = std::size_t{1} << 17U;  ///< enough to keep the device busy
-  std::uint32_t fewest_rows = 32;               ///< least number of rows of a band
+  std::size_t threads = std::size_t{1} << 17U;  ///< number of threads that keeps the device busy
+  std::uint32_t fewest_rows = 32;               ///< smallest number of rows of a band
 };
 
-/// Exact distance transforms of an image in a device's memory; see distance_transform for their promises. Device is
+/// Exact distance transforms of an image in a device's memory; distance_transform() describes the result. Device is
 /// CudaDevice, or EmulatedDevice in the tests. Only selected_count() waits for the device.
 ///
-/// Memory moved, at most, in bytes per voxel: 4 (rows) + 16 (columns along y) + 16 (along z) + 8 (distances), and 1/8
-/// each for the mask. The image is read once. The memory of the distances is the passes' working memory.
+/// Memory read and written, at most, in bytes per voxel: 4 (rows) + 16 (columns along y) + 16 (along z) + 8
+/// (distances). Each access to the mask adds 1/8. The image is read once. The passes use the memory of the distances as
+/// working memory.
 ///
-/// The result is the CPU's, byte for byte: neither fuses products with sums.
+/// The result is byte for byte that of the CPU, because neither fuses multiplications with additions.
 template <class Device>
 class ImageTransform {
  public:
   explicit ImageTransform(Device& device, const BandTuning& tuning = {}) : device_(device), tuning_(tuning) {}
 
-  /// Returns the bytes of device memory that a transform takes, besides the image and 8 bytes per voxel for its result.
+  /// Returns the bytes of device memory that a transform needs in addition to the image and its result (8 bytes per
+  /// voxel).
   [[nodiscard]] static std::size_t scratch_bytes(const detail::ImageRequest& request, const BandTuning& tuning = {}) {
     const ImageShape shape(request);
     std::size_t words = shape.mask_words();
@@ -248,7 +251,7 @@ class ImageTransform {
     shape_.mask = mask_.data();
   }
 
-  /// Makes the mask.
+  /// Computes the mask of selected voxels.
   /// @param values  one per voxel, in the device's memory.
   /// @throws InvalidOption if the threshold is NaN.
   template <class T>
@@ -262,7 +265,8 @@ class ImageTransform {
         },
         detail::make_voxel_test<T>(selection));
   }
-  /// Returns the mask, for masks made elsewhere: rows of 32-bit words, with the bits beyond a row clear.
+  /// Returns the mask, for callers that fill it themselves. It consists of rows of 32-bit words; bits beyond a row's
+  /// end must be 0.
   [[nodiscard]] std::uint32_t* mask() { return mask_.data(); }
   [[nodiscard]] std::size_t mask_words() const { return shape_.mask_words(); }
 
@@ -274,8 +278,8 @@ class ImageTransform {
     return count;
   }
 
-  /// Writes one distance and one site per voxel. Some voxel must be selected, and in a signed transform not all.
-  /// Otherwise distances are infinite, or the band's.
+  /// Writes one distance and one site per voxel. At least one voxel must be selected. In a signed transform, at least
+  /// one must not be. Otherwise the distances are infinite, or equal to the band.
   void run(float* distance, std::uint32_t* site) {
     request_.integer ? run_with(IntegerCosts(request_), distance, site) : run_with(RealCosts(request_), distance, site);
   }
@@ -283,7 +287,7 @@ class ImageTransform {
  private:
   struct Bands {
     std::size_t columns = 0;
-    std::uint32_t rows = 0;  ///< rows of a band
+    std::uint32_t rows = 0;  ///< rows per band
     std::size_t count = 0;
   };
 

@@ -1,4 +1,4 @@
-// Blum: places on a space-filling curve. SPDX-License-Identifier: Apache-2.0
+// Blum: indices of points on a space-filling curve (Morton order). SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace blum::kernels {
 
-/// Spreads the low 10 bits of x to every third bit.
+/// Spreads the low 10 bits of x: bit k moves to bit 3 k.
 BLUM_HD constexpr std::uint32_t spread_bits(std::uint32_t x) {
   x = (x | (x << 16)) & 0x030000ffU;
   x = (x | (x << 8)) & 0x0300f00fU;
@@ -17,13 +17,13 @@ BLUM_HD constexpr std::uint32_t spread_bits(std::uint32_t x) {
   return x;
 }
 
-/// Returns the place on a Morton curve of 1024 cells a side around the origin, for coordinates in [-1/2, 1/2]. Other
-/// coordinates go to the nearest cell, and NaN to the first.
+/// Returns the index along a Morton curve through a cube of 1024 cells per side. The cube is [-1/2, 1/2]^3. Coordinates
+/// outside are moved to the nearest cell, and NaN to the first cell.
 BLUM_HD constexpr std::uint32_t morton_code(const Vec3d& p) {
   std::uint32_t code = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double x = (p[axis] + 0.5) * 1023.0;
-    // NaN goes to the first cell, because it has no integer value.
+    // NaN is moved to the first cell, because it cannot be converted to an integer.
     const auto cell = x > 0 ? static_cast<std::uint32_t>(smaller(x, 1023.0)) : 0U;
     code |= spread_bits(cell) << axis;
   }

@@ -9,16 +9,16 @@
 
 namespace blum::kernels {
 
-/// Point of the surface, and a site that it lies on.
+/// Point of the surface, and a site whose closure contains it.
 struct SurfacePoint {
   Vec3f point{};
-  float squared_distance = std::numeric_limits<float>::max();  ///< to the query
+  float squared_distance = std::numeric_limits<float>::max();  ///< from the query
   std::uint32_t id = dead_record;
 };
 
-/// Entries that a warp still has to search, nearest on top.
+/// Entries that a warp still has to search. The nearest one is on top.
 struct SearchStack {
-  /// A box leaves at most warp_size - 1 others open at each level.
+  /// At each level, one box is searched and at most warp_size - 1 others remain.
   static constexpr std::uint32_t capacity = kind_count + (Tree::most_levels + 1) * (warp_size - 1);
   std::uint32_t code[capacity];
   float squared[capacity];
@@ -30,8 +30,8 @@ BLUM_HD inline float squared_distance_to_box(const Vec3f& q, const ReachBox& box
   return squared_length(gap);
 }
 
-/// Finds the closest point of a record's closed site. Returns false for dead records, and for a face if the query lies
-/// outside of its prism.
+/// Finds the closest point of a record's site, border included. Returns false if the record is dead. Returns false for
+/// a face if the query does not project into it.
 BLUM_HD inline bool closest_on_record(std::uint32_t kind, const Record& record, const Vec3f& query, Vec3f& point) {
   if (record.id == dead_record) return false;
   if (kind == vertex_kind) {
@@ -46,7 +46,7 @@ BLUM_HD inline bool closest_on_record(std::uint32_t kind, const Record& record, 
   return true;
 }
 
-/// Nearest-first search by a warp. All values are the same for all lanes, except those in Lanes.
+/// Search by one warp that visits the nearest entries first. All values are equal in all lanes, except those in Lanes.
 template <class Warp>
 class NearestSearch {
  public:
@@ -56,12 +56,13 @@ class NearestSearch {
   BLUM_HD NearestSearch(const Warp& warp, const Forest& forest, SearchStack& stack)
       : warp_(warp), forest_(forest), stack_(stack) {}
 
-  /// Improves on a known point, if there is a closer one. Among equally close sites the one with the smallest id wins.
+  /// Replaces `best` if a closer point exists. Among equally close sites the one with the smallest id wins.
   BLUM_HD void run(const Vec3f& query, SurfacePoint& best) {
     std::uint32_t top = 0;
     warp_.each([&](std::uint32_t lane) {
       if (lane >= kind_count) return;
-      // Vertices are on top: each gives a point, but a face gives none to queries beside its prism.
+      // Vertices are on top of the stack, because each gives a point. A face gives none if the query does not project
+      // into it.
       const std::uint32_t kind = kind_count - 1 - lane;
       const std::uint32_t levels = forest_.trees[kind].levels;
       stack_.code[lane] = Entry::make(kind, levels, 0).code;
@@ -72,7 +73,7 @@ class NearestSearch {
       --top;
       const Entry entry{stack_.code[top]};
       const float squared = stack_.squared[top];
-      warp_.each([](std::uint32_t) {});  // all have read before any writes
+      warp_.each([](std::uint32_t) {});  // all lanes have read before any lane writes
       if (squared > best.squared_distance) continue;
       if (entry.level() == 0) {
         visit_cluster(entry, query, best);

@@ -1,4 +1,4 @@
-// Blum: the coordinates in which fields are computed. SPDX-License-Identifier: Apache-2.0
+// Blum: the normalised frame, in whose coordinates fields are computed. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,14 @@
 
 namespace blum::kernels {
 
-/// Maps the world so that float32 loses nothing. The grid's axes become x, y, z. The box around mesh and grid is
-/// centred on the origin, and its diagonal lies in (1/2, 1]. The scale is a power of two, so that it is exact.
+/// Map from world coordinates to the normalised frame, in which float32 is accurate. The grid's axes become x, y, z.
+/// The box around mesh and grid is centred on the origin, and its diagonal is longer than 1/2 and at most 1. The scale
+/// is a power of two, so scaling is exact.
 struct NormalFrame {
-  enum class Fault : std::uint8_t { none, too_large, too_small };  // too_large: or a vertex is not finite
+  enum class Fault : std::uint8_t { none, too_large, too_small };  // too_large also if a vertex is not finite
 
   Mat3 direction;
-  Vec3d center;      ///< of the common box, in grid axes
+  Vec3d center;      ///< of the box around mesh and grid, in the grid's axes
   double scale = 1;  ///< normalised = world * scale
   Vec3d first_node;  ///< normalised position of node (0, 0, 0)
   Vec3d spacing;     ///< normalised
@@ -24,7 +25,8 @@ struct NormalFrame {
   [[nodiscard]] BLUM_HD Vec3d to_normal(const Vec3d& world) const {
     return (direction.transposed_times(world) - center) * scale;
   }
-  /// Returns the normalised coordinate of the nodes with this index along an axis. Halves lie between two nodes.
+  /// Returns the normalised coordinate of the nodes with this index along an axis. An index that ends in 1/2 is the
+  /// middle between two nodes.
   [[nodiscard]] BLUM_HD double at(int axis, double index) const {
     const auto a = static_cast<std::size_t>(axis);
     return first_node[a] + spacing[a] * index;
@@ -40,7 +42,7 @@ struct Bounds {
     lower = min(lower, p);
     upper = max(upper, p);
   }
-  /// Extends the box, to everything if p is not finite: no comparison would reveal NaN.
+  /// Extends the box by p. If p is not finite, the box becomes infinite, because no later comparison would reveal NaN.
   BLUM_HD void extend_if_finite(const Vec3d& p) {
     if (dot(p, p) < HUGE_VAL) {
       extend(p);
@@ -51,7 +53,7 @@ struct Bounds {
   }
 };
 
-/// Returns the frame of a mesh and a grid.
+/// Returns the normalised frame of a mesh and a grid.
 /// @param box  around the mesh, in the grid's axes.
 BLUM_HD inline NormalFrame make_normal_frame(Bounds box, const GridSpec& grid) {
   NormalFrame frame;
@@ -62,7 +64,7 @@ BLUM_HD inline NormalFrame make_normal_frame(Bounds box, const GridSpec& grid) {
                                    static_cast<double>(grid.size[2] - 1) * grid.spacing.z};
   box.extend(first);
   box.extend(last);
-  const Vec3d size = box.upper - box.lower;  // the diagonal's squares may underflow
+  const Vec3d size = box.upper - box.lower;  // kept as a vector: the squares of the diagonal may underflow
   const double diagonal = norm(size);
   if (!(diagonal < 1e37)) frame.fault = NormalFrame::Fault::too_large;
   if (larger(larger(size.x, size.y), size.z) > 0 && diagonal < 1e-36) frame.fault = NormalFrame::Fault::too_small;

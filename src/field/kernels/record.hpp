@@ -13,27 +13,27 @@ namespace blum::kernels {
 /// depends on the kind (see the structs below).
 struct alignas(64) Record {
   std::array<float, 15> column{};
-  std::uint32_t id = 0;  ///< SiteId
+  std::uint32_t id = 0;  ///< SiteId of the site
 };
 static_assert(sizeof(Record) == 64);
 
-/// Vertex: its position and up to four directions e of the edges that bound its domain, (q - p) . e <= 0. Unused ones
-/// are 0.
+/// Vertex p: its position, and up to four directions e along edges. The domain consists of the points q with (q - p) .
+/// e <= 0 for all of them. Unused directions are 0.
 struct VertexColumns {
-  static constexpr int position = 0;   // 3
-  static constexpr int direction = 3;  // 4 x 3
+  static constexpr int position = 0;   // 3 columns
+  static constexpr int direction = 3;  // 4 x 3 columns
 };
 
-/// Edge: midpoint m, unit direction t, half-length, and an orthonormal frame (t, b, n = t x b). `b` leaves the edge
-/// into its first face, whose half-space is (q - m) . b <= first_limit (+huge without a face). The half-space of the
-/// second face is second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both 0 without one). `side` is +-1 if both
-/// faces agree that their side of n points out of (or into) a closed solid, see edge_side(); otherwise 0. The site is
-/// beaten everywhere further than reach from it.
+/// Edge: midpoint m, unit direction t, half-length, and an orthonormal frame (t, b, n = t x b). `b` leads from the edge
+/// into its first face. That face bounds the domain by (q - m) . b <= first_limit (a huge limit without a face). The
+/// second face bounds it by second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both factors 0 without a second
+/// face). `side` is not 0 if the orientations of both faces agree. It is +1 if n points out of a closed solid there, -1
+/// if into it; see edge_side(). Beyond the distance `reach` from the site, some surface point is always closer.
 struct EdgeColumns {
-  static constexpr int midpoint = 0;  // 3
-  static constexpr int tangent = 3;   // 3
+  static constexpr int midpoint = 0;  // 3 columns
+  static constexpr int tangent = 3;   // 3 columns
   static constexpr int half_length = 6;
-  static constexpr int binormal = 7;  // 3
+  static constexpr int binormal = 7;  // 3 columns
   static constexpr int second_b = 10;
   static constexpr int second_n = 11;
   static constexpr int first_limit = 12;
@@ -42,30 +42,31 @@ struct EdgeColumns {
 };
 
 /// Face: anchor, unit normal, and the negated gradients of the barycentric coordinates u and v of the two other
-/// corners. The anchor is the corner opposite the longest edge, so that slivers do not amplify errors. The face is -u,
-/// -v < 0, u + v < 1.
+/// corners. The anchor is the corner opposite the longest edge, so that flat triangles do not amplify errors. Points of
+/// the face satisfy -u < 0, -v < 0, u + v < 1.
 struct FaceColumns {
-  static constexpr int anchor = 0;   // 3
-  static constexpr int normal = 3;   // 3
-  static constexpr int minus_u = 6;  // 3
-  static constexpr int minus_v = 9;  // 3
+  static constexpr int anchor = 0;   // 3 columns
+  static constexpr int normal = 3;   // 3 columns
+  static constexpr int minus_u = 6;  // 3 columns
+  static constexpr int minus_v = 9;  // 3 columns
   static constexpr int reach_above = 12;
   static constexpr int reach_below = 13;
-  static constexpr int is_sliver = 14;  ///< not 0: the columns are SliverColumns (device only)
+  static constexpr int is_sliver = 14;  ///< if not 0, the columns are SliverColumns (device only)
 };
 
-/// Face too flat for float32 barycentrics: its three corners. It is evaluated as a closed triangle in double.
+/// Sliver: a face too flat for barycentric coordinates in float32. Stores its three corners. It is evaluated in double,
+/// as a triangle with its border.
 struct SliverColumns {
-  static constexpr int corners = 0;  // 3 x 3
+  static constexpr int corners = 0;  // 3 x 3 columns
 };
 
 inline constexpr std::uint32_t dead_record = 0xffffffff;
 
-/// Stands for no distance: content this far away affects nothing.
+/// Distance that is larger than all others: content this far away has no effect.
 inline constexpr float far_away = 1e18F;
 
-/// Bound on the rounding of normalised positions and of affine functions of them. Planes are widened by it if that is
-/// harmless (vertices, sides of edges), so that no node falls between two domains.
+/// Bound on the rounding of normalised positions and of affine functions of them. The planes of vertices and of the
+/// sides of edges are moved outwards by it, which is harmless. So no node falls between two domains.
 inline constexpr float plane_slack = 1e-6F;
 
 BLUM_HD inline Vec3f vec_at(const Record& record, int column) {

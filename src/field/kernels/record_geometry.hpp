@@ -12,7 +12,7 @@ BLUM_HD inline Vec3d closest_on_segment(const Vec3d& query, const Vec3d& a, cons
   return a + direction * clamped(dot(query - a, direction) / squared, 0.0, 1.0);
 }
 
-/// Returns the closest point of a closed, possibly very flat triangle, in double.
+/// Returns the closest point of a triangle, border included, in double. The triangle may be very flat.
 BLUM_HD inline Vec3d closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d normal = cross(b - a, c - a);
   const double squared_normal = squared_length(normal);
@@ -29,7 +29,8 @@ BLUM_HD inline Vec3d closest_on_triangle(const Vec3d& query, const Vec3d& a, con
   return best;
 }
 
-/// Slivers are rare: they must not cost the common paths registers, nor (by a reference) keep records in memory.
+/// Slivers are rare. Not inlined, so that they cost the common paths no registers. Corners are passed by value, so that
+/// records need not be in memory.
 BLUM_HD BLUM_NOINLINE inline Vec3d closest_on_flat_triangle(Vec3d query, Vec3f a, Vec3f b, Vec3f c) {
   return closest_on_triangle(query, to_double(a), to_double(b), to_double(c));
 }
@@ -40,7 +41,7 @@ BLUM_HD inline Vec3d closest_on_sliver(const Record& record, const Vec3d& query)
                                   vec_at(record, SliverColumns::corners + 6));
 }
 
-/// Returns the closest point of a closed edge.
+/// Returns the closest point of an edge, ends included.
 BLUM_HD inline Vec3f closest_on_edge(const Record& record, const Vec3f& query) {
   const Vec3f midpoint = vec_at(record, EdgeColumns::midpoint);
   const Vec3f tangent = vec_at(record, EdgeColumns::tangent);
@@ -48,7 +49,7 @@ BLUM_HD inline Vec3f closest_on_edge(const Record& record, const Vec3f& query) {
   return midpoint + tangent * clamped(dot(query - midpoint, tangent), -half, half);
 }
 
-/// Finds the closest point of a face. Returns false if the query lies outside of its prism, because an edge or corner
+/// Finds the closest point of a face. Returns false if the query does not project into the face: then an edge or corner
 /// of it is closer.
 BLUM_HD inline bool closest_on_face(const Record& record, const Vec3f& query, Vec3f& point) {
   const Vec3f from_anchor = query - vec_at(record, FaceColumns::anchor);

@@ -6,20 +6,23 @@
 
 namespace blum::kernels {
 
-/// Sites shorter or flatter than this look like their border in float32, in a frame whose diagonal is about one.
+/// Sites shorter or flatter than this cannot be distinguished from their border in float32. The frame's diagonal is
+/// about one.
 inline constexpr double negligible_length = 1e-12;
 inline constexpr double negligible_altitude = 1e-7;
-/// Above this, rounding of a face's barycentrics would reach beyond its corners (docs/theory/fields.md).
+/// If a face's condition is larger, rounding of its barycentric coordinates would reach beyond its corners
+/// (docs/theory/fields.md).
 inline constexpr double largest_condition = 64;
-/// Above this, rounding in double cannot have turned a normal by more than about 1e-9, so the normal is trusted.
+/// If a triangle's relative altitude is larger, rounding in double turns its normal by at most about 1e-9, so the
+/// normal is trusted.
 inline constexpr double smallest_relative_altitude = 1e-7;
 
-/// Returns the unit vector, with one division instead of three.
+/// Returns the unit vector, using one division instead of three.
 BLUM_HD inline Vec3d unit(const Vec3d& v, double length_of_v) {
   return v * (1 / length_of_v);
 }
 
-/// Shape of a face as its record needs it: corners with the anchor first, and their condition.
+/// Face as its record needs it: corners with the anchor first, and the condition of the barycentric coordinates.
 struct FaceShape {
   Vec3d anchor, to_u, to_v, normal;
   double doubled_area = 0;
@@ -47,13 +50,14 @@ BLUM_HD inline FaceShape shape_of_face(const Vec3d& a, const Vec3d& b, const Vec
   shape.normal = unit(area_normal, shape.doubled_area);
   shape.has_normal = shape.doubled_area > smallest_relative_altitude * squared_longest;
   shape.is_negligible = !(squared_area > negligible_altitude * negligible_altitude * squared_longest);
-  // |grad u| |to_u| + |grad v| |to_v|, with |grad u| = |to_v| / doubled area and the other way round.
+  // The condition is |grad u| |to_u| + |grad v| |to_v|, with |grad u| = |to_v| / doubled area and |grad v| = |to_u| /
+  // doubled area.
   const double squared_sides = squared_side[(opposite + 1) % 3] * squared_side[(opposite + 2) % 3];
   shape.is_sliver = 4 * squared_sides > largest_condition * largest_condition * squared_area;
   return shape;
 }
 
-/// Writes all columns but the reaches and the id.
+/// Writes all columns except the reaches. Does not write the id.
 BLUM_HD inline void write_face(const FaceShape& shape, Record& record) {
   store(record, FaceColumns::anchor, shape.anchor);
   store(record, FaceColumns::normal, shape.normal);
@@ -61,11 +65,11 @@ BLUM_HD inline void write_face(const FaceShape& shape, Record& record) {
   store(record, FaceColumns::minus_v, unit(cross(shape.to_u, shape.normal), shape.doubled_area));
 }
 
-/// Edge, and the directions in which up to two faces leave it.
+/// Edge, and the unit directions that lead from it into up to two faces.
 struct EdgeShape {
   Vec3d start, end, tangent;
   double length = 0;
-  Vec3d first, second;  ///< unit; second only if first exists
+  Vec3d first, second;  ///< unit vectors; `second` is set only if `first` is
   bool has_first = false;
   bool has_second = false;
 };
@@ -76,19 +80,19 @@ BLUM_HD inline Vec3d any_perpendicular(const Vec3d& t) {
   return b / norm(b);
 }
 
-/// Returns true if a triangle's border runs from the edge's first end to its second.
+/// Returns true if a triangle traverses the edge from its first end to its second.
 BLUM_HD constexpr bool runs_along(const Triangle& t, const Segment& edge) {
   return (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
          (t[2] == edge[0] && t[0] == edge[1]);
 }
 
-/// Returns the unit direction that leaves an edge with this tangent into a triangle on its left (`is_forward`) or
-/// right.
+/// Returns the unit direction that leads from an edge with this tangent into a triangle to its left (if `is_forward`)
+/// or right.
 BLUM_HD inline Vec3d in_face_direction(const Vec3d& normal, const Vec3d& tangent, bool is_forward) {
   return is_forward ? cross(normal, tangent) : cross(tangent, normal);
 }
 
-/// Writes all columns but the reach and the id.
+/// Writes all columns except the reach. Does not write the id.
 /// @param normal  normal of the edge's first triangle.
 BLUM_HD inline void write_edge(const EdgeShape& edge, const Vec3d& normal, Record& record) {
   const Vec3d b = edge.has_first ? edge.first : any_perpendicular(edge.tangent);
@@ -101,21 +105,22 @@ BLUM_HD inline void write_edge(const EdgeShape& edge, const Vec3d& normal, Recor
   if (edge.has_second) {
     store(record, EdgeColumns::second_b, dot(edge.second, b));
     store(record, EdgeColumns::second_n, dot(edge.second, n));
-    // Between faces that nearly fold together, float32 cannot decide the pseudonormal: such edges are left to exact
+    // If two faces nearly fold onto each other, float32 cannot decide the pseudonormal. Such edges are left to exact
     // queries.
     const bool is_folded = 1 - dot(edge.second, b) < 1e-5;
     store(record, EdgeColumns::side, is_folded ? 0.0 : dot(normal, n) > 0 ? 1.0 : -1.0);
   }
 }
 
-/// Finds the two unit directions between which an edge's domain lies: perpendicular to each of its faces, away from the
-/// other. Returns false if the domain may be a half-plane or more.
+/// Finds the two unit directions that bound an edge's domain. Each is perpendicular to one of the faces and leads away
+/// from the other face. Returns false if the domain may be a half-plane or larger.
 BLUM_HD inline bool edge_borders(const EdgeShape& edge, Vec3d borders[2]) {
   if (!edge.has_first || !edge.has_second) return false;
   const Vec3d first_normal = cross(edge.tangent, edge.first);
   const Vec3d second_normal = cross(edge.tangent, edge.second);
-  // Each face has two perpendiculars. The domain's border is the one that does not lead into the other face. If the
-  // faces are nearly in one plane, both may pass in rounding: then the domain may be a half-plane or more.
+  // Each face has two perpendicular directions. The one that bounds the domain does not lead into the other face. If
+  // the faces are nearly in one plane, rounding may make both acceptable. Then the domain may be a half-plane or
+  // larger.
   const double side = dot(first_normal, edge.second);
   if (!(magnitude(side) > 1e-5)) return false;
   borders[0] = side < 0 ? first_normal : -first_normal;

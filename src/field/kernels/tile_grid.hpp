@@ -9,7 +9,7 @@
 
 namespace blum::kernels {
 
-/// Box of nodes: the first one, and the number along each axis (some may be 0).
+/// Box of nodes: its first node, and the number of nodes along each axis (may be 0).
 struct NodeBox {
   std::int32_t first[3];
   std::int32_t count[3];
@@ -28,14 +28,14 @@ BLUM_HD inline CenteredBox centered(const NormalFrame& frame, const NodeBox& box
   return out;
 }
 
-/// Index of a node or a tile along each axis.
+/// Indices of a node or a tile along the three axes.
 struct GridIndex {
   std::int32_t at[3];
 };
 
-/// Cuts the slices [first_slice, last_slice) of a grid into tiles of `side` nodes per side.
+/// Divides the slices [first_slice, last_slice) of a grid into tiles of `side` nodes per side.
 struct TileGrid {
-  std::int32_t size[3] = {};  ///< nodes of the whole grid
+  std::int32_t size[3] = {};  ///< number of nodes of the whole grid along each axis
   std::int32_t first_slice = 0;
   std::int32_t last_slice = 0;
   std::int32_t side = 8;

@@ -10,13 +10,14 @@
 
 namespace blum::kernels {
 
-/// Directions of a vertex that are kept as planes of its domain.
+/// Directions at a vertex that are used as planes of its domain.
 struct ChosenPlanes {
   static constexpr std::size_t most = 4;
   std::array<std::size_t, most> index{};
   std::size_t count = 0;
 
-  /// Picks up to four of the directions whose bit is set in `open`, each as far from the picked ones as possible.
+  /// Picks up to four of the directions whose bit is set in `open`. Each pick is as far as possible from the earlier
+  /// ones.
   /// @param direction  callable: index -> unit Vec3f.
   template <class Direction>
   BLUM_HD void choose(std::uint32_t open, Direction direction) {
@@ -46,12 +47,12 @@ struct ChosenPlanes {
 /// Cone {w : w . e <= 0 for all edge directions e} of a vertex, with the planes that bound it and its extreme rays.
 class VertexCone {
  public:
-  /// Two directions whose cross product has a smaller squared length count as parallel.
+  /// Two directions are treated as parallel if their cross product has a smaller squared length.
   static constexpr float parallel = 1e-8F;
-  /// Bound on the rounding of w . e for the cross product w of two directions.
+  /// Bound on the rounding error of w . e, where w is the cross product of two directions.
   static constexpr float tolerance = 2e-6F;
   static constexpr std::size_t max_rays = 8;
-  /// Further edges are left out, which only widens the cone.
+  /// Largest number of edges used. Further edges are left out, which only widens the cone.
   static constexpr std::size_t max_directions = 16;
 
   BLUM_HD void add(const Vec3d& unit_direction) {
@@ -62,13 +63,15 @@ class VertexCone {
     ++count_;
   }
 
-  /// Finds the cone's extreme rays. Returns false if the cone {w : w . e <= 0 for all e} is provably just its apex.
+  /// Finds the cone's extreme rays. Returns false if the cone {w : w . e <= 0 for all e} certainly consists of its apex
+  /// only.
   BLUM_HD bool find_facets() {
     if (count_ < 3) {
       choose(all());
       return true;
     }
-    for (std::size_t k = count_; k < max_directions; ++k) {  // copies, so that whole vectors can be tested
+    // Copies of the first direction, so that whole vectors can be tested.
+    for (std::size_t k = count_; k < max_directions; ++k) {
       x_[k] = x_[0];
       y_[k] = y_[0];
       z_[k] = z_[0];
@@ -79,7 +82,7 @@ class VertexCone {
       for (std::size_t j = i + 1; j < count_; ++j) {
         const Vec3f w = cross(direction(i), direction(j));
         if (squared_length(w) < parallel) {
-          is_certain = false;  // nearly parallel: their ray is lost in rounding
+          is_certain = false;  // nearly parallel: their common ray is uncertain because of rounding
         } else if (const int sign = extreme_ray(w); sign != 0) {
           facets |= (1U << i) | (1U << j);
           add_ray(w, sign);
@@ -92,15 +95,16 @@ class VertexCone {
     return true;
   }
 
-  /// Returns up to four directions whose planes hold the cone.
+  /// Returns up to four directions whose planes bound a cone that contains the domain.
   [[nodiscard]] BLUM_HD const ChosenPlanes& planes() const { return chosen_; }
   [[nodiscard]] BLUM_HD Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
 
-  /// Returns the unit extreme rays; empty if they are too many or not certain.
+  /// Returns the unit extreme rays. Empty if there are too many or they are uncertain.
   [[nodiscard]] BLUM_HD std::span<const Vec3f> rays() const { return {rays_.data(), are_rays_known_ ? ray_count_ : 0}; }
 
  private:
-  /// Sets bit 0 if w (no longer than one) lies in the cone, up to rounding, and bit 1 if -w does. In doubt they do.
+  /// Tests if w or -w, of length at most one, lies in the cone, up to rounding. Sets bit 0 for w and bit 1 for -w.
+  /// Doubtful cases count as in the cone.
   [[nodiscard]] BLUM_HD int extreme_ray(const Vec3f& w) const {
     const std::size_t end = count_ <= 8 ? 8 : max_directions;
     int beyond = 0;

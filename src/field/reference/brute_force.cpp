@@ -11,7 +11,8 @@ double segment_distance(const Vec3d& query, const Vec3d& a, const Vec3d& b) {
   const double squared = squared_length(direction);
   if (squared == 0) return length(query - a);
   const double t = std::clamp(dot(query - a, direction) / squared, 0.0, 1.0);
-  // Measured from the nearer end, so that rounding of t does not grow with the segment's length.
+  // The closest point is computed from the nearer end, so that the rounding error of t does not grow with the segment's
+  // length.
   const Vec3d closest = t <= 0.5 ? a + direction * t : b - direction * (1 - t);
   return length(query - closest);
 }
@@ -21,7 +22,7 @@ double triangle_distance(const Vec3d& query, const Vec3d& a, const Vec3d& b, con
       std::min({segment_distance(query, a, b), segment_distance(query, b, c), segment_distance(query, c, a)});
   const Vec3d normal = cross(b - a, c - a);
   const double squared_normal = squared_length(normal);
-  // A triangle too flat to orient in double precision consists of its border only.
+  // A triangle too flat to be oriented in double precision is treated as its border only.
   const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
   if (!(squared_normal > 1e-28 * longest * longest)) return border;
   const bool over_face = dot(cross(b - a, query - a), normal) > 0 && dot(cross(c - b, query - b), normal) > 0 &&

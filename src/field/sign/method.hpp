@@ -6,10 +6,10 @@
 namespace blum::sign {
 
 enum class Method : std::uint8_t {
-  none,          ///< Unsigned.
-  crossings,     ///< Whole winding numbers: every edge is run along equally often both ways.
+  none,          ///< Distances are unsigned.
+  crossings,     ///< Whole winding numbers: every edge is traversed equally often in both directions.
   sums,          ///< Generalized winding numbers of a surface with a boundary.
-  pseudonormals  ///< Side of the closest site, by its pseudonormal.
+  pseudonormals  ///< Side of the closest site, decided by its pseudonormal.
 };
 
 /// Returns true if a method uses winding numbers.

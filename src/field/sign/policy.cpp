@@ -21,7 +21,7 @@ Plan by_winding(std::string reason) {
   return {SignRule::winding, std::move(reason), Method::sums};
 }
 
-/// Returns true if the mesh faces outwards once all its triangles are reversed.
+/// Returns true if the mesh becomes outward-facing when all its triangles are reversed.
 bool faces_inwards(const MeshView& mesh) {
   const std::vector<Triangle> turned = reversed_triangles(mesh.triangles);
   MeshView view = mesh;
@@ -41,10 +41,11 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
   }
   if (facts.outward) return {SignRule::normals, "orientation, as requested", Method::crossings};
   Plan plan{SignRule::normals,
-            "orientation, as requested; shells of the mesh cross or do not all face away from the solid: flip it if "
-            "signs look inverted",
+            "orientation, as requested; shells of the mesh cross or do not all face away from the solid: flip the mesh "
+            "if signs look inverted",
             Method::pseudonormals};
-  // An inside-out mesh has winding number -1 in the solid and 0 around it. These signs call the space around it inside.
+  // An inside-out mesh has winding number -1 in the solid and 0 around it. For such a mesh, the chosen signs make the
+  // surrounding space the inside.
   if (faces_inwards(mesh)) {
     plan.method = Method::crossings;
     plan.level = -1;
@@ -52,8 +53,8 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
   return plan;
 }
 
-/// Returns true if every edge of the triangles is traversed equally often in both directions. Winding numbers are then
-/// whole off the surface.
+/// Returns true if every edge of the triangles is traversed equally often in both directions. If so, winding numbers
+/// are whole everywhere except on the surface.
 bool is_balanced(const MeshView& mesh, const SiteTable& sites) {
   std::vector<std::int32_t> forward(sites.edge_count(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

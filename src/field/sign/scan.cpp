@@ -14,15 +14,15 @@ namespace {
 constexpr std::size_t triangles_per_range = 2048;
 constexpr std::size_t vertices_per_range = 16384;
 constexpr std::size_t rows_per_range = 256;
-/// A thread adds its crossings to the common total after this many.
+/// After this many crossings, a thread adds its count to the common total.
 constexpr std::size_t counted_at_once = std::size_t{1} << 16;
 
 struct Crossing {
   std::size_t slice;
-  std::uint64_t key;  ///< as in SignScan::crossings_
+  std::uint64_t key;  ///< same encoding as in SignScan::crossings_
 };
 
-/// Finds the crossings of triangles in units of nodes.
+/// Finds the crossings of triangles given in node units.
 class Scanner {
  public:
   Scanner(const std::array<std::int64_t, 3>& size, bool is_mirrored, std::vector<Crossing>& out)
@@ -48,11 +48,11 @@ class Scanner {
   std::vector<Crossing>& out_;
 };
 
-/// Crossings, one list per range of triangles.
+/// One list of crossings per range of triangles.
 using Found = std::vector<std::vector<Crossing>>;
 
 /// Finds the crossings of a mesh with the rows of a grid.
-/// @return  nothing if there are more than `most`.
+/// @return  nothing if there are more than `most` crossings.
 std::optional<Found> find_crossings(const MeshView& mesh, const GridSpec& grid, std::size_t most,
                                     const Context& context) {
   const kernels::NodeUnits units(grid);

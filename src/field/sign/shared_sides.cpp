@@ -13,22 +13,23 @@
 namespace blum::sign {
 namespace {
 
-/// Fewer points have too little in common to pay for a bound on the gradient, which costs as much as several answers.
+/// For at most this many points, sharing does not pay: the bound on the gradient costs as much as evaluating several
+/// points.
 constexpr std::size_t few = 48;
-/// With at most this many triangles, answers cost next to nothing and are not shared.
+/// For at most this many triangles, evaluation is so cheap that answers are not shared.
 constexpr std::size_t few_triangles = 256;
-/// If the winding number may change by more than this over a group, smaller groups are better.
+/// If the winding number may change by more than this over a group, the group is split.
 constexpr double large_change = 1;
 
-/// Answer of an evaluated point. Another point gets the same answer if the winding number changes by less than
-/// `margin`.
+/// Answer of an evaluated point. It also holds for another point if the winding number changes by less than `margin`
+/// between the two.
 template <class Value>
 struct Answer {
   Value value;
   double margin = 0;
 };
 
-/// Evaluates the side of a point.
+/// Evaluates which side of the surface a point is on.
 struct AskSide {
   const WindingNumber& winding;
 
@@ -38,14 +39,14 @@ struct AskSide {
     const WindingNumber::Decision found = winding.decide(point.at, point.distance);
     return {found.is_inside, found.margin};
   }
-  /// Returns the rounding error of the point's own evaluation. A point takes over an answer only if this error could
-  /// not change it. So all points get the answers that they would get alone.
+  /// Returns the rounding error of evaluating the point itself. A point takes over an answer only if this error could
+  /// not change the answer. So all points get the answers that they would get alone.
   [[nodiscard]] double rounding_at(const SidedPoint& point) const {
     return winding.rounding_at(point.at, point.distance);
   }
 };
 
-/// Evaluates a rough winding number.
+/// Evaluates a winding number roughly.
 struct AskNumber {
   const WindingNumber& winding;
 
@@ -55,11 +56,11 @@ struct AskNumber {
     const WindingNumber::Estimate found = winding.estimate(point.at, 0.6 * WindingNumber::rough_error);
     return {found.value, (1 - 1e-9) * WindingNumber::rough_error - found.error};
   }
-  /// Any rough number is accurate enough.
+  /// No margin is needed: any number within the allowed error may be shared.
   [[nodiscard]] static double rounding_at(const NumberedPoint& /*point*/) { return 0; }
 };
 
-/// Answers of a group, which its other points may share.
+/// Answers of a group of points. Points may take over the answers of others.
 template <class Ask>
 class SharedAnswers {
  public:
@@ -71,12 +72,12 @@ class SharedAnswers {
     reach_.fill(-HUGE_VAL);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const double rounding = ask.rounding_at(points[k]);
-      // Without a boundary, winding numbers are whole, so all answers have a margin of nearly 1/2.
+      // Without a boundary, winding numbers are whole, so every answer has a margin of nearly 1/2.
       needed_[k] = gradient_ > 0 ? rounding / gradient_ : rounding < 0.25 ? 0.0 : HUGE_VAL;
     }
   }
 
-  /// Returns the answer of a point. It is called once for each point.
+  /// Returns the answer of a point. Must be called once for each point.
   [[nodiscard]] Value of(std::size_t k) {
     if (const std::optional<std::size_t> other = sharing(k)) {
       const double way = length(points_[k].at - points_[*other].at) * (1 + 1e-12);
@@ -91,10 +92,10 @@ class SharedAnswers {
 
  private:
   static constexpr double everywhere = std::numeric_limits<double>::max();
-  /// Number of steps in the order of the points within which neighbours are looked for.
+  /// Neighbours are searched at most this many steps away in the order of the points.
   static constexpr std::size_t most_steps = 12;
 
-  /// Returns a point whose answer also holds for k. Neighbours come first, then the evaluated points.
+  /// Returns a point whose answer also holds for k. Neighbours in the order are tried first, then the evaluated points.
   [[nodiscard]] std::optional<std::size_t> sharing(std::size_t k) const {
     for (std::size_t step = 1; step <= most_steps; ++step) {
       if (k >= step && holds(k - step, k)) return k - step;
@@ -106,7 +107,7 @@ class SharedAnswers {
     return std::nullopt;
   }
 
-  /// Returns true if the answer of one point is also that of another.
+  /// Returns true if the answer of the point `from` also holds for the point `to`.
   [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
     const double free = std::min(points_[from].distance + points_[to].distance - slack_, reach_[from] - needed_[to]);
     return free > 0 && squared_length(points_[to].at - points_[from].at) < free * free * (1 - 1e-12);
@@ -116,9 +117,10 @@ class SharedAnswers {
   std::span<const Point> points_;
   double gradient_;
   double slack_;
-  /// Per point: how far its answer holds, unless a triangle lies between; negative if it has none yet.
+  /// Per point: distance within which its answer holds, unless a triangle lies between. Negative if the point has no
+  /// answer yet.
   std::array<double, most_shared> reach_;
-  /// Per point: how much of that reach must be left for it to take over an answer.
+  /// Per point: part of another point's reach that must be left when it takes over that point's answer.
   std::array<double, most_shared> needed_;
   std::array<Value, most_shared> value_;
   InlineList<std::uint16_t, 64> asked_;

@@ -21,25 +21,27 @@ namespace {
 
 inline constexpr std::uint32_t no_patch = 0xffffffff;
 
-/// Sets of triangles that are connected across edges. Exactly two triangles share such an edge, in opposite directions.
-/// No triangle of a set is too flat, or touches or crosses a triangle that is not a neighbour.
+/// Patches: sets of triangles that are connected across edges. Exactly two triangles share such an edge, and traverse
+/// it in opposite directions. No triangle of a patch is too flat for a normal. None touches or crosses a triangle that
+/// is not its neighbour.
 struct Patches {
   std::uint32_t count = 0;
-  /// Per site: the patch of all triangles at it. It is no_patch if they are not of one patch, or if another vertex or
-  /// edge lies in the same place.
+  /// Per site: the patch that contains all triangles at the site. It is no_patch if these are not all in one patch. It
+  /// is also no_patch if another vertex or edge coincides with the site.
   std::vector<std::uint32_t> of_site;
   /// Largest triangle of each patch.
   std::vector<std::uint32_t> largest;
 };
 
-/// Number of uses of an edge, balance of their directions, and the last triangle that uses it.
+/// Uses of one edge by triangles: their number, the balance of their directions, and the last triangle.
 struct EdgeUse {
   std::uint32_t count = 0;
   std::int32_t balance = 0;
   std::uint32_t triangle = 0;
 };
 
-/// Finds triangles that nothing touches and that have a normal. The result is empty if too many triangles touch.
+/// Finds triangles that have a normal and that no other triangle touches, except neighbours. The result is empty if too
+/// many triangles touch.
 std::vector<bool> find_free_triangles(const MeshView& mesh, const Context& context) {
   const std::size_t most = 1000 + mesh.triangles.size() / 4;
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
@@ -53,7 +55,7 @@ std::vector<bool> find_free_triangles(const MeshView& mesh, const Context& conte
   return is_free;
 }
 
-/// Finds the vertices at places with more than one vertex that primitives use.
+/// Finds vertices that lie at the same position as another vertex in use.
 std::vector<bool> find_shared_places(const MeshView& mesh) {
   const std::vector<std::uint32_t> place = weld_clusters(mesh.vertices);
   std::vector<bool> is_named(mesh.vertices.size(), false);
@@ -65,7 +67,7 @@ std::vector<bool> find_shared_places(const MeshView& mesh) {
   return is_shared;
 }
 
-/// Adds a patch to those of a site. Different patches give no_patch.
+/// Combines a patch with the patch of a site so far. If they differ, the result is no_patch.
 void add(std::uint32_t patch, bool is_first, std::uint32_t& common) {
   if (is_first) common = patch;
   if (common != patch) common = no_patch;
@@ -154,7 +156,8 @@ class Finder {
         is_seen[e] = true;
       }
     }
-    // Free segments are not a boundary, but a point closest to one is not closest to a triangle.
+    // Free segments and points do not change winding numbers. But if a query is closest to one of them, no triangle
+    // decides its side.
     for (const Segment& s : mesh_.segments) out.of_site[s[0]] = out.of_site[s[1]] = no_patch;
     for (const std::uint32_t v : mesh_.points) out.of_site[v] = no_patch;
   }
@@ -167,7 +170,8 @@ class Finder {
 
 /// Finds the patches of a mesh.
 /// @throws Cancelled.
-/// Cost: that of find_self_intersections(). More pairs than 1,000 plus a quarter of the triangles give no patches.
+/// Cost: that of find_self_intersections(). There are no patches if more pairs of triangles touch than 1,000 plus a
+/// quarter of the number of triangles.
 Patches find_patches(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   std::vector<bool> is_free = find_free_triangles(mesh, context);
   if (is_free.empty()) return {0, std::vector<std::uint32_t>(sites.size(), no_patch), {}};
@@ -176,7 +180,7 @@ Patches find_patches(const MeshView& mesh, const SiteTable& sites, const Context
 
 constexpr std::size_t patches_per_range = 16;
 
-/// Returns the winding number in front of a triangle's middle, or nothing if it is not certain.
+/// Returns the winding number in front of a triangle's middle. Returns nothing if it is uncertain.
 std::optional<int> winding_in_front(const MeshView& mesh, const SiteTable& sites, const Bvh& bvh,
                                     const WindingNumber& winding, std::uint32_t triangle) {
   const SiteId face = sites.id({SiteKind::face, triangle});
@@ -188,7 +192,7 @@ std::optional<int> winding_in_front(const MeshView& mesh, const SiteTable& sites
   const double size = length(normal);
   if (!(size > 0)) return std::nullopt;
   const Vec3d middle = a + (u + v) * (1.0 / 3);
-  // Steps off the triangle get shorter until no other site is as close.
+  // The query point is moved off the triangle by a step. The step is reduced until no other site is equally close.
   double step = 0.1 * std::sqrt(size);
   for (int k = 0; k < 24; ++k, step *= 0.25) {
     const Vec3d place = middle + normal * (step / size);
@@ -240,7 +244,8 @@ bool Sides::is_inside(const Vec3d& query, const NearestSite& nearest) const {
 
 std::optional<bool> Sides::is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const {
   if (method_ == Method::none) return false;
-  // Outside of the bounds the side is known. Far away, rounding may name a wrong site, whose normal faces away.
+  // Outside of the mesh's box the side is known. The closest site could mislead there: far away, rounding may choose a
+  // wrong site, whose normal faces away.
   const bool is_beyond = min(query, bounds_.lower) != bounds_.lower || max(query, bounds_.upper) != bounds_.upper;
   if (method_ == Method::crossings && is_beyond) return level_ < 0;
   if (method_ == Method::sums) return std::nullopt;

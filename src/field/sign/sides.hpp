@@ -16,30 +16,32 @@
 
 namespace blum::sign {
 
-/// Finds sides as planned. It copies the data it needs, so the mesh may be destroyed.
+/// Finds sides according to a sign plan. It copies the data it needs, so the mesh may be destroyed.
 ///
-/// If winding numbers are whole, the one of a query is that of the side of the surface that it faces. Nothing lies
-/// between the query and its closest point. So triangles that nothing touches are gathered in patches, connected across
-/// edges that two of them share. In front of a patch the winding number is the same everywhere; behind it, it is
-/// greater by one. It is computed once per patch. The pseudonormal of a query's closest site decides which side the
-/// query faces. Some queries are evaluated themselves: those closest to a triangle that others touch or cross, and
-/// those of a patch that is not certain.
+/// With whole winding numbers, a query's number is that of the side of the surface that the query faces. The reason:
+/// nothing lies between the query and its closest point. Triangles that no other triangle touches are therefore
+/// collected in patches, connected across edges of exactly two triangles. In front of a patch the winding number is the
+/// same everywhere; behind it, it is greater by one. It is computed once per patch. The pseudonormal of a query's
+/// closest site decides which side of the patch the query faces. The winding number of some queries must be evaluated
+/// directly. These are queries closest to a triangle that others touch or cross, or to a patch with an uncertain
+/// number.
 class Sides {
  public:
-  /// @param bvh  tree of this mesh, to find places beside patches.
+  /// @param bvh  search tree of this mesh, used to find points in front of patches.
   /// @throws Cancelled.
-  /// Cost: with Method::crossings, unless plan.is_simple, the search for all pairs of triangles that touch.
+  /// Cost: with Method::crossings, unless plan.is_simple, a search for all pairs of triangles that touch.
   Sides(const Plan& plan, const MeshView& mesh, const SiteTable& sites, const Bvh& bvh, const Context& context);
 
-  /// Returns true if a query that is not on the surface lies inside. Allocates nothing.
+  /// Returns true if a query is inside. The query must not be on the surface. Allocates nothing.
   [[nodiscard]] bool is_inside(const Vec3d& query, const NearestSite& nearest) const;
 
-  /// Returns the same, or nullopt if the caller must decide: inside if the query's own winding number is above 1/2.
+  /// Returns the same if the closest site decides it. Otherwise returns nullopt, and the caller must decide: inside if
+  /// the query's own winding number is above 1/2.
   [[nodiscard]] std::optional<bool> is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const;
-  /// Returns the winding numbers; null if sites decide all sides.
+  /// Returns the winding numbers; null if the closest sites decide all sides.
   [[nodiscard]] const WindingNumber* winding() const { return winding_ ? &*winding_ : nullptr; }
 
-  /// Returns the number of sites whose queries are evaluated themselves.
+  /// Returns the number of sites that do not decide the side, so that queries closest to them need a winding number.
   [[nodiscard]] std::size_t open_site_count() const;
 
  private:
@@ -50,8 +52,9 @@ class Sides {
   Box3 bounds_;
   std::optional<Pseudonormals> normals_;
   std::optional<WindingNumber> winding_;
-  std::vector<std::uint32_t> patch_;  ///< per site; empty if all are in one patch with 0 in front
-  std::vector<int> in_front_;         ///< winding number in front of each patch
+  /// Patch of each site; empty if all sites are in one patch, with winding number 0 in front.
+  std::vector<std::uint32_t> patch_;
+  std::vector<int> in_front_;  ///< winding number in front of each patch
 };
 
 }  // namespace blum::sign

@@ -25,27 +25,28 @@ namespace {
 inline constexpr std::int64_t block_side = 8;
 inline constexpr std::size_t block_nodes = 512;
 
-/// Unsigned distances at the nodes of a block. Node (x, y, z) is at x + 8 y + 64 z. Nodes outside the grid have
-/// -infinity.
+/// Unsigned distances at the nodes of a block. The index of node (x, y, z) is x + 8 y + 64 z. Nodes outside of the grid
+/// have -infinity.
 struct NodeBlock {
   alignas(64) std::array<float, block_nodes> distance;
 };
 
-/// Sets of nodes of a block that certainly lie on the same side.
+/// Partition of a block's nodes into parts. All nodes of a part are certainly on the same side of the surface.
 struct BlockParts {
-  /// Part of each node.
+  /// Part index of each node.
   std::array<std::uint16_t, block_nodes> part;
-  /// Per part: its node with the largest distance, and the length of a path that suffices between any two of its nodes.
-  /// Lengths are in steps of the largest spacing.
+  /// Per part: its node with the largest distance, and a length. Any two of its nodes are connected by a path of at
+  /// most this length. Lengths are in steps of the largest spacing.
   std::array<std::uint16_t, block_nodes> representative;
   std::array<std::uint16_t, block_nodes> path;
   std::size_t count = 0;
 };
 
-/// Limits of safe steps. A step between nodes is safe if their distances add up to more than `limit` for its direction.
+/// Limits of safe steps. A step between two nodes is safe (no triangle lies between them) if their distances add up to
+/// more than `limit`.
 struct StepLimits {
   Vec3d spacing;
-  double slack = 0;  ///< added to each step's length: possible rounding of two distances
+  double slack = 0;  ///< added to each step's length; covers rounding of two distances
 
   [[nodiscard]] float limit(std::size_t axis) const { return static_cast<float>(spacing[axis] + slack); }
 };
@@ -57,30 +58,32 @@ struct BlockGrid {
 
   explicit BlockGrid(const GridSpec& nodes);
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(size[0] * size[1] * size[2]); }
-  /// Returns the first node of a block.
+  /// Returns the indices of a block's first node.
   [[nodiscard]] std::array<std::int64_t, 3> first(std::size_t block) const;
-  /// Returns one past the last node of a block, cut at the grid's end.
+  /// Returns the indices after a block's last node, limited by the grid's size.
   [[nodiscard]] std::array<std::int64_t, 3> last(std::size_t block) const;
 };
 
-/// Nodes known to lie on the same side. The winding number differs by at most `spread` between them.
+/// Set of nodes that are certainly on the same side. The winding number differs by at most `spread` between them.
 struct Component {
-  std::uint64_t node = 0;  ///< node to evaluate: linear index
-  float distance = 0;      ///< distance at that node
+  std::uint64_t node = 0;  ///< linear index of the node to evaluate
+  float distance = 0;      ///< distance at this node
   float spread = 0;
 };
 
-/// Sets of nodes of the grid with a common side. A block is either whole, or has parts with a number per node.
+/// Partition of the grid's nodes into components on the same side. A block is either whole (in one component), or
+/// divided into parts; then each node has a part index.
 class Components {
  public:
   Components(const Field& field, const WindingNumber& winding, double slack, const Context& context);
 
   [[nodiscard]] const BlockGrid& blocks() const { return blocks_; }
-  /// Returns the component roots, ascending.
+  /// Returns the roots of all components, ascending. A root is the index that represents its component.
   [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
   [[nodiscard]] const Component& component(std::uint32_t root) const { return components_[root]; }
   [[nodiscard]] bool is_whole(std::size_t block) const { return parts_at_[block] == whole; }
-  /// Returns the root of a node of a block. `place` is x + 8 y + 64 z in the block; for a whole block any place works.
+  /// Returns the root of the component that contains a node. `place` is the node's index in the block, x + 8 y + 64 z;
+  /// it is ignored for a whole block.
   [[nodiscard]] std::uint32_t root(std::size_t block, std::size_t place) const {
     return parent_[first_component_[block] + (is_whole(block) ? 0u : part_[parts_at_[block] * block_nodes + place])];
   }
@@ -106,29 +109,30 @@ class Components {
   const WindingNumber& winding_;
   BlockGrid blocks_;
   StepLimits limits_;
-  double longest_step_ = 0;                     ///< Largest spacing.
-  std::vector<float> change_;                   ///< Per block: bound on the change of w along a step in or out of it.
-  std::vector<std::uint32_t> parts_at_;         ///< Per block: index of its parts, or `whole`.
-  std::vector<std::uint16_t> part_;             ///< Per node of blocks with parts.
-  std::vector<std::uint32_t> first_component_;  ///< Per block.
+  double longest_step_ = 0;  ///< Largest spacing of the grid.
+  /// Per block: bound on the change of the winding number over one step within the block or across its border.
+  std::vector<float> change_;
+  std::vector<std::uint32_t> parts_at_;         ///< Per block: index of its parts; `whole` if it has none.
+  std::vector<std::uint16_t> part_;             ///< Part index of each node, for blocks with parts.
+  std::vector<std::uint32_t> first_component_;  ///< Per block: index of its first component before joining.
   std::vector<Component> components_;
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint32_t> roots_;
 };
 
-/// One bit per node: word z, bit x + 8 y.
+/// One bit per node: bit x + 8 y of word z.
 using NodeSet = std::array<std::uint64_t, 8>;
 
 constexpr std::array<std::size_t, 3> stride{1, 8, 64};
 
-/// Returns a set with the bit of a node set if the step to its next neighbour along an axis is safe.
+/// Returns the set of nodes from which the step to the next node along an axis is safe.
 NodeSet safe_steps(const NodeBlock& block, std::size_t axis, float limit) {
   NodeSet steps{};
   for (std::size_t node = 0; node + stride[axis] < block_nodes; ++node) {
     const bool is_safe = block.distance[node] + block.distance[node + stride[axis]] > limit;
     steps[node / 64] |= static_cast<std::uint64_t>(is_safe) << (node % 64);
   }
-  // The last node of a row (or slice) has no next one.
+  // The last node along an axis has no next node.
   if (axis == 0) {
     for (std::uint64_t& word : steps) word &= 0x7f7f7f7f7f7f7f7fu;
   }
@@ -138,7 +142,7 @@ NodeSet safe_steps(const NodeBlock& block, std::size_t axis, float limit) {
   return steps;
 }
 
-/// Returns the set and all nodes within one safe step of it.
+/// Returns the set, extended by all nodes within one safe step of it.
 NodeSet grown(const NodeSet& set, const std::array<NodeSet, 3>& steps) {
   NodeSet out;
   for (std::size_t z = 0; z < 8; ++z) {
@@ -160,7 +164,7 @@ NodeSet nodes_in_grid(const NodeBlock& block) {
   return out;
 }
 
-/// Assigns the nodes of a set to the next part.
+/// Makes the nodes of a set the next part. `steps` is the number of steps from its first node to its furthest one.
 void add_part(const NodeBlock& block, const NodeSet& set, std::size_t steps, BlockParts& out) {
   const auto part = static_cast<std::uint16_t>(out.count++);
   std::size_t best = block_nodes;
@@ -175,8 +179,8 @@ void add_part(const NodeBlock& block, const NodeSet& set, std::size_t steps, Blo
   out.path[part] = static_cast<std::uint16_t>(2 * steps);
 }
 
-/// Returns a neighbour across a face or space diagonal that a lone node can reach safely and that is not alone itself.
-/// Returns block_nodes if none exists.
+/// For a lone node (the only one of its part), returns a neighbour across a face or space diagonal. The step to it must
+/// be safe, and it must not be a lone node. Returns block_nodes if there is none.
 std::size_t diagonal_neighbour(const NodeBlock& block, const StepLimits& limits, const BlockParts& parts,
                                std::size_t node) {
   const auto x = static_cast<int>(node % 8), y = static_cast<int>(node / 8 % 8), z = static_cast<int>(node / 64);
@@ -200,7 +204,7 @@ std::size_t diagonal_neighbour(const NodeBlock& block, const StepLimits& limits,
   return block_nodes;
 }
 
-/// Joins lone nodes to a part across a diagonal, and closes the gaps in the numbering.
+/// Adds each lone node to the part of such a neighbour, and renumbers the parts without gaps.
 void join_lone_nodes(const NodeBlock& block, const StepLimits& limits, BlockParts& parts) {
   std::array<std::uint16_t, block_nodes> target;
   bool any = false;
@@ -219,7 +223,7 @@ void join_lone_nodes(const NodeBlock& block, const StepLimits& limits, BlockPart
     if (target[p] != p) continue;
     number[p] = static_cast<std::uint16_t>(count);
     parts.representative[count] = parts.representative[p];
-    // Two lone nodes of a part are each one diagonal (at most 2 steps long) away from it.
+    // A path between two added nodes has one more diagonal at each end, of at most 2 steps each.
     parts.path[count] = static_cast<std::uint16_t>(parts.path[p] == 0 ? 0 : parts.path[p] + 4);
     ++count;
   }
@@ -230,22 +234,23 @@ void join_lone_nodes(const NodeBlock& block, const StepLimits& limits, BlockPart
 }
 
 constexpr std::size_t blocks_per_range = 64;
-/// Largest change of the winding number over a block's part, and over a component.
+/// Largest allowed change of the winding number over a part of a block, and over a component.
 constexpr double part_spread = 0.2;
 constexpr double component_spread = 0.4;
-/// If a step may change the winding number by more, a block's parts would be little more than its nodes. Such a block
-/// joins no component. It is evaluated in smaller and smaller boxes, most of which lie further from the boundary.
+/// If one step may change the winding number by more, parts would contain little more than one node each. Such a block
+/// joins no component. It is evaluated in boxes that are halved repeatedly; most of these lie further from the
+/// boundary.
 constexpr float change_to_ask_at = 0.05F;
-/// Longer than any path within a block.
+/// Longer than any path within a block, so that it does not limit the parts.
 constexpr std::size_t unlimited_steps = 511;
 
 float rounded_up(double value) {
   return value < 1e30 ? std::nextafter(static_cast<float>(value), HUGE_VALF) : HUGE_VALF;
 }
 
-/// Finds the parts of a block: nodes joined by safe steps along the axes, at most `max_steps` from the part's first
-/// node. Lone nodes then join a neighbour across a diagonal if that is safe.
-/// @param max_steps  0 leaves every node on its own.
+/// Finds the parts of a block. A part's nodes are connected by safe steps along the axes, and at most `max_steps` from
+/// its first node. Lone nodes then join the part of a diagonal neighbour if that is safe.
+/// @param max_steps  if 0, every node becomes a part.
 void find_parts(const NodeBlock& block, const StepLimits& limits, std::size_t max_steps, BlockParts& out) {
   out.count = 0;
   out.part.fill(0);
@@ -285,10 +290,10 @@ std::array<std::int64_t, 3> BlockGrid::last(std::size_t block) const {
   return out;
 }
 
-/// Safe step between neighbouring blocks.
+/// Safe step between nodes of neighbouring blocks.
 struct Components::Join {
   std::uint32_t a = 0, b = 0;
-  float change = 0;  ///< largest change of the winding number
+  float change = 0;  ///< largest change of the winding number over the step
 };
 
 Components::Components(const Field& field, const WindingNumber& winding, double slack, const Context& context)
@@ -304,7 +309,7 @@ Box3 Components::world_box(std::size_t block) const {
   const std::array<std::int64_t, 3> last = blocks_.last(block);
   Box3 box;
   for (int corner = 0; corner < 8; ++corner) {
-    // One step further on all sides, so that the box contains steps to neighbouring blocks.
+    // The box is extended by one step on all sides, so that it contains all steps to neighbouring blocks.
     box.extend(blocks_.grid.position((corner & 1) != 0 ? last[0] : first[0] - 1,
                                      (corner & 2) != 0 ? last[1] : first[1] - 1,
                                      (corner & 4) != 0 ? last[2] : first[2] - 1));
@@ -327,7 +332,7 @@ NodeBlock Components::load(std::size_t block) const {
   return out;
 }
 
-/// Returns true if every step within the block is safe, and w changes little enough over it.
+/// Returns true if every step within the block is safe and the winding number changes little enough over the block.
 bool Components::is_whole_block(std::size_t block) const {
   const std::array<std::int64_t, 3> first = blocks_.first(block);
   const std::array<std::int64_t, 3> last = blocks_.last(block);
@@ -341,7 +346,8 @@ bool Components::is_whole_block(std::size_t block) const {
   const double steps = (reach.x + reach.y + reach.z) * 2 / longest_step_;
   if (static_cast<double>(change_[block]) * steps > part_spread) return false;
   const double at_middle = static_cast<double>(field_.distance[blocks_.grid.index(middle[0], middle[1], middle[2])]);
-  if (at_middle > length(reach) + limits_.slack) return true;  // a ball around the middle is free of triangles
+  // The ball around the middle node contains the block and no triangle.
+  if (at_middle > length(reach) + limits_.slack) return true;
   const auto safe = static_cast<float>((longest_step_ + limits_.slack) / 2);
   if (at_middle <= static_cast<double>(safe)) return false;
   for (std::int64_t z = first[2]; z < last[2]; ++z) {
@@ -375,7 +381,7 @@ void Components::classify(const Context& context) {
 }
 
 void Components::split_blocks(const Context& context) {
-  // Components are found per range of blocks, then numbered in the order of blocks.
+  // Components are found for each range of blocks separately, and then numbered in the order of blocks.
   const std::size_t range_count = (blocks_.count() + blocks_per_range - 1) / blocks_per_range;
   std::vector<std::vector<Component>> found(range_count);
   first_component_.assign(blocks_.count(), 0);
@@ -413,7 +419,7 @@ void Components::split_blocks(const Context& context) {
   for (const auto& part : found) total += part.size();
   if (total >= whole) {
     throw OutOfMemory("the sign of this grid falls into " + std::to_string(total) +
-                      " separate sets of nodes, more than 2^32 - 1: compute it in slabs");
+                      " separate sets of nodes, more than 2^32 - 1: compute the field in slabs");
   }
   components_.reserve(total);
   for (std::size_t range = 0; range < range_count; ++range) {
@@ -497,7 +503,8 @@ void Components::join_blocks(const Context& context) {
   });
   parent_.resize(components_.size());
   for (std::size_t c = 0; c < parent_.size(); ++c) parent_[c] = static_cast<std::uint32_t>(c);
-  // On one thread and in the order of blocks, because the order decides which joins fit into the allowed spread.
+  // This loop runs on one thread, in the order of blocks, because the order decides which joins stay within the allowed
+  // spread.
   for (const std::vector<Join>& range : joins) {
     for (const Join& step : range) join(step);
   }
@@ -543,13 +550,13 @@ class SignWriter {
     if (winding_.is_inside(field_.grid.position(at[0], at[1], at[2]))) negate(node);
   }
 
-  /// Evaluates a box of nodes over which the winding number may cross 1/2. If its change from the middle is too small
-  /// for that, the nodes share one answer. Otherwise the box is split into eight.
+  /// Evaluates a box of nodes over which the winding number may cross 1/2. If the number changes too little from the
+  /// box's middle to cross it, all nodes get one answer. Otherwise the box is divided into eight.
   void ask_box(const Corner& first, const Corner& last) {
     const Corner size{last[0] - first[0], last[1] - first[1], last[2] - first[2]};
     const Corner middle{first[0] + size[0] / 2, first[1] + size[1] / 2, first[2] + size[2] / 2};
     const std::size_t node = field_.grid.index(middle[0], middle[1], middle[2]);
-    // A bound on the change costs more than a few answers.
+    // For so few nodes, evaluating each costs less than a bound on the change.
     if (size[0] * size[1] * size[2] <= few_nodes) {
       for_each_node(first, last, [&](std::size_t each, const Corner& at) { ask_node(each, at); });
       return;
@@ -615,7 +622,7 @@ double common_diagonal(const MeshView& mesh, const GridSpec& grid) {
   return box.diagonal();
 }
 
-/// Returns the side of every component, indexed by root.
+/// Returns the side of every component, indexed by its root.
 std::vector<Side> ask_components(const Components& components, const WindingNumber& winding, const GridSpec& grid,
                                  const Context& context) {
   const std::vector<std::uint32_t>& roots = components.roots();
@@ -659,7 +666,7 @@ void write_block(const Components& components, const std::vector<Side>& sides, s
 
 WindingSignCounts apply_winding_sign(Field& field, const MeshView& mesh, const WindingNumber& winding,
                                      const Context& context) {
-  // Covers two distances, each off by at most 1e-6 of the diagonal, and rounding of their sum.
+  // Covers the errors of two distances, each at most 1e-6 of the diagonal, and the rounding of their sum.
   const double slack = 4e-6 * common_diagonal(mesh, field.grid);
   const Components components(field, winding, slack, context);
   const std::vector<Side> sides = ask_components(components, winding, field.grid, context);

@@ -23,8 +23,8 @@ Vec3d center_of(const Box3& box) {
 
 struct BoxBvh::Data {
   Box3 bounds;
-  std::vector<std::uint32_t> order;  ///< the box at each rank
-  BoxTree tree;                      ///< leaf k is the box of rank k
+  std::vector<std::uint32_t> order;  ///< index of the box at each rank (position in spatial order)
+  BoxTree tree;                      ///< leaf k is the box at rank k
 
   [[nodiscard]] Box3 box(std::size_t rank) const { return box_at(tree.levels.front()[rank / lanes], rank % lanes); }
 
@@ -52,7 +52,7 @@ BoxBvh::~BoxBvh() = default;
 void BoxBvh::refit(std::span<const Box3> boxes, const Context& context) {
   if (boxes.size() != size()) {
     throw InvalidOption("a hierarchy of " + std::to_string(size()) + " boxes cannot be refitted to " +
-                        std::to_string(boxes.size()) + "; build a new one");
+                        std::to_string(boxes.size()) + " boxes; build a new hierarchy");
   }
   data_->fill(boxes, context);
 }
@@ -106,7 +106,7 @@ namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-/// Returns the pairs that find(rank, pairs) adds for all ranks, sorted.
+/// Calls find(rank, pairs), which appends pairs, for all ranks. Returns all pairs, sorted.
 template <class Find>
 Pairs all_pairs(std::size_t ranks, const Context& context, const Find& find) {
   std::vector<Pairs> parts((ranks + pair_grain - 1) / pair_grain);

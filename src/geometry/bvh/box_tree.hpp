@@ -18,7 +18,7 @@
 
 namespace blum {
 
-/// Eight boxes, stored axis by axis. An empty box (+inf, -inf) is infinitely far from everything.
+/// Eight boxes, stored axis by axis. An empty box (+inf, -inf) is infinitely far from every point and box.
 struct alignas(64) BoxBlock {
   double lower[3][lanes];
   double upper[3][lanes];
@@ -29,14 +29,14 @@ struct alignas(64) BoxBlock {
           {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]}};
 }
 
-/// Computes the squared distances from a point to eight boxes; 0 inside.
+/// Computes the squared distances from a point to eight boxes. The distance is 0 if the point is in the box.
 void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]);
 
 /// Returns a bit for each box of a block that touches `box`.
 [[nodiscard]] unsigned touching(const BoxBlock& block, const Box3& box);
 
-/// Complete tree over consecutive leaves. Block i of level k holds the boxes of blocks 8 i ... 8 i + 7 of the level
-/// below (of leaves for k = 0). The last level has one block.
+/// Complete tree over consecutive leaves. Block i of level k > 0 contains the boxes of blocks 8 i ... 8 i + 7 of level
+/// k - 1. For k = 0 these are the boxes of leaves 8 i ... 8 i + 7. The last level has one block.
 template <class Block>
 struct BlockTree {
   std::vector<std::vector<Block>> levels;
@@ -51,8 +51,8 @@ using BoxTree = BlockTree<BoxBlock>;
 /// @param leaves  one box per leaf.
 [[nodiscard]] BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context);
 
-/// Calls visit(leaf) for each leaf whose box touches `box`, until it returns false. Allocates nothing.
-/// @param first_leaf  leaves before this one are skipped.
+/// Calls visit(leaf) for each leaf whose box touches `box`, until a call returns false. Allocates nothing.
+/// @param first_leaf  leaves with a smaller index are skipped.
 template <class Block, class Box, class Visit>
 void for_each_touching(const BlockTree<Block>& tree, const Box& box, std::size_t first_leaf, const Visit& visit) {
   if (tree.is_empty()) return;
@@ -60,7 +60,7 @@ void for_each_touching(const BlockTree<Block>& tree, const Box& box, std::size_t
     std::uint32_t block;
     std::int32_t level;  ///< -1 for a leaf
   };
-  std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
+  std::array<Item, 128> stack;  // the stack contains at most seven siblings from each of at most eleven levels
   std::size_t size = 0;
   stack[size++] = {0, tree.top()};
   while (size > 0) {
@@ -72,29 +72,29 @@ void for_each_touching(const BlockTree<Block>& tree, const Box& box, std::size_t
     const Block& block = tree.levels[static_cast<std::size_t>(item.level)][item.block];
     for (unsigned bits = touching(block, box); bits != 0; bits &= bits - 1) {
       const std::size_t child = item.block * lanes + static_cast<std::size_t>(std::countr_zero(bits));
-      // A child of level k covers 8^k leaves.
+      // A child at level k contains 8^k leaves.
       const std::size_t end = (child + 1) << (3 * static_cast<unsigned>(item.level));
       if (end > first_leaf) stack[size++] = {static_cast<std::uint32_t>(child), item.level - 1};
     }
   }
 }
 
-/// Node or leaf that a search has yet to visit, keyed by its distance.
+/// Node or leaf that a search still has to visit, with its distance as key.
 struct PendingBox {
   double key = 0;
   std::uint32_t block = 0;
   std::int32_t level = 0;  ///< -1 for a leaf
 };
 
-/// Depth-first work list. At most seven siblings wait on each of at most eleven levels.
+/// Stack of a depth-first search. It contains at most seven siblings from each of at most eleven levels.
 struct PendingBoxes {
   InlineList<PendingBox, 128> items;
 
-  /// Pushes the children of a node whose keys are at most `limit`, so that the child with the smallest key is popped
-  /// first.
+  /// Pushes the children of a node with keys of at most `limit`. The child with the smallest key is on top of the
+  /// stack.
   void push_children(const PendingBox& parent, const double (&keys)[lanes], double limit) {
     const std::size_t bottom = items.size();
-    unsigned within = 0;  // branch-free, because branches would be mispredicted
+    unsigned within = 0;  // computed without branches, which would often be mispredicted
     for (std::size_t lane = 0; lane < lanes; ++lane) within |= static_cast<unsigned>(keys[lane] <= limit) << lane;
     for (; within != 0; within &= within - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(within));
@@ -107,12 +107,12 @@ struct PendingBoxes {
   }
 };
 
-/// Calls limit = visit(leaf) for the leaves whose boxes are within `limit` of a point, nearer children first. Allocates
-/// nothing.
+/// Calls limit = visit(leaf) for the leaves whose boxes are within `limit` of a point. Among siblings, nearer ones are
+/// visited first. Allocates nothing.
 template <class Visit>
 void visit_near(const BoxTree& tree, const Vec3d& point, double limit, const Visit& visit) {
-  // Rounding must not put this below the square of the limit. The cap excludes empty boxes, which are infinitely far
-  // away.
+  // The value must not be rounded to less than the square of the limit. The upper bound excludes empty boxes, which are
+  // infinitely far away.
   const auto squared_limit = [&] {
     return limit < 0 ? -1 : std::min(limit * limit * (1 + 1e-14), std::numeric_limits<double>::max());
   };
@@ -132,13 +132,13 @@ void visit_near(const BoxTree& tree, const Vec3d& point, double limit, const Vis
   }
 }
 
-/// Computes t >= 0 at which a ray enters each of eight boxes; NaN if it misses the box. Never later than the exact
-/// value.
+/// Computes the t >= 0 at which a ray enters each of eight boxes; NaN if it misses the box. Rounding never makes a
+/// result larger than the exact value.
 /// @param inverse  reciprocals of the direction's components; 0 for components that are 0.
 void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double (&out)[lanes]);
 
-/// Calls limit = visit(leaf) for the leaves whose boxes a ray meets between t = 0 and `limit`, nearer children first.
-/// Allocates nothing.
+/// Calls limit = visit(leaf) for the leaves whose boxes a ray meets between t = 0 and `limit`. Among siblings, nearer
+/// ones are visited first. Allocates nothing.
 template <class Visit>
 void visit_along(const BoxTree& tree, const Ray& ray, double limit, const Visit& visit) {
   if (tree.is_empty()) return;
@@ -159,7 +159,7 @@ void visit_along(const BoxTree& tree, const Ray& ray, double limit, const Visit&
   }
 }
 
-/// Returns true if `box` touches the box of a leaf. Allocates nothing.
+/// Returns true if `box` touches the box of some leaf. Allocates nothing.
 [[nodiscard]] bool may_touch(const BoxTree& tree, const Box3& box);
 
 }  // namespace blum

@@ -18,9 +18,10 @@ namespace {
 
 constexpr std::size_t leaf_grain = 512;
 constexpr std::size_t query_grain = 512;
-/// Candidates within this slack of the best distance, relative to the lengths involved, are evaluated exactly.
+/// Candidates whose approximate distance exceeds the best one by at most this are evaluated exactly. Relative to the
+/// lengths involved.
 constexpr double candidate_slack = 2e-12;
-/// Error of distances because closest points are rounded as coordinates, relative to the largest coordinate.
+/// Error of distances that is due to rounding the coordinates of closest points. Relative to the largest coordinate.
 constexpr double coordinate_slack = 4e-15;
 
 /// A primitive in the form that PrimitiveBlock stores.
@@ -28,7 +29,7 @@ struct Primitive {
   std::array<std::uint32_t, 3> vertices{};
   std::array<SiteId, 3> edges{SiteId::none(), SiteId::none(), SiteId::none()};
   SiteId face = SiteId::none();
-  /// The index in `vertices` of the mesh triangle's first, second and third corner, two bits each.
+  /// For each corner of the mesh triangle (first, second, third): its index in `vertices`, two bits each.
   std::uint8_t corners = 0b10'01'00;
 };
 
@@ -108,7 +109,7 @@ Box3 box_around(const Ray& ray, double end) {
 
 struct Bvh::Data {
   Box3 bounds;
-  double scale = 1;  ///< factor from mesh coordinates to block coordinates
+  double scale = 1;  ///< factor from mesh coordinates to the coordinates of blocks
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::vector<std::uint32_t> order;  ///< primitives in leaf order
@@ -116,13 +117,13 @@ struct Bvh::Data {
   std::vector<PrimitiveBlock> leaves;
   BoxTree tree;
 
-  /// A query in block units, and the error bound of approximate distances.
+  /// Query in the coordinates of blocks, and the error bound of approximate distances.
   struct Query {
     Vec3d point;
     double slack = 0;
   };
 
-  /// Returns nullopt if the query is out of range or the tree is empty.
+  /// Returns nullopt if the query's coordinates are out of range or the tree is empty.
   [[nodiscard]] std::optional<Query> prepare(const Vec3d& query) const {
     const Vec3d q = query * scale;
     const double coordinate = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)});
@@ -133,23 +134,24 @@ struct Bvh::Data {
 
   [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
 
-  /// The last leaf repeats its last primitive; the copies are not reported.
+  /// Unused lanes of the last leaf repeat its last primitive; these copies are not reported.
   [[nodiscard]] bool is_triangle(std::size_t leaf, std::size_t lane) const {
     return lane < lanes_of(leaf) && order[leaf * lanes + lane] < triangles;
   }
 
-  /// Calls limit = offer(leaf, lane, limit) for the primitives that may lie within `limit`, in block units.
+  /// Calls limit = offer(leaf, lane, limit) for the primitives that may lie within `limit`. Lengths are in the units of
+  /// blocks.
   template <class Offer>
   void for_each_candidate(const Query& query, double limit, const Offer& offer) const {
     visit_near(tree, query.point, limit, [&](std::size_t leaf) {
       double distances[lanes];
       approximate_distances(leaves[leaf], query.point, distances);
-      unsigned within = 0;  // branch-free, because branches would be mispredicted
+      unsigned within = 0;  // computed without branches, which would often be mispredicted
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         within |= static_cast<unsigned>(distances[lane] <= limit) << lane;
       }
       if (within == 0) return limit;
-      // The most promising candidate first: it usually rules out the others.
+      // The candidate with the smallest approximate distance is offered first: it usually excludes the others.
       std::size_t first = 0;
       for (std::size_t lane = 1; lane < lanes; ++lane) first = distances[lane] < distances[first] ? lane : first;
       for (limit = offer(leaf, first, limit), within &= ~(1U << first); within != 0; within &= within - 1) {
@@ -167,7 +169,7 @@ struct Bvh::Data {
     return {best.point / scale, best.distance / scale, best.site, order[leaf * lanes + lane]};
   }
 
-  /// Converts a crossing from the corner order of blocks to that of the mesh triangle.
+  /// Converts a crossing from the corner order of its block to that of the mesh triangle.
   [[nodiscard]] RayCrossing as_given(const detail::TriangleCrossing& found, std::size_t leaf, std::size_t lane,
                                      double t) const {
     const std::size_t rank = leaf * lanes + lane;
@@ -198,7 +200,7 @@ struct Bvh::Data {
     tree = make_box_tree(boxes, context);
   }
 
-  /// Returns the bounds of the primitives for moved vertices.
+  /// Returns the box around the primitives when the vertices are at the positions `moved`.
   [[nodiscard]] Box3 bounds_of(std::span<const Vec3d> moved, const Context& context) const;
 };
 
@@ -223,7 +225,7 @@ Bvh::Bvh(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   parallel_for(context, data->leaves.size(), leaf_grain, "", [&](const WorkRange& range) {
     for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        // The last leaf repeats its last primitive.
+        // Unused lanes of the last leaf repeat its last primitive.
         const std::size_t rank = std::min(leaf * lanes + lane, count - 1);
         const Primitive p = reader.read(data->order[rank]);
         if (leaf * lanes + lane == rank) data->turns[rank] = p.corners;
@@ -271,7 +273,8 @@ void Bvh::refit(std::span<const Vec3d> vertices, const Context& context) {
   Data& data = *data_;
   if (vertices.size() != data.vertices) {
     throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data.vertices) +
-                      " vertices cannot be refitted to " + std::to_string(vertices.size()) + "; build a new one");
+                      " vertices cannot be refitted to " + std::to_string(vertices.size()) +
+                      " vertices; build a new hierarchy");
   }
   data.bounds = data.bounds_of(vertices, context);
   data.scale = unit_scale(data.bounds);
@@ -341,7 +344,7 @@ std::optional<NearestPrimitive> Bvh::nearest_wanted(const Vec3d& query, Function
   if (!q) return best;
   const double furthest = max_distance * data.scale + q->slack;
   data.for_each_candidate(*q, furthest, [&](std::size_t leaf, std::size_t lane, double limit) {
-    // The predicate is cheaper than the exact distance.
+    // The predicate is called first, because it costs less than the exact distance.
     if (lane >= data.lanes_of(leaf) || !is_wanted(data.order[leaf * lanes + lane])) return limit;
     const NearestPrimitive found = data.closest(leaf, lane, q->point);
     if (found.distance > max_distance || (best && !is_nearer(found, *best))) return limit;
@@ -353,7 +356,7 @@ std::optional<NearestPrimitive> Bvh::nearest_wanted(const Vec3d& query, Function
 
 std::vector<NearestPrimitive> Bvh::nearest_primitives(const Vec3d& query, std::size_t k, double max_distance) const {
   const Data& data = *data_;
-  std::vector<NearestPrimitive> best;  // a heap with the furthest on top
+  std::vector<NearestPrimitive> best;  // a heap with the furthest primitive on top
   const std::optional<Data::Query> q = data.prepare(query);
   if (!q || k == 0) return best;
   data.for_each_candidate(
@@ -396,7 +399,7 @@ std::vector<NearestPrimitive> Bvh::within(const Vec3d& query, double distance) c
   return out;
 }
 
-/// Calls visit(leaf) for the leaves of a part whose boxes touch a box, until it returns false.
+/// Calls visit(leaf) for the leaves of a part of the tree whose boxes touch a box, until a call returns false.
 template <class Visit>
 void Bvh::Data::for_each_leaf(const BvhPart& part, const Box3& box, const Visit& visit) const {
   for (const BvhPart::Leaves& leaves : part.leaves_) {
@@ -407,19 +410,19 @@ void Bvh::Data::for_each_leaf(const BvhPart& part, const Box3& box, const Visit&
 }
 
 /// Calls limit = visit(crossing) for the triangles that a ray crosses at t <= limit.
-/// @param go  calls its last argument for leaves that the ray may cross, as visit_along() does.
+/// @param go  calls its last argument for the leaves that the ray may cross, as visit_along() does.
 template <class Go, class Visit>
 void Bvh::Data::cross(const Ray& ray, double limit, const Go& go, const Visit& visit) const {
   if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return;
   const auto [scaled_ray, factor] = detail::scaled_direction({ray.origin * scale, ray.direction});
   const Ray& scaled = scaled_ray;
   if (!prepare(ray.origin)) return;
-  // Converts t to block units: lengths are `scale` times, directions 1 / factor times those of the caller.
+  // Converts t to block units. Lengths there are `scale` times those of the caller, and directions 1 / factor times.
   const double t_factor = factor * scale;
   double furthest = limit;
   go(scaled, furthest * t_factor, [&](std::size_t leaf) {
     const PrimitiveBlock& block = leaves[leaf];
-    // Slightly beyond the limit, so that crossings at the limit itself are found as far as rounding allows.
+    // The end is slightly beyond the limit, so that crossings at the limit itself are found if rounding allows.
     const double end = std::min(furthest * t_factor * (1 + 1e-9), 1e300);
     for (unsigned bits = may_cross(block, scaled, end); bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
@@ -499,8 +502,8 @@ std::vector<std::optional<RayCrossing>> Bvh::first_crossings(std::span<const Ray
   return out;
 }
 
-/// Calls visit(triangle) for the triangles of a leaf that may meet `probe`, until it returns false.
-/// @return  false if `visit` returned false.
+/// Calls visit(triangle) for the triangles of a leaf that may meet `probe`, until a call returns false.
+/// @return  false if a call of `visit` returned false.
 template <class Visit>
 bool Bvh::Data::visit_near_in(std::size_t leaf, const ProbeTriangle& probe, const Visit& visit) const {
   for (unsigned bits = may_meet(leaves[leaf], probe); bits != 0; bits &= bits - 1) {

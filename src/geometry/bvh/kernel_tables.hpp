@@ -1,7 +1,8 @@
 // Blum: kernels for the machine's best instruction set. SPDX-License-Identifier: Apache-2.0
 //
-// For files that are compiled once per instruction set. Include it after their kernels, within HWY_ONCE and an unnamed
-// namespace. Each kernel is chosen once: loops take tens of nanoseconds, so a look-up per call would be noticeable.
+// Helper for files that are compiled once per instruction set. Include it after their kernels, within HWY_ONCE and an
+// unnamed namespace. Each kernel's function is chosen once. Loops take only tens of nanoseconds, so choosing it in each
+// call would cost noticeable time.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 #if defined(BLUM_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1))
 namespace blum {
 
-/// Returns the index of the best instruction set in the tables of functions.
+/// Returns the index of the machine's best instruction set in the tables of functions.
 inline std::size_t best_target() {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   return hwy::GetChosenTarget().GetIndex();

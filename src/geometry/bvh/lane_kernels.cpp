@@ -1,5 +1,5 @@
-// Loops over the lanes of a block, vectorised by the compiler. With Highway they are compiled once per instruction set;
-// the machine's best one is chosen at program start. Without it (BLUM_SIMD=OFF, or Highway is not installed) they are
+// Loops over the lanes of a block, vectorised by the compiler. With Highway they are compiled once per instruction set,
+// and the machine's best one is chosen at program start. Without Highway (BLUM_SIMD=OFF, or not installed) they are
 // compiled once, for instructions that every machine has.
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #ifdef BLUM_HIGHWAY
 #undef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // no gain for loops of doubles
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // would not make loops of doubles faster
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/bvh/lane_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -42,7 +42,8 @@ void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[
 }
 
 void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double (&out)[lanes]) {
-  // Each end of a slab is rounded three times (Ize 2013: a factor of 1 + 2 gamma(3) at one end compensates for it).
+  // Widens the slabs of boxes. Each end of a slab is rounded three times; a factor of 1 + 2 gamma(3) at one end
+  // compensates for this (Ize 2013).
   constexpr double widened = 1 + 2e-15;
   alignas(64) double enter[lanes] = {};
   alignas(64) double leave[lanes];
@@ -67,7 +68,7 @@ void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double
   for (std::size_t i = 0; i < lanes; ++i) out[i] = enter[i] <= leave[i] ? enter[i] : NAN;
 }
 
-/// Returns a bit for each lane that holds 1. The other lanes must hold 0.
+/// Returns one bit per lane, set if the lane's flag is 1. All other flags must be 0.
 inline unsigned bits_of(const double (&flags)[lanes]) {
   static_assert(lanes == 8);
   alignas(64) constexpr double weights[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -76,8 +77,8 @@ inline unsigned bits_of(const double (&flags)[lanes]) {
   return static_cast<unsigned>((sum[0] + sum[1]) + (sum[2] + sum[3]));
 }
 
-/// Returns 1 if two boxes touch, else 0. One comparison per factor: with `&&` the compiler branches instead of
-/// vectorising.
+/// Returns 1 if two boxes touch, else 0. The result is a product of single comparisons, because with `&&` the compiler
+/// branches instead of vectorising.
 inline double touch(const BoxBlock& block, std::size_t i, const Box3& box) {
   double all = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -94,7 +95,7 @@ unsigned touching(const BoxBlock& block, const Box3& box) {
 }
 
 unsigned touching_moving(const MovingBlock& block, const MovingBoxF& box) {
-  alignas(64) float gap[lanes];  // the widest gap that stays open from start to end
+  alignas(64) float gap[lanes];  // largest gap along any axis that is open both at the start and at the end
   std::fill_n(gap, lanes, -1.0F);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -111,9 +112,9 @@ unsigned touching_moving(const MovingBlock& block, const MovingBoxF& box) {
   return static_cast<unsigned>(sum);
 }
 
-/// Returns 1 if all corners of a triangle except common ones lie on one side of the other's plane, by the filter of
-/// orient3d. The two triangles then share only these corners. Returns 0 otherwise. Uses sums of flags, because the
-/// compiler splits maxima into scalar code.
+/// Returns 1 if all corners of a triangle, except common ones, lie on one side of the other's plane. Then the two
+/// triangles share only their common corners. Returns 0 if this is not certain, by the error bound of orient3d. Uses
+/// sums of flags, because the compiler splits maxima into scalar code.
 inline double is_beside(const TriangleGroup& group, std::size_t i, const GroupTriangle& other) {
   double above = 1;
   double below = 1;
@@ -127,7 +128,7 @@ inline double is_beside(const TriangleGroup& group, std::size_t i, const GroupTr
         detail::orient3d_rounding *
         (other.magnitude.x * std::abs(x) + other.magnitude.y * std::abs(y) + other.magnitude.z * std::abs(z));
     const double number = group.corner[k][i];
-    double is_common = 0;  // at most one term is 1, and then the height is 0 up to rounding
+    double is_common = 0;  // at most one of the terms is 1; then the height is 0 up to rounding
     for (std::size_t j = 0; j < 3; ++j) is_common += number == other.corners[j] ? 1.0 : 0.0;
     above *= is_common + (height > bound ? 1.0 : 0.0);
     below *= is_common + (height < -bound ? 1.0 : 0.0);
@@ -144,7 +145,7 @@ unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle) {
   return bits_of(meet);
 }
 
-/// Error bounds for sums of products of three rounded factors, like orient3d's, with a margin. The second one covers
+/// Error bounds, with a margin, for sums of products of three rounded factors (as in orient3d). The second bound covers
 /// products so small that they lose digits.
 constexpr double triple_rounding = 1e-14;
 constexpr double least_product = 1e-300;
@@ -154,7 +155,7 @@ inline double is_above(double value, double magnitude) {
   return value > triple_rounding * magnitude + least_product ? 1.0 : 0.0;
 }
 
-/// A sum of products, and the sum of their magnitudes.
+/// Sum of products, and the sum of their magnitudes.
 struct Rounded {
   double value;
   double magnitude;
@@ -177,7 +178,7 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   const Vec3d d = ray.direction;
   alignas(64) double meet[lanes];
   for (std::size_t i = 0; i < lanes; ++i) {
-    // Heights of the ray's origin and end above the triangle's plane, times twice the triangle's area.
+    // Heights of the ray's origin and end above the triangle's plane, multiplied by twice the triangle's area.
     const Vec3d u = corner_at(block, 0, i) - o;
     const Vec3d ab = (corner_at(block, 1, i) - o) - u;
     const Vec3d ac = (corner_at(block, 2, i) - o) - u;
@@ -189,7 +190,7 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
     const double below = is_above(start.value, start.magnitude) * is_above(-last, bound);
     meet[i] = above + below > 0 ? 0.0 : 1.0;
   }
-  // Short rays rarely pass through any of the planes.
+  // Return early, because short rays rarely pass through any of the planes.
   if (bits_of(meet) == 0) return 0;
   for (std::size_t i = 0; i < lanes; ++i) {
     const Vec3d u = corner_at(block, 0, i) - o;
@@ -205,7 +206,7 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   return bits_of(meet);
 }
 
-/// Returns 1 if the box around a triangle touches a box, else 0.
+/// Returns 1 if the bounding box of a triangle touches a given box, else 0.
 inline double touch_around(const Vec3d& u, const Vec3d& v, const Vec3d& w, const Box3& box) {
   double all = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -224,8 +225,8 @@ unsigned may_reach(const PrimitiveBlock& block, const Box3& box) {
     const Vec3d v = corner_at(block, 1, i);
     const Vec3d w = corner_at(block, 2, i);
     const double touch = touch_around(u, v, w, box);
-    // No corner of the box is further than `reach` from its centre along the triangle's normal, which is not of length
-    // 1.
+    // `reach` is the largest distance of a corner of the box from its centre along the triangle's normal, times the
+    // normal's length.
     const Vec3d ab = v - u;
     const Vec3d ac = w - u;
     const double x = std::abs(ab.y * ac.z) + std::abs(ab.z * ac.y);
@@ -289,7 +290,7 @@ void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, doub
     const double ab2 = abx * abx + aby * aby + abz * abz;
     const double ac2 = acx * acx + acy * acy + acz * acz;
     const double bc2 = bcx * bcx + bcy * bcy + bcz * bcz;
-    constexpr double least = 1e-300;  // an edge of length zero has t = 0
+    constexpr double least = 1e-300;  // an edge of length zero gets t = 0
     const double dab = ax * abx + ay * aby + az * abz;
     const double dac = ax * acx + ay * acy + az * acz;
     const double dbc = bx * bcx + by * bcy + bz * bcz;
@@ -303,7 +304,7 @@ void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, doub
         std::min(std::min(x1 * x1 + y1 * y1 + z1 * z1, x2 * x2 + y2 * y2 + z2 * z2), x3 * x3 + y3 * y3 + z3 * z3);
     const double nx = aby * acz - abz * acy, ny = abz * acx - abx * acz, nz = abx * acy - aby * acx;
     const double n2 = nx * nx + ny * ny + nz * nz;
-    // Barycentric coordinates times n2: (n x ab) . aq etc.
+    // Barycentric coordinates of q, multiplied by n2: (n x ab) . aq and so on.
     const double over_c = (ny * abz - nz * aby) * ax + (nz * abx - nx * abz) * ay + (nx * aby - ny * abx) * az;
     const double over_b = -((ny * acz - nz * acy) * ax + (nz * acx - nx * acz) * ay + (nx * acy - ny * acx) * az);
     const double height = nx * ax + ny * ay + nz * az;
@@ -314,7 +315,8 @@ void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, doub
   }
 }
 
-/// Returns the first three terms of the multipole series, in steradians. (x, y, z) points from the query to the centre.
+/// Returns the first three terms of the multipole series, in steradians. (x, y, z) is the vector from the query to the
+/// centre.
 inline double series(const MultipoleBlock& b, std::size_t i, double x, double y, double z, double inverse_squared,
                      double inverse) {
   const double xx = x * x, yy = y * y, zz = z * z;
@@ -329,12 +331,13 @@ inline double series(const MultipoleBlock& b, std::size_t i, double x, double y,
   return inverse_cubed * (first + inverse_squared * (second + inverse_squared * third));
 }
 
-// The kernel of the solid angle, n . (x - q) / |x - q|^3, is the normal derivative of the harmonic series of 1 / |x -
-// q| about the centre. R is the distance of the query from the centre. The term of degree l is at most l |s|^(l-1) /
-// R^(l+1) (Laplace's integral for Legendre polynomials). With t = radius / R, the terms from l = 4 on sum to at most
-// (integral of |s|^3) / R^5 (4 - 3 t) / (1 - t)^2.
+// The kernel of the solid angle is n . (x - q) / |x - q|^3. It is the normal derivative of 1 / |x - q|, which is
+// expanded in a harmonic series about the centre. Let R be the distance of the query q from the centre, and s = x -
+// centre. The term of degree l is at most l |s|^(l-1) / R^(l+1) (Laplace's integral for Legendre polynomials). With t =
+// radius / R, the terms of degree 4 and higher sum to at most (integral of |s|^3) / R^5 (4 - 3 t) / (1 - t)^2.
 void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolerance, FarSum& sum, OpenLanes& others) {
-  // Local arrays cannot alias the block, so the loop vectorises without overlap checks.
+  // The results are first stored in local arrays. These cannot alias the block, so the loop vectorises without checks
+  // for overlap.
   alignas(64) double taken_angle[lanes];
   alignas(64) double taken_error[lanes];
   alignas(64) double open[lanes];
@@ -349,7 +352,8 @@ void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolera
     const double safe_rest = std::max(rest, 1e-3);
     const double bound =
         block.cubed[i] * inverse_squared * inverse_squared * inverse * (1 + 3 * safe_rest) / (safe_rest * safe_rest);
-    // The series does not converge if the query is too close. Factors replace branches for the vectoriser.
+    // If the query is too close, the series does not converge, and the penalty makes the error bound huge. There are no
+    // branches, so that the loop vectorises.
     const double penalty = std::max(1e-3 - rest, 0.0) * 1e300;
     const double taken = bound + penalty <= tolerance ? 1.0 : 0.0;
     taken_angle[i] = taken * value;
@@ -370,17 +374,18 @@ void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double
     const double z = block.center[2][i] - query.z;
     const double inverse = 1 / std::sqrt(std::max(x * x + y * y + z * z, 1e-60));
     const double value = series(block, i, x, y, z, inverse * inverse, inverse);
-    // Lanes without a cluster have radius 0, and are taken for every beta.
+    // Lanes without a cluster have radius 0, so they are taken for every beta.
     const double taken = block.radius[i] * beta * inverse >= 1 ? 0.0 : 1.0;
     sum.solid_angle[i] += taken * value;
     others.open[i] = 1 - taken;
   }
 }
 
-/// If sine and cosine together are below this fraction of their terms, rounding may lose half of their digits.
+/// If both the sine and the cosine are below this fraction of the sum of their terms' magnitudes, rounding may lose
+/// half of the digits.
 constexpr double near_edges = 1e-5;
 
-/// Recomputes the angles of the lanes that `is_near` marks.
+/// Recomputes more accurately the angles of the lanes that `is_near` marks.
 inline void look_closely(const TriangleBlock& block, const Vec3d& query, const double (&is_near)[lanes],
                          double (&cosine)[lanes], double (&sine)[lanes]) {
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -398,10 +403,10 @@ template <bool is_watched>
 inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
                        [[maybe_unused]] double* watched) {
   const auto& p = block.corner;
-  alignas(64) double cosine[lanes];  // of half the angle, up to a factor that `sine` shares
+  alignas(64) double cosine[lanes];  // cosine of half the angle, times a factor that `sine` shares
   alignas(64) double sine[lanes];
-  alignas(64) double largest[lanes];  // the magnitude of their terms
-  alignas(64) double is_near[lanes];  // 1 if both are small against their terms
+  alignas(64) double largest[lanes];  // magnitude of the terms of sine and cosine
+  alignas(64) double is_near[lanes];  // 1 if sine and cosine are both small against their terms
   for (std::size_t i = 0; i < lanes; ++i) {
     const double ax = p[0][0][i] - query.x, ay = p[0][1][i] - query.y, az = p[0][2][i] - query.z;
     const double bx = p[1][0][i] - query.x, by = p[1][1][i] - query.y, bz = p[1][2][i] - query.z;
@@ -411,14 +416,14 @@ inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngl
     const double la = std::sqrt(ax * ax + ay * ay + az * az);
     const double lb = std::sqrt(bx * bx + by * by + bz * bz);
     const double lc = std::sqrt(cx * cx + cy * cy + cz * cz);
-    // a . (b x c) = a . (u x v): the form with edges keeps its accuracy if the query is far away.
+    // a . (b x c) equals a . (u x v). This form with edges u and v stays accurate if the query is far away.
     const double y = ax * (uy * vz - uz * vy) + ay * (uz * vx - ux * vz) + az * (ux * vy - uy * vx);
     const double x = la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la +
                      (cx * ax + cy * ay + cz * az) * lb;
     cosine[i] = x;
     sine[i] = y;
     largest[i] = la * lb * lc;
-    // Magnitude of the sine's terms. Unlike `largest`, it stays large if two corners are both close.
+    // Magnitude of the sine's terms. Unlike `largest`, it stays large if the query is close to two corners.
     const double edges =
         (std::abs(ux) + std::abs(uy) + std::abs(uz)) * (std::abs(vx) + std::abs(vy) + std::abs(vz)) * la;
     is_near[i] = std::abs(x) + std::abs(y) < near_edges * std::max(largest[i], edges) ? 1.0 : 0.0;
@@ -434,9 +439,10 @@ inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngl
     const double up = sum.im[i] >= 0 ? 1.0 : 0.0;
     const double also_up = zy >= 0 ? 1.0 : 0.0;
     const double now_up = py >= 0 ? 1.0 : 0.0;
-    // +1 if both factors are in the upper half plane and the product is not; -1 if both are below and it is above.
+    // Counts full turns. Adds 1 if both factors are in the upper half plane and the product is not. Subtracts 1 in the
+    // same case for the lower half plane.
     sum.turns[i] += up * also_up * (1 - now_up) - (1 - up) * (1 - also_up) * now_up;
-    // Keep the magnitude of the product near 1: each factor is between 1/sqrt(2) and 1.
+    // Keeps the magnitude of the product near 1: after scaling, each factor's magnitude is between 1/sqrt(2) and 1.
     const double magnitude = 1 / (std::abs(px) + std::abs(py));
     sum.re[i] = px * magnitude;
     sum.im[i] = py * magnitude;
@@ -450,7 +456,7 @@ void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum
 
 void add_watched_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
                            double (&inverse)[lanes]) {
-  // A local array cannot alias the block, so the loop vectorises without overlap checks.
+  // Local array: it cannot alias the block, so the loop vectorises without checks for overlap.
   alignas(64) double watched[lanes] = {};
   add_angles<true>(block, query, sum, watched);
   for (std::size_t i = 0; i < lanes; ++i) inverse[i] += watched[i];

@@ -55,8 +55,8 @@ MovingBoxF around(const MovingBlock& block) {
   return box;
 }
 
-/// Maps coordinates to at most 1, monotonically and in single precision. Boxes of other trees may have coordinates of
-/// any size. These are clamped to finite values, because infinite ones mark empty boxes.
+/// Maps coordinates to magnitudes of at most 1, in single precision, preserving order. Boxes from other trees may have
+/// larger coordinates. Infinite values are clamped to finite ones, because infinite coordinates mark empty boxes.
 struct Frame {
   Vec3d middle;
   double scale = 1;
@@ -80,10 +80,10 @@ struct Frame {
 }  // namespace
 
 struct MovingBoxBvh::Data {
-  std::vector<MovingBox> boxes;      ///< by rank
+  std::vector<MovingBox> boxes;      ///< in order of rank (position in spatial order)
   std::vector<std::uint32_t> order;  ///< index of the box at each rank
   Frame frame;
-  std::vector<MovingBlock> blocks;  ///< boxes by rank
+  std::vector<MovingBlock> blocks;  ///< boxes in order of rank
   BlockTree<MovingBlock> tree;      ///< its leaves are `blocks`
 
   void build(const Context& context) {
@@ -163,7 +163,7 @@ void MovingBoxBvh::for_each_self_pair(std::size_t block, FunctionRef<void(std::u
     for (unsigned rows = touching(here, around(blocks)); rows != 0; rows &= rows - 1) {
       const auto row = static_cast<std::size_t>(std::countr_zero(rows));
       unsigned columns = touching(blocks, box_at(here, row));
-      if (there == block) columns &= ~0U << (row + 1);  // each pair once
+      if (there == block) columns &= ~0U << (row + 1);  // each pair only once
       for (; columns != 0; columns &= columns - 1) {
         const auto column = static_cast<std::size_t>(std::countr_zero(columns));
         visit(data_->order[block * lanes + row], data_->order[there * lanes + column]);

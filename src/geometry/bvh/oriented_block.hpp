@@ -1,4 +1,5 @@
-// Blum: blocks of eight oriented boxes, and of eight triangles to compare with another one.
+// Blum: blocks of eight oriented boxes and of eight triangles, and bounds on their distances from another box or
+// triangle.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +16,7 @@ namespace blum {
 struct OrientedBox {
   Vec3d center;
   std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< unit vectors
-  std::array<double, 3> half{};                                               ///< half its size along each axis
+  std::array<double, 3> half{};                                               ///< half-size along each axis
 
   [[nodiscard]] double half_sum() const { return half[0] + half[1] + half[2]; }
 };
@@ -50,10 +51,10 @@ struct alignas(64) OrientedBlock {
   }
 };
 
-/// Computes lower bounds of the squared distances of eight boxes from another box.
+/// Computes lower bounds of the squared distances between eight boxes and another box.
 void squared_gaps(const OrientedBlock& block, const OrientedBox& box, double (&out)[lanes]);
 
-/// A triangle and its unit normal; the normal is 0 for triangles that are too flat.
+/// Triangle and its unit normal. The normal is 0 if the triangle is too flat.
 struct FlatTriangle {
   std::array<Vec3d, 3> corners;
   Vec3d normal;
@@ -81,23 +82,23 @@ struct alignas(64) FlatTriangleBlock {
   }
 };
 
-/// Orientation of a block of triangles.
+/// Common directions of a block of triangles.
 struct BlockShape {
-  Vec3d normal;  ///< sum of normals of length twice the area, all flipped to the side of the first
-  Vec3d along;   ///< from the middle of the first half to that of the second, times 12
+  Vec3d normal;  ///< sum of normals (twice the area long), all flipped to the side of the first one
+  Vec3d along;   ///< vector between the middles of the block's two halves, times 12
 };
 
-/// Sets the normals from the corners; slivers get a normal of 0.
+/// Sets the unit normals of triangles from their corners (0 for slivers), and the block's shape.
 void set_normals(FlatTriangleBlock& block, BlockShape& out);
 
 /// Computes the axis-aligned box around the corners.
 void extent_along_axes(const FlatTriangleBlock& block, Box3& out);
 
-/// Computes the interval that the corners cover along an axis.
+/// Computes the interval along an axis that contains all corners.
 void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high);
 
-/// Computes lower bounds of the squared distances of eight triangles from another one. Gaps are measured along the
-/// coordinate axes, along either normal, and along the line through both middles.
+/// Computes lower bounds of the squared distances between eight triangles and another one. Gaps are measured along the
+/// coordinate axes, along both normals, and along the line through both middles.
 void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]);
 
 }  // namespace blum

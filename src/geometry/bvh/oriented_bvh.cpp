@@ -20,13 +20,13 @@
 namespace blum {
 namespace {
 
-/// Returns a box around boxes whose last axes are orthogonal to the surface in them.
-/// @param bounds  the axis-aligned box around their contents.
+/// Returns a box around boxes. The last axis of each box is orthogonal to the surface inside it.
+/// @param bounds  axis-aligned box around the contents of all boxes.
 [[nodiscard]] OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds);
 
 using Axes = std::array<Vec3d, 3>;
 
-/// Intervals along three axes.
+/// Intervals along three given axes that contain everything added.
 class Extent {
  public:
   explicit Extent(const Axes& axes) : axes_(axes) {}
@@ -59,7 +59,7 @@ class Extent {
   std::array<double, 3> high_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 };
 
-/// Shorter sums of normals have lost digits, because their squares underflow.
+/// Smallest length of a sum of normals. Shorter sums have lost digits, because their squares underflow.
 constexpr double least_normal = 1e-140;
 
 /// Returns two directions orthogonal to `normal` and to each other. The first one is as close to `along` as possible.
@@ -68,7 +68,8 @@ std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   const double size = squared_length(flat);
   if (size > 1e-12 * squared_length(along)) {
     Vec3d u = flat / std::sqrt(size);
-    u -= normal * dot(normal, u);  // again: a short remainder contains rounding along the normal
+    // Repeated, because after cancellation the first result contains rounding errors along the normal.
+    u -= normal * dot(normal, u);
     u = u / length(u);
     return {u, cross(normal, u)};
   }
@@ -81,10 +82,10 @@ std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   return {unit, cross(normal, unit)};
 }
 
-/// Returns the smaller of two boxes: the axis-aligned one, and one aligned to a plane.
-/// @param normal  of the plane, of any length.
-/// @param along   direction of the contents' largest extent.
-/// @param add_to  add_to(extent) adds the contents.
+/// Returns the smaller of two boxes: an axis-aligned box, and one whose last axis is orthogonal to a plane.
+/// @param normal  normal of the plane, of any length.
+/// @param along   direction in which the contents are longest.
+/// @param add_to  callable: add_to(extent) adds the contents to an Extent.
 template <class AddTo>
 OrientedBox smaller_box(const Box3& bounds, const Vec3d& normal, const Vec3d& along, const AddTo& add_to) {
   OrientedBox plain;
@@ -100,15 +101,16 @@ OrientedBox smaller_box(const Box3& bounds, const Vec3d& normal, const Vec3d& al
   return box.half_sum() <= plain.half_sum() ? box : plain;
 }
 
-/// Returns a box around eight triangles. Its last axis is orthogonal to their common plane, as far as one exists. If
+/// Returns a box around eight triangles. Its last axis is orthogonal to their common plane, or to the closest fit. If
 /// the axis-aligned box is smaller, it is returned instead.
-/// @param block   gets its normals.
-/// @param bounds  gets the axis-aligned box.
+/// @param block   receives its triangles' normals.
+/// @param bounds  receives the axis-aligned box.
 OrientedBox box_around(FlatTriangleBlock& block, Box3& bounds) {
   BlockShape shape;
   set_normals(block, shape);
   extent_along_axes(block, bounds);
-  // `along` is the longest extent, because blocks are first halved across their longest side.
+  // `along` is the direction of the longest extent, because the spatial order first halves a block across its longest
+  // side.
   return smaller_box(bounds, shape.normal, shape.along, [&](Extent& extent) { extent.add(block); });
 }
 
@@ -121,20 +123,21 @@ OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds) {
     normal += dot(normal, own) < 0 ? -own : own;
     along += 2 * k < boxes.size() ? -box.center : box.center;
   }
-  if (boxes.size() % 2 != 0) along += boxes.front().center;  // equal numbers on both sides
+  if (boxes.size() % 2 != 0) along += boxes.front().center;  // so that both halves have equally many boxes
   return smaller_box(bounds, normal, along, [&](Extent& extent) {
     for (const OrientedBox& box : boxes) extent.add(box);
   });
 }
 
-/// Threads fill separate parts of a tree: the part below each block of this level.
+/// Threads fill separate parts of a tree: one part below each block of this level.
 constexpr std::size_t level_of_parts = 2;
 constexpr std::size_t leaves_per_part = lanes * lanes * lanes;
-/// Pairs may be this much closer than their boxes appear, relative to the largest coordinate.
+/// The distance of a pair may be this much smaller than the distance of their boxes, because of rounding. Relative to
+/// the largest coordinate.
 constexpr double rounding = 1e-13;
 
 using NodeRef = OrientedBvh::Node;
-/// Nodes of two trees that are still to be compared.
+/// Pair of nodes, one from each tree, that must still be compared.
 using NodePair = OrientedBvh::NodePair;
 
 struct IndexRange {
@@ -142,11 +145,11 @@ struct IndexRange {
   std::size_t end = 0;
 };
 
-/// At most seven siblings wait on each of at most eleven levels of either tree.
+/// The list contains at most seven siblings from each of at most eleven levels of both trees.
 using PendingPairs = InlineList<NodePair, 256>;
 
-/// Returns true if `b` is to be taken before `a`. The closest pair comes first; among equal gaps, for example of
-/// overlapping boxes, the pair that is further down.
+/// Returns true if `b` must be taken before `a`. The pair with the smaller gap comes first. If gaps are equal (for
+/// example 0, for overlapping boxes), the pair at the lower level comes first.
 bool comes_later(const NodePair& a, const NodePair& b) {
   if (a.squared_gap != b.squared_gap) return a.squared_gap > b.squared_gap;
   return a.here.level + a.there.level > b.here.level + b.there.level;
@@ -159,7 +162,7 @@ double squared_limit(double limit, double slack) {
   return std::min(wide * wide * (1 + 1e-14), std::numeric_limits<double>::max());
 }
 
-/// Inserts a pair so that the smallest gap stays on top of those pushed since `bottom`.
+/// Inserts a pair into the pairs pushed since `bottom`, which are sorted so that the smallest gap is on top.
 void push_sorted(PendingPairs& pending, std::size_t bottom, const NodePair& pair) {
   std::size_t place = pending.size();
   pending.push_back(pair);
@@ -169,7 +172,7 @@ void push_sorted(PendingPairs& pending, std::size_t bottom, const NodePair& pair
   pending[place] = pair;
 }
 
-/// Boxes of nodes: oriented and axis-aligned.
+/// Oriented and axis-aligned boxes of nodes.
 struct NodeBoxes {
   std::vector<OrientedBox> boxes;
   std::vector<Box3> around;
@@ -181,7 +184,7 @@ struct NodeBoxes {
   [[nodiscard]] std::size_t size() const { return boxes.size(); }
 };
 
-/// Fills blocks of a level, and computes the boxes around them.
+/// Fills the blocks of a level with the boxes below them, and computes the boxes around these blocks.
 void fill_level(std::vector<OrientedBlock>& level, const NodeBoxes& below, const IndexRange& range, NodeBoxes& above) {
   for (std::size_t k = range.begin; k < range.end; ++k) {
     const std::size_t first = k * lanes;
@@ -200,26 +203,29 @@ void fill_level(std::vector<OrientedBlock>& level, const NodeBoxes& below, const
 struct OrientedBvh::Data {
   Box3 bounds;
   std::size_t vertices = 0;
-  std::vector<std::uint32_t> order;                   ///< primitive of each rank
-  std::vector<std::array<std::uint32_t, 3>> corners;  ///< vertices of primitives by rank
-  std::vector<FlatTriangleBlock> leaves;              ///< primitives by rank
+  /// Index of the primitive at each rank (position in spatial order).
+  std::vector<std::uint32_t> order;
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< vertices of each primitive, in order of rank
+  std::vector<FlatTriangleBlock> leaves;              ///< primitives in order of rank
   BlockTree<OrientedBlock> tree;                      ///< its leaves are the blocks of primitives
-  std::vector<std::vector<std::uint32_t>> first;      ///< smallest primitive of each block, and of each block of `tree`
+  /// Index of the smallest primitive in each leaf, and in each block of `tree`.
+  std::vector<std::vector<std::uint32_t>> first;
   OrientedBox root;
-  std::vector<NodeBoxes> boxes;  ///< of the leaves and of each level; only fill() uses them
+  std::vector<NodeBoxes> boxes;  ///< boxes of the leaves and of each level; used by fill() only
 
   [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
   [[nodiscard]] std::size_t count_below(std::int32_t level) const {
     return level == 0 ? leaves.size() : tree.levels[static_cast<std::size_t>(level) - 1].size();
   }
   [[nodiscard]] NodeRef top() const { return {0, tree.top()}; }
-  /// Returns the box of a node. Blocks of level k hold the boxes of nodes of level k - 1.
+  /// Returns the box of a node. It is stored in its parent: blocks of level k contain the boxes of nodes of level k -
+  /// 1.
   [[nodiscard]] OrientedBox box(const NodeRef& node) const {
     if (node.level == tree.top()) return root;
     return tree.levels[static_cast<std::size_t>(node.level) + 1][node.index / lanes].box(node.index % lanes);
   }
 
-  /// Returns the smallest primitive below a node.
+  /// Returns the smallest index of a primitive below a node.
   [[nodiscard]] std::uint32_t first_of(const NodeRef& node) const {
     return first[static_cast<std::size_t>(node.level) + 1][node.index];
   }
@@ -230,7 +236,7 @@ struct OrientedBvh::Data {
   void fill_leaves(std::span<const Vec3d> positions, const IndexRange& range);
 };
 
-/// Fills `first`, which does not depend on positions.
+/// Fills `first`, which depends on the order only, not on positions.
 void OrientedBvh::Data::fill_first() {
   std::vector<std::uint32_t> own = order;
   while (own.size() > 1 || first.size() < 2) {
@@ -254,7 +260,7 @@ void OrientedBvh::Data::fill_leaves(std::span<const Vec3d> positions, const Inde
   for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
     const std::size_t count = lanes_of(leaf);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      // The last leaf repeats its last primitive.
+      // Unused lanes of the last leaf repeat its last primitive.
       const auto& v = corners[leaf * lanes + std::min(lane, count - 1)];
       leaves[leaf].set(lane, {positions[v[0]], positions[v[1]], positions[v[2]]});
     }
@@ -263,8 +269,8 @@ void OrientedBvh::Data::fill_leaves(std::span<const Vec3d> positions, const Inde
   }
 }
 
-/// Sets the positions of all primitives, and all boxes. Threads fill parts of the tree up to `level_of_parts` while
-/// these are in their caches. The few blocks above follow on one thread.
+/// Sets the positions of all primitives and computes all boxes. Each thread fills whole parts of the tree up to
+/// `level_of_parts`, while their data are in its cache. One thread fills the few blocks above.
 void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& context) {
   const std::size_t parts = (leaves.size() + leaves_per_part - 1) / leaves_per_part;
   parallel_for(context, parts, 1, "", [&](const WorkRange& range) {
@@ -308,7 +314,8 @@ OrientedBvh::~OrientedBvh() = default;
 void OrientedBvh::refit(std::span<const Vec3d> vertices, const Context& context) {
   if (vertices.size() != data_->vertices) {
     throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data_->vertices) +
-                      " vertices cannot be refitted to " + std::to_string(vertices.size()) + "; build a new one");
+                      " vertices cannot be refitted to " + std::to_string(vertices.size()) +
+                      " vertices; build a new hierarchy");
   }
   data_->fill(vertices, context);
 }
@@ -331,7 +338,7 @@ std::span<const std::uint32_t> OrientedBvh::block(std::size_t block) const {
 
 namespace {
 
-/// Traversal of two trees at once. In each pair, the larger node is replaced by its children.
+/// Traverses two trees together. In each pair of nodes, the larger node is replaced by its children.
 template <class Data>
 class PairSearch {
  public:
@@ -347,8 +354,8 @@ class PairSearch {
         limit_(limit),
         visit_(visit) {}
 
-  /// Restricts the search to blocks from this one on, for two trees that are the same. Each pair of primitives then
-  /// occurs once.
+  /// For a tree that is searched against itself: restricts the search to blocks with at least this index. Each pair of
+  /// primitives then occurs only once.
   void only_from(std::size_t block) {
     first_there_ = block;
     is_self_ = true;
@@ -369,7 +376,8 @@ class PairSearch {
     }
   }
 
-  /// Descends from the closest remaining pair of nodes to primitives, always to the closest children, `times` times.
+  /// Descends `times` times from the closest remaining pair of nodes to a pair of primitives, always to the closest
+  /// children.
   /// @return  the remaining pairs, closest first.
   [[nodiscard]] std::vector<NodePair> dive(std::size_t times) {
     std::vector<NodePair> heap{{0, here_.top(), there_.top()}};
@@ -425,7 +433,7 @@ class PairSearch {
     for (std::size_t lane = 0; lane < count; ++lane) {
       if (!(gaps[lane] <= most)) continue;
       const NodeRef child{static_cast<std::uint32_t>(first + lane), parent.level - 1};
-      // A node of level k covers 8^(k + 1) blocks.
+      // A node of level k contains 8^(k + 1) blocks.
       const bool is_early = !is_here && ((static_cast<std::size_t>(child.index) + 1)
                                          << (3 * static_cast<unsigned>(child.level + 1))) <= first_there_;
       if (is_early || (!is_here && there_.first_of(child) > last_there_)) continue;

@@ -1,11 +1,12 @@
-// Loops over the lanes of blocks of oriented boxes and triangles, for pairs of them. Compiled like lane_kernels.cpp.
+// Loops over the lanes of blocks of oriented boxes and triangles, for pairs of blocks or triangles. Compiled like
+// lane_kernels.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #ifdef BLUM_HIGHWAY
 #undef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // no gain for loops of doubles
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // would not make loops of doubles faster
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/bvh/pair_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -23,7 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::HWY_NAMESPACE {
 namespace {
 
-/// Returns the squared gap between [-half, half] and the interval of half size `reach` around `center`.
+/// Returns the squared gap between the intervals [-half, half] and [center - reach, center + reach].
 inline double squared_gap(double center, double half, double reach) {
   const double gap = std::max(std::abs(center) - half - reach, 0.0);
   return gap * gap;
@@ -34,8 +35,8 @@ void squared_box_gaps(const OrientedBlock& block, const OrientedBox& box, double
     const double x = box.center.x - block.center[0][i];
     const double y = box.center.y - block.center[1][i];
     const double z = box.center.z - block.center[2][i];
-    double reach[3] = {0, 0, 0};  // of the block's box along the axes of `box`
-    double here = 0;              // squared gap along the axes of the block's box
+    double reach[3] = {0, 0, 0};  // half-extents of the block's box along the axes of `box`
+    double here = 0;              // sum of squared gaps along the axes of the block's box
     for (std::size_t k = 0; k < 3; ++k) {
       const double ax = block.axes[k][0][i], ay = block.axes[k][1][i], az = block.axes[k][2][i];
       double other = 0;
@@ -64,7 +65,8 @@ inline double gap_between(double low, double high, double other_low, double othe
   return std::max(std::max(other_low - high, low - other_high), 0.0);
 }
 
-/// Adds the squared gaps along one axis between [low, high] and eight intervals. Each interval spans three coordinates.
+/// Adds the squared gaps along one axis between [low, high] and eight intervals. Each of these spans the coordinates a,
+/// b and c of its lane.
 inline void add_axis_gap(const double (&a)[lanes], const double (&b)[lanes], const double (&c)[lanes], double low,
                          double high, double (&sum)[lanes]) {
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -97,16 +99,16 @@ void squared_triangle_gaps(const FlatTriangleBlock& block, const FlatTriangle& t
     const double from_here = gap_between(least(at_p, at_q, at_r), most(at_p, at_q, at_r), level, level);
     const double between =
         std::max(least(dot(way, p), dot(way, q), dot(way, r)) - most(dot(way, a), dot(way, b), dot(way, c)), 0.0);
-    // In this order, because fourth powers of small lengths would lose digits.
+    // Evaluated in this order, because fourth powers of small lengths would lose digits.
     const double on_way = between / std::max(dot(way, way), 1e-280) * between;
     out[i] = std::max(std::max(boxes[i], on_way), std::max(from_other * from_other, from_here * from_here));
   }
 }
 
-/// A triangle gets a normal only if its squared height over the longest side exceeds this fraction of that side's
-/// square. Normals of flatter triangles are too inaccurate: the heights of their own corners would differ.
+/// A triangle gets a normal only if (height / longest side)^2 exceeds this, with the height over the longest side.
+/// Normals of flatter triangles are so inaccurate that their own corners would have different heights.
 constexpr double least_flatness = 1e-4;
-/// Smaller squares have lost digits.
+/// Squared lengths below this have lost digits.
 constexpr double smallest_square = 1e-280;
 
 void set_normals(FlatTriangleBlock& block, BlockShape& out) {
@@ -130,7 +132,7 @@ void set_normals(FlatTriangleBlock& block, BlockShape& out) {
     block.normal[1][i] = n.y * inverse;
     block.normal[2][i] = n.z * inverse;
   }
-  // Soups have no consistent orientation, so normals are flipped to the side of the first one.
+  // Soups have no consistent orientation. So normals are flipped to the side of the first one.
   const Vec3d first{area[0][0], area[1][0], area[2][0]};
   alignas(64) double turned[3][lanes];
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -148,7 +150,7 @@ void set_normals(FlatTriangleBlock& block, BlockShape& out) {
   }
 }
 
-/// Computes the least and the largest of eight intervals' ends.
+/// Computes the smallest lower end and the largest upper end of eight intervals.
 inline void ends(const double (&low)[lanes], const double (&high)[lanes], double& least_of, double& most_of) {
   least_of = std::min(std::min(std::min(low[0], low[1]), std::min(low[2], low[3])),
                       std::min(std::min(low[4], low[5]), std::min(low[6], low[7])));

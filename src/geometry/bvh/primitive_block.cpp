@@ -9,7 +9,7 @@
 namespace blum {
 namespace {
 
-/// If the ratio of altitude to longest side is lower, the triangle's plane is not used to exclude candidates.
+/// If the ratio of altitude to longest side is below this, the triangle's plane is not used to exclude candidates.
 constexpr double sliver_ratio = 1e-3;
 
 void offer_edge(const Vec3d& query, const Vec3d& a, const Vec3d& b, std::uint32_t vertex_a, std::uint32_t vertex_b,

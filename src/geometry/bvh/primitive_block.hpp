@@ -11,16 +11,17 @@
 
 namespace blum {
 
-/// Eight primitives, stored as triangles with corners in rising order of vertex index. This order gives every
-/// evaluation of a shared edge the same bits. A segment is a triangle whose last two corners are equal; a point has
+/// Eight primitives, stored as triangles with corners in ascending order of vertex index. So every evaluation of a
+/// shared edge gives bitwise the same result. A segment is a triangle whose last two corners are equal; a point has
 /// three equal corners.
 struct alignas(64) PrimitiveBlock {
   double corner[3][3][lanes];  ///< [corner][axis][lane]
-  /// 0, or the altitude of a sliver, whose plane is ill-conditioned. The border is further away by at most this much.
+  /// Altitude if the triangle is a sliver, whose plane is inaccurate; else 0. The border of a sliver is at most this
+  /// much further away than the sliver.
   double sliver_altitude[lanes];
-  std::uint32_t vertex[3][lanes];  ///< vertex of each corner
-  std::uint32_t edge[3][lanes];    ///< sites of the edges 01, 12, 02; none if the edge does not exist
-  std::uint32_t face[lanes];       ///< site of the face; none for segments and points
+  std::uint32_t vertex[3][lanes];  ///< mesh vertex at each corner
+  std::uint32_t edge[3][lanes];    ///< site ids of the edges 01, 12, 02; none if the edge does not exist
+  std::uint32_t face[lanes];       ///< site id of the face; none for segments and points
 
   void set(std::size_t lane, const std::array<Vec3d, 3>& corners, const std::array<std::uint32_t, 3>& vertices,
            const std::array<SiteId, 3>& edges, SiteId face_site);
@@ -31,7 +32,7 @@ struct alignas(64) PrimitiveBlock {
   }
 };
 
-/// The best site found so far.
+/// Best site found so far.
 struct SiteCandidate {
   double distance = HUGE_VAL;
   Vec3d point;
@@ -44,35 +45,35 @@ struct SiteCandidate {
   }
 };
 
-/// Computes distances from a point to eight closed primitives, accurate to about 1e-12 of the lengths involved. For
-/// slivers they are lower bounds.
+/// Computes distances from a point to eight primitives, borders included. They are accurate to about 1e-12 of the
+/// lengths involved. For slivers they are lower bounds.
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]);
 
-/// Returns a bit for each triangle of a block that a ray may cross between its origin and t = end. Excludes triangles
-/// that its line certainly misses, and those whose plane it certainly does not reach.
+/// Returns a bit for each triangle of a block that a ray may cross between its origin and t = end. It is 0 for
+/// triangles that the ray's line certainly misses, and for those whose plane the ray certainly does not reach.
 /// @param end  may be infinite.
 [[nodiscard]] unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end);
 
-/// Returns a bit for each triangle of a block that may share a point with a box. Excludes triangles whose boxes do not
-/// touch it, and those with the box certainly on one side of their plane.
+/// Returns a bit for each triangle of a block that may share a point with a box. It is 0 if the triangle's bounding box
+/// does not touch the box, or the box is certainly on one side of its plane.
 [[nodiscard]] unsigned may_reach(const PrimitiveBlock& block, const Box3& box);
 
-/// A triangle to compare others with.
+/// Triangle that is compared with the triangles of blocks.
 struct ProbeTriangle {
   std::array<Vec3d, 3> corners;
   Box3 box;
-  Vec3d normal;     ///< (b - a) x (c - a)
-  Vec3d magnitude;  ///< sums of the magnitudes of the normal's products
+  Vec3d normal;     ///< (b - a) x (c - a), for corners a, b, c
+  Vec3d magnitude;  ///< per component of the normal: sum of the magnitudes of its products
 
   explicit ProbeTriangle(const std::array<Vec3d, 3>& triangle);
 };
 
-/// Returns a bit for each triangle of a block that may share a point with another one. Excludes pairs whose boxes do
-/// not touch, and pairs in which one triangle certainly lies on one side of the other's plane.
+/// Returns a bit for each triangle of a block that may share a point with another triangle. It is 0 if their bounding
+/// boxes do not touch, or if one certainly lies on one side of the other's plane.
 [[nodiscard]] unsigned may_meet(const PrimitiveBlock& block, const ProbeTriangle& other);
 
-/// Offers the closest site of one primitive. Its distance is accurate to rounding of the lengths involved, for every
-/// shape of triangle.
+/// Replaces `best` by the closest site of one primitive if it is closer. Its distance is accurate to rounding of the
+/// lengths involved, for triangles of every shape.
 void offer_closest(const PrimitiveBlock& block, std::size_t lane, const Vec3d& query, SiteCandidate& best);
 
 }  // namespace blum

@@ -11,12 +11,12 @@ namespace blum {
 namespace {
 
 constexpr std::size_t grain = 8192;
-/// Ranges of this many points are not cut further.
+/// Ranges of at most this many points are not divided further.
 constexpr std::size_t leaf_size = 8;
-/// Ranges of at most this many points are cut to the end by one worker.
+/// Ranges of at most this many points are divided down to leaves by one worker.
 constexpr std::size_t local_size = 4096;
 
-/// A point in float32. Rounding may put it on the wrong side of a cut, which is harmless.
+/// Point in float32. Rounding may put it on the wrong side of a cut, which is harmless.
 struct Entry {
   std::array<float, 3> at{};
   std::uint32_t index = 0;
@@ -24,7 +24,8 @@ struct Entry {
 
 using Range = std::array<std::size_t, 2>;
 
-/// Returns where to cut a range. The left part's size is a power of two; the right part is not larger.
+/// Returns the index at which a range is divided. The size of the left part is a power of two; the right part is not
+/// larger.
 std::size_t cut_of(const Range& range) {
   return range[0] + std::bit_ceil(range[1] - range[0]) / 2;
 }
@@ -45,7 +46,7 @@ std::size_t longest_axis(const Entry* begin, const Entry* end) {
   return best;
 }
 
-/// Sort key of entries: the coordinate, which is not negative, then the index.
+/// Sort key of an entry: first the coordinate, which must not be negative, then the index.
 struct KeyAlong {
   std::size_t axis;
 
@@ -54,7 +55,7 @@ struct KeyAlong {
   }
 };
 
-/// Moves entries with keys below `pivot` to the front, without branches, and returns the first of the others.
+/// Moves entries with keys below `pivot` to the front, without branches. Returns the first of the other entries.
 Entry* partition_below(Entry* begin, Entry* end, std::uint64_t pivot, const KeyAlong& key) {
   Entry* out = begin;
   for (Entry* entry = begin; entry != end; ++entry) {
@@ -66,7 +67,7 @@ Entry* partition_below(Entry* begin, Entry* end, std::uint64_t pivot, const KeyA
   return out;
 }
 
-/// Estimates a key slightly above or below that of the entry at a rank, from a small sample.
+/// Estimates a key slightly above or below the key at a given relative rank, from a small sample of the entries.
 std::uint64_t key_beside(const Entry* begin, const Entry* end, double part, bool is_above, const KeyAlong& key) {
   constexpr std::size_t most = 64;
   std::array<std::uint64_t, most> sample{};
@@ -75,12 +76,13 @@ std::uint64_t key_beside(const Entry* begin, const Entry* end, double part, bool
   for (std::size_t k = 0; k < count; ++k) sample[k] = key(begin[(2 * k + 1) * size / (2 * count)]);
   std::sort(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(count));
   const auto samples = static_cast<double>(count);
-  const double beside = std::sqrt(samples * part * (1 - part)) + 0.5;  // about a standard deviation of the rank
+  // About one standard deviation of the sample's rank.
+  const double beside = std::sqrt(samples * part * (1 - part)) + 0.5;
   const double rank = part * samples + (is_above ? beside : -beside);
   return sample[static_cast<std::size_t>(std::clamp(rank, 0.0, samples - 1))];
 }
 
-/// Equivalent of std::nth_element, mostly in one and a half passes with predictable branches.
+/// Equivalent of std::nth_element. It mostly needs one and a half passes, with predictable branches.
 void select(Entry* begin, Entry* nth, Entry* end, const KeyAlong& key) {
   constexpr std::ptrdiff_t few = 48;
   for (int round = 0; round < 8 && end - begin > few; ++round) {
@@ -97,7 +99,7 @@ void cut(std::vector<Entry>& entries, const Range& range) {
   select(begin, entries.data() + cut_of(range), end, {longest_axis(begin, end)});
 }
 
-/// Cuts a range down to leaves.
+/// Divides a range down to leaves.
 void cut_to_leaves(std::vector<Entry>& entries, const Range& range) {
   if (range[1] - range[0] <= leaf_size) {
     std::sort(entries.data() + range[0], entries.data() + range[1],
@@ -126,14 +128,14 @@ std::vector<std::uint32_t> space_order(std::size_t count, const std::function<Ve
   std::vector<Entry> entries(count);
   parallel_for(context, count, grain, "", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      // Adding 0 turns -0 into 0.
+      // Adding 0 turns -0 into 0, as the sort key requires.
       const Vec3d offset = longest > 0 ? (position(i) - bounds.lower) / longest + Vec3d{} : Vec3d{};
       entries[i] = {{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)},
                     static_cast<std::uint32_t>(i)};
     }
   });
 
-  // Level by level while the ranges are long, then each range by itself.
+  // Long ranges are divided in parallel, level by level; then each range is divided further separately.
   std::vector<Range> ranges{{0, count}};
   std::vector<Range> local;
   while (!ranges.empty()) {

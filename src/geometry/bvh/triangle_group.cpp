@@ -10,12 +10,12 @@
 namespace blum {
 namespace {
 
-/// Returns 1 or -1, or 0 if rounding leaves the sign open.
+/// Returns the sign of a height, 1 or -1, or 0 if it is uncertain because of rounding.
 int certain_sign(double height, double magnitude) {
   return std::abs(height) > detail::orient3d_rounding * magnitude ? (height > 0 ? 1 : -1) : 0;
 }
 
-/// A vector with a rounding bound for each component: the sum of the magnitudes of its products.
+/// Vector with a bound on the rounding of each component: the sum of the magnitudes of its products.
 struct RoundedNormal {
   Vec3d normal;
   Vec3d magnitude;
@@ -31,7 +31,8 @@ struct RoundedNormal {
     }
   }
 
-  /// Returns true if the exact normal certainly has a nonzero component: 2x2 determinants round less than 3x3 ones.
+  /// Returns true if the exact normal certainly has a nonzero component. The 2x2 determinants of components round less
+  /// than 3x3 ones.
   [[nodiscard]] bool is_certain() const {
     bool found = false;
     for (std::size_t x = 0; x < 3; ++x) found |= certain_sign(normal[x], magnitude[x]) != 0;
@@ -45,15 +46,15 @@ int side_of_plane(const GroupTriangle& plane, const Vec3d& p) {
   return certain_sign(dot(plane.normal, offset), dot(plane.magnitude, size));
 }
 
-/// Returns the orientation of a -> b -> c, seen along an axis.
+/// Returns the orientation of the path a -> b -> c, seen along an axis.
 int turn(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::size_t axis) {
   const auto flat = [axis](const Vec3d& p) { return std::array{p[(axis + 1) % 3], p[(axis + 2) % 3]}; };
   return detail::orient2d(flat(a), flat(b), flat(c));
 }
 
-/// Returns true if side(p) has the same nonzero sign for all corners p that `triangle` does not share with `other`. At
-/// least one such corner must exist.
-/// @param wanted  1 or -1, or 0 for either.
+/// Returns true if side(p) has one nonzero sign for all corners p of `triangle` that `other` lacks. At least one such
+/// corner must exist.
+/// @param wanted  required sign, 1 or -1; 0 allows either.
 template <class Side>
 bool has_own_corners_on_one_side(const GroupTriangle& triangle, const GroupTriangle& other, int wanted,
                                  const Side& side) {
@@ -131,7 +132,8 @@ bool is_beyond_an_edge(const GroupTriangle& triangle, const GroupTriangle& other
   const int way = certain_sign(other.normal[axis], other.magnitude[axis]);
   if (way == 0) return false;
   for (std::size_t k = 0; k < 3; ++k) {
-    // A common corner off the edge lies on the wrong side.
+    // The corner of `other` that is not on this edge lies on the wrong side. If it is a common corner, this edge is
+    // skipped.
     if (triangle.has_corner(other.corners[(k + 2) % 3])) continue;
     const Vec3d& a = other.points[k];
     const Vec3d& b = other.points[(k + 1) % 3];

@@ -12,21 +12,21 @@
 
 namespace blum {
 
-/// Eight triangles a, b, c with their planes. Unset lanes have an empty box.
+/// Eight triangles with corners a, b, c, and their planes. Unset lanes have an empty box.
 struct alignas(64) TriangleGroup {
   BoxBlock box;
   double point[3][3][lanes] = {};   ///< [corner][axis][lane]
-  double corner[3][lanes] = {};     ///< numbers of the corners; equal numbers mean a common corner
+  double corner[3][lanes] = {};     ///< numbers of the corners; equal numbers mean the same corner
   double normal[3][lanes] = {};     ///< (b - a) x (c - a)
-  double magnitude[3][lanes] = {};  ///< sums of the magnitudes of the normal's products
+  double magnitude[3][lanes] = {};  ///< per component of the normal: sum of the magnitudes of its products
 
   TriangleGroup();
 
-  /// Sets a lane. A triangle without area leaves it unchanged.
+  /// Sets a lane. Does nothing if the triangle has no area.
   void set(std::size_t lane, const detail::ContactTriangle& triangle);
 };
 
-/// One lane of a group.
+/// One triangle in the form in which a group stores it.
 struct GroupTriangle {
   Box3 box;
   std::array<Vec3d, 3> points;
@@ -40,15 +40,17 @@ struct GroupTriangle {
 };
 
 /// Returns true if all corners of `triangle` that `other` lacks certainly lie on one side of the other's plane. The two
-/// then share only common corners. False if rounding leaves it open.
+/// triangles then share only common corners. Returns false if rounding makes this uncertain.
 [[nodiscard]] bool is_beside(const GroupTriangle& triangle, const GroupTriangle& other);
 
-/// Same test with a plane through an edge of `other`, parallel to the axis closest to its normal. The side tested is
-/// the one without the rest of `other`. This separates coplanar triangles.
+/// Does the same test with another plane. It contains an edge of `other` and is parallel to the coordinate axis closest
+/// to the normal of `other`. The corners must be on the side opposite to the third corner of `other`. This separates
+/// coplanar triangles.
 [[nodiscard]] bool is_beyond_an_edge(const GroupTriangle& triangle, const GroupTriangle& other);
 
-/// Returns a bit for each triangle of a group that may share more than corners with `triangle`. Excludes triangles
-/// whose boxes do not touch, and those that certainly lie on one side of its plane except for common corners.
+/// Returns a bit for each triangle of a group that may share more than corners with `triangle`. It is 0 if their
+/// bounding boxes do not touch. It is also 0 if the triangle, except for common corners, certainly lies on one side of
+/// the plane of `triangle`.
 [[nodiscard]] unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle);
 
 }  // namespace blum

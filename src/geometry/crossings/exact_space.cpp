@@ -20,7 +20,7 @@ std::array<std::uint64_t, 3> key_of(const Vec3d& p) {
   return {bits(p.x), bits(p.y), bits(p.z)};
 }
 
-/// Drops the coordinate along an axis, so that orientations are seen against it.
+/// Projects a point along an axis by dropping that coordinate. Orientations are then as seen against the axis.
 std::array<double, 2> flat(const Vec3d& p, std::size_t axis) {
   return {p[(axis + 1) % 3], p[(axis + 2) % 3]};
 }
@@ -79,7 +79,7 @@ const ExactSpace::Exact& ExactSpace::exact(PointId p) const {
 }
 
 int ExactSpace::compare(PointId a, PointId b, std::size_t axis) const {
-  // Rounding preserves order.
+  // Compares rounded coordinates first: rounding preserves order.
   const double x = rounded(a)[axis];
   const double y = rounded(b)[axis];
   if (x != y) return x < y ? -1 : 1;
@@ -127,7 +127,7 @@ std::optional<int> ExactSpace::filtered_turn(std::size_t axis, PointId a, PointI
   const std::array<double, 2> p = flat(rounded(a), axis);
   const std::array<double, 2> q = flat(rounded(b), axis);
   const std::array<double, 2> r = flat(rounded(c), axis);
-  std::array<double, 2> off{};  // bound on the error of a difference of coordinates
+  std::array<double, 2> off{};  // bound on the error of a difference of rounded coordinates
   for (std::size_t k = 0; k < 2; ++k) {
     off[k] = 8 * half_ulp * std::max({std::abs(p[k]), std::abs(q[k]), std::abs(r[k])});
   }
@@ -211,7 +211,7 @@ PointId ExactSpace::add(Exact exact) {
          at = is_vertex(*at) ? std::nullopt : made_[*at - vertices_.size()].next) {
       if (is_equal(this->exact(*at))) return *at;
     }
-    // A vertex has no next point, so it stays last.
+    // A vertex has no `next`, so it stays last in its list.
     next = place->second;
     place->second = id;
   }
@@ -245,7 +245,7 @@ PointId ExactSpace::meet(const Cut& a, const Cut& b, const Cut& c) {
 }
 
 std::array<PointId, 3> ExactSpace::corners_around(std::size_t axis) {
-  // All coordinates are below 2.
+  // All coordinates have a magnitude of at most 2.
   constexpr std::array<std::array<int, 2>, 3> places{{{-8, -8}, {24, -8}, {-8, 24}}};
   std::array<PointId, 3> out{};
   for (std::size_t k = 0; k < 3; ++k) {

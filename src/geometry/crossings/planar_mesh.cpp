@@ -47,7 +47,7 @@ std::optional<PlanarMesh::Index> PlanarMesh::locate(Index p, std::array<int, 3>&
     if (out == 3) return t;
     t = triangles_[t].beyond[out];
   }
-  // A walk may cycle if the angles are not the largest possible.
+  // Search all triangles, because a walk through neighbours may cycle if the angles are not the largest possible.
   for (t = 0; t < triangles_.size(); ++t) {
     if (look(t) == 3) return t;
   }
@@ -95,7 +95,8 @@ void PlanarMesh::split_edge(Index triangle, std::size_t k, Index p) {
   triangles_.resize(triangles_.size() + (other == none ? 1 : 2));
   const std::size_t k1 = (k + 1) % 3;
   const std::size_t k2 = (k + 2) % 3;
-  // Splits the edge u, v at p, with w to its left and x to its right. Results: u p w, p v w, v p x, p u x.
+  // Splits the edge from u to v at p. w is the corner to its left, x the one to its right. The results are u p w, p v
+  // w, v p x, p u x.
   set(triangle, {{a.at[k], p, a.at[k2]}, {second, first, a.beyond[k2]}, {a.stays[k], false, a.stays[k2]}});
   set(first, {{p, a.at[k1], a.at[k2]}, {other, a.beyond[k1], triangle}, {a.stays[k], a.stays[k1], false}});
   replace(a.beyond[k1], triangle, first);
@@ -122,7 +123,7 @@ bool PlanarMesh::around(Index corner, const Visit& visit) const {
     t = triangles_[t].beyond[(k + 2) % 3];
   } while (t != start && t != none);
   if (t == start) return false;
-  // At the border: go the other way round.
+  // The border is reached: go round the corner in the other direction.
   const std::size_t first = corner_in(start);
   for (t = triangles_[start].beyond[first]; t != none;) {
     const std::size_t k = corner_in(t);
@@ -164,7 +165,8 @@ void PlanarMesh::flip(const Edge& edge) {
   const std::size_t k2 = (k + 2) % 3;
   const std::size_t j1 = (j + 1) % 3;
   const std::size_t j2 = (j + 2) % 3;
-  // Replaces the edge u, v between u v w and v u x by w, x: w u x, x v w.
+  // Flips the edge from u to v, between the triangles u v w and v u x, to the edge from w to x. The results are w u x,
+  // x v w.
   set(one, {{a.at[k2], a.at[k], b.at[j2]}, {a.beyond[k2], b.beyond[j1], other}, {a.stays[k2], b.stays[j1], false}});
   set(other, {{b.at[j2], a.at[k1], a.at[k2]}, {b.beyond[j2], a.beyond[k1], one}, {b.stays[j2], a.stays[k1], false}});
   replace(b.beyond[j1], other, one);
@@ -191,7 +193,8 @@ std::optional<std::deque<std::array<PlanarMesh::Index, 2>>> PlanarMesh::crossed_
     if (tip == to) return out;
     const int side = turn(from, to, tip);
     if (side == 0) return std::nullopt;
-    // Crossed edges lead from the right of the segment to its left; in `other` this one leads back.
+    // Crossed edges are directed from the right of the segment to its left. In the triangle `other` this edge has the
+    // opposite direction.
     next = {other, side > 0 ? (j + 1) % 3 : (j + 2) % 3};
   }
   return std::nullopt;

@@ -13,24 +13,26 @@
 
 namespace blum::detail {
 
-/// Triangulation of a large triangle, with all inserted points as corners and given segments as edges. Its triangles
-/// turn counter-clockwise, seen against an axis. Orientations of points are exact; large angles are best effort.
-/// Method: points are inserted one by one, segments by flips of the edges that cross them (Sloan 1993).
+/// Triangulation of a large outer triangle. Inserted points are corners of its triangles, and inserted segments are
+/// edges. Triangles are counter-clockwise, seen against an axis. Orientations of points are exact. Large angles are
+/// preferred, but not guaranteed. Method: points are inserted one by one. Segments are inserted by flipping the edges
+/// that cross them (Sloan 1993).
 class PlanarMesh {
  public:
-  /// @param outer  three points around all others.
+  /// @param outer  three points whose triangle contains all others.
   PlanarMesh(const ExactSpace& space, std::size_t axis, const std::array<PointId, 3>& outer);
 
   /// Inserts a point.
-  /// @return  false if the point coincides with another one.
+  /// @return  false if another point is at the same position.
   [[nodiscard]] bool insert(PointId point);
-  /// Makes a segment a fixed edge. No point may lie on it, and no fixed edge may cross it.
-  /// @return  false if one of these conditions is violated.
+  /// Makes a segment a fixed edge. No point may lie on it, and no fixed edge may cross it. Its ends must have been
+  /// inserted.
+  /// @return  false if a point lies on it or a fixed edge crosses it.
   [[nodiscard]] bool insert_segment(PointId from_point, PointId to_point);
-  /// Flips edges to enlarge angles, as far as rounding allows.
+  /// Flips edges to enlarge the smallest angles, as far as rounding allows.
   void improve();
 
-  /// Returns the triangles without those at the outer points.
+  /// Returns the triangles that have no outer point as a corner.
   [[nodiscard]] std::vector<std::array<PointId, 3>> triangles() const;
 
  private:
@@ -39,7 +41,7 @@ class PlanarMesh {
 
   struct Corners {
     std::array<Index, 3> at{};
-    std::array<Index, 3> beyond{none, none, none};  ///< triangle across the edge from corner k to the next one
+    std::array<Index, 3> beyond{none, none, none};  ///< triangle beyond the edge from corner k to the next corner
     std::array<bool, 3> stays{};
   };
   struct Edge {
@@ -61,14 +63,15 @@ class PlanarMesh {
   void flip(const Edge& edge);
   [[nodiscard]] bool wants_flip(const Edge& edge) const;
   [[nodiscard]] std::optional<std::deque<std::array<Index, 2>>> crossed_by(Index from, Index to) const;
-  /// Calls visit(triangle, k of the corner) around a corner until it returns true. Returns true if it did.
+  /// Calls visit(triangle, index k of the corner) for the triangles around a corner, until a call returns true. Returns
+  /// true if one did.
   template <class Visit>
   bool around(Index corner, const Visit& visit) const;
 
   const ExactSpace& space_;
   std::size_t axis_;
   std::vector<PointId> points_;
-  std::vector<Index> triangle_at_;  ///< a triangle at each point
+  std::vector<Index> triangle_at_;  ///< for each point: some triangle with this corner
   std::vector<Corners> triangles_;
   std::unordered_map<PointId, Index> index_;
   Index last_ = 0;

@@ -30,25 +30,26 @@
 namespace blum::detail {
 namespace {
 
-/// Facets with at least a given winding number behind them and less in front, as a mesh.
+/// Mesh of the kept facets: those with at least a given winding number behind them and less in front.
 struct Boundary {
-  std::vector<Triangle> triangles;  ///< Indices into `points`.
-  /// Ends of the edge in whose middle a point lies; equal for points that are not middles of edges that had to be cut.
-  /// Parts that only touch have separate points at one place.
+  std::vector<Triangle> triangles;  ///< Corners are indices into `points`.
+  /// Position of each point, as an edge: its two ends if the point is the middle of an edge that had to be cut. For
+  /// other points both ends are equal. Where parts only touch, separate points are at the same position.
   std::vector<std::array<PointId, 2>> points;
-  std::vector<std::uint32_t> source_of;  ///< input triangle of each triangle
-  std::size_t touching_edges = 0;        ///< edges along which parts only touch
+  std::vector<std::uint32_t> source_of;  ///< input triangle that contains each triangle
+  std::size_t touching_edges = 0;        ///< number of edges along which parts only touch
 };
 
 constexpr std::uint32_t nobody = 0xffffffffU;
-/// Thousands of times the error of a crossing's place, in a mesh of size 1, for rays that are not along the triangle.
+/// Thousands of times the error in the position of a crossing, for a mesh of size 1. The ray must not be nearly
+/// parallel to the triangle.
 constexpr double margin = 1e-12;
 
-/// A facet's side at an edge.
+/// Side of a facet along an edge.
 struct Side {
   PointId low = 0, high = 0;
   std::uint32_t corner = 0;  ///< 3 * facet + corner where the side begins
-  bool rises = false;        ///< runs from `low` to `high`
+  bool rises = false;        ///< true if the facet traverses the edge from `low` to `high`
 
   [[nodiscard]] std::uint32_t facet() const { return corner / 3; }
 };
@@ -69,7 +70,7 @@ std::vector<Side> sorted_sides(const std::vector<Facet>& facets) {
   return sides;
 }
 
-/// Calls use(first, count) for each edge.
+/// Calls use(first, count) for each edge. The sides of the edge are sides[first], ..., sides[first + count - 1].
 template <class Use>
 void for_each_edge(std::span<const Side> sides, const Use& use) {
   for (std::size_t begin = 0; begin < sides.size();) {
@@ -115,8 +116,9 @@ class Windings {
     });
   }
 
-  /// Returns the side of `of` on which the far corner of `other` lies. Both are facets at one edge. 1 is the side where
-  /// facets come next, counter-clockwise seen from the edge's higher end.
+  /// Returns the side of the facet `of` on which the far corner of the facet `other` lies. Both must be at the same
+  /// edge. The result is 1 if the corner is on the side where the next facets are, counter-clockwise, seen from the
+  /// edge's higher end.
   [[nodiscard]] int turns_to(const Side& of, const Side& other) const {
     const Facet& facet = facets_[of.facet()];
     const PointId tip = facets_[other.facet()].corners[(other.corner % 3 + 2) % 3];
@@ -125,7 +127,7 @@ class Windings {
     return of.rises ? side : -side;
   }
 
-  /// Sorts facets counter-clockwise around their edge.
+  /// Sorts the facets at an edge counter-clockwise around it.
   void sort_around(std::span<Side> sides) const {
     const Side start = sides.front();
     const auto half = [&](const Side& side) {
@@ -145,10 +147,11 @@ class Windings {
 
   [[nodiscard]] std::uint32_t patch(const Side& side) { return patches_.find(side.facet()); }
 
-  /// Finds the winding number in front of every patch. In each connected part a ray decides for one patch; the others
-  /// follow around edges.
+  /// Finds the winding number in front of every patch. In each connected part, a ray determines that of one patch. The
+  /// others follow from the order of facets around edges.
   void spread() {
-    std::vector<std::vector<std::uint32_t>> edges_of(facets_.size());  // crowded edges of each patch
+    // For each patch: its edges with more than two facets.
+    std::vector<std::vector<std::uint32_t>> edges_of(facets_.size());
     UnionFind parts(facets_.size());
     for (std::uint32_t f = 0; f < facets_.size(); ++f) parts.join(patches_.find(f), f);
     for (std::uint32_t e = 0; e < crowded_.size(); ++e) {
@@ -178,8 +181,7 @@ class Windings {
     const auto [first, count] = crowded_[edge];
     std::size_t start = 0;
     while (patch(sides_[first + start]) != from) ++start;
-    // A rising facet has its front towards the next facet and its back towards the previous one; a falling one the
-    // reverse.
+    // A rising facet faces the next facet, and its back the previous one. For a falling facet it is the reverse.
     const Side& known = sides_[first + start];
     std::int64_t winding = *front_[from] + (known.rises ? 0 : facets_[known.facet()].times);
     for (std::size_t k = 1; k <= count; ++k) {
@@ -200,7 +202,7 @@ class Windings {
     return length(cross(space_.rounded(b) - space_.rounded(a), space_.rounded(c) - space_.rounded(a)));
   }
 
-  /// Keeps a part's few largest facets, the largest first.
+  /// Inserts a facet into the list of the few largest facets of a part, the largest first.
   void keep_largest(std::vector<std::uint32_t>& list, std::uint32_t f) const {
     constexpr std::size_t most = 8;
     const double own = area(f);
@@ -210,8 +212,8 @@ class Windings {
     if (list.size() > most) list.pop_back();
   }
 
-  /// Returns a facet of a part, and the winding number in front of it.
-  /// @param candidates  the part's largest facets.
+  /// Returns a facet of a connected part, and the winding number in front of it.
+  /// @param candidates  largest facets of the part.
   std::pair<std::uint32_t, std::int64_t> winding_by_ray(const std::vector<std::uint32_t>& candidates) {
     constexpr int attempts = 32;
     for (const std::uint32_t f : candidates) {
@@ -223,8 +225,8 @@ class Windings {
     throw Unresolved("a part is so small that rounding hides if it lies inside another part");
   }
 
-  /// Returns the winding number in front of a facet, from the crossings of a ray through it. Returns nullopt if
-  /// rounding could change it.
+  /// Returns the winding number in front of a facet, from the crossings of a random ray through it. Returns nullopt if
+  /// rounding could change the result.
   std::optional<std::int64_t> front_along_ray(std::uint32_t f, Random& random) {
     if (!bvh_) bvh_.emplace(MeshView{mesh_.vertices, mesh_.triangles}, SiteTable({mesh_.vertices, mesh_.triangles}));
     const auto& [i, j, k] = facets_[f].corners;
@@ -265,13 +267,15 @@ class Windings {
     return winding;
   }
 
-  /// Returns true if a ray through the inside of a facet crosses a triangle beyond the facet; exact. Returns nullopt if
-  /// the facet has corners on both sides of the triangle's plane, or all in it.
+  /// Returns true if a ray through the inside of a facet crosses another triangle beyond the facet. The result is
+  /// exact. Returns nullopt if the facet has corners on both sides of the triangle's plane, or all of them in the
+  /// plane.
   [[nodiscard]] std::optional<bool> lies_ahead(std::uint32_t f, const RayCrossing& other) {
     const Cut plane{mesh_.triangles[other.triangle.value], -1};
     const auto& corners = facets_[f].corners;
     const bool has_made = !std::all_of(corners.begin(), corners.end(), [&](PointId p) { return space_.is_vertex(p); });
-    if (has_made && !is_in_a_pair(other.triangle)) return std::nullopt;  // its corners are not exact in this space
+    // The corners of `other` are not exact in this space.
+    if (has_made && !is_in_a_pair(other.triangle)) return std::nullopt;
     int side = 0;
     for (const PointId p : corners) {
       const int own = space_.side(plane, p);
@@ -296,10 +300,11 @@ class Windings {
     return front < least_ && front + facets_[f].times >= least_;
   }
 
-  /// Two facets that are neighbours around the solid. The first falls to the lower end of their edge; the second rises.
+  /// Two facets at an edge that are neighbours around the solid. The first one falls (traverses the edge towards its
+  /// lower end), the second one rises.
   using Neighbours = std::array<Side, 2>;
 
-  /// Returns the kept facets at an edge, as pairs of neighbours.
+  /// Returns pairs of neighbours among the kept facets at an edge.
   std::vector<Neighbours> neighbours_at(std::span<const Side> sides) {
     std::vector<Side> own;
     for (const Side& side : sides) {
@@ -307,7 +312,7 @@ class Windings {
     }
     if (own.size() % 2 != 0) throw Unresolved("its boundary is not closed after it was cut");
     std::vector<Neighbours> out;
-    // Counter-clockwise around the edge, the solid begins at a falling facet and ends at a rising one.
+    // Counter-clockwise around the edge, the solid starts at a falling facet and ends at a rising one.
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (own[k].rises) continue;
       const Side& next = own[(k + 1) % own.size()];
@@ -318,7 +323,7 @@ class Windings {
   }
 
   Boundary kept() {
-    // Corners of kept facets. Corners at one point are joined if their facets are neighbours around the solid.
+    // Corners of kept facets at the same point become one vertex if their facets are neighbours around the solid.
     UnionFind corners(3 * facets_.size());
     std::vector<std::vector<Neighbours>> touching;
     for_each_edge(sides_, [&](std::size_t first, std::size_t count) {
@@ -355,7 +360,8 @@ class Windings {
     return out;
   }
 
-  /// If parts touch along an edge and are joined at both its ends, gives each its own middle of the edge.
+  /// Handles parts that touch along an edge and share the vertices at both of its ends. Each gets a separate vertex at
+  /// the edge's middle.
   void cut_where_ends_are_shared(const std::vector<Neighbours>& edge, const std::vector<std::uint32_t>& name,
                                  Boundary& out) {
     const auto ends = [&](const Neighbours& pair) {
@@ -372,7 +378,7 @@ class Windings {
     }
   }
 
-  /// Cuts the part of a facet that has the edge.
+  /// Cuts the triangle of a facet that has the given edge.
   void cut_edge(std::uint32_t f, const std::array<std::uint32_t, 2>& edge, std::uint32_t middle, Boundary& out) {
     for (const std::uint32_t part : std::vector<std::uint32_t>(parts_of_[f])) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -398,18 +404,19 @@ class Windings {
   std::int64_t least_;
   const Context& context_;
   std::vector<Side> sides_;
-  UnionFind patches_;                                         ///< facets joined over edges with two facets
-  std::vector<std::pair<std::size_t, std::size_t>> crowded_;  ///< edges with more facets: first in sides_, and count
-  std::vector<std::optional<std::int64_t>> front_;            ///< winding number in front of each patch
+  UnionFind patches_;  ///< facets joined across edges with exactly two facets
+  /// Edges with more than two facets: index of the first in sides_, and number.
+  std::vector<std::pair<std::size_t, std::size_t>> crowded_;
+  std::vector<std::optional<std::int64_t>> front_;  ///< winding number in front of each patch
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>
-      parts_of_;  ///< triangles of facets at edges along which parts touch
+      parts_of_;  ///< for facets at edges along which parts touch: their triangles in the boundary
   std::optional<Bvh> bvh_;
-  std::vector<bool> is_in_pair_;  ///< for each triangle; filled on first use
+  std::vector<bool> is_in_pair_;  ///< per input triangle; filled when first needed
 };
 
-/// Returns the boundary of the region with winding number `least_winding` or more.
-/// @param least_winding  smallest winding number inside.
-/// @throws Unresolved if facets do not fit together, Cancelled.
+/// Returns the boundary of the region with a winding number of at least `least_winding`.
+/// @param least_winding  smallest winding number that counts as inside.
+/// @throws Unresolved if facets do not fit together; Cancelled.
 Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context) {
   return Windings(mesh, cut, least_winding, context).boundary();
 }
@@ -426,19 +433,20 @@ std::string number(std::size_t n, const char* what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-/// Returns the context without progress, which would restart with each part of the work.
+/// Returns the context without progress. Each part of the work would report progress from 0 again.
 Context quiet(const Context& context) {
   Context out = context;
   out.progress = nullptr;
   return out;
 }
 
-/// A mesh of size 1 with one vertex at each place.
+/// Mesh scaled to size 1, with one vertex at each position.
 struct Welded {
   double scale = 1;
   std::vector<Vec3d> vertices;
   std::vector<Triangle> triangles;
-  std::vector<std::uint8_t> is_flat;  ///< 1: collinear corners, 2: at most two distinct corners, else 0
+  /// Per triangle: 0 if it has an area, 1 if its corners are collinear, 2 if it has at most two distinct corners.
+  std::vector<std::uint8_t> is_flat;
 
   explicit Welded(const MeshView& mesh) : scale(coordinate_scale(bounds(mesh))) {
     const std::vector<std::uint32_t> cluster = weld_clusters(mesh.vertices);
@@ -453,8 +461,8 @@ struct Welded {
   }
 };
 
-/// Returns the number of edges with more than two triangles.
-/// @throws Unresolved if triangles do not cancel at an edge.
+/// Returns the number of edges that more than two triangles use.
+/// @throws Unresolved if the directions of triangles do not cancel at an edge.
 std::size_t crowded_edges(const MeshView& mesh) {
   struct Side {
     std::uint32_t low, high;
@@ -487,7 +495,7 @@ std::size_t crowded_edges(const MeshView& mesh) {
   return crowded;
 }
 
-/// Returns the genera of a closed surface's shells, in rising order.
+/// Returns the genera of the shells of a closed surface, in ascending order.
 std::vector<std::int64_t> genera(const Topology& topology) {
   std::vector<std::int64_t> out;
   for (const Shell& shell : topology.shells) out.push_back(shell.genus);
@@ -515,11 +523,12 @@ std::vector<std::uint32_t> body_of_triangles(const TriangleMesh& mesh, const Top
   return body;
 }
 
-/// Returns how often a body meets itself in a vertex: one place with two vertex numbers.
+/// Returns the number of times that a body touches itself in a vertex: several vertices of one body at the same
+/// position.
 std::size_t pinches(const TriangleMesh& mesh, const Topology& topology) {
   const std::vector<std::uint32_t> body_of = body_of_triangles(mesh, topology);
   const std::vector<std::uint32_t> cluster = weld_clusters(mesh.vertices);
-  std::vector<std::array<std::uint32_t, 3>> corners;  // place, body, vertex
+  std::vector<std::array<std::uint32_t, 3>> corners;  // (position, body, vertex) for each corner
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t v : mesh.triangles[t]) corners.push_back({cluster[v], body_of[t], v});
   }
@@ -532,7 +541,7 @@ std::size_t pinches(const TriangleMesh& mesh, const Topology& topology) {
   return count;
 }
 
-/// Returns the reason why a mesh is not the boundary of a solid; empty if it is one.
+/// Returns the reason why a mesh is not the boundary of a solid; an empty string if it is one.
 std::string obstacle_of(const TriangleMesh& mesh, const Topology& topology, const Context& context) {
   if (topology.nonmanifold_edges > 0) {
     return "the solid touches itself along " + number(topology.nonmanifold_edges, "edge");
@@ -553,7 +562,7 @@ std::string obstacle_of(const TriangleMesh& mesh, const Topology& topology, cons
          " touch, after rounding";
 }
 
-/// Returns a mesh resolved once, not yet checked.
+/// Returns the mesh after one round of resolution. The result is not yet checked.
 ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, const Context& context) {
   ResolvedMesh out;
   out.counts.crowded_edges = crowded_edges(mesh);
@@ -573,7 +582,7 @@ ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, 
   if (boundary.triangles.empty()) {
     out.has_inside = false;
     out.obstacle = "no point has a winding number above " + std::to_string(options.least_winding - 1) +
-                   (options.least_winding == 1 ? ": it faces inwards" : "");
+                   (options.least_winding == 1 ? ": the mesh faces inwards" : "");
     return out;
   }
   out.counts.cut = cut.cut;
@@ -590,7 +599,7 @@ ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, 
   return out;
 }
 
-/// Expresses the result of a second round in terms of the first round's input.
+/// Rewrites the result of a second round so that it refers to the first round's input.
 ResolvedMesh chained(const ResolvedMesh& first, ResolvedMesh second) {
   for (std::uint32_t& v : second.vertex_of) v = v == ResolvedMesh::no_vertex ? v : first.vertex_of[v];
   for (std::uint32_t& t : second.triangle_of) t = first.triangle_of[t];
@@ -619,7 +628,7 @@ ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& optio
     }
     const std::vector<std::int64_t> exact = genera(facts);
     ResolveOptions rest = options;
-    rest.least_winding = 1;  // the result of the first round is wound around once
+    rest.least_winding = 1;  // in the result of the first round, inside has winding number 1
     for (out.counts.rounds = 1;; ++out.counts.rounds) {
       out.obstacle = obstacle_of(out.mesh, facts, own);
       if (out.obstacle.empty() && genera(facts) != exact) out.obstacle = "rounding changed how its parts are connected";

@@ -23,14 +23,16 @@
 namespace blum {
 namespace {
 
-/// Groups between two checks of the number of pairs: few enough that a search with very many pairs stops soon.
+/// Smallest number of groups processed between two checks of the number of pairs found. It is small, so that a search
+/// with very many pairs stops soon.
 constexpr std::size_t smallest_batch = 512;
-/// Larger batches if few pairs are found, so that threads rarely wait for each other.
+/// Largest number of groups between two checks. It is used if few pairs are found, so that threads rarely wait for each
+/// other.
 constexpr std::size_t largest_batch = 4096;
 constexpr std::size_t grain = 8;
 constexpr std::size_t build_grain = 64;
 
-/// Groups are rebuilt once they are this much looser than when they were made.
+/// Groups are rebuilt when their looseness exceeds the original one by this factor.
 constexpr double most_loosening = 1.25;
 
 double extent(const Box3& box) {
@@ -38,7 +40,7 @@ double extent(const Box3& box) {
   return size.x + size.y + size.z;
 }
 
-/// Returns the triangles in the spatial order of their middles.
+/// Returns the triangles in spatial order of their middles.
 std::vector<std::uint32_t> order_in_space(const MeshView& mesh, double scale, const Context& context) {
   const auto middle = [&](std::size_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -50,7 +52,8 @@ std::vector<std::uint32_t> order_in_space(const MeshView& mesh, double scale, co
   return space_order(mesh.triangles.size(), middle, context);
 }
 
-/// Groups of triangles. Each is constructed by the thread that fills it, because groups take 200 bytes per triangle.
+/// Array of groups of triangles. The thread that fills a group constructs it, because groups need 200 bytes per
+/// triangle.
 class GroupArray {
  public:
   explicit GroupArray(std::size_t count) : count_(count), groups_(std::allocator<TriangleGroup>().allocate(count)) {}
@@ -63,15 +66,16 @@ class GroupArray {
   [[nodiscard]] const TriangleGroup& operator[](std::size_t k) const { return groups_[k]; }
 
  private:
-  static_assert(std::is_trivially_destructible_v<TriangleGroup>);  // groups that were not made need no destructor
+  static_assert(std::is_trivially_destructible_v<TriangleGroup>);  // the array does not destroy its groups
   std::size_t count_;
   TriangleGroup* groups_;
 };
 
-/// Triangles in groups of eight, and a tree of the groups' boxes.
+/// Triangles in groups of eight, and a tree of the groups' bounding boxes.
 class Search {
  public:
-  /// @param corners  a number for each vertex; equal numbers mean a common corner. If empty, vertex indices are used.
+  /// @param corners  a number for each vertex; vertices with equal numbers count as the same corner. If empty, vertex
+  /// indices are used.
   Search(const MeshView& mesh, double scale, std::span<const std::uint32_t> order,
          std::span<const std::uint32_t> corners, const Context& context)
       : order_(order), groups_((order.size() + lanes - 1) / lanes), boxes_(groups_.size()) {
@@ -91,10 +95,11 @@ class Search {
 
   [[nodiscard]] std::size_t group_count() const { return groups_.size(); }
 
-  /// Returns the sum of the groups' box extents, relative to that of the triangles' boxes.
+  /// Returns the sum of the extents of the groups' boxes, divided by that of the triangles' boxes.
   [[nodiscard]] double looseness() const { return looseness_; }
 
-  /// Adds the pairs within a group, and those with triangles of later groups. Stops at about `limit` pairs.
+  /// Adds the pairs of triangles within a group, and the pairs with triangles of later groups. Stops when there are
+  /// about `limit` pairs.
   void find(std::size_t group, std::size_t limit, std::vector<TrianglePair>& out) const {
     for_each_touching(tree_, boxes_[group], group, [&](std::size_t other) {
       if (other >= group) find_between(group, other, limit, out);
@@ -103,7 +108,7 @@ class Search {
   }
 
  private:
-  /// @returns the sum of the extents of the group's triangles.
+  /// @returns the sum of the extents of the boxes of its triangles.
   double make(const MeshView& mesh, double scale, std::span<const std::uint32_t> corners, std::size_t g) {
     double sum = 0;
     TriangleGroup& group = groups_.make(g);
@@ -128,7 +133,7 @@ class Search {
       const auto row = static_cast<std::size_t>(std::countr_zero(rows));
       const GroupTriangle triangle(groups_[group], row);
       unsigned columns = may_meet(groups_[other], triangle);
-      if (group == other) columns &= ~0U << (row + 1);  // each pair once
+      if (group == other) columns &= ~0U << (row + 1);  // each pair only once
       for (; columns != 0; columns &= columns - 1) {
         const auto column = static_cast<std::size_t>(std::countr_zero(columns));
         test(triangle, order_[group * lanes + row], other, column, out);
@@ -154,7 +159,7 @@ class Search {
   double looseness_ = 1;
 };
 
-/// Returns the pairs of groups `begin` to `end`, in the order of the groups.
+/// Returns the pairs found for the groups in [begin, end), in the order of the groups.
 std::vector<TrianglePair> find_in(const Search& search, std::size_t begin, std::size_t end, std::size_t limit,
                                   const Context& context) {
   std::vector<std::vector<TrianglePair>> found((end - begin + grain - 1) / grain);
@@ -203,11 +208,11 @@ SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const 
   throw_if_cancelled(context);
   if (order.size() != mesh.triangles.size()) {
     throw InvalidOption("an order of " + std::to_string(order.size()) + " triangles is given for a mesh with " +
-                        std::to_string(mesh.triangles.size()));
+                        std::to_string(mesh.triangles.size()) + " triangles");
   }
   if (corners.size() != mesh.vertices.size()) {
     throw InvalidOption("the corners of " + std::to_string(corners.size()) + " vertices are given for a mesh with " +
-                        std::to_string(mesh.vertices.size()));
+                        std::to_string(mesh.vertices.size()) + " vertices");
   }
   const double scale = coordinate_scale(bounds(mesh));
   SelfIntersections result;
@@ -229,8 +234,8 @@ bool SelfIntersectionSearch::finds_any(const MeshView& mesh, const Context& cont
     order_ = order_in_space(mesh, scale, context);
     looseness_ = -1;
   }
-  // If corners at one place have several numbers, this search may find pairs that share only such corners. So the
-  // search is repeated with welded corners if it finds any.
+  // If several vertices are at the same position, this search may find pairs that share only such corners. So if any
+  // pair is found, the search is repeated with numbers of welded vertices.
   const Search search(mesh, scale, order_, {}, context);
   if (looseness_ < 0) looseness_ = search.looseness();
   bool found = !find_all(search, 0, context).empty();

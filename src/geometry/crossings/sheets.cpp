@@ -21,7 +21,7 @@ Signs sides(const ExactSpace& space, const FlatTriangle& plane, const FlatTriang
           space.side(plane.plane(), of.corners[2])};
 }
 
-/// Collects the points that edges of one triangle share with the other triangle.
+/// Collects the points that the edges of one triangle share with another triangle.
 class Collector {
  public:
   Collector(ExactSpace& space, EdgePoints& edge_points, Contact3& out)
@@ -43,7 +43,7 @@ class Collector {
     if (out_.count < 2) out_.points[out_.count++] = p;
   }
 
-  /// Handles a corner in the plane of b.
+  /// Handles a corner that lies in the plane of b.
   void take_corner(PointId p, const FlatTriangle& b) {
     Signs turns{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -57,7 +57,7 @@ class Collector {
     }
   }
 
-  /// Handles an edge from one side of b's plane to the other.
+  /// Handles an edge whose ends are on different sides of b's plane.
   void take_crossing(PointId from, PointId to, const FlatTriangle& b) {
     Signs passes{};
     bool left = false;
@@ -93,25 +93,25 @@ class Collector {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
 
-/// Limit on tested pairs of segments within a sheet, for all sheets together.
+/// Largest number of pairs of segments that are tested, for all sheets together.
 constexpr std::size_t most_looks = 400'000'000;
 
-/// A segment in the plane of a sheet: an edge of one of its triangles, or the intersection with a triangle of another
-/// plane.
+/// Segment in the plane of a sheet. It is an edge of a triangle of the sheet, or the intersection of one with a
+/// triangle that is not in the plane.
 struct SheetSegment {
   std::array<PointId, 2> ends{};
   Cut cut;
   bool is_edge = false;
-  std::vector<PointId> points;  ///< on the segment, between its ends
+  std::vector<PointId> points;  ///< points on the segment, without its ends
 };
 
-/// Triangles that overlap in one plane; usually a single one.
+/// Triangles in one plane that overlap; usually only one triangle.
 struct Sheet {
   std::vector<std::uint32_t> members;
-  FlatTriangle first;  ///< the first member
+  FlatTriangle first;  ///< the first triangle of the sheet
   std::vector<SheetSegment> segments;
   std::vector<PointId> points;
-  bool is_crossed = false;  ///< crossings of its segments have been found
+  bool is_crossed = false;  ///< true if the crossings of its segments have been found
 };
 
 class Cutter {
@@ -121,7 +121,7 @@ class Cutter {
     sheet_of_.assign(mesh.triangles.size(), nobody);
   }
 
-  /// Cuts the triangles into facets.
+  /// Cuts the triangles into facets (parts of triangles).
   /// @returns the number of triangles that were cut.
   std::size_t cut() {
     std::vector<std::uint32_t> involved;
@@ -204,7 +204,7 @@ class Cutter {
     }
   }
 
-  /// Returns true if a point of a line lies between two ends, or at one of them.
+  /// Returns true if a point of a line lies between two points of the line or is one of them.
   [[nodiscard]] bool is_between(const std::array<PointId, 2>& ends, PointId p) const {
     return space_.compare(ends[0], p) * space_.compare(p, ends[1]) >= 0;
   }
@@ -222,7 +222,7 @@ class Cutter {
     return true;
   }
 
-  /// Finds the points where segments of a sheet cross, and the points on edges of its triangles.
+  /// Finds the points where segments of a sheet cross each other, and the points on edges of its triangles.
   void cross_segments(Sheet& sheet) {
     if (std::exchange(sheet.is_crossed, true)) return;
     std::vector<Box3> boxes;
@@ -237,7 +237,7 @@ class Cutter {
     for (std::size_t i = 0; i < order.size(); ++i) {
       throw_if_cancelled(context_);
       for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].lower.x <= boxes[order[i]].upper.x; ++j) {
-        if (++looks_ > most_looks) throw Unresolved("too many triangles cross the same one");
+        if (++looks_ > most_looks) throw Unresolved("too many triangles cross the same triangle");
         if (overlap(boxes[order[i]], boxes[order[j]])) cross(sheet, order[i], order[j]);
       }
     }
@@ -252,7 +252,7 @@ class Cutter {
     }
   }
 
-  /// Returns true if a point of the sheet lies inside a segment.
+  /// Returns true if a point of the sheet lies on a segment, but is not an end of it.
   [[nodiscard]] bool lies_on(const SheetSegment& segment, const Box3& box, PointId p) const {
     if (p == segment.ends[0] || p == segment.ends[1]) return false;
     const Vec3d& at = space_.rounded(p);
@@ -266,7 +266,7 @@ class Cutter {
     const SheetSegment& a = sheet.segments[i];
     const SheetSegment& b = sheet.segments[j];
     for (const PointId p : a.ends) {
-      if (p == b.ends[0] || p == b.ends[1]) return;  // a common end, or segments on one line
+      if (p == b.ends[0] || p == b.ends[1]) return;  // they share an end, or lie on one line
     }
     if (space_.side(a.cut, b.ends[0]) * space_.side(a.cut, b.ends[1]) >= 0) return;
     if (space_.side(b.cut, a.ends[0]) * space_.side(b.cut, a.ends[1]) >= 0) return;
@@ -274,7 +274,7 @@ class Cutter {
     sheet.points.push_back(p);
   }
 
-  /// The middle corner of a flat triangle cuts the edge between the other two.
+  /// Cuts the longest edge of each flat triangle at the triangle's middle corner.
   void add_flat_triangles() {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (mesh_.is_flat[t] != 1) continue;
@@ -285,7 +285,8 @@ class Cutter {
     }
   }
 
-  /// Points that cut an edge of a flat triangle cut another edge, too. Returns true if a cut was new.
+  /// If a point cuts an edge of a flat triangle, it must also cut another edge of that triangle. Returns true if a new
+  /// cut was added.
   bool pass_over_flat_triangles() {
     bool is_new = false;
     for (const auto& [a, b, c] : flat_) {
@@ -305,7 +306,7 @@ class Cutter {
     return is_new;
   }
 
-  /// Adds triangles with a cut edge, which are cut, too. Returns true if any was added.
+  /// Marks triangles with a cut edge to be cut, too. Returns true if any was added.
   bool add_triangles_at_cut_edges() {
     if (edge_points_.empty()) return false;
     bool is_new = false;
@@ -335,7 +336,7 @@ class Cutter {
     for (const std::uint32_t t : sheet.members)
       members.push_back(seen_along(space_, mesh_.triangles[t], sheet.first.axis));
     const bool is_single = members.size() == 1;
-    // For each member: which points of the sheet lie in it.
+    // For each member triangle and each point of the sheet: true if the point lies in the triangle.
     std::vector<std::vector<bool>> holds(members.size(), std::vector<bool>(sheet.points.size(), is_single));
     for (std::size_t m = 0; m < members.size() && !is_single; ++m) {
       for (std::size_t k = 0; k < sheet.points.size(); ++k) {
@@ -344,7 +345,7 @@ class Cutter {
     }
     for (const std::array<PointId, 3>& corners : triangles) {
       Facet facet{corners, 0, nobody, s};
-      // The first member that faces up, and the first that faces down.
+      // First member triangle that faces up; below, the first one that faces down.
       std::uint32_t up = nobody;
       std::uint32_t down = nobody;
       for (std::size_t m = 0; m < members.size(); ++m) {
@@ -365,8 +366,9 @@ class Cutter {
     }
   }
 
-  /// Returns triangles between the points of a sheet, counter-clockwise seen against its axis. Those of a single member
-  /// fill it exactly, because no point lies outside. Those of several members may also fill gaps between them.
+  /// Returns triangles between the points of a sheet, counter-clockwise seen against its axis. If the sheet has one
+  /// triangle, they fill it exactly, because no point lies outside. If it has several, they may also fill gaps between
+  /// these.
   std::vector<std::array<PointId, 3>> triangulated(const Sheet& sheet) {
     if (sheet.points.size() == 3 && sheet.members.size() == 1) {
       std::array<PointId, 3> corners = sheet.first.corners;
@@ -414,7 +416,8 @@ class Cutter {
   std::size_t looks_ = 0;
 };
 
-/// Returns the corners of triangles that cross, touch or are flat, and of triangles with two such corners.
+/// Returns the corners of triangles that cross, touch or are flat. Includes the corners of triangles with at least two
+/// such corners.
 std::vector<PointId> corners_near_crossings(const CrossedMesh& mesh) {
   std::vector<bool> is_near(mesh.vertices.size(), false);
   const auto mark = [&](std::uint32_t t) {

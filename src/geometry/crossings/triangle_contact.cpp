@@ -12,7 +12,7 @@ namespace {
 using Points = std::array<Vec3d, 3>;
 using Signs = std::array<int, 3>;
 
-/// Drops a coordinate such that a triangle keeps an area, so that its plane can be treated in 2D.
+/// Projection along a coordinate axis in which a triangle keeps an area, so that its plane can be treated in 2D.
 class Projection {
  public:
   explicit Projection(const Points& triangle) {
@@ -20,12 +20,13 @@ class Projection {
       if (turn(triangle[0], triangle[1], triangle[2]) != 0) return;
     }
   }
-  /// Returns 1 or -1 if the corner at b turns left or right, up to a common sign; 0 for points on one line.
+  /// Returns the orientation of the path a -> b -> c: 1 or -1; 0 if the points are on one line. All results may have
+  /// the opposite sign.
   [[nodiscard]] int turn(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
     return orient2d(flat(a), flat(b), flat(c));
   }
-  /// Returns true if x lies between the rays from v through p and q, or on one of them. The points v, p, q must not be
-  /// on one line.
+  /// Returns true if x lies in the wedge between the rays from v through p and q, border included. The points v, p, q
+  /// must not be on one line.
   [[nodiscard]] bool in_wedge(const Vec3d& v, const Vec3d& p, const Vec3d& q, const Vec3d& x) const {
     const int way = turn(v, p, q);
     return way * turn(v, p, x) >= 0 && way * turn(v, x, q) >= 0;
@@ -58,17 +59,17 @@ bool on_both_sides(const Signs& s) {
   return (s[0] > 0 || s[1] > 0 || s[2] > 0) && (s[0] < 0 || s[1] < 0 || s[2] < 0);
 }
 
-/// Returns the contact of triangles p, q, a and p, q, b with a common edge. They overlap only if folded onto each
-/// other.
+/// Returns the contact of the triangles p, q, a and p, q, b with the common edge from p to q. They overlap only if one
+/// is folded onto the other.
 Contact contact_over_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b) {
   if (orient3d(p, q, a, b) != 0) return Contact::none;
   const Projection plane({p, q, a});
   return plane.turn(p, q, a) == plane.turn(p, q, b) ? Contact::touching : Contact::none;
 }
 
-/// Returns the contact along the ray where the wedge of `a` passes through the plane of `b`. The ray starts at the
-/// common corner a[0] = b[0].
-/// @param side  side of b's plane on which a[1] and a[2] lie: not both in it, and not both on one side.
+/// Returns the contact along a ray: the one in which the wedge of `a` passes through the plane of `b`. The ray starts
+/// at the common corner a[0] = b[0].
+/// @param side  sides of b's plane on which a[1] and a[2] lie. They must differ.
 Contact contact_along_ray(const Points& a, const Points& b, int side_1, int side_2) {
   if (side_1 == 0 || side_2 == 0) {
     const Projection plane(b);
@@ -82,8 +83,8 @@ Contact contact_along_ray(const Points& a, const Points& b, int side_1, int side
   return first < 0 && second < 0 ? Contact::crossing : Contact::touching;
 }
 
-/// Returns the contact of triangles with the common corner a[0] = b[0]. Near the corner they are wedges. Because
-/// triangles are convex, they share more than the corner only if the wedges do.
+/// Returns the contact of triangles with the common corner a[0] = b[0]. Near the corner both are wedges. Triangles are
+/// convex, so they share more than the corner only if the wedges do.
 Contact contact_over_corner(const Points& a, const Points& b) {
   const int b1 = orient3d(a[0], a[1], a[2], b[1]);
   const int b2 = orient3d(a[0], a[1], a[2], b[2]);
@@ -98,12 +99,12 @@ Contact contact_over_corner(const Points& a, const Points& b) {
   const int a2 = orient3d(b[0], b[1], b[2], a[2]);
   if (a1 != 0 && a1 == a2) return Contact::none;
   const Contact found = contact_along_ray(a, b, a1, a2);
-  // If an edge of b lies in a's plane, the ray runs inside a but on the border of b.
+  // If an edge of b lies in a's plane, the ray lies inside a, but on the border of b.
   return found == Contact::crossing && (b1 == 0 || b2 == 0) ? Contact::touching : found;
 }
 
-/// Returns true if all of one polygon lies beyond an edge of the other. Two convex polygons in one plane are apart if
-/// and only if this holds for either order.
+/// Returns true if a polygon lies completely beyond one edge of another polygon. Two convex polygons in one plane are
+/// apart if and only if this is true for at least one of the two orders.
 bool is_beyond_an_edge(const Projection& plane, const Points& of, const Points& other) {
   const int way = plane.turn(of[0], of[1], of[2]);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -113,12 +114,13 @@ bool is_beyond_an_edge(const Projection& plane, const Points& of, const Points& 
   return false;
 }
 
-/// Returns the corner that is alone on one closed side of a plane. The corners are neither all in it nor all beside it.
+/// Returns the corner that a plane separates from the other two corners; corners may also lie in the plane. The corners
+/// must not all lie in the plane, nor all strictly on one side.
 std::size_t lone_corner(const Signs& s) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (s[k] != 0 && s[k] * s[(k + 1) % 3] <= 0 && s[k] * s[(k + 2) % 3] <= 0) return k;
   }
-  // One corner lies in the plane, the others on one side.
+  // Here one corner lies in the plane, and the other two are on the same side.
   return s[0] == 0 ? 0 : s[1] == 0 ? 1 : 2;
 }
 
@@ -132,9 +134,9 @@ Contact contact_of_strangers(const Points& a, const Points& b) {
   const Signs a_sides = sides(b, a);
   if (all_on_one_side(a_sides)) return Contact::none;
 
-  // Both triangles meet the common line of their planes, each in an interval between the two edges at its lone corner.
-  // They are reordered so that each lone corner is above the other's plane. Two determinants then compare the ends of
-  // the intervals.
+  // Each triangle meets the common line of both planes in an interval between the two edges at its lone corner. The
+  // corners are reordered so that each lone corner is above the other's plane. Two determinants then compare the ends
+  // of the intervals.
   const std::size_t a_lone = lone_corner(a_sides);
   const std::size_t b_lone = lone_corner(b_sides);
   Points p = rotated(a, a_lone);
@@ -163,7 +165,8 @@ bool has_no_area(const std::array<Vec3d, 3>& p) {
 
 Contact contact(const ContactTriangle& a, const ContactTriangle& b) {
   std::size_t shared = 0;
-  std::size_t of_a = 0;  // sums of the shared corners' indices, 0 to 2, which identify the remaining one
+  // Sums of the shared corners' indices (each 0 to 2), from which the index of the remaining corner follows.
+  std::size_t of_a = 0;
   std::size_t of_b = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t grain = 4096;
 
-/// Returns the angle between two vectors; accurate for all angles.
+/// Returns the angle between two vectors. It is accurate for all angles.
 double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
@@ -34,7 +34,7 @@ Pseudonormals::Pseudonormals(const MeshView& mesh, const SiteTable& sites, const
       for (std::size_t k = 0; k < 3; ++k) angles[t][k] = angle_between(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
     }
   });
-  // On one thread, in the order of triangles, so that sums have the same bits for any number of threads.
+  // Runs on one thread, in the order of triangles, so that sums are bitwise equal for any number of threads.
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (t % (std::size_t{1} << 16) == 0) throw_if_cancelled(context);
     const Vec3d& normal = normals_[face_base + t];

@@ -28,10 +28,10 @@ int ray_side(const Ray& ray, const Vec3d& a, const Vec3d& b) {
     rough += d[i] * (left - right);
     magnitude += std::abs(d[i]) * (std::abs(left) + std::abs(right));
   }
-  constexpr double bound = 8e-16;  // as for orient3d(), with one more rounding in the first row
+  constexpr double bound = 8e-16;  // as for orient3d(), plus one more rounding in the first row
   if (std::abs(rough) > bound * magnitude) return rough > 0 ? 1 : -1;
-  if (magnitude == 0) return 0;  // every product has a factor that is exactly 0
-  // Expands det(d, a - o, b - o); the term with o twice vanishes.
+  if (magnitude == 0) return 0;  // each product has an exact 0 as factor
+  // Expands det(d, a - o, b - o). The term that contains o twice vanishes.
   Expansion<72> exact;
   exact.add_determinant(1, d, a, b);
   exact.add_determinant(-1, d, ray.origin, b);
@@ -47,8 +47,8 @@ std::optional<TriangleCrossing> crossing(const Ray& ray, const std::array<Vec3d,
   TriangleCrossing out;
   out.side = *least < 0 ? -1 : 1;
   out.on_border = *least == 0 || *most == 0;
-  // Along the ray, the determinant of the triangle and a point moves towards the sign `side`. A ray that starts there
-  // already passed the triangle.
+  // Along the ray, the determinant of the triangle and the current point changes towards the sign `side`. If it already
+  // has this sign at the ray's origin, the ray starts beyond the triangle.
   const int start = orient3d(a, b, c, ray.origin);
   if (start == out.side) return std::nullopt;
   const auto weight = [&](const Vec3d& from, const Vec3d& to) {
@@ -57,14 +57,15 @@ std::optional<TriangleCrossing> crossing(const Ray& ray, const std::array<Vec3d,
   out.weights = {sides[0] == 0 ? 0 : weight(b, c), sides[1] == 0 ? 0 : weight(c, a), sides[2] == 0 ? 0 : weight(a, b)};
   const double sum = out.weights[0] + out.weights[1] + out.weights[2];
   for (std::size_t k = 0; k < 3; ++k) {
-    // If all three are lost in rounding, the point is placed where the exact signs allow it.
+    // If all three weights are lost in rounding, the point is chosen so that the exact signs are respected.
     out.weights[k] = sum > 0 ? out.weights[k] / sum : (sides[k] == 0 ? 0.0 : 1.0);
   }
   if (!(sum > 0)) {
     const double count = out.weights[0] + out.weights[1] + out.weights[2];
     for (double& w : out.weights) w /= count;
   }
-  // t is computed from the point in the triangle: for a ray nearly in its plane, other formulas are lost in rounding.
+  // t is computed from the point in the triangle. If the ray is nearly parallel to its plane, other formulas lose all
+  // digits.
   const Vec3d point = a * out.weights[0] + b * out.weights[1] + c * out.weights[2];
   const double along = dot(point - ray.origin, ray.direction) / squared_length(ray.direction);
   out.t = start == 0 ? 0 : std::max(0.0, along);

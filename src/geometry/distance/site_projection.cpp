@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t grain = std::size_t{1} << 14;
 
-/// Returns true if a vector certainly points against a direction by more than a margin.
+/// Returns true if a vector's component along a direction is certainly negative, by more than a margin.
 bool goes_against(const Vec3d& vector, const Vec3d& direction, double margin) {
   const double along = dot(vector, direction);
   return along < 0 && along * along > margin * margin * squared_length(direction);
@@ -23,7 +23,7 @@ bool goes_against(const Vec3d& vector, const Vec3d& direction, double margin) {
 
 struct Edge {
   std::array<std::uint32_t, 2> ends{};
-  /// The opposite vertices of up to two triangles; an end of the edge stands for a missing one.
+  /// The vertices opposite to the edge in up to two triangles. An end of the edge replaces a missing vertex.
   std::array<std::uint32_t, 2> apex{};
   std::uint32_t triangles = 0;
 };
@@ -36,18 +36,18 @@ struct Foot {
 }  // namespace
 
 struct SiteProjection::Data {
-  double scale = 1;              ///< factor from mesh coordinates to those here, a power of two
+  double scale = 1;              ///< factor from mesh coordinates to the coordinates used here, a power of two
   double unscale = 1;            ///< 1 / scale
-  std::vector<Vec3d> positions;  ///< of all vertices
+  std::vector<Vec3d> positions;  ///< positions of all vertices, scaled
   std::vector<Edge> edges;
-  std::vector<TriangleFrame> faces;  ///< with their vertices in rising order
+  std::vector<TriangleFrame> faces;  ///< frame of each triangle, with its vertices in ascending order
   /// Other ends of the edges at vertex v: neighbours[first[v] .. first[v + 1]).
   std::vector<std::uint32_t> first, neighbours;
 
   Data(const MeshView& mesh, const SiteTable& sites, const Context& context);
   void add_edges(const MeshView& mesh, const SiteTable& sites);
 
-  /// Return true if the query lies in the site's domain, and then set its foot.
+  /// The following functions return true if the query lies in a site's domain. In this case they set its foot.
   [[nodiscard]] bool find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const;
   [[nodiscard]] bool find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const;

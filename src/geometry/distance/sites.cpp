@@ -8,7 +8,8 @@
 namespace blum {
 namespace {
 
-/// One use of an edge: its larger vertex, and its source (3 * triangle + corner, or 3 * F + segment, with F triangles).
+/// One use of an edge: its larger vertex, and its source. The source is 3 * triangle + corner for triangles, and 3 * F
+/// + segment for segments, where F is the number of triangles.
 struct EdgeUse {
   std::uint32_t larger = 0;
   std::uint32_t source = 0;
@@ -20,9 +21,11 @@ SiteTable::SiteTable(const MeshView& mesh, const Context& context)
     : vertex_count_(mesh.vertices.size()), triangles_(mesh.triangles.begin(), mesh.triangles.end()) {
   const std::size_t face_count = mesh.triangles.size();
   if (3 * face_count + mesh.segments.size() > std::size_t{0xffffffff}) {
-    throw InvalidMesh("the mesh has " + std::to_string(face_count) + " triangles, more than edge ids can count");
+    throw InvalidMesh("the mesh has " + std::to_string(face_count) +
+                      " triangles, so it may have more than 2^32 - 1 edges, the limit for ids");
   }
-  // Buckets the uses by smaller vertex, then sorts each short bucket: linear time for meshes of bounded degree.
+  // Sorts the uses into buckets by smaller vertex, then sorts each short bucket. This takes linear time if vertices
+  // have a bounded number of edges.
   std::vector<std::uint32_t> start(vertex_count_ + 1, 0);
   const auto for_each_use = [&](auto visit) {
     for (std::size_t t = 0; t < face_count; ++t) {
@@ -69,7 +72,7 @@ SiteTable::SiteTable(const MeshView& mesh, const Context& context)
     }
   }
   if (size() > max_id_count) {
-    throw InvalidMesh("the mesh has " + std::to_string(size()) + " sites; ids can count 2^31 - 1");
+    throw InvalidMesh("the mesh has " + std::to_string(size()) + " sites, but the limit for ids is 2^31 - 1");
   }
   vertex_triangle_.assign(vertex_count_, TriangleId::none());
   for (std::size_t t = face_count; t-- > 0;) {

@@ -21,7 +21,7 @@
 namespace blum::detail {
 namespace {
 
-/// Lexicographic order of coordinates, which is the order of points along their common line.
+/// Compares coordinates lexicographically. For points of one line, this is their order on the line.
 bool is_before(const Vec3d& a, const Vec3d& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
@@ -36,11 +36,11 @@ bool on_one_line(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return turn(0, a, b, c) == 0 && turn(1, a, b, c) == 0 && turn(2, a, b, c) == 0;
 }
 
-/// The points that span a triangle. A triangle without area is the segment between the first and the last of its
-/// corners.
+/// Points that span a triangle. A triangle without area is represented by the segment between its first and last corner
+/// in this order.
 struct Hull {
   std::array<Vec3d, 3> points;
-  int size = 3;  ///< number of distinct points that span it
+  int size = 3;  ///< number of distinct points
 
   explicit Hull(const std::array<Vec3d, 3>& triangle) : points(triangle) {
     if (!has_no_area(triangle)) return;
@@ -68,8 +68,8 @@ bool in_triangle(const Vec3d& p, const std::array<Vec3d, 3>& t) {
 bool segments_meet(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   if (on_segment(c, a, b) || on_segment(d, a, b) || on_segment(a, c, d) || on_segment(b, c, d)) return true;
   if (orient3d(a, b, c, d) != 0) return false;
-  // No end lies on the other segment, so they meet only if they cross. Seen along an axis in which the plane has an
-  // area.
+  // No end of a segment lies on the other segment, so they meet only if they cross. This is decided in a projection
+  // along an axis in which the plane keeps an area.
   for (std::size_t dropped = 0; dropped < 3; ++dropped) {
     const int first = turn(dropped, a, b, c) * turn(dropped, a, b, d);
     const int second = turn(dropped, c, d, a) * turn(dropped, c, d, b);
@@ -96,8 +96,8 @@ bool have_a_corner_in_common(const std::array<Vec3d, 3>& a, const std::array<Vec
   return std::any_of(a.begin(), a.end(), [&](const Vec3d& p) { return std::find(b.begin(), b.end(), p) != b.end(); });
 }
 
-/// Returns true if two triangles, which may be segments or points, share a point. Exact for coordinates that are 0 or
-/// of magnitude 1e-80 to 1e100.
+/// Returns true if two triangles share a point. They may be degenerate to segments or points. The result is exact if
+/// all coordinates are 0 or of magnitude 1e-80 to 1e100.
 bool meet(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
   if (have_a_corner_in_common(a, b)) return true;
   Hull small(a);
@@ -120,13 +120,13 @@ namespace {
 
 using Points = std::array<Vec3d, 3>;
 
-/// Bound on the rounding of a distance and of heights along a direction, relative to the largest coordinate.
+/// Bound on the rounding errors of a distance and of heights along a direction. Relative to the largest coordinate.
 constexpr double rounding = 1e-14;
 
-/// A triangle with precomputed edges, for its distances from others.
+/// Triangle with precomputed edges, to compute its distances from others.
 struct Sides {
   Points corner;
-  Points edge;                    ///< from corner k to the next one
+  Points edge;                    ///< vector of each edge, from corner k to the next corner
   std::array<double, 3> inverse;  ///< reciprocal of the squared length of edge k; 0 if the edge has no length
 
   explicit Sides(const Points& p) : corner(p) {
@@ -144,7 +144,7 @@ TriangleFeature on_edge(std::size_t k, double t) {
   return {SiteKind::edge, static_cast<std::uint8_t>(k)};
 }
 
-/// A point of each triangle, and their squared distance.
+/// One point of each triangle, and their squared distance.
 struct Pair {
   double squared = std::numeric_limits<double>::infinity();
   Vec3d p, q;
@@ -153,7 +153,7 @@ struct Pair {
   [[nodiscard]] Pair exchanged() const { return {squared, q, p, of_q, of_p}; }
 };
 
-/// Offers pairs of a corner of one triangle and a point on an edge of the other.
+/// Offers the closest pairs of a corner of one triangle and a point on an edge of the other.
 void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
   double least = best.squared;
   std::size_t corner = 3;
@@ -164,7 +164,7 @@ void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
       const Vec3d w = a.corner[i] - b.corner[k];
       const double t = std::min(std::max(dot(w, b.edge[k]) * b.inverse[k], 0.0), 1.0);
       const double squared = squared_length(w - b.edge[k] * t);
-      // Branch-free, because branches would be mispredicted about half of the time.
+      // Computed without branches, which would be mispredicted about half of the time.
       const bool is_less = squared < least;
       least = is_less ? squared : least;
       at = is_less ? t : at;
@@ -177,7 +177,7 @@ void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
   best = {least, a.corner[corner], q, {SiteKind::vertex, static_cast<std::uint8_t>(corner)}, on_edge(edge, at)};
 }
 
-/// Offers pairs of inner points of edges, if both edges contain the feet of their common perpendicular.
+/// Offers the closest pairs of points of two edges, for edges that both contain the foot of their common perpendicular.
 void offer_edges(const Sides& a, const Sides& b, Pair& best) {
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t l = 0; l < 3; ++l) {
@@ -186,7 +186,7 @@ void offer_edges(const Sides& a, const Sides& b, Pair& best) {
       const Vec3d w = b.corner[l] - a.corner[k];
       const Vec3d n = cross(u, v);
       const double square = squared_length(n);
-      // Uses cross products: for nearly parallel edges, dot products would lose twice as many digits.
+      // Uses cross products. For nearly parallel edges, dot products would lose twice as many digits.
       const double s = dot(cross(w, v), n);
       const double t = dot(cross(w, u), n);
       if (!(s > 0 && s < square && t > 0 && t < square)) continue;
@@ -200,12 +200,12 @@ void offer_edges(const Sides& a, const Sides& b, Pair& best) {
   }
 }
 
-/// Returns the corners of a triangle that may lie over the inside of another one. Misses none that does.
+/// Returns the corners of a triangle that may project into another triangle. No such corner is missed.
 std::array<bool, 3> may_be_over(const Sides& a, const Sides& b) {
   const Vec3d normal = cross(b.edge[0], b.edge[1]);
   const double longest =
       std::sqrt(std::max({squared_length(b.edge[0]), squared_length(b.edge[1]), squared_length(b.edge[2])}));
-  // Coordinates are at most 2, so this exceeds the rounding of the normal and of the products below.
+  // Coordinates are at most 2, so the margin exceeds the rounding errors of the normal and of the products below.
   const double margin = 1e-13 * longest * longest * longest;
   std::array<bool, 3> out{true, true, true};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -217,7 +217,7 @@ std::array<bool, 3> may_be_over(const Sides& a, const Sides& b) {
   return out;
 }
 
-/// Offers pairs of a corner of one triangle and an inner point of the other.
+/// Offers the closest pairs of a corner of one triangle and a point inside the other.
 void offer_corners_and_face(const Sides& a, const Sides& b, Pair& best) {
   const std::array<bool, 3> may_be = may_be_over(a, b);
   if (!may_be[0] && !may_be[1] && !may_be[2]) return;
@@ -243,8 +243,8 @@ void offer_corners_and_face(const Sides& a, const Sides& b, Pair& best) {
   }
 }
 
-/// Returns the closest points of the borders, and of corners and insides. Unless the triangles cross, these are their
-/// closest points.
+/// Returns the closest pair of points, except for crossings: it compares borders with borders, and corners with
+/// insides. If the triangles do not cross, this is their closest pair.
 Pair closest(const Points& a, const Points& b) {
   const Sides of_a(a);
   const Sides of_b(b);
@@ -258,14 +258,15 @@ Pair closest(const Points& a, const Points& b) {
   return other.exchanged();
 }
 
-/// Returns a lower bound of the distance of two triangles along a direction, times the direction's length.
+/// Returns a lower bound of the distance between two triangles, measured along a direction and multiplied by the
+/// direction's length.
 double gap_along(const Vec3d& direction, const Points& a, const Points& b) {
   const double here = std::max({dot(direction, a[0]), dot(direction, a[1]), dot(direction, a[2])});
   const double there = std::min({dot(direction, b[0]), dot(direction, b[1]), dot(direction, b[2])});
   return there - here;
 }
 
-/// Offers the point closest to `b` at which an edge of `a` passes through the plane of `b`.
+/// Among the points where edges of `a` pass through the plane of `b`, offers the one closest to `b`.
 void offer_crossings(const Points& a, const Points& b, Pair& best) {
   const TriangleFrame frame = make_triangle_frame(b);
   const Vec3d normal = frame.normal();
@@ -282,12 +283,12 @@ void offer_crossings(const Points& a, const Points& b, Pair& best) {
   }
 }
 
-/// A pair of triangles, moved so that a corner is the origin, and scaled so that products neither overflow nor
+/// Pair of triangles, moved so that one corner is the origin, and scaled so that products neither overflow nor
 /// underflow.
 struct Placed {
   Points a, b;
   double scale;
-  double largest = 0;  ///< largest coordinate after that
+  double largest = 0;  ///< largest coordinate after moving and scaling
 
   Placed(const Points& first, const Points& second) {
     Box3 box;
@@ -302,12 +303,12 @@ struct Placed {
       a[k] *= scale;
       b[k] *= scale;
     }
-    // At most 2, except for coordinates at the ends of the range.
+    // At most 2, unless coordinates are close to the largest or smallest double.
     largest = box.largest_coordinate() * scale;
   }
 };
 
-/// Returns true if the closest points prove that the triangles are apart.
+/// Returns true if the closest points prove that the triangles do not meet.
 bool are_apart(const Placed& placed, const Pair& pair) {
   const Vec3d way = pair.q - pair.p;
   return gap_along(way, placed.a, placed.b) > rounding * placed.largest * length(way);
@@ -344,7 +345,7 @@ TriangleDistance triangle_distance(const Points& a, const Points& b) {
     crossing = crossing.exchanged();
     offer_crossings(placed.b, placed.a, crossing);
     crossing = crossing.exchanged();
-    // No crossing is found if the triangles only touch.
+    // If the triangles only touch, there may be no crossing; then `best` stays.
     if (crossing.squared < best.squared) best = crossing;
   }
   const auto as_given = [&](const Vec3d& p) { return p / placed.scale + a[0]; };

@@ -8,22 +8,21 @@
 
 namespace blum {
 
-/// Below this ratio of altitude to longest side, a triangle counts as its border only, because rounding loses its
-/// plane.
+/// If altitude / longest side is at most this, a triangle is treated as its border only. Its plane is lost in rounding.
 inline constexpr double flat_ratio = 1e-14;
 
-/// Frame of a triangle along its longest side: corner `base`, unit vector u along that side, unit vector v along the
-/// altitude over it. A vector without its parts along u and v is its part along the normal. The length of this part is
-/// accurate on needles and slivers, unlike a product with a computed normal.
+/// Frame of a triangle along its longest side: corner `base`, unit vector u along that side, and unit vector v along
+/// the altitude over it. To find a vector's component along the normal, subtract its components along u and v. The
+/// length of the result is accurate for needles and slivers, unlike a product with a computed normal.
 struct TriangleFrame {
   Vec3d base, u, v;
-  double length = 0;    ///< longest side
+  double length = 0;    ///< length of the longest side
   double altitude = 0;  ///< over the longest side
-  double apex = 0;      ///< position of the altitude's foot along the longest side, from base
+  double apex = 0;      ///< distance of the altitude's foot from `base`, along the longest side
 
   /// Returns true if the triangle has no usable plane.
   [[nodiscard]] bool is_flat() const { return !(altitude > flat_ratio * length); }
-  /// Returns the unit normal, counter-clockwise in the given order of corners; zero if the triangle is flat.
+  /// Returns the unit normal, for which the given order of corners is counter-clockwise; zero if the triangle is flat.
   [[nodiscard]] Vec3d normal() const { return is_flat() ? Vec3d{} : cross(u, v); }
 };
 
@@ -38,7 +37,8 @@ struct TriangleFrame {
   const Vec3d side = p[(k + 2) % 3] - p[k];
   frame.apex = dot(side, frame.u);
   Vec3d v = side - frame.u * frame.apex;
-  v -= frame.u * dot(v, frame.u);  // again: the first step leaves rounding along u
+  // Repeated, because after the first step v still has a component along u from rounding.
+  v -= frame.u * dot(v, frame.u);
   frame.altitude = length(v);
   if (frame.altitude > 0) frame.v = v / frame.altitude;
   return frame;

@@ -8,7 +8,7 @@
 
 namespace blum::detail {
 
-/// A number as the sum of a double and its rounding error.
+/// Number stored as the sum of a double and a smaller correction.
 struct Double2 {
   double high = 0;
   double low = 0;
@@ -26,13 +26,13 @@ inline Double2 difference(double x, double y) {
   return {high, (x - (high + from_y)) + (from_y - y)};
 }
 
-/// Returns the product, with a relative error of at most 2^-103.
+/// Returns the product of two numbers, with a relative error of at most 2^-103.
 inline Double2 product(const Double2& x, const Double2& y) {
   const double high = x.high * y.high;
   return quick_sum(high, std::fma(x.high, y.high, -high) + (x.high * y.low + x.low * y.high));
 }
 
-/// Returns the sum, with an error of at most 2^-103 of the sum of magnitudes.
+/// Returns the sum of two numbers. Its error is at most 2^-103 of the sum of their magnitudes.
 inline Double2 sum(const Double2& x, const Double2& y) {
   const double high = x.high + y.high;
   const double from_y = high - x.high;

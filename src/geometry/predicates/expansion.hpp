@@ -12,17 +12,17 @@
 
 namespace blum::detail {
 
-/// Capacity of expansions that grow.
+/// Value of `capacity` for expansions without a limit.
 inline constexpr std::size_t unbounded = 0;
 
-/// A number stored as a sum of doubles that do not overlap, by rising magnitude (Shewchuk 1997). Exact unless something
-/// overflows or falls below the normal range. `capacity` is the number of values that can be added, or `unbounded`.
-/// Products count twice, products of three values four times.
+/// Number stored as a sum of non-overlapping doubles, in ascending order of magnitude (Shewchuk 1997). It is exact
+/// unless something overflows or falls below the normal range. `capacity` is the number of doubles that can be added,
+/// or `unbounded`. A product of two doubles counts as two, a product of three as four.
 template <std::size_t capacity>
 class Expansion {
  public:
   void add(double value) {
-    // Knuth's two-sum, carried through all parts; those that vanish are dropped.
+    // Adds the value to each part in turn, by Knuth's two-sum. Parts that become 0 are dropped.
     std::size_t kept = 0;
     for (std::size_t i = 0; i < size_; ++i) {
       const double sum = value + parts_[i];
@@ -59,9 +59,9 @@ class Expansion {
       add_product(-sign * u[i], v[k], w[j]);
     }
   }
-  /// Returns the number, rounded to within a few units in the last place.
+  /// Returns the number, rounded to a double. The error is at most a few units in the last place.
   [[nodiscard]] double value() const { return size_ == 0 ? 0 : parts_[size_ - 1]; }
-  /// Returns the summands, by rising magnitude.
+  /// Returns the summands, in ascending order of magnitude.
   [[nodiscard]] std::span<const double> parts() const { return {parts_.data(), size_}; }
   [[nodiscard]] int sign() const { return size_ == 0 ? 0 : parts_[size_ - 1] > 0 ? 1 : -1; }
 

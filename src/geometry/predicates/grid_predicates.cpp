@@ -17,7 +17,7 @@ int sign(T value) {
   return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
 }
 
-/// Returns a point seen against an axis.
+/// Projects a point along an axis. The result is as seen against the axis.
 Point2 seen(const Vec3d& p, std::size_t axis) {
   return {p[next_axis(axis)], p[next_axis(next_axis(axis))]};
 }
@@ -38,7 +38,7 @@ int sign_of_difference(const Exact& a, const Exact& b, const Exact& c, const Exa
   return difference.sign();
 }
 
-/// A double and a bound on its error.
+/// Double with a bound on its error.
 struct Rounded {
   double value = 0;
   double error = 0;
@@ -59,12 +59,13 @@ int certain_order(const Rounded& x, const Rounded& y) {
                                                                                                    : 0;
 }
 
-/// A triangle crossed by the line u, v along an axis. The height of its plane above a base is -volume / area.
+/// Triangle that is crossed by a line parallel to an axis, at the other coordinates (u, v). The height of its plane
+/// above a base point of the line is -volume / area.
 class Crossing {
  public:
   Crossing(const TriangleCorners& triangle, std::size_t axis) : corners_(triangle), axis_(axis) {}
 
-  /// Returns six times the volume between the triangle and a point.
+  /// Returns six times the volume of the tetrahedron of the triangle and a point.
   [[nodiscard]] Rounded volume(const Vec3d& p) const {
     const Vec3d u = corners_[1] - corners_[0];
     const Vec3d v = corners_[2] - corners_[0];
@@ -91,7 +92,7 @@ class Crossing {
     sum.add_determinant(-1, a, b, c);
     return sum;
   }
-  /// Returns twice the area seen against an axis: a component of the normal.
+  /// Returns twice the area of the triangle projected along the axis: a component of its normal.
   [[nodiscard]] Rounded area() const {
     const Point2 a = seen(corners_[0], axis_);
     const Point2 b = seen(corners_[1], axis_);
@@ -110,7 +111,7 @@ class Crossing {
     }
     return sum;
   }
-  /// Returns the sign of the area.
+  /// Returns the sign of the projected area.
   [[nodiscard]] int facing() const { return normal_sign(corners_, axis_); }
 
  private:
@@ -124,7 +125,8 @@ int side_of_line(const EdgeEnds& edge, std::size_t axis, double u, double v) {
   const Point2 a = seen(edge[0], axis);
   const Point2 b = seen(edge[1], axis);
   if (const int side = orient2d(a, b, {u, v}); side != 0) return side;
-  // The line is moved down along u and v, which changes the side by these terms. The term of the earlier axis decides.
+  // The line counts as moved infinitesimally down along u and v, which changes the side by these terms. The term of the
+  // axis with the smaller index decides first.
   const int along_u = sign(b[1] - a[1]);
   const int along_v = sign(a[0] - b[0]);
   const bool is_u_first = next_axis(axis) < next_axis(next_axis(axis));
@@ -152,15 +154,15 @@ bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& seco
   base[axis] = first[0][axis];  // near both triangles, so that the volumes are small
   base[next_axis(axis)] = u;
   base[next_axis(next_axis(axis))] = v;
-  // Heights -Vx / Ax < -Vy / Ay if Vy Ax < Vx Ay, reversed if one area is negative.
+  // The heights satisfy -Vx / Ax < -Vy / Ay if Vy Ax < Vx Ay; the order is reversed if exactly one area is negative.
   const int turned = x.facing() * y.facing();
   int order = certain_order(y.volume(base) * x.area(), x.volume(base) * y.area());
   if (order == 0) {
     const Exact area_x = x.exact_area(axis);
     const Exact area_y = y.exact_area(axis);
     order = sign_of_difference(y.exact_volume(base), area_x, x.exact_volume(base), area_y);
-    // The planes meet on the line. If the line moves down along an axis, a height rises with that component of the
-    // normal.
+    // Both planes meet the line at the same point. If the line moves down along an axis, the height of a plane rises
+    // with the normal's component along that axis.
     for (std::size_t other = 0; order == 0 && other < 3; ++other) {
       if (other != axis) order = sign_of_difference(x.exact_area(other), area_y, y.exact_area(other), area_x);
     }
@@ -170,7 +172,7 @@ bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& seco
 
 namespace {
 
-/// Returns dividend and divisor of passes_before(), in double.
+/// Returns the dividend and divisor of the position in passes_before(), in double.
 std::array<Rounded, 2> rounded_place(const EdgeEnds& edge, std::size_t across, double plane, std::size_t along) {
   const auto& [a, b] = edge;
   const double below = a[along] * (b[across] - plane);
@@ -183,7 +185,8 @@ std::array<Rounded, 2> rounded_place(const EdgeEnds& edge, std::size_t across, d
 }  // namespace
 
 bool passes_before(const EdgeEnds& first, const EdgeEnds& second, std::size_t across, double plane, std::size_t along) {
-  // An edge passes at (a' (b - plane) + b' (plane - a)) / (b - a); a' and b' are the coordinates along the other axis.
+  // An edge passes the plane at (a' (b - plane) + b' (plane - a)) / (b - a). Here a and b are its ends' coordinates
+  // across the plane; a' and b' are their coordinates along the other axis.
   const auto [x, x_under] = rounded_place(first, across, plane, along);
   const auto [y, y_under] = rounded_place(second, across, plane, along);
   if (const int certain = certain_order(x * y_under, y * x_under); certain != 0) {
@@ -205,7 +208,8 @@ bool passes_before(const EdgeEnds& first, const EdgeEnds& second, std::size_t ac
   parts(second, over_y, under_y, slope_y);
   const int turned = under_x.sign() * under_y.sign();
   int order = sign_of_difference(over_x, under_y, over_y, under_x);
-  if (order == 0) order = -sign_of_difference(slope_x, under_y, slope_y, under_x);  // the plane counts as moved down
+  // The plane counts as moved infinitesimally down.
+  if (order == 0) order = -sign_of_difference(slope_x, under_y, slope_y, under_x);
   return order * turned < 0;
 }
 

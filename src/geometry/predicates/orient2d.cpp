@@ -19,9 +19,10 @@ int orient2d(const std::array<double, 2>& a, const std::array<double, 2>& b, con
   const double left = d[0] * d[1];
   const double right = d[2] * d[3];
   const double determinant = left - right;
-  constexpr double error_bound = 4e-16;  // (3 + 16 u) u, with u = 2^-53, rounded up
+  constexpr double error_bound = 4e-16;  // (3 + 16 u) u with u = 2^-53, rounded up
   if (std::abs(determinant) > error_bound * (std::abs(left) + std::abs(right))) return determinant > 0 ? 1 : -1;
-  // Differences have their exact signs. If one is 0, for example for points in line with an axis, signs decide.
+  // The signs of differences are exact. If a difference is 0, for example for points aligned with an axis, these signs
+  // decide.
   const int left_sign = sign(d[0]) * sign(d[1]);
   const int right_sign = sign(d[2]) * sign(d[3]);
   if (left_sign != right_sign || left_sign == 0) return sign(left_sign - right_sign);

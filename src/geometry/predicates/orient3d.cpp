@@ -46,13 +46,13 @@ int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
                            std::abs(u.y) * (std::abs(zx) + std::abs(xz)) +
                            std::abs(u.z) * (std::abs(xy) + std::abs(yx));
   if (std::abs(rough) > orient3d_rounding * magnitude) return rough > 0 ? 1 : -1;
-  if (magnitude == 0) return 0;  // every product has a factor that is exactly 0
+  if (magnitude == 0) return 0;  // each product has an exact 0 as factor
 
   const Row u2 = row(b, a);
   const Row v2 = row(c, a);
   const Row w2 = row(d, a);
   const double fine = determinant(u2, v2, w2);
-  constexpr double fine_bound = 4e-30;  // 2^-98: about ten roundings of 2^-103, with a margin
+  constexpr double fine_bound = 4e-30;  // 2^-98: about ten roundings of 2^-103 each, with a margin
   if (std::abs(fine) > fine_bound * magnitude) return fine > 0 ? 1 : -1;
   return exact_sign(a, b, c, d, u2, v2, w2);
 }

@@ -99,11 +99,12 @@ std::string touching(std::size_t pairs, bool is_complete) {
 }
 
 std::string crosses_and_is_resolved(const std::string& how) {
-  return "the mesh crosses or touches itself (" + how + "): pass its Solid; sites are then those of its surface";
+  return "the mesh crosses or touches itself (" + how +
+         "): pass the Solid of the mesh; sites are then those of its surface";
 }
 
 std::string doubled_corner(std::size_t triangle) {
-  return "triangle " + std::to_string(triangle) + " names a vertex twice; weld the mesh, which removes such triangles";
+  return "triangle " + std::to_string(triangle) + " uses a vertex twice; weld the mesh, which removes such triangles";
 }
 
 std::string without_area(std::size_t triangle) {

@@ -20,34 +20,34 @@
 namespace blum::detail {
 namespace {
 
-/// Points tested per shell that touches others, to find one that lies on no other shell.
+/// Number of points tested for a shell that touches others. The aim is a point that lies on no other shell.
 constexpr std::size_t most_probes_per_shell = 8192;
-/// A shell whose points all lie on others is tested at this many points slightly inside it. Their depth is relative to
-/// the size of a triangle.
+/// If all tested points of a shell lie on other shells, this many points slightly inside it are tested. `inner_depth`
+/// is their depth relative to the size of a triangle.
 constexpr std::size_t most_inner_points = 64;
 constexpr double inner_depth = 1e-7;
-/// Tests of many points end after this many comparisons of triangles with points, plus 16 per triangle and point. Heaps
-/// of coincident shells would need the square of their number, without a better answer.
+/// A round of tests ends after this many comparisons of a triangle with a point, plus 16 for each triangle and each
+/// point. Many coincident shells would need a quadratic number of comparisons, without a better answer.
 constexpr std::size_t most_meetings = std::size_t{1} << 22;
 
-/// Error of the computed middle of a triangle, along each axis, for coordinates below 2.
+/// Bound on the error of a triangle's computed middle, along each axis, for coordinates below 2.
 constexpr double middle_rounding = 2e-15;
 
 Vec3d middle_of(const std::array<Vec3d, 3>& corners) {
   return corners[0] + ((corners[1] - corners[0]) + (corners[2] - corners[0])) * (1.0 / 3);
 }
 
-/// A point of a shell from which a ray goes outwards.
+/// Point of a shell from which a ray is cast to find the shells around it.
 struct Query {
-  Vec3d point;  ///< in the frame: the ray goes along z
+  Vec3d point;  ///< in the coordinates of Frame: the ray is parallel to z
   std::uint32_t shell = 0;
-  double rounding = 0;  ///< bound on the distance of the shell from the point, along each axis
+  double rounding = 0;  ///< bound on the distance, along each axis, of the point from the exact point of the shell
 };
 
 constexpr std::uint32_t no_shell = no_component;
 constexpr std::uint32_t several_shells = no_component - 1;
 
-/// Adds a shell to a set that is known as none, one or several.
+/// Adds a shell to a set that only distinguishes none, one (which) and several.
 void include_shell(std::uint32_t shell, std::uint32_t& set) {
   set = set == no_shell || set == shell ? shell : several_shells;
 }
@@ -55,23 +55,24 @@ bool has_other_shell(std::uint32_t set, std::uint32_t than) {
   return set != no_shell && set != than;
 }
 
-/// Queries at one point. Coincident shells ask at the same points, which are answered once.
+/// Queries at one position. Coincident shells have queries at the same positions; each position is evaluated once.
 struct QueryPoint {
   Vec3d point;
   std::uint32_t number = 0;
-  std::uint32_t shells = no_shell;  ///< set of shells that ask
-  double rounding = 0;              ///< largest of the queries' roundings
+  std::uint32_t shells = no_shell;  ///< set of the shells with queries here
+  double rounding = 0;              ///< largest `rounding` of these queries
 };
 
-/// A triangle of a shell above a place.
+/// Crossing of the ray of a query point with a triangle of a shell.
 struct Crossing {
   std::uint32_t place = 0;
   std::uint32_t outer = 0;
   std::int32_t direction = 0;  ///< 1 if the ray leaves through the triangle, -1 if it enters
 };
 
-/// Puts the axis of shortest extent last, because rays along it meet the fewest shells. Keeps the handedness. Scales by
-/// a power of two so that the largest coordinate is 1 to 2, and products neither overflow nor underflow.
+/// Coordinates in which the axis of shortest extent is the last one, because rays along it meet the fewest shells.
+/// Handedness is preserved. Coordinates are scaled by a power of two so that the largest one is 1 to 2, and products
+/// neither overflow nor underflow.
 struct Frame {
   std::size_t first = 0;
   double scale = 1;
@@ -90,10 +91,10 @@ struct Frame {
   [[nodiscard]] Box3 operator()(const Box3& b) const { return {(*this)(b.lower), (*this)(b.upper)}; }
 };
 
-/// Places of queries, binned by x and y, and sorted by z within a bin.
+/// Query points, sorted into bins by x and y, and by z within a bin.
 class QueryPointGrid {
  public:
-  /// @param place_of  receives the place of each query.
+  /// @param place_of  receives the index of each query's point.
   QueryPointGrid(const std::vector<Query>& queries, const Box3& bounds, std::vector<std::uint32_t>& place_of)
       : bounds_(bounds) {
     gather(queries, place_of);
@@ -109,8 +110,8 @@ class QueryPointGrid {
   [[nodiscard]] std::size_t size() const { return places_.size(); }
   [[nodiscard]] double most_rounding() const { return most_rounding_; }
 
-  /// Calls visit(place) for the places in bins that overlap the x and y range of `columns`, with z in the range of
-  /// `heights`. Stops when it returns true, and then returns true.
+  /// Calls visit(point) for the points in bins that overlap the x and y range of `columns`, and with z in the range of
+  /// `heights`. Stops when a call returns true, and then returns true.
   template <class Visit>
   bool visit_in(const Box3& columns, const Box3& heights, Visit visit) const {
     const std::int64_t x1 = cell(columns.upper.x, 0);
@@ -167,7 +168,7 @@ class QueryPointGrid {
   std::vector<std::uint32_t> start_;
 };
 
-/// Returns the winding number of a triangle's projection around that of a point. The point counts as moved
+/// Returns the winding number of a triangle around a point, both projected along z. The point counts as moved
 /// infinitesimally along +x, and by infinitely less along +y. So no point lies on an edge, and neighbouring triangles
 /// agree about every edge.
 int projected_winding(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
@@ -184,8 +185,9 @@ int projected_winding(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
   return winding;
 }
 
-/// Returns true if a vertical line through a point certainly misses a triangle, for all points within the rounding.
-/// Seen from above, the point lies beyond an edge. For upright triangles, it lies beside their line.
+/// Returns true if a vertical line through a point certainly misses a triangle, even if the point is moved within its
+/// rounding. Seen from above, the point lies beyond an edge. For a triangle parallel to z, it lies beside the line of
+/// its projection.
 bool passes_beside(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& a = corners[k];
@@ -208,8 +210,8 @@ struct Height {
   bool is_certain = true;
 };
 
-/// Returns whether a triangle lies above a point, and whether this holds for all points within the rounding. Seen from
-/// above, the triangle turns counter-clockwise (winding 1) or clockwise (-1).
+/// Finds out if a triangle is above a point, and if this is certain for all points within the rounding. The triangle's
+/// projection must have winding number 1 (counter-clockwise) or -1 around the point.
 Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding, int winding) {
   const Vec3d a = corners[0] - p;
   const Vec3d b = corners[1] - p;
@@ -221,7 +223,7 @@ Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, doubl
   const double determinant = dot(a, cross(b, c));
   const double permanent =
       ma.x * (mb.y * mc.z + mb.z * mc.y) + ma.y * (mb.z * mc.x + mb.x * mc.z) + ma.z * (mb.x * mc.y + mb.y * mc.x);
-  // The determinant's gradient is the triangle's normal, of length twice the area.
+  // The gradient of the determinant is the triangle's normal, whose length is twice the area.
   const Vec3d slope = magnitude(cross(corners[1] - corners[0], corners[2] - corners[0]));
   const double unknown = 1e-15 * permanent + rounding * (slope.x + slope.y + slope.z);
   return {determinant * winding > 0, std::abs(determinant) > unknown};
@@ -234,8 +236,8 @@ class Nesting {
     bounds_ = frame_(bounds_);
   }
 
-  /// Nests the shells.
-  /// @return  number of comparisons of a triangle with a place.
+  /// Finds the depth and parent of every shell.
+  /// @return  number of comparisons of a triangle with a point.
   std::size_t run() {
     choices_.resize(set_.shells.size());
     const std::size_t without_end = std::numeric_limits<std::size_t>::max();
@@ -276,7 +278,7 @@ class Nesting {
     return queries;
   }
 
-  /// Calls visit(shell, corners in the frame) for about `most` evenly spread triangles of each of these shells.
+  /// Calls visit(shell, corners in the frame) for about `most` evenly spread triangles of each of the given shells.
   template <class Visit>
   void for_each_of_many(const std::vector<std::uint32_t>& shells, std::size_t most, Visit visit) const {
     std::vector<std::size_t> step(set_.shells.size(), 0);
@@ -294,7 +296,7 @@ class Nesting {
     return {frame_(mesh_.vertices[a]), frame_(mesh_.vertices[b]), frame_(mesh_.vertices[c])};
   }
 
-  /// Returns a corner and the middle of many triangles of these shells.
+  /// Returns two points for many triangles of the given shells: a corner and the middle.
   [[nodiscard]] std::vector<Query> many_points(const std::vector<std::uint32_t>& shells) const {
     std::vector<Query> queries;
     for_each_of_many(shells, most_probes_per_shell / 2, [&](std::uint32_t shell, const std::array<Vec3d, 3>& corners) {
@@ -304,8 +306,9 @@ class Nesting {
     return queries;
   }
 
-  /// Returns points slightly inside the shells, under the middles of some triangles, for shells whose points all lie on
-  /// others. The depth is large against rounding, and small against features.
+  /// Returns points slightly inside the given shells, below the middles of some triangles. They are for shells whose
+  /// tested points all lie on other shells. Their depth is large compared with rounding, and small compared with
+  /// features.
   [[nodiscard]] std::vector<Query> inner_points(const std::vector<std::uint32_t>& shells) const {
     std::vector<Query> queries;
     for_each_of_many(shells, most_inner_points, [&](std::uint32_t shell, const std::array<Vec3d, 3>& corners) {
@@ -318,13 +321,14 @@ class Nesting {
     return queries;
   }
 
-  /// Shells found above the places of a round.
+  /// Results of one round of queries. A place is the index of a query point.
   struct Answers {
-    std::vector<std::uint32_t> shell;       ///< of each query
-    std::vector<std::uint32_t> place;       ///< of each query
-    std::vector<std::uint32_t> touched_by;  ///< of each place: set of shells that it may lie on
-    std::vector<Crossing> containers;       ///< nonzero winding numbers around places, by place and outer shell
-    std::vector<std::size_t> start;         ///< first container of each place, and the end
+    std::vector<std::uint32_t> shell;       ///< shell of each query
+    std::vector<std::uint32_t> place;       ///< place of each query
+    std::vector<std::uint32_t> touched_by;  ///< per place: set of shells on which it may lie
+    /// Nonzero winding numbers of shells around places, sorted by place and outer shell.
+    std::vector<Crossing> containers;
+    std::vector<std::size_t> start;  ///< per place: index of its first container; the last entry is the total
     bool is_complete = true;
 
     [[nodiscard]] std::span<const Crossing> around(std::uint32_t place) const {
@@ -335,11 +339,11 @@ class Nesting {
     }
   };
 
-  /// Finds the shells around places of shells; gives up after too many meetings.
+  /// Finds the shells around the queries' points. Stops early after too many comparisons.
   Answers ask(const std::vector<Query>& queries) {
     return ask(queries, meetings_ + most_meetings + 16 * (queries.size() + mesh_.triangles.size()));
   }
-  /// @param most  limit on the number of meetings, including those of earlier rounds.
+  /// @param most  limit on the number of comparisons, including those of earlier rounds.
   Answers ask(const std::vector<Query>& queries, std::size_t most) {
     Answers out;
     for (const Query& query : queries) out.shell.push_back(query.shell);
@@ -356,8 +360,8 @@ class Nesting {
     return out;
   }
 
-  /// Compares a triangle with the places below and beside it.
-  /// @return  false if there were too many meetings.
+  /// Compares a triangle with the places below it and close to it.
+  /// @return  false if there were too many comparisons.
   bool meet(std::size_t triangle, const QueryPointGrid& grid, std::size_t most, Answers& out) {
     const std::uint32_t outer = set_.of_triangle[triangle];
     const Box3 shell = frame_(set_.shells[outer].bounds);
@@ -376,14 +380,15 @@ class Nesting {
       const bool is_beside = is_within(near, place.point) && place.point.z >= near.lower.z;
       if (winding == 0 && (!is_beside || passes_beside(corners, place.point, place.rounding))) return false;
       const Height height = compare_height(corners, place.point, place.rounding, winding);
-      // A place on an upright wall has no winding number in the projection, but must not count as off the wall.
+      // A place on a triangle parallel to z has no winding number in the projection, but it must count as on the
+      // triangle.
       if (!height.is_certain) include_shell(outer, out.touched_by[place.number]);
       if (winding != 0 && height.is_above) out.containers.push_back({place.number, outer, winding});
       return false;
     });
   }
 
-  /// Sums crossings to winding numbers, place by place and shell by shell.
+  /// Adds up the crossings of each place with each shell to winding numbers.
   static void sum_up(std::size_t places, Answers& answers) {
     std::vector<Crossing>& all = answers.containers;
     std::sort(all.begin(), all.end(), [](const Crossing& a, const Crossing& b) {
@@ -404,7 +409,7 @@ class Nesting {
     for (std::size_t p = 0; p < places; ++p) answers.start[p + 1] += answers.start[p];
   }
 
-  /// The place that decides about a shell.
+  /// Place whose containers are the shells around a given shell.
   struct Choice {
     std::optional<std::size_t> round;
     std::uint32_t place = 0;
@@ -415,7 +420,7 @@ class Nesting {
     return rounds_[*choice.round].around(choice.place);
   }
 
-  /// Returns the shells that no round has decided, in rising order.
+  /// Returns the shells for which no round has chosen a place, in ascending order.
   [[nodiscard]] std::vector<std::uint32_t> without_choice() const {
     std::vector<std::uint32_t> shells;
     for (std::uint32_t s = 0; s < choices_.size(); ++s) {
@@ -424,7 +429,7 @@ class Nesting {
     return shells;
   }
 
-  /// Chooses each shell's first point that certainly lies on no other shell.
+  /// Chooses, for each undecided shell, its first point that certainly lies on no other shell.
   void choose_certain(std::size_t round) {
     const Answers& answers = rounds_[round];
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
@@ -433,15 +438,15 @@ class Nesting {
     }
   }
 
-  /// Chooses the shells that surround all points of a shell that lie on no other shell. A shell's containers surround
-  /// all points inside it; shells that it contains do not.
+  /// For each shell, finds the shells that surround all of its tested points that lie on no other shell. A container of
+  /// the shell surrounds all points inside it. A shell inside it does not.
   void choose_common(std::size_t round) {
     Answers& answers = rounds_[round];
     std::vector<std::vector<std::uint32_t>> places(set_.shells.size());
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
       if (!answers.is_doubtful(query)) places[answers.shell[query]].push_back(answers.place[query]);
     }
-    std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // equal shells have equal points
+    std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // equal shells have the same places
     for (std::uint32_t s = 0; s < places.size(); ++s) {
       if (places[s].empty()) continue;
       std::sort(places[s].begin(), places[s].end());
@@ -451,8 +456,8 @@ class Nesting {
     }
   }
 
-  /// Adds a place whose containers are those common to all of these places.
-  /// @return  its number.
+  /// Adds a place whose containers are the common containers of the given places.
+  /// @return  index of the new place.
   static std::uint32_t add_common(const std::vector<std::uint32_t>& places, Answers& answers) {
     const std::span<const Crossing> first = answers.around(places.front());
     std::vector<Crossing> common(first.begin(), first.end());
@@ -468,7 +473,7 @@ class Nesting {
     return static_cast<std::uint32_t>(answers.start.size() - 2);
   }
 
-  /// Chooses the first point of each undecided shell, although it is doubtful.
+  /// Chooses the first point of each undecided shell, although it may lie on another shell.
   void choose_first(std::size_t round) {
     const Answers& answers = rounds_[round];
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
@@ -481,7 +486,7 @@ class Nesting {
     return box.lower.x <= p.x && p.x <= box.upper.x && box.lower.y <= p.y && p.y <= box.upper.y;
   }
 
-  /// Returns a flag per shell: true if its box contains a query of another shell.
+  /// Returns a flag for each shell: true if its bounding box contains a query of another shell.
   [[nodiscard]] std::vector<bool> find_candidates(const QueryPointGrid& grid) const {
     std::vector<bool> result(set_.shells.size(), false);
     for (std::uint32_t s = 0; s < result.size(); ++s) {
@@ -493,7 +498,7 @@ class Nesting {
     return result;
   }
 
-  /// Sets the number of other shells that contain each shell.
+  /// Sets the depth of each shell: the number of other shells that contain it.
   void set_depths() {
     for (std::uint32_t s = 0; s < choices_.size(); ++s) {
       if (!choices_[s].round) continue;
@@ -505,14 +510,15 @@ class Nesting {
     }
   }
 
-  /// Sets the parent of each shell: the deepest shell around it. Among several, that with the smallest number.
+  /// Sets the parent of each shell: the deepest shell around it. If several are equally deep, it is the one with the
+  /// smallest index.
   void set_parents() {
     std::vector<std::uint32_t> order;
     for (std::uint32_t s = 0; s < choices_.size(); ++s) {
       if (choices_[s].round) order.push_back(s);
     }
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return choices_[a] < choices_[b]; });
-    std::array<std::int64_t, 2> deepest{-1, -1};  // around the place of the previous shell
+    std::array<std::int64_t, 2> deepest{-1, -1};  // around the place chosen for the previous shell
     for (std::size_t k = 0; k < order.size(); ++k) {
       const std::uint32_t s = order[k];
       if (k == 0 || choices_[order[k - 1]] != choices_[s]) deepest = two_deepest(around(choices_[s]));
@@ -520,7 +526,7 @@ class Nesting {
     }
   }
 
-  /// Returns the two deepest shells; -1 for missing ones.
+  /// Returns the two deepest of the given shells; -1 for missing ones.
   [[nodiscard]] std::array<std::int64_t, 2> two_deepest(std::span<const Crossing> outers) const {
     std::array<std::int64_t, 2> best{-1, -1};
     const auto depth = [&](std::int64_t s) { return set_.shells[static_cast<std::size_t>(s)].depth; };
@@ -540,7 +546,7 @@ class Nesting {
   Box3 bounds_;
   Frame frame_;
   std::array<Answers, 3> rounds_;
-  std::vector<Choice> choices_;  ///< of each shell
+  std::vector<Choice> choices_;  ///< one per shell
   std::size_t meetings_ = 0;
 };
 

@@ -12,8 +12,8 @@
 namespace blum::detail {
 namespace {
 
-/// Sums area and volume in coordinates relative to an origin and scaled by a power of two. So shapes that are far away,
-/// huge or tiny lose no digits.
+/// Sums of area and volume. Coordinates are taken relative to an origin and scaled by a power of two. So shapes that
+/// are far away, huge or tiny lose no digits.
 struct Measure {
   Vec3d origin;
   double scale = 1;
@@ -32,13 +32,13 @@ struct Measure {
     area += 0.5 * length(normal);
     volume += dot(a, normal) / 6;
   }
-  /// Returns true if rounding could have caused the sign of the volume.
+  /// Returns true if the sign of the volume may be due to rounding.
   [[nodiscard]] bool is_doubtful() const { return !(std::abs(volume) > 1e-13 * area); }
   [[nodiscard]] int sign() const { return volume > 0 ? 1 : volume < 0 ? -1 : 0; }
 };
 
-/// Returns the volume of a shell, rounded only at the end. The volume of thin shells is a small difference of large
-/// sums.
+/// Returns the volume of a shell, computed exactly and rounded at the end. (For a thin shell, the volume is a small
+/// difference of large sums.)
 double exact_volume(const MeshView& mesh, std::span<const std::uint32_t> triangles, double scale,
                     const Context& context) {
   Expansion<unbounded> six_fold;
@@ -50,7 +50,7 @@ double exact_volume(const MeshView& mesh, std::span<const std::uint32_t> triangl
   return six_fold.value() / 6;
 }
 
-/// Replaces volumes of doubtful sign by exact ones.
+/// Replaces volumes with uncertain signs by exact ones.
 void settle_volumes(const MeshView& mesh, const ShellSet& set, std::vector<Measure>& measures, const Context& context) {
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

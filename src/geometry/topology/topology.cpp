@@ -48,7 +48,7 @@ bool is_flat(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
          detail::orient2d({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) == 0;
 }
 
-/// Uses of every edge, as 3 * triangle + corner.
+/// For each edge, the triangle sides that use it, as 3 * triangle + corner.
 struct EdgeUses {
   std::vector<std::uint32_t> start;
   std::vector<std::uint32_t> uses;
@@ -72,7 +72,7 @@ std::uint32_t next_corner(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
 
-/// Fans: sets of corners at one vertex that are connected through edges with two triangles.
+/// Fans: sets of triangle corners at one vertex that are connected through edges with two triangles.
 class Fans {
  public:
   Fans(const MeshView& mesh, const EdgeUses& edges) : mesh_(mesh), sets_(3 * mesh.triangles.size()) {
@@ -83,7 +83,7 @@ class Fans {
   }
   [[nodiscard]] bool is_first(std::uint32_t corner) { return sets_.find(corner) == corner; }
 
-  /// Returns the number of chains of boundary edges, followed around fans. Destroys the fans.
+  /// Returns the number of closed chains of boundary edges. They are followed around fans. Destroys the fans.
   [[nodiscard]] std::size_t count_boundary_loops(const EdgeUses& edges) {
     std::vector<std::uint32_t> ends;
     for (std::size_t e = 0; e + 1 < edges.start.size(); ++e) {
@@ -101,7 +101,7 @@ class Fans {
   void join_across(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t a_next = next_corner(a);
     const std::uint32_t b_next = next_corner(b);
-    if (vertex(a) == vertex(b)) {  // same direction
+    if (vertex(a) == vertex(b)) {  // both traverse the edge in the same direction
       sets_.join(a, b);
       sets_.join(a_next, b_next);
     } else {
@@ -115,8 +115,8 @@ class Fans {
   UnionFind sets_;
 };
 
-/// Counts triangles with the vertices of an earlier one. They share all three edges. So each edge searches for copies
-/// only among the triangles of which it is the smallest edge.
+/// Counts triangles that have the same vertices as an earlier one. Such triangles share all three edges. So copies are
+/// searched, for each edge, only among the triangles whose smallest edge it is.
 std::size_t count_duplicates(const MeshView& mesh, const SiteTable& sites, const EdgeUses& edges) {
   std::size_t duplicates = 0;
   std::vector<std::uint32_t> opposite;
@@ -153,7 +153,7 @@ void count_pieces(const MeshView& mesh, Topology& result) {
   }
 }
 
-/// Counts degenerate triangles, and sums the area of all.
+/// Counts degenerate triangles, and sums the areas of all triangles.
 void measure_triangles(const MeshView& mesh, Topology& result) {
   for (const Triangle& t : mesh.triangles) {
     const Vec3d& a = mesh.vertices[t[0]];

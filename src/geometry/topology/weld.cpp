@@ -39,14 +39,17 @@ class DisjointSets {
 };
 
 double distance(const Vec3d& a, const Vec3d& b) {
-  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);  // unlike the sum of squares, neither overflows nor underflows
+  // Unlike a sum of squares, hypot neither overflows nor underflows.
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-/// Cells of an irregular grid, each at most tolerance / sqrt(3) wide. All vertices of a cell belong together.
+/// Cells of an irregular grid, each at most tolerance / sqrt(3) wide. All vertices of one cell belong together, because
+/// they are within the tolerance.
 ///
-/// Slabs along each axis begin at coordinates that occur. So they stay accurate far from the origin, where quotients of
-/// coordinates and width would not distinguish neighbours. A coordinate two slabs on is more than one width away, three
-/// slabs on more than two. Vertices within tolerance are thus at most two slabs apart on each axis.
+/// Along each axis, the grid's slabs start at coordinates of vertices. So slabs stay accurate far from the origin,
+/// where quotients of coordinate and width could not distinguish neighbours. Coordinates two slabs apart differ by more
+/// than one width, and those three slabs apart by more than two. Vertices within the tolerance are thus at most two
+/// slabs apart along each axis.
 class CloseVertices {
  public:
   CloseVertices(std::span<const Vec3d> vertices, double tolerance, std::span<std::uint32_t> cluster)
@@ -70,7 +73,7 @@ class CloseVertices {
   using Key = std::array<std::uint32_t, 3>;
   struct Cell {
     Key key;
-    std::size_t begin, end;  ///< range in order_
+    std::size_t begin, end;  ///< range of the cell's vertices in order_
   };
 
   void make_cells() {
@@ -92,7 +95,7 @@ class CloseVertices {
     order_.swap(sorted);
   }
 
-  /// Sets entry `axis` of each key to the number of the slab along that axis.
+  /// For each vertex, sets entry `axis` of its key to the index of its slab along that axis.
   void number_slabs(std::size_t axis, double width, std::vector<std::uint32_t>& by_coordinate, std::vector<Key>& keys) {
     std::vector<double> coordinates(order_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) coordinates[i] = vertices_[order_[i]][axis];
@@ -110,8 +113,8 @@ class CloseVertices {
     }
   }
 
-  /// Joins every cell with the later cells that are (dx, dy, -2 .. 2) slabs away. Cells are sorted, and so are the
-  /// starts of their neighbours, so one sweep finds them all.
+  /// Joins every cell with the later cells that are (dx, dy, -2 .. 2) slabs away, if they touch. Cells are sorted, and
+  /// so are the first neighbours to be tested. So one sweep finds all neighbours.
   void join_neighbours(std::int64_t dx, std::int64_t dy) {
     std::size_t first = 0;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -143,8 +146,8 @@ class CloseVertices {
     return box;
   }
 
-  /// Returns true if some vertex of a is within tolerance of some vertex of b. Halves crowded groups, to avoid
-  /// comparing all pairs of two crowds. Reorders within the groups.
+  /// Returns true if some vertex of a is within the tolerance of some vertex of b. If both groups are large, they are
+  /// halved repeatedly, so that not all pairs are compared. Reorders each group.
   bool touch(std::span<std::uint32_t> a, std::span<std::uint32_t> b) {
     constexpr std::size_t few_pairs = 64;
     if (a.size() * b.size() <= few_pairs) {
@@ -174,15 +177,16 @@ class CloseVertices {
   std::span<const Vec3d> vertices_;
   double tolerance_;
   DisjointSets sets_;
-  std::vector<std::uint32_t> order_;  ///< distinct vertices; sorted by cell after make_cells()
+  std::vector<std::uint32_t> order_;  ///< distinct vertices; after make_cells() they are sorted by cell
   std::vector<Cell> cells_;
 };
 
-/// Joins the clusters of vertices whose distance is at most `tolerance`.
-/// @param cluster  in: the smallest vertex at exactly each vertex's place. Out: the smallest vertex of its cluster.
+/// Joins clusters that contain vertices at a distance of at most `tolerance`.
+/// @param cluster  in: for each vertex, the smallest vertex at exactly its position. Out: the smallest vertex of its
+/// cluster.
 void join_close_vertices(std::span<const Vec3d> vertices, double tolerance, std::span<std::uint32_t> cluster) {
   CloseVertices(vertices, tolerance, cluster).run();
-  // One pass suffices: roots are the smallest of their sets, and parents are smaller than their children.
+  // One pass is enough: the root of a set is its smallest member, and parents are smaller than their children.
   for (std::uint32_t& representative : cluster) representative = cluster[representative];
 }
 
@@ -205,13 +209,14 @@ bool same_place(const Vec3d& a, const Vec3d& b) {
   return bits(a.x) == bits(b.x) && bits(a.y) == bits(b.y) && bits(a.z) == bits(b.z);
 }
 
-/// Hash table of vertices with open addressing, at most half full. A slot holds a vertex and some bits of its hash,
-/// which avoid most comparisons of different vertices.
+/// Hash table of vertices with open addressing, at most half full. A slot contains a vertex and some bits of its hash.
+/// The bits make most comparisons of different vertices unnecessary.
 class VertexTable {
  public:
   explicit VertexTable(std::span<const Vec3d> vertices) : vertices_(vertices), slots_(1024) {}
 
-  /// Returns the first vertex entered at this vertex's place: the vertex itself if the place is new.
+  /// Returns the first vertex that was entered at this vertex's position. This is the vertex itself if the position is
+  /// new.
   std::uint32_t enter(std::uint32_t vertex) {
     if (2 * used_ >= slots_.size()) grow();
     const std::uint64_t h = hash(vertices_[vertex]);
@@ -255,7 +260,7 @@ class VertexTable {
 
 void check_index(std::uint32_t index, std::size_t count, const char* what, std::size_t which) {
   if (index < count) return;
-  throw InvalidMesh(std::string(what) + " " + std::to_string(which) + " names vertex " + std::to_string(index) +
+  throw InvalidMesh(std::string(what) + " " + std::to_string(which) + " uses vertex " + std::to_string(index) +
                     ", but the mesh has " + std::to_string(count) + " vertices");
 }
 
@@ -310,8 +315,8 @@ class Welder {
     }
   }
 
-  /// Adds the edges of collapsed triangles that nothing else has. Only edges that begin at the first vertex of a lost
-  /// edge are checked, which are few.
+  /// Adds those edges of collapsed triangles that nothing else in the mesh has. Only edges that start at the first
+  /// vertex of such an edge are compared; they are few.
   void keep_lost_edges() {
     std::vector<bool> begins(result_.vertices.size(), false);
     for (const Segment& edge : lost_edges_) begins[edge[0]] = true;
@@ -363,7 +368,7 @@ std::vector<std::uint32_t> weld_clusters(std::span<const Vec3d> vertices, double
     throw InvalidOption("the weld tolerance is " + std::to_string(tolerance) + ", but must be finite and not negative");
   }
   if (vertices.size() > max_id_count) {
-    throw InvalidMesh("the mesh has " + std::to_string(vertices.size()) + " vertices; at most " +
+    throw InvalidMesh("the mesh has " + std::to_string(vertices.size()) + " vertices, but at most " +
                       std::to_string(max_id_count) + " are possible");
   }
   std::vector<std::uint32_t> cluster(vertices.size());
@@ -379,7 +384,7 @@ TriangleMesh weld(const MeshView& mesh, double tolerance) {
   TriangleMesh result;
   std::vector<std::uint32_t> new_index(cluster.size());
   for (std::uint32_t i = 0; i < cluster.size(); ++i) {
-    // The representative is the smallest of its cluster, so its new index is already known.
+    // The representative is the smallest vertex of its cluster, so its new index has already been set.
     if (cluster[i] == i) {
       new_index[i] = static_cast<std::uint32_t>(result.vertices.size());
       result.vertices.push_back(mesh.vertices[i]);

@@ -15,16 +15,17 @@
 namespace blum {
 namespace {
 
-/// Edges are cut into pieces of at most this length, so that their boxes are tight. The mesh is about 1 long.
+/// Edges are divided into pieces of at most this length, so that their boxes are small. The scaled mesh is about 1
+/// long.
 constexpr double piece_length = 1.0 / 32;
 
-/// A directed edge from the smaller to the larger vertex, times its multiplicity.
+/// Edge, directed from its smaller to its larger vertex, with a multiplicity.
 struct ChainEdge {
   std::uint32_t from = 0, to = 0;
   std::int64_t multiplicity = 0;
 };
 
-/// Returns the sum of the directed edges of all triangles, identified by vertex index.
+/// Returns the sum of the directed edges of all triangles. Edges with the same vertex indices are combined.
 std::vector<ChainEdge> net_edges(const MeshView& mesh, const SiteTable& sites) {
   std::vector<std::int32_t> net(sites.edge_count(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -41,7 +42,7 @@ std::vector<ChainEdge> net_edges(const MeshView& mesh, const SiteTable& sites) {
   return chain;
 }
 
-/// Identifies vertices at the same position, so that their edges cancel.
+/// Replaces vertices at the same position by one, so that their edges cancel.
 void weld_chain(const MeshView& mesh, std::vector<ChainEdge>& chain) {
   std::vector<std::uint32_t> vertices;
   for (const ChainEdge& edge : chain) vertices.insert(vertices.end(), {edge.from, edge.to});
@@ -78,7 +79,7 @@ void weld_chain(const MeshView& mesh, std::vector<ChainEdge>& chain) {
 
 struct Piece {
   Vec3d from, to;
-  double multiplicity = 0;  ///< > 0; the direction is that of the surface's boundary
+  double multiplicity = 0;  ///< multiplicity > 0; the edge has the direction of the surface's boundary
 
   [[nodiscard]] Vec3d center() const { return (from + to) * 0.5; }
 };
@@ -180,21 +181,21 @@ double BoundaryChain::gradient_bound(const Box3& box, double enough) const {
   };
   const Vec3d center = box.center();
   const double half = box.diagonal() / 2;
-  std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
+  std::array<Item, 128> stack;  // the stack contains at most seven siblings from each of at most eleven levels
   std::size_t size = 0;
   stack[size++] = {0, static_cast<std::uint32_t>(levels_.size() - 1)};
-  Vec3d field;      // at the box's centre
-  double rest = 0;  // bound on the part missing from `field`
+  Vec3d field;      // sum of fields, at the box's centre
+  double rest = 0;  // bound on contributions not included in `field`
   const auto bound_of = [](double sum) { return sum * (1 + 1e-9) / (4 * std::numbers::pi); };
   while (size > 0) {
     const Item item = stack[--size];
     const Cluster& cluster = levels_[item.level][item.index];
     const Vec3d offset = cluster.center - center;
     const double distance = length(offset);
-    const double least = distance - cluster.radius - half;  // lower bound of the distance from box to cluster
+    const double least = distance - cluster.radius - half;  // lower bound on the distance between box and cluster
     const double missing = cluster.moment + half * cluster.weight;
     const bool is_piece = item.level == 0;
-    // Opening a cluster reduces only the part due to its own extent, not that due to the box.
+    // Opening a cluster reduces only the error due to the cluster's extent, not that due to the box's extent.
     const bool is_compact =
         least > 0 && (cluster.moment <= 0.2 * cluster.weight * least || cluster.moment <= 0.25 * half * cluster.weight);
     if (!is_piece && !is_compact) {
@@ -215,7 +216,7 @@ double BoundaryChain::gradient_bound(const Box3& box, double enough) const {
     } else {
       rest += plain;
     }
-    // With a margin, so that callers may compare multiples of both.
+    // The factor is a margin, so that callers may compare multiples of both values.
     if (bound_of(rest) > 1.001 * enough) return bound_of(rest);
   }
   return bound_of(length(field) + rest);

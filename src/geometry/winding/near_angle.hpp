@@ -7,16 +7,16 @@
 
 namespace blum {
 
-/// Half a solid angle, as cosine and sine up to a common positive factor.
+/// Half a solid angle, given by its cosine and sine. Both are multiplied by a common positive factor.
 struct HalfAngle {
   double cosine = 1;
   double sine = 0;
 };
 
-/// Returns half the solid angle of a triangle seen from a point (van Oosterom and Strackee 1983). Computes with twice
-/// the digits of a double. Next to an edge, and more so next to a triangle without area, the cosine is a small rest of
-/// terms that cancel. At a distance of 1e-12 of the triangle's size, the result keeps about 8 digits. Cost: about 300
-/// ns.
+/// Returns half the solid angle of a triangle seen from a point (van Oosterom and Strackee 1983). It is computed with
+/// twice the digits of a double. If the point is close to an edge, or to a triangle without area, the cosine is a small
+/// difference of large terms. At a distance of 1e-12 of the triangle's size, the result has about 8 correct digits.
+/// Cost: about 300 ns.
 [[nodiscard]] HalfAngle half_solid_angle_nearby(const std::array<Vec3d, 3>& corners, const Vec3d& point);
 
 }  // namespace blum

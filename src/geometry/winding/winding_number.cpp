@@ -17,16 +17,17 @@
 namespace blum {
 namespace {
 
-/// Triangles from the boundary of a surface to a common point, which close the surface. The winding numbers of surface
-/// and cone add up to an integer. So the surface's winding number is known exactly once it is known roughly.
+/// Triangles from the boundary of a surface to a common point. Together, surface and cone are closed, so their winding
+/// numbers add up to an integer. Thus the surface's winding number follows exactly from a rough value and the cone's
+/// number.
 class BoundaryCone {
  public:
   BoundaryCone() = default;
-  /// @param edges  of the boundary, in the direction in which the surface traverses them.
+  /// @param edges  directed edges of the boundary, in the direction in which the surface traverses them.
   explicit BoundaryCone(std::span<const BoundaryChain::Edge> edges);
 
-  /// Returns the cone's winding number, accurate to `error`. Returns nullopt if this accuracy is not certain: next to
-  /// edges of the cone's triangles.
+  /// Returns the cone's winding number, accurate to `error`. Returns nullopt if this accuracy is uncertain, which
+  /// happens close to edges of the cone's triangles.
   [[nodiscard]] std::optional<double> winding_number(const Vec3d& scaled_query) const;
   static constexpr double error = 1e-9;
 
@@ -34,11 +35,11 @@ class BoundaryCone {
   std::vector<TriangleBlock> blocks_;
 };
 
-/// Generous bound on the rounding of an angle's terms.
+/// Upper bound on the rounding error of an angle's terms.
 constexpr double rounding_of_cone = 1e-14;
 
-/// Returns a point near the middle of the boundary. It is offset so that nothing in a mesh is likely to be aligned with
-/// it.
+/// Returns a point near the middle of the boundary. It is offset by odd amounts, so that nothing in a mesh is likely to
+/// be aligned with it.
 Vec3d apex_of(std::span<const BoundaryChain::Edge> edges) {
   Box3 box;
   for (const BoundaryChain::Edge& edge : edges) {
@@ -61,7 +62,7 @@ BoundaryCone::BoundaryCone(std::span<const BoundaryChain::Edge> edges) {
         }
         lane = 0;
       }
-      // Opposite to the surface's direction.
+      // The edge is traversed opposite to the surface's direction.
       const std::array<Vec3d, 3> corners{edge.to, edge.from, apex};
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t axis = 0; axis < 3; ++axis) blocks_.back().corner[c][axis][lane] = corners[c][axis];
@@ -76,29 +77,32 @@ std::optional<double> BoundaryCone::winding_number(const Vec3d& scaled_query) co
   alignas(64) double inverse[lanes] = {};
   for (const TriangleBlock& block : blocks_) add_watched_triangles(block, scaled_query, sum, inverse);
   const double badly = std::accumulate(inverse, inverse + lanes, 0.0);
-  if (!(rounding_of_cone * badly < error)) return std::nullopt;  // also if a corner was hit, which gives NaN
+  if (!(rounding_of_cone * badly < error)) return std::nullopt;  // also if the query is a corner, which gives NaN
   return sum.winding_number();
 }
 
 constexpr double full_angle = 4 * std::numbers::pi;
-/// Generous bound on the rounding of a hierarchical sum.
+/// Upper bound on the rounding error of a hierarchical sum.
 constexpr double rounding = 1e-11;
-/// Bound on the rounding next to a triangle, times the largest coordinate over the distance. Angles there are quotients
-/// of small rests of products that cancel. Next to edges, errors of a tenth of this were observed.
+/// Bound on the rounding error close to a triangle, to be multiplied by largest coordinate / distance. Angles there are
+/// quotients of small differences of large products. Close to edges, errors of a tenth of this bound were observed.
 constexpr double rounding_nearby = 4e-15;
-/// Beyond this many sizes of the mesh, its winding number counts as 0 (it is below 1e-60).
+/// If a query is further away than this many sizes of the mesh, its winding number counts as 0 (it is below 1e-60).
 constexpr double far_away = 1e30;
-/// is_inside() first accepts clusters with errors up to this, as winding numbers; later only smaller errors.
+/// is_inside() first accepts clusters whose error, as a winding number, is at most this. If that does not decide, it
+/// accepts only smaller errors.
 constexpr double first_tolerance = 1.5e-2;
-/// Returns the next tolerance. Queries that the first one does not decide mostly need little more.
+/// Returns the next smaller tolerance. Queries that the first tolerance does not decide mostly need only a little more
+/// accuracy.
 constexpr double lower(double tolerance) {
   return tolerance * (tolerance > 1e-3 ? 1.0 / 8 : 1.0 / 64);
 }
 
-/// Triangles per digit after the second one. With fewer triangles the full sum is faster than estimates.
+/// For each digit of accuracy after the second one: if there are fewer triangles than this, the full sum is faster than
+/// estimates.
 constexpr double full_sum_is_quicker = 10000;
 
-/// |w - 1/2| hardly ever reaches this, so larger changes are not examined.
+/// Winding numbers rarely differ from 1/2 by this much, so larger changes are not examined.
 constexpr double side_limit = 1e3;
 
 struct Item {
@@ -106,10 +110,11 @@ struct Item {
   std::int32_t level;  ///< -1 for a leaf
 };
 
-/// Traverses the tree. add(block, far, others) adds the clusters that are far enough away; the others are opened.
+/// Traverses the tree. The function add(block, far, others) must add the clusters that are far enough away to `far`. It
+/// must mark the other clusters in `others`; they are then opened.
 template <class AddClusters>
 WindingNumber::Estimate walk(const WindingTree& tree, const Vec3d& query, const AddClusters& add) {
-  std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
+  std::array<Item, 128> stack;  // the stack contains at most seven siblings from each of at most eleven levels
   std::size_t size = 0;
   stack[size++] = {0, tree.top()};
   SolidAngleSum near;
@@ -126,7 +131,8 @@ WindingNumber::Estimate walk(const WindingTree& tree, const Vec3d& query, const 
     add(tree.levels[static_cast<std::size_t>(item.level)][item.block], far, others);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       stack[size] = {static_cast<std::uint32_t>(item.block * lanes + lane), item.level - 1};
-      size += static_cast<std::size_t>(others.open[lane]);  // branch-free, because branches would be mispredicted
+      // Computed without branches, which would often be mispredicted.
+      size += static_cast<std::size_t>(others.open[lane]);
     }
   }
   const double solid_angle = std::accumulate(far.solid_angle, far.solid_angle + lanes, 0.0);
@@ -141,11 +147,12 @@ struct WindingNumber::Data {
   double largest_coordinate = 0;  ///< mesh units
   WindingTree tree;
   BoundaryChain boundary;
-  BoundaryCone cone;  ///< for short boundaries
+  BoundaryCone cone;  ///< only for boundaries with few edges
 
   [[nodiscard]] bool is_short() const { return boundary.is_empty() || !boundary.edges().empty(); }
 
-  /// Returns the query in the tree's coordinates; nullopt if the winding number counts as 0.
+  /// Returns the query in the tree's coordinates. Returns nullopt if it is so far away that its winding number counts
+  /// as 0.
   [[nodiscard]] std::optional<Vec3d> scaled(const Vec3d& query) const {
     const Vec3d q = query * tree.scale;
     const BoxBlock* root = tree.levels.empty() ? nullptr : tree.boxes.levels.back().data();
@@ -163,8 +170,8 @@ struct WindingNumber::Data {
     return sum.winding_number();
   }
 
-  /// Returns an estimate with a bound on its error.
-  /// @param tolerance  per cluster, as a winding number.
+  /// Returns an estimate of the winding number with a bound on its error.
+  /// @param tolerance  error allowed per cluster, as a winding number.
   [[nodiscard]] Estimate bounded(const Vec3d& scaled_query, double tolerance) const {
     Estimate out = walk(tree, scaled_query, [&](const MultipoleBlock& block, FarSum& far, OpenLanes& others) {
       add_clusters(block, scaled_query, tolerance * full_angle, far, others);
@@ -223,7 +230,7 @@ WindingNumber::Decision WindingNumber::decide(const Vec3d& query, double distanc
     const Estimate w = data_->bounded(*q, tolerance);
     const double margin = std::abs(w.value - 0.5) - w.error - nearby;
     if (margin > 0) return {w.value > 0.5, margin};
-    if (w.error < nearby) break;  // more terms do not help
+    if (w.error < nearby) break;  // further terms do not reduce the error
   }
   return {data_->full_sum(*q) > 0.5, 0};
 }
@@ -244,7 +251,7 @@ bool WindingNumber::has_short_boundary() const {
 
 std::optional<double> WindingNumber::refine(const Vec3d& query, double rough) const {
   if (!data_->is_short()) return std::nullopt;
-  if (data_->boundary.is_empty()) return std::round(rough) + 0.0;  // no -0
+  if (data_->boundary.is_empty()) return std::round(rough) + 0.0;  // + 0.0 turns -0 into 0
   const std::optional<Vec3d> q = data_->scaled(query);
   if (!q) return 0;
   const std::optional<double> cone = data_->cone.winding_number(*q);

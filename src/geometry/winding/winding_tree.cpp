@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t grain = 512;
 
-/// Symmetric tensors of second and third order.
+/// Symmetric tensor of second order; the next struct is one of third order.
 struct Symmetric2 {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
@@ -22,7 +22,7 @@ struct Symmetric3 {
   double xxx = 0, yyy = 0, zzz = 0, xxy = 0, xxz = 0, xyy = 0, yyz = 0, xzz = 0, yzz = 0, xyz = 0;
 };
 
-/// Adds factor times the symmetric part of a b^T.
+/// Adds factor * (symmetric part of a b^T) to m.
 void add_product(Symmetric2& m, const Vec3d& a, const Vec3d& b, double factor) {
   m.xx += factor * a.x * b.x;
   m.yy += factor * a.y * b.y;
@@ -32,7 +32,7 @@ void add_product(Symmetric2& m, const Vec3d& a, const Vec3d& b, double factor) {
   m.yz += factor * (a.y * b.z + a.z * b.y) / 2;
 }
 
-/// Adds factor times the symmetric part of m a.
+/// Adds factor * (symmetric part of m a) to t.
 void add_product(Symmetric3& t, const Symmetric2& m, const Vec3d& a, double factor) {
   t.xxx += factor * m.xx * a.x;
   t.yyy += factor * m.yy * a.y;
@@ -46,7 +46,7 @@ void add_product(Symmetric3& t, const Symmetric2& m, const Vec3d& a, double fact
   t.xyz += factor * (m.xy * a.z + m.xz * a.y + m.yz * a.x) / 3;
 }
 
-/// Moments of a cluster about its centre.
+/// Moments of a cluster of triangles about its centre. s is the vector from the centre.
 struct Cluster {
   Vec3d center;
   double area = 0;
@@ -58,7 +58,7 @@ struct Cluster {
   Box3 box;
 };
 
-/// Returns the distance from a point inside to the box's furthest corner.
+/// Returns the distance from a point inside a box to the box's furthest corner.
 double furthest_in(const Box3& box, const Vec3d& p) {
   return length(max(box.upper - p, p - box.lower));
 }
@@ -81,12 +81,13 @@ Cluster cluster_of(const std::array<std::array<Vec3d, 3>, lanes>& triangles, std
     const Vec3d& normal = area_vectors[i];
     const double area = length(normal);
     Vec3d sum;
-    Symmetric2 second;  // the mean of s s^T is (sum of corners' s s^T + 9 c c^T) / 12, with c the mean of the corners
+    // The mean of s s^T is (sum over corners of s s^T + 9 c c^T) / 12, with c the mean of the corners.
+    Symmetric2 second;
     for (const Vec3d& p : triangles[i]) {
       const Vec3d s = p - out.center;
       const double r = length(s);
       out.radius = std::max(out.radius, r);
-      out.cubed += area / 3 * r * r * r;  // |s|^3 is convex, so its mean is at most that of the corners
+      out.cubed += area / 3 * r * r * r;  // |s|^3 is convex, so its mean is at most the mean over the corners
       sum += s;
       add_product(second, s, s, 1.0 / 12);
     }
@@ -114,7 +115,7 @@ Cluster merge(const Cluster* children, std::size_t count) {
     const Vec3d shift = child.center - out.center;
     const double distance = length(shift);
     out.radius = std::max(out.radius, distance + child.radius);
-    // Minkowski's inequality in L3.
+    // Bound by Minkowski's inequality in L3.
     const double bound = std::cbrt(child.cubed) + distance * std::cbrt(child.area);
     out.cubed += bound * bound * bound;
     out.dipole += child.dipole;
@@ -135,8 +136,8 @@ Cluster merge(const Cluster* children, std::size_t count) {
   return out;
 }
 
-/// Stores a cluster in the form that series() in lane_kernels.cpp needs, with constant factors multiplied in. Tensors
-/// have no traces: the kernel is harmonic, so traces contribute nothing.
+/// Stores a cluster in the form that series() in lane_kernels.cpp requires, with constant factors included. Traces of
+/// the tensors are removed: the kernel is harmonic, so they contribute nothing.
 void store(const Cluster& cluster, MultipoleBlock& block, std::size_t lane) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     block.center[axis][lane] = cluster.center[axis];

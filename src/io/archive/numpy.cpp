@@ -13,12 +13,11 @@ namespace blum::volume_io {
 namespace {
 
 constexpr std::string_view magic = "\x93NUMPY";
-/// Longest header accepted. Only structured types have longer ones, and images do not use these.
+/// Longest header accepted, in bytes. Only structured types have longer ones, and image files do not use these.
 constexpr std::uint64_t largest_header = 65536;
 constexpr std::array<std::string_view, 10> dtypes{"u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"};
 
-/// Parser of the Python dictionary of a header. The dictionary contains strings, True and False, and a tuple of
-/// numbers.
+/// Parser of the Python dictionary in a header. Its values are strings, True and False, and a tuple of integers.
 class HeaderReader {
  public:
   HeaderReader(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -128,7 +127,8 @@ class HeaderReader {
     header.kind = NpyHeader::Kind::text;
     const char* last = type.data() + type.size();
     const auto [end, error] = std::from_chars(type.data() + 1, last, header.text_length);
-    if (error != std::errc() || end != last || header.text_length > (std::size_t{1} << 24U)) fail(shown + "or a text");
+    if (error != std::errc() || end != last || header.text_length > (std::size_t{1} << 24U))
+      fail(shown + "save numbers, or a text of at most 2^24 characters");
   }
 
   std::string_view text_;
@@ -136,10 +136,10 @@ class HeaderReader {
   std::size_t at_ = 0;
 };
 
-/// Converts an array whose first axis is the fastest to C order. `shape` has at most three axes.
+/// Converts an array in which the first axis is the fastest to C order. `shape` has at most three axes.
 template <class T>
 std::vector<T> transposed(const std::vector<T>& values, const std::vector<std::uint64_t>& shape) {
-  std::array<std::size_t, 3> n{1, 1, 1};  // the shape, aligned to the end so that axis 2 is x
+  std::array<std::size_t, 3> n{1, 1, 1};  // the shape, padded with ones at the front, so that axis 2 is x
   for (std::size_t i = 0; i < shape.size(); ++i) n[3 - shape.size() + i] = static_cast<std::size_t>(shape[i]);
   std::vector<T> out(values.size());
   std::size_t at = 0;
@@ -201,7 +201,7 @@ NpyHeader read_npy_header(ByteStream& stream) {
   }
   if (start[6] < 1 || start[6] > 3) {
     throw FormatError(stream.name() + ": version " + std::to_string(start[6]) +
-                      " of the format is not known; versions 1 to 3 are");
+                      " of the format is not read; versions 1 to 3 are");
   }
   std::array<unsigned char, 4> length_bytes{};
   const std::size_t length_size = start[6] == 1 ? 2 : 4;
@@ -315,7 +315,7 @@ std::uint64_t NpzReader::packed_size() const {
 std::string NpzReader::text(const std::string& array) {
   return read(array, [&](ByteStream& stream, const NpyHeader& header) {
     if (header.kind != NpyHeader::Kind::text || header.count(stream.name()) != 1) {
-      throw FormatError(stream.name() + ": it should be one string");
+      throw FormatError(stream.name() + ": it must be one string");
     }
     stream.check_left(std::uint64_t{4} * header.text_length, "the text");
     std::vector<std::uint32_t> characters(header.text_length);

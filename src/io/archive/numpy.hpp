@@ -25,7 +25,7 @@ struct NpyHeader {
   enum class Kind : std::uint8_t { scalar, text };
   Kind kind = Kind::scalar;
   ScalarType type = ScalarType::u8;
-  std::size_t text_length = 0;  ///< characters of one text entry, 32 bits each
+  std::size_t text_length = 0;  ///< number of characters of a text entry; each takes 32 bits
   std::endian order = std::endian::native;
   bool fortran = false;
   std::vector<std::uint64_t> shape;
@@ -35,27 +35,27 @@ struct NpyHeader {
   [[nodiscard]] std::uint64_t count(const std::string& name) const;
 };
 
-/// Returns the header of an array in C order and in the machine's byte order. It has format version 1.0 and is padded
-/// to a multiple of 64 bytes.
+/// Returns the header of an array in C order and in the machine's byte order. The header has format version 1.0 and is
+/// padded to a multiple of 64 bytes.
 /// @param dtype  type without byte order, for example "f4".
 [[nodiscard]] std::string npy_header(std::string_view dtype, const std::vector<std::uint64_t>& shape);
 /// Returns the type of a scalar without byte order, for example "f4".
 [[nodiscard]] std::string_view npy_dtype(ScalarType type);
 
-/// Reads the header and leaves the stream at the first value. @throws FormatError.
+/// Reads the header. Afterwards the stream is at the first value. @throws FormatError.
 [[nodiscard]] NpyHeader read_npy_header(ByteStream& stream);
 /// Returns the number of values of a scalar array.
-/// @throws FormatError for text, or if the stream cannot hold that many values.
+/// @throws FormatError if the array contains text, or if the stream is too short for that many values.
 [[nodiscard]] std::uint64_t check_npy_values(const ByteStream& stream, const NpyHeader& header);
-/// Reads values in the order of the file and converts them to the machine's byte order. @throws FormatError.
+/// Reads values in the order of the file. Converts them to the machine's byte order. @throws FormatError.
 void read_npy_raw(ByteStream& stream, const NpyHeader& header, std::span<std::byte> out);
 /// Reads the values of a scalar array, in C order of its shape. @throws FormatError, OutOfMemory.
 [[nodiscard]] VoxelImage::Values read_npy_values(ByteStream& stream, const NpyHeader& header);
-/// Returns the image size in x, y, z order of an array indexed [z, y, x].
+/// Returns the size of an image, as x, y, z, from an array that is indexed [z, y, x].
 /// @throws FormatError unless the array has 1 to 3 axes and 1 to 2^40 values.
 [[nodiscard]] std::array<std::int64_t, 3> npy_image_size(const NpyHeader& header, const std::string& name);
 
-/// Writer of the arrays of a .npz archive, one after the other.
+/// Writer of a .npz archive. Arrays are added one after the other.
 class NpzWriter {
  public:
   NpzWriter(AtomicFile& file, FieldSink& sink, const Context& context) : zip_(file, sink, context) {}
@@ -70,7 +70,7 @@ class NpzWriter {
     const std::array<double, 3> values{v.x, v.y, v.z};
     add(name, "f8", {3}, std::span<const double>(values));
   }
-  /// Adds a NumPy string of one entry. Each ASCII character takes four bytes.
+  /// Adds an array that contains one NumPy string. Each ASCII character takes four bytes.
   void add_text(const std::string& name, const std::string& text);
   void finish() { zip_.finish(); }
 
@@ -78,18 +78,18 @@ class NpzWriter {
   ZipWriter zip_;
 };
 
-/// Reader of the arrays of a .npz archive, by their names.
+/// Reader of a .npz archive. Arrays are found by their names.
 class NpzReader {
  public:
   explicit NpzReader(const ByteSource& source) : source_(source), zip_(source) {}
 
   /// Returns the names of the arrays in the order of the archive's directory.
   [[nodiscard]] std::vector<std::string> arrays() const;
-  /// Returns the packed size of all entries in bytes.
+  /// Returns the sum of the compressed sizes of all entries, in bytes.
   [[nodiscard]] std::uint64_t packed_size() const;
   [[nodiscard]] bool has(const std::string& array) const { return zip_.find(array + ".npy") != nullptr; }
 
-  /// Reads one array and returns the result of use(stream, header).
+  /// Opens one array and returns the result of use(stream, header).
   template <class Use>
   auto read(const std::string& array, Use use) {
     const ZipEntry* entry = zip_.find(array + ".npy");
@@ -105,7 +105,7 @@ class NpzReader {
   std::array<double, n> numbers(const std::string& array, const std::vector<std::uint64_t>& shape) {
     return read(array, [&](ByteStream& stream, const NpyHeader& header) {
       if (header.kind != NpyHeader::Kind::scalar || header.shape != shape) {
-        throw FormatError(stream.name() + ": it should be " + std::to_string(n) + " numbers");
+        throw FormatError(stream.name() + ": it must be an array of " + std::to_string(n) + " numbers");
       }
       std::array<double, n> out{};
       std::visit(
@@ -117,7 +117,7 @@ class NpzReader {
     });
   }
 
-  /// Reads an array of one ASCII string.
+  /// Reads an array that contains one ASCII string.
   std::string text(const std::string& array);
 
  private:

@@ -16,10 +16,10 @@ constexpr std::size_t end_size = 22;
 constexpr std::size_t locator_size = 20;
 constexpr std::size_t central_size = 46;
 constexpr std::size_t local_size = 30;
-/// Longest directory accepted. No .npz file has a longer one.
+/// Longest directory accepted, in bytes. No .npz file has a longer one.
 constexpr std::uint64_t largest_directory = std::uint64_t{16} << 20U;
 
-/// Little-endian numbers of a record. Reading beyond its end throws FormatError.
+/// Reader of the little-endian numbers of a record. Reading beyond the record's end throws FormatError.
 class Record {
  public:
   Record(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
@@ -63,7 +63,7 @@ struct Directory {
   std::uint64_t entries = 0;
 };
 
-/// Returns the zip64 record whose locator lies right before the end record, if it exists.
+/// Returns the zip64 directory record, if there is one. Its locator is directly before the end record.
 std::optional<Directory> find_directory64(const ByteSource& source, std::uint64_t end_offset) {
   if (end_offset < locator_size) return std::nullopt;
   const auto bytes = read_bytes(source, end_offset - locator_size, locator_size);
@@ -71,7 +71,8 @@ std::optional<Directory> find_directory64(const ByteSource& source, std::uint64_
   if (locator.u32(0) != 0x07064b50U) return std::nullopt;
   const auto record_bytes = read_bytes(source, locator.u64(8), 56);
   const Record record(record_bytes, source.name());
-  if (record.u32(0) != 0x06064b50U) throw FormatError(source.name() + ": the zip64 record is not where it should be");
+  if (record.u32(0) != 0x06064b50U)
+    throw FormatError(source.name() + ": the zip64 record is not at its stated position");
   return Directory{record.u64(48), record.u64(40), record.u64(32)};
 }
 
@@ -87,7 +88,7 @@ Directory find_directory(const ByteSource& source) {
   throw FormatError(source.name() + ": it is not a zip archive, which .npz files are, or it is cut short");
 }
 
-/// Replaces those fields of a central header that have their largest value by their 64-bit values.
+/// Fields of a central header that have their largest value are replaced by their 64-bit values from the extra field.
 void apply_zip64(const Record& extra, ZipEntry& entry) {
   std::size_t at = 0;
   while (at + 4 <= extra.size()) {
@@ -145,7 +146,8 @@ std::unique_ptr<ZipEntryStream> ZipReader::open(const ZipEntry& entry) const {
   const std::string name = source_.name() + "(" + entry.name + ")";
   const auto bytes = read_bytes(source_, entry.header_offset, local_size);
   const Record head(bytes, name);
-  if (head.u32(0) != 0x04034b50U) throw FormatError(name + ": the entry is not where the zip directory says");
+  if (head.u32(0) != 0x04034b50U)
+    throw FormatError(name + ": the entry is not at the position that the zip directory states");
   const std::uint64_t begin = entry.header_offset + local_size + head.u16(26) + head.u16(28);
   if (begin > source_.size() || entry.packed_size > source_.size() - begin) {
     throw FormatError(name + ": the entry reaches beyond the end of the file; it is cut short");
@@ -166,7 +168,7 @@ std::unique_ptr<ZipEntryStream> ZipReader::open(const ZipEntry& entry) const {
 std::size_t ZipEntryStream::read_some(std::span<std::byte> out) {
   std::size_t done = 0;
   const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(out.size(), left_));
-  // Small pieces stay in the cache until the checksum is computed.
+  // The data are written in pieces that stay in the cache while the checksum is computed.
   constexpr std::size_t piece = std::size_t{1} << 20U;
   while (done < wanted) {
     const auto part = out.subspan(done, std::min(piece, wanted - done));
@@ -185,7 +187,8 @@ std::uint64_t ZipEntryStream::most_left() const {
 
 void ZipEntryStream::check_finished() const {
   if (left_ != 0) {
-    throw FormatError(name_ + ": there are " + std::to_string(left_) + " bytes more than its header accounts for");
+    throw FormatError(name_ + ": after its end, as its header states it, there are " + std::to_string(left_) +
+                      " more bytes");
   }
   if (crc_ != expected_crc_) throw FormatError(name_ + ": its checksum is wrong; the file is damaged");
 }
@@ -195,7 +198,7 @@ namespace {
 constexpr std::size_t crc_piece = std::size_t{4} << 20;
 constexpr std::uint16_t version_plain = 20;
 constexpr std::uint16_t version_zip64 = 45;
-constexpr std::uint16_t date_1980 = 0x21;  ///< 1 January 1980, so that equal input gives equal bytes
+constexpr std::uint16_t date_1980 = 0x21;  ///< 1 January 1980; always the same, so that equal input gives equal bytes
 
 std::uint32_t crc_of(std::uint32_t start, std::span<const std::byte> bytes) {
   return static_cast<std::uint32_t>(crc32_z(start, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -220,13 +223,13 @@ std::uint32_t clamp32(std::uint64_t value) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, limit32));
 }
 
-/// Appends the fields that local and central headers share: from the version needed to the lengths of name and extra
-/// field.
+/// Appends the fields that local and central headers have in common: from the required version to the lengths of name
+/// and extra field.
 void put_common(std::string& out, bool zip64, std::uint32_t crc, std::uint32_t size, std::size_t name_length,
                 std::size_t extra_length) {
   put16(out, zip64 ? version_zip64 : version_plain);
   put16(out, 0);  // flags
-  put16(out, 0);  // stored
+  put16(out, 0);  // method: stored
   put16(out, 0);  // time
   put16(out, date_1980);
   put32(out, crc);
@@ -298,10 +301,10 @@ void ZipWriter::finish() {
     }
     std::string header;
     put32(header, 0x02014b50U);
-    put16(header, 0x0300U | version_zip64);  // made on Unix
+    put16(header, 0x0300U | version_zip64);  // made by this version, on Unix
     put_common(header, large || far, entry.crc, clamp32(entry.size), entry.name.size(), extra.size());
-    put16(header, 0);               // comment
-    put16(header, 0);               // disk
+    put16(header, 0);               // length of the comment
+    put16(header, 0);               // number of the disk
     put16(header, 0);               // internal attributes
     put32(header, 0100644U << 16);  // regular file, readable by everyone
     put32(header, clamp32(entry.offset));

@@ -25,7 +25,7 @@ struct ZipEntry {
   std::uint64_t header_offset = 0;
 };
 
-/// Stream of the content of one entry. check_finished() verifies the checksum.
+/// Stream of the content of one entry. check_finished() compares the checksum.
 class ZipEntryStream final : public ByteStream {
  public:
   ZipEntryStream(std::unique_ptr<ByteStream> inner, const ZipEntry& entry, std::string name)
@@ -33,7 +33,7 @@ class ZipEntryStream final : public ByteStream {
   [[nodiscard]] std::size_t read_some(std::span<std::byte> out) override;
   [[nodiscard]] std::uint64_t most_left() const override;
   [[nodiscard]] const std::string& name() const override { return name_; }
-  /// @throws FormatError unless all of the entry has been read and its checksum is right.
+  /// @throws FormatError unless the whole entry has been read and its checksum is correct.
   void check_finished() const;
 
  private:
@@ -44,15 +44,15 @@ class ZipEntryStream final : public ByteStream {
   std::string name_;
 };
 
-/// Reader of the directory of an archive, also zip64. Entries must be stored or deflated, not encrypted, and in one
-/// file.
+/// Reader of an archive through its directory, including zip64 archives. Entries must be stored or deflated and not
+/// encrypted. The archive must be a single file.
 class ZipReader {
  public:
   /// Reads the directory. The source must outlive the reader and its streams. @throws FormatError.
   explicit ZipReader(const ByteSource& source);
   /// Returns the entries in the order of the directory.
   [[nodiscard]] const std::vector<ZipEntry>& entries() const { return entries_; }
-  /// Returns the entry of this name, or null.
+  /// Returns the entry with this name, or null.
   [[nodiscard]] const ZipEntry* find(std::string_view name) const;
   /// Opens the content of an entry. @throws FormatError.
   [[nodiscard]] std::unique_ptr<ZipEntryStream> open(const ZipEntry& entry) const;
@@ -62,16 +62,17 @@ class ZipReader {
   std::vector<ZipEntry> entries_;
 };
 
-/// Writer of stored entries in one pass. Sizes beyond 4 GB use the zip64 records (APPNOTE 4.3, 4.5.3).
-/// All threads compute the checksum of an entry before its bytes are written. The header of a stored entry must contain
-/// the checksum, because streaming readers cannot use one that follows the data.
+/// Writer of an archive with stored entries, in one pass. Sizes above 4 GB are written in zip64 records (APPNOTE 4.3,
+/// 4.5.3).
+/// The checksum of an entry is computed by all threads before its bytes are written. The header of a stored entry must
+/// contain it, because streaming readers cannot use a checksum that follows the data.
 class ZipWriter {
  public:
   ZipWriter(AtomicFile& file, FieldSink& sink, const Context& context) : file_(file), sink_(sink), context_(context) {}
 
-  /// Adds an entry whose content is `head` followed by `body`. The name must be ASCII.
+  /// Adds an entry with the content `head` followed by `body`. The name must be ASCII.
   void add(const std::string& name, std::span<const std::byte> head, std::span<const std::byte> body);
-  /// Writes the directory. Call it once, after the last entry.
+  /// Writes the directory. It must be called once, after the last entry.
   void finish();
 
  private:
@@ -90,7 +91,7 @@ class ZipWriter {
   std::vector<Entry> entries_;
 };
 
-/// Returns the CRC-32 of a long run of bytes, computed by all threads of the context.
+/// Returns the CRC-32 of many bytes. All threads of the context compute it together.
 [[nodiscard]] std::uint32_t parallel_crc32(std::span<const std::byte> bytes, const Context& context);
 
 }  // namespace blum::volume_io

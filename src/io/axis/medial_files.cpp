@@ -23,20 +23,21 @@
 namespace blum::medial_files {
 namespace {
 
-/// Converts to float. Values beyond its range become infinite, which checks for finite numbers reject.
+/// Converts to float. Values beyond float's range become infinite, so later checks for finite numbers reject them.
 float to_float(double value) {
   constexpr double most = std::numeric_limits<float>::max();
   if (value > most) return std::numeric_limits<float>::infinity();
   return value < -most ? -std::numeric_limits<float>::infinity() : static_cast<float>(value);
 }
 
-/// Columns of one kind of cell. The columns of an axis come first, in the types that an axis needs.
+/// Converter of the columns of one kind of cell. The columns that an axis needs come first, in the required types;
+/// others follow.
 class Typed {
  public:
   Typed(Columns& columns, std::string kind, const std::string& name)
       : columns_(columns), kind_(std::move(kind)), name_(name), known_(columns.rows()) {}
 
-  /// Takes a numeric column as doubles or floats. Returns false if it does not exist.
+  /// Converts a numeric column to doubles or floats. Returns false if it does not exist.
   template <class T>
   bool numbers(std::string_view column, std::size_t components = 1) {
     const Column* const found = find(column, components);
@@ -58,7 +59,7 @@ class Typed {
     return true;
   }
 
-  /// Takes a column of whole numbers from `least` to `most` as int32. Returns false if it does not exist.
+  /// Converts a column of integers from `least` to `most` (inclusive) to int32. Returns false if it does not exist.
   bool integers(std::string_view column, std::int64_t least, std::int64_t most) {
     const Column* const found = find(column, 1);
     if (found == nullptr) return false;
@@ -70,8 +71,8 @@ class Typed {
           } else {
             for (std::size_t i = 0; i < values.size(); ++i) {
               if (values[i] < least || values[i] > most) {
-                fail(column, "row " + std::to_string(i) + " is " + std::to_string(values[i]) + ", but " +
-                                 std::to_string(least) + " to " + std::to_string(most) + " are possible");
+                fail(column, "row " + std::to_string(i) + " is " + std::to_string(values[i]) + ", but must be " +
+                                 std::to_string(least) + " to " + std::to_string(most));
               }
               out.push_back(static_cast<std::int32_t>(values[i]));
             }
@@ -82,7 +83,7 @@ class Typed {
     return true;
   }
 
-  /// Replaces the columns of the complex by those of new type and order.
+  /// Replaces the columns of the complex by the converted ones, followed by the others.
   void finish() {
     for (const Column& column : columns_) {
       if (known_.find(column.name) == nullptr) known_.add(column);
@@ -111,7 +112,7 @@ class Typed {
 
 constexpr auto last_role = static_cast<std::int64_t>(MedialRole::junction);
 
-/// @param has_levels  if not null, levels are taken as well, and it is set to true if all of them exist.
+/// @param has_levels  if not null, the level columns are converted, too, and it is set to true if all of them exist.
 MedialColumns take_columns(Complex& complex, const std::string& name, bool* has_levels) {
   namespace names = medial_columns;
   if (complex.vertex_columns.empty()) complex.vertex_columns.resize(complex.positions.size());
@@ -165,7 +166,7 @@ Complex to_nested(const Complex& complex, const std::string& name) {
   if (!has_levels || !has.radii || !has.footprints || !has.sites || !has.angles || !has.labels) {
     throw FormatError(name + ": columns of the axes of all angles are missing");
   }
-  add_missing_medial_columns(nested);  // for edges and triangles, if the complex has none
+  add_missing_medial_columns(nested);  // for edges and triangles, if the complex has none of them
   return nested;
 }
 
@@ -188,7 +189,7 @@ using Metadata = FileMetadata;
 
 constexpr const char* axis_content = "medial axis";
 
-/// Footprints lie on the border of the solid, so their ids name voxels that are not selected.
+/// Footprints lie on the border of the solid, so their site ids are those of unselected voxels.
 std::string site_sentence(SiteIds ids) {
   if (ids != SiteIds::voxels) return volume_io::site_sentence(ids);
   return "site ids: the linear index x + nx * (y + ny * z) of the unselected voxel whose face the footprint lies on. "
@@ -212,7 +213,7 @@ void add_grid(Metadata& pairs, const GridSpec& grid) {
   pairs.emplace_back("grid_direction", rows);
 }
 
-/// Reader of the values of known keys, which it converts to numbers.
+/// Reader of known keys of the metadata. It converts their values to numbers.
 class PairReader {
  public:
   PairReader(const Metadata& pairs, const std::string& name) : pairs_(pairs), name_(name) {}
@@ -251,7 +252,7 @@ class PairReader {
     for (const SiteIds ids : {SiteIds::features, SiteIds::triangles, SiteIds::voxels}) {
       if (to_string(ids) == text) return ids;
     }
-    fail("site_ids", "which is not known");
+    fail("site_ids", "this numbering is not known");
   }
 
   [[nodiscard]] std::optional<GridSpec> grid() const {
@@ -311,7 +312,7 @@ FileMetadata to_pairs(const MedialMetadata& metadata) {
 MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name) {
   const PairReader reader(pairs, name);
   if (const std::string content = reader.text("content"); !content.empty() && content != axis_content) {
-    throw FormatError(name + ": the metadata call it '" + content + "', not a medial axis");
+    throw FormatError(name + ": the metadata state the content '" + content + "', not a medial axis");
   }
   MedialMetadata metadata;
   metadata.source = reader.text("source");

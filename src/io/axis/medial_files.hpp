@@ -16,25 +16,25 @@ namespace blum::medial_files {
 constexpr int most_smoothing = 1000;
 
 [[nodiscard]] FileMetadata to_pairs(const MedialMetadata& metadata);
-/// Returns the metadata in pairs of keys and values.
+/// Returns the metadata that pairs of keys and values contain.
 /// @throws FormatError with `name` if a known key has an invalid value.
 [[nodiscard]] MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name);
 
-/// Flags of the medial axis columns that a complex contained.
+/// Flags of the columns of a medial axis that were found in a complex.
 struct MedialColumns {
   bool radii = false, footprints = false, sites = false;
-  bool angles = false;  ///< of vertices, edges and triangles
-  bool labels = false;  ///< sheets and roles
+  bool angles = false;  ///< angle columns of vertices, edges and triangles
+  bool labels = false;  ///< columns of sheets and roles
 };
 
-// Both functions give the columns of MedialView (MedialLevels) in the complex of a file their order and types. They
-// convert any numeric type that can hold the values; other columns follow. Both throw FormatError with `name` for a
-// column that cannot belong to an axis.
+// The next two functions convert the complex of a file. Columns that MedialView or MedialLevels requires get their
+// order and types; other columns follow. Any numeric type that can represent the values is converted. Both functions
+// throw FormatError with `name` if a column cannot belong to an axis.
 
-/// Returns the complex of an axis. Missing columns of vertices, edges or triangles stay missing, unless the complex has
-/// no elements of that kind. If edges have no roles, those that are sides of triangles are removed.
+/// Returns the complex of an axis. Columns that are missing for vertices, edges or triangles are added only if the
+/// complex has no elements of that kind. If edges have no roles, edges that are sides of triangles are removed.
 [[nodiscard]] Complex to_axis(Complex complex, const std::string& name, MedialColumns& found);
-/// Returns the complex of nested axes. All columns must exist.
+/// Returns the complex of nested axes (axes of all angles). All of their columns must exist.
 [[nodiscard]] Complex to_nested(const Complex& complex, const std::string& name);
 
 /// Removes edges that are sides of triangles, because the triangles imply them.

@@ -46,7 +46,7 @@ void check_metadata(const MedialMetadata& metadata) {
 constexpr const char* nested_name = "nested";
 constexpr const char* nested_theta = "nested_theta";
 
-/// Returns the medial axis in the file of a complex.
+/// Converts the file of a complex to a medial axis.
 MedialFile as_axis(const ComplexFile& file, const std::string& name) {
   MedialFile out;
   out.metadata = medial_files::from_pairs(file.metadata, name);
@@ -61,7 +61,9 @@ MedialFile as_axis(const ComplexFile& file, const std::string& name) {
     if (further.name != nested_name) continue;
     out.nested = medial_files::to_nested(further.complex, name);
     const auto theta = volume_io::parse_number<double>(find_value(file.metadata, nested_theta));
-    if (!theta) throw FormatError(name + ": the metadata do not say '" + nested_theta + "', the least of all angles");
+    if (!theta)
+      throw FormatError(name + ": the metadata do not contain '" + nested_theta +
+                        "', the smallest angle of the nested axes");
     out.least_theta = *theta;
   }
   return out;
@@ -75,7 +77,7 @@ std::string problem_of_axes(const Complex& axis, const Complex* nested, double l
   return problem_of_nested(*nested);
 }
 
-/// Reads, then validates the result as a whole.
+/// Calls a reader, and then validates the whole result.
 template <class Read>
 MedialFile checked(const std::string& name, Read read) {
   try {
@@ -101,16 +103,17 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
     throw InvalidOption("'" + path.string() + "': only .npz files hold axes of all angles");
   }
   const CompleteAxis all(axis);
-  static_cast<void>(MedialView(all.get()));  // throws if a column has another type
+  static_cast<void>(MedialView(all.get()));  // throws if a column has another type than MedialView requires
   if (nested != nullptr) static_cast<void>(MedialLevels(*nested));
   const std::string problem = problem_of_axes(axis, nested, least_theta);
   if (!problem.empty()) throw InvalidMesh("the medial axis cannot be written: " + problem);
   throw_if_cancelled(context);
   MedialMetadata stated = metadata;
-  if (all.is_copy()) stated.version.clear();  // only files with all columns name a version; verify() needs them
+  // Only files with all columns state a version, because verify() needs these columns.
+  if (all.is_copy()) stated.version.clear();
   FileMetadata pairs = medial_files::to_pairs(stated);
   ComplexWriteOptions options;
-  options.allow_loss = true;  // the table of formats says what is lost
+  options.allow_loss = true;  // the table of formats documents what is lost
   if (nested != nullptr) {
     options.further.push_back({nested_name, nested});
     pairs.emplace_back(nested_theta, exact_text(least_theta));

@@ -23,15 +23,16 @@ namespace blum {
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{256} << 10;
-/// Largest piece for one write(2). Linux moves at most 2 GiB at once, and macOS refuses more.
+/// Largest number of bytes for one write(2). Linux writes at most 2 GiB at once, and macOS rejects more.
 constexpr std::size_t largest_write = std::size_t{1} << 30;
 
 std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-/// Returns the number of an open descriptor that the path names: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N.
-/// Opening these names anew would start at the beginning of a redirected file, and it fails for sockets.
+/// Returns the number of an open descriptor if the path stands for one: /dev/stdout, /dev/stderr, /dev/fd/N,
+/// /proc/self/fd/N. Opening such a path again would write from the start of a redirected file, and would fail for
+/// sockets.
 std::optional<int> descriptor_of(const std::string& path) {
   if (path == "/dev/stdout") return STDOUT_FILENO;
   if (path == "/dev/stderr") return STDERR_FILENO;
@@ -45,7 +46,7 @@ std::optional<int> descriptor_of(const std::string& path) {
   return std::nullopt;
 }
 
-/// Follows symbolic links, also to a target that does not exist yet.
+/// Follows symbolic links. The target need not exist yet.
 /// @returns nullopt if the links form a circle or cannot be read; errno contains the reason.
 std::optional<std::filesystem::path> follow_links(std::filesystem::path path) {
   for (int depth = 0; depth < 40; ++depth) {
@@ -63,7 +64,7 @@ std::optional<std::filesystem::path> follow_links(std::filesystem::path path) {
   return std::nullopt;
 }
 
-/// Returns a random hidden name beside the target, short enough for every file system.
+/// Returns a random hidden name in the target's folder. It is short enough for every file system.
 std::filesystem::path temporary_name(const std::filesystem::path& target, std::random_device& random) {
   char suffix[32];
   std::snprintf(suffix, sizeof(suffix), ".%08x%08x.tmp", random(), random());
@@ -93,7 +94,7 @@ void AtomicFile::open_target() {
   struct stat info{};
   if (::stat(path_.c_str(), &info) != 0) {
     if (errno != ENOENT) fail("open", errno);
-    if (path_.filename().empty()) fail("open", EISDIR);  // "new/" names a directory, which does not exist
+    if (path_.filename().empty()) fail("open", EISDIR);  // "new/" is the path of a folder, which does not exist
     const auto target = follow_links(path_);
     if (!target) fail("open", errno);
     target_ = *target;
@@ -105,7 +106,8 @@ void AtomicFile::open_target() {
     if (descriptor_ < 0) fail("open", errno);
     return;
   }
-  // A rename needs no permission to write the old file, but a write-protected file must not be replaced.
+  // A rename would not need permission to write the old file. So check the permission: a write-protected file must not
+  // be replaced.
   if (::access(path_.c_str(), W_OK) != 0) fail("open", errno);
   const auto target = follow_links(path_);
   if (!target) fail("open", errno);
@@ -126,7 +128,8 @@ void AtomicFile::open_temporary(bool replaces, unsigned mode, unsigned owner, un
     fail("open", error);
   }
   if (!replaces) return;
-  // Only root may change the owner, and some file systems have no owners. The file then belongs to the caller.
+  // Only root may change the owner, and some file systems have no owners. If the call fails, the file belongs to the
+  // caller.
   [[maybe_unused]] const int owned = ::fchown(descriptor_, owner, group);
   if (::fchmod(descriptor_, static_cast<mode_t>(mode)) != 0) fail("set the permissions of", errno);
 }
@@ -168,7 +171,7 @@ void AtomicFile::finish() {
   if (descriptor_ < 0) throw FileError("cannot write '" + path_.string() + "': it is closed already");
   flush();
   if (!temporary_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail("write", errno);
-  // Network file systems may report a full disk only here.
+  // Network file systems may report a full disk only when the file is closed.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", errno);
   finished_ = true;
 }
@@ -179,8 +182,8 @@ void AtomicFile::commit() {
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
   temporary_.clear();
-  // Every program sees the file from now on. It survives a power cut only if the directory is on disk, too, which not
-  // every file system supports.
+  // After the rename, every program sees the new file. It survives a power cut only if the directory is also written to
+  // disk. Not every file system supports that.
   const std::filesystem::path directory = target_.has_parent_path() ? target_.parent_path() : ".";
   const int handle = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (handle >= 0) {
@@ -212,7 +215,7 @@ fs::path resolved(const fs::path& path) {
   return error ? fs::absolute(path, error).lexically_normal() : whole;
 }
 
-/// Creates a new empty file beside the target of `path`.
+/// Creates a new empty file in the folder of the target of `path`.
 fs::path make_draft(const fs::path& path) {
   constexpr int most_attempts = 100;
   constexpr std::size_t most_of_name = 100;
@@ -221,7 +224,7 @@ fs::path make_draft(const fs::path& path) {
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     std::ostringstream name;
     name << "." << target.stem().string().substr(0, most_of_name) << "." << std::hex << random() << random() << ".draft"
-         << path.extension().string();  // extension of the requested name; that of a link's target may differ
+         << path.extension().string();  // extension of the given path; the target of a link may have another one
     fs::path draft = target.parent_path() / name.str();
     const int file = open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file >= 0) {

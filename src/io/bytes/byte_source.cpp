@@ -20,8 +20,8 @@ namespace blum::volume_io {
 
 void ByteSource::check_range(std::uint64_t offset, std::size_t count) const {
   if (offset > size() || count > size() - offset) {
-    throw FormatError(name_ + ": it ends at byte " + std::to_string(size()) + ", but " + std::to_string(count) +
-                      " bytes from byte " + std::to_string(offset) + " on are needed; the file is cut short");
+    throw FormatError(name_ + ": the file has " + std::to_string(size()) + " bytes, but " + std::to_string(count) +
+                      " bytes that begin at byte " + std::to_string(offset) + " are needed; the file is cut short");
   }
 }
 
@@ -53,8 +53,9 @@ void MemorySource::read(std::uint64_t offset, std::span<std::byte> out) const {
 
 void ByteStream::check_left(std::uint64_t count, const char* what) const {
   if (count > most_left()) {
-    throw FormatError(name() + ": " + what + " should be " + std::to_string(count) + " bytes, but at most " +
-                      std::to_string(most_left()) + " are left; the file is cut short or its header is wrong");
+    throw FormatError(name() + ": " + what + " must have " + std::to_string(count) +
+                      " bytes, but the file contains at most " + std::to_string(most_left()) +
+                      " more; the file is cut short or its header is wrong");
   }
 }
 
@@ -62,8 +63,9 @@ void ByteStream::read(std::span<std::byte> out, const char* what) {
   check_left(out.size(), what);
   const std::size_t got = read_some(out);
   if (got < out.size()) {
-    throw FormatError(name() + ": " + what + " should be " + std::to_string(out.size()) + " bytes, but there are " +
-                      std::to_string(got) + "; the file is cut short or its header is wrong");
+    throw FormatError(name() + ": " + what + " must have " + std::to_string(out.size()) +
+                      " bytes, but the file contains only " + std::to_string(got) +
+                      " more; the file is cut short or its header is wrong");
   }
 }
 
@@ -94,7 +96,7 @@ std::size_t PlainStream::read_some(std::span<std::byte> out) {
 namespace blum {
 namespace {
 
-/// Owner of a descriptor, which it closes.
+/// Descriptor that is closed by the destructor.
 struct Descriptor {
   int number;
   ~Descriptor() {
@@ -106,7 +108,7 @@ struct Descriptor {
   throw FileError("cannot read '" + path.string() + "': " + std::generic_category().message(error));
 }
 
-/// Reads up to `size` bytes. It reads fewer only at the end of the file.
+/// Reads `size` bytes, or fewer if the file ends before.
 std::size_t read_up_to(int descriptor, std::byte* data, std::size_t size, const std::filesystem::path& path) {
   std::size_t filled = 0;
   while (filled < size) {
@@ -133,12 +135,12 @@ FileBytes read_whole_file(const std::filesystem::path& path) {
   struct stat info{};
   if (::fstat(file.number, &info) != 0) fail(path, errno);
   if (S_ISDIR(info.st_mode)) fail(path, EISDIR);
-  if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) {  // reading may never end
+  if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) {  // reading a device may never end
     throw FileError("cannot read '" + path.string() + "': it is a device, not a file");
   }
 
-  // The first read requests one byte more than the file size, which shows if the file has ended. A pipe, or a file that
-  // grows meanwhile, continues in a buffer of twice the size.
+  // The first read requests one byte more than the file size, to detect the end of the file. Pipes, and files that grow
+  // meanwhile, are longer; for them the buffer is doubled repeatedly.
   Buffer<std::byte> bytes(std::max<std::size_t>(static_cast<std::size_t>(info.st_size) + 1, 4096));
   std::size_t size = read_up_to(file.number, bytes.data(), bytes.size(), path);
   while (size == bytes.size()) {
@@ -154,7 +156,8 @@ namespace blum::volume_io {
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{256} << 10;
-/// One byte of deflate data expands to at most 1032 bytes (a match of 258 bytes in two bits).
+/// Largest expansion of deflate data: one byte becomes at most 1032 bytes (a match of 258 bytes takes at least two
+/// bits).
 constexpr std::uint64_t largest_ratio = 1032;
 
 int window_bits(Compression compression) {
@@ -190,7 +193,8 @@ InflateStream::~InflateStream() {
 
 std::uint64_t InflateStream::most_left() const {
   if (state_->finished) return 0;
-  // Decoded bits may still hold one byte of input, and a match may be half copied. The 8 bytes cover both.
+  // Bits that are already read may represent one more byte of input, and a match may be half copied. The 8 bytes cover
+  // both.
   const std::uint64_t input = end_ - at_ + state_->z.avail_in + 8;
   return input > std::numeric_limits<std::uint64_t>::max() / largest_ratio ? std::numeric_limits<std::uint64_t>::max()
                                                                            : input * largest_ratio;
@@ -204,7 +208,7 @@ void InflateStream::refill() {
   state_->z.avail_in = static_cast<uInt>(count);
 }
 
-/// Gzip files may have several members. Zeros or other bytes after the last member are ignored.
+/// Ends a gzip member and starts the next one, if any. Zeros or other bytes after the last member are ignored.
 void InflateStream::end_of_member() {
   z_stream& z = state_->z;
   if (z.avail_in == 0 && at_ < end_) refill();

@@ -13,7 +13,7 @@
 
 namespace blum::volume_io {
 
-/// Bytes with random access. Only one thread may use a source at a time.
+/// Source of bytes with random access. Only one thread may use a source at a time.
 class ByteSource {
  public:
   explicit ByteSource(std::string name) : name_(std::move(name)) {}
@@ -22,9 +22,10 @@ class ByteSource {
   virtual ~ByteSource() = default;
 
   [[nodiscard]] virtual std::uint64_t size() const = 0;
-  /// Reads out.size() bytes. @throws FormatError if the source ends before, FileError if the system fails.
+  /// Reads out.size() bytes, starting at `offset`. @throws FormatError if the source is too short, FileError if the
+  /// system fails.
   virtual void read(std::uint64_t offset, std::span<std::byte> out) const = 0;
-  /// Returns the name used in messages, which is that of the file.
+  /// Returns the name of the file, for messages.
   [[nodiscard]] const std::string& name() const { return name_; }
 
  protected:
@@ -56,7 +57,7 @@ class MemorySource final : public ByteSource {
   std::span<const std::byte> bytes_;
 };
 
-/// Bytes that are read in order.
+/// Stream of bytes that are read in order.
 class ByteStream {
  public:
   ByteStream() = default;
@@ -64,24 +65,25 @@ class ByteStream {
   ByteStream& operator=(const ByteStream&) = delete;
   virtual ~ByteStream() = default;
 
-  /// Reads up to out.size() bytes; fewer only at the end. @throws FormatError for damaged data.
+  /// Reads out.size() bytes, or fewer if the stream ends before. @throws FormatError for damaged data.
   [[nodiscard]] virtual std::size_t read_some(std::span<std::byte> out) = 0;
-  /// Returns an upper bound of the bytes that follow. Readers reject a header that promises more before they allocate
-  /// memory.
+  /// Returns an upper bound on the number of bytes left. Readers use it to reject headers that promise more data,
+  /// before they allocate memory.
   [[nodiscard]] virtual std::uint64_t most_left() const = 0;
   [[nodiscard]] virtual const std::string& name() const = 0;
 
-  /// Reads exactly out.size() bytes; `what` names them in messages. @throws FormatError if there are fewer.
+  /// Reads exactly out.size() bytes. `what` is their description in messages. @throws FormatError if the stream is too
+  /// short.
   void read(std::span<std::byte> out, const char* what);
   void skip(std::uint64_t count, const char* what);
-  /// Reads beyond the last wanted byte, so that the checksum of compressed data is compared. Additional data are not an
-  /// error, because some writers pad. @throws FormatError if the data are damaged.
+  /// Reads to the end of compressed data, so that their checksum is compared. Additional data are accepted, because
+  /// some writers pad. @throws FormatError if the data are damaged.
   void check_end();
-  /// @throws FormatError unless `count` bytes may follow.
+  /// @throws FormatError if fewer than `count` bytes can be left. `what` is their description.
   void check_left(std::uint64_t count, const char* what) const;
 };
 
-/// Stream of a run of plain bytes of a source. The source must outlive it.
+/// Stream of a range of bytes of a source, without decompression. The source must outlive it.
 class PlainStream final : public ByteStream {
  public:
   explicit PlainStream(const ByteSource& source) : PlainStream(source, 0, source.size()) {}
@@ -99,8 +101,8 @@ class PlainStream final : public ByteStream {
 
 enum class Compression : std::uint8_t { gzip, zlib, deflate };
 
-/// Stream of the decompressed content of a run of bytes of a source. The source must outlive it. Gzip may have several
-/// members.
+/// Stream of the decompressed content of a range of bytes of a source. The source must outlive it. Gzip data may have
+/// several members.
 class InflateStream final : public ByteStream {
  public:
   InflateStream(const ByteSource& source, std::uint64_t begin, std::uint64_t end, Compression compression);
@@ -128,11 +130,11 @@ namespace blum {
 /// Content of a file.
 struct FileBytes {
   Buffer<std::byte> storage = {};
-  std::size_t size = 0;  ///< the storage may be larger
+  std::size_t size = 0;  ///< the storage may be larger than this
   [[nodiscard]] std::span<const std::byte> span() const { return storage.span().first(size); }
 };
 
-/// Returns the bytes of a file, or of a pipe until it ends.
+/// Returns all bytes of a file, or of a pipe up to its end.
 /// @throws FileError if it cannot be read, or is a directory or a device; OutOfMemory.
 [[nodiscard]] FileBytes read_whole_file(const std::filesystem::path& path);
 

@@ -18,7 +18,7 @@ enum class ScalarType : std::uint8_t { u8, i8, u16, i16, u32, i32, u64, i64, f32
 [[nodiscard]] std::size_t scalar_size(ScalarType type);
 [[nodiscard]] ScalarType scalar_type(const VoxelImageView::Values& values);
 
-/// Returns values of one type, all zero. @throws OutOfMemory.
+/// Returns `count` values of one type, all zero. @throws OutOfMemory.
 [[nodiscard]] VoxelImage::Values make_values(ScalarType type, std::size_t count);
 [[nodiscard]] std::span<std::byte> as_bytes(VoxelImage::Values& values);
 [[nodiscard]] std::span<const std::byte> as_bytes(const VoxelImageView::Values& values);

@@ -50,10 +50,10 @@ Column::Values widened(VoxelImage::Values values, const std::string& where) {
 
 namespace {
 
-/// Returns true if a name can be shown everywhere: UTF-8 without bytes of 0.
+/// Returns true if a name can be displayed everywhere: it is UTF-8 and contains no zero byte.
 bool is_text(std::string_view text) {
   std::uint32_t code = 0;
-  std::uint32_t least = 0;  // smallest code of a sequence of this length
+  std::uint32_t least = 0;  // smallest code point that needs a sequence of this length
   int left = 0;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -78,7 +78,7 @@ bool is_text(std::string_view text) {
 void check_name(std::string_view name, const char* what, const std::string& where) {
   if (is_text(name)) return;
   std::string place = where;
-  std::replace(place.begin(), place.end(), '\0', '?');  // it would end the message
+  std::replace(place.begin(), place.end(), '\0', '?');  // a zero byte would end the message
   throw FormatError(place + ": the name of the " + what + " " + in_quotes(name) +
                     " is not UTF-8 text, or has a byte of 0; rename it in the program that wrote the file");
 }
@@ -86,7 +86,8 @@ void check_name(std::string_view name, const char* what, const std::string& wher
 void add_column(Columns& columns, Column column, const std::string& where) {
   check_name(column.name, "column", where);
   if (columns.size() == max_file_columns || column.components > max_file_columns) {
-    throw FormatError(where + ": more than " + std::to_string(max_file_columns) + " columns, or numbers in a row");
+    throw FormatError(where + ": there are more columns, or numbers in a row, than the limit of " +
+                      std::to_string(max_file_columns));
   }
   try {
     columns.add(std::move(column));
@@ -99,13 +100,15 @@ Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, 
                  const std::string& where) {
   std::uint64_t rows = 0;
   for (const std::uint32_t count : counts) rows += count;
-  // Every count is at most the file's size, so the sum cannot overflow. Copies of wide rows could still exhaust memory.
+  // Every count is at most the file's size, so the sum cannot overflow. But copies of long rows could exhaust memory,
+  // so their size is limited.
   std::uint64_t width = 0;
   for (const Column& column : columns) width += column.components;
   constexpr std::uint64_t most_times = 8;
   if (rows > counts.size() && rows > (most_times * file_size + 1000) / std::max<std::uint64_t>(width, 1)) {
-    throw FormatError(where + ": cells of many corners have so many attributes that cutting them takes more than " +
-                      std::to_string(most_times) + " times the file; save it with single edges and triangles");
+    throw FormatError(where +
+                      ": cutting polylines and polygons into edges and triangles would copy attributes to more than " +
+                      std::to_string(most_times) + " times the size of the file; save single edges and triangles");
   }
   std::vector<std::uint32_t> sources;
   sources.reserve(rows);
@@ -179,7 +182,7 @@ std::vector<std::uint32_t> isolated_vertices(const ComplexView& complex) {
 
 namespace {
 
-/// Returns the names of all columns except `kept`, for messages.
+/// Returns the names of all columns except the one named `kept`, for messages.
 std::string names_of(const Columns& columns, std::string_view kept) {
   std::string names;
   for (const Column& column : columns) {

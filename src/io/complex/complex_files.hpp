@@ -28,13 +28,14 @@ class NpzWriter;
 
 namespace blum::complex_files {
 
-/// Refuses to write content that a format cannot hold, unless the options allow the loss.
-/// @param format  name of the format.  @param kept  the only vertex column that the format holds; may be empty.
-/// @throws InvalidOption naming the content that would be lost.
+/// Throws if a format cannot store all content of a complex, unless the options allow the loss.
+/// @param format  name of the format, for messages. @param kept the only vertex column that the format stores; may be
+/// empty.
+/// @throws InvalidOption. The message lists the content that would be lost.
 void refuse_loss(const std::filesystem::path& path, std::string_view format, const Complex& complex,
                  const FileMetadata& metadata, const ComplexWriteOptions& options, std::string_view kept = {});
 
-// The writers need complexes without problems (problem_of), and names and metadata that files can hold.
+// The writers require complexes without problems (problem_of), and names and metadata that files can store.
 void write_vtp(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                const ComplexWriteOptions& options, const Context& context);
 void write_ply(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
@@ -46,15 +47,15 @@ void write_npz(const std::filesystem::path& path, const Complex& complex, const 
 void write_glb(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                const ComplexWriteOptions& options, const Context& context);
 
-// The readers check only what they need to be safe. Callers check problem_of afterwards. All throw FormatError.
+// The readers check only what makes them safe. Callers must call problem_of afterwards. All throw FormatError.
 [[nodiscard]] ComplexFile read_vtp(const volume_io::ByteSource& source);
 [[nodiscard]] ComplexFile read_npz(const volume_io::ByteSource& source);
 [[nodiscard]] ComplexFile read_ply(std::string_view bytes, std::string_view name);
 [[nodiscard]] ComplexFile read_obj(std::string_view text, std::string_view name);
 
-/// Set of distinct undirected edges. Its cost in time and memory is proportional to the complex. Incidence contains the
-/// same edges, and adjacencies that no file needs. For a million triangles Incidence takes 0.11 s and 60 MB, this class
-/// 0.02 s and 16 MB.
+/// Set of distinct undirected edges. Time and memory are proportional to the complex. Incidence has the same edges, but
+/// also adjacencies that no file needs. For a million triangles Incidence takes 0.11 s and 60 MB, this class 0.02 s and
+/// 16 MB.
 class EdgeSet {
  public:
   enum class Of : std::uint8_t { triangles, edges_and_triangles };
@@ -64,7 +65,7 @@ class EdgeSet {
   [[nodiscard]] bool contains(const std::array<std::uint32_t, 2>& edge) const;
   [[nodiscard]] std::size_t size() const { return others_.size(); }
 
-  /// Calls use(a, b) with a < b for every edge, in rising order.
+  /// Calls use(a, b) with a < b for every edge, in ascending order of a, then b.
   template <class Use>
   void for_each(Use use) const {
     for (std::size_t a = 0; a + 1 < begin_.size(); ++a) {
@@ -75,40 +76,43 @@ class EdgeSet {
  private:
   void sort_and_merge();
 
-  std::vector<std::size_t> begin_;     ///< start of each vertex's edges in others_, and the end
+  /// For each vertex: index of its first edge in others_; the last entry is the total.
+  std::vector<std::size_t> begin_;
   std::vector<std::uint32_t> others_;  ///< larger ends of the edges, grouped by the smaller end
 };
 
-/// Returns the vertices of no edge and no triangle, in rising order.
+/// Returns the vertices that no edge and no triangle uses, in ascending order.
 [[nodiscard]] std::vector<std::uint32_t> isolated_vertices(const ComplexView& complex);
 
-/// Returns the type in which files hold a column's numbers.
+/// Returns the type that files use for the numbers of a column.
 [[nodiscard]] volume_io::ScalarType scalar_type(const Column& column);
 
-/// Adds the array of a column. A row has one number, or as many as the column has components.
+/// Adds an array for a column, with one row per element. If the column has several components, the rows have that many
+/// numbers.
 void write_column(volume_io::NpzWriter& npz, const std::string& array, const Column& column);
 
-/// Converts the numbers of a file to the smallest column type that holds all values of their type.
-/// @throws FormatError with `where` for a uint64 beyond int64.
+/// Converts numbers read from a file to the smallest column type that can represent all values of their type.
+/// @throws FormatError with `where` if a uint64 value is beyond int64.
 [[nodiscard]] Column::Values widened(VoxelImage::Values values, const std::string& where);
 
-/// Checks that a name in a file can be shown everywhere.
-/// @throws FormatError with `where` for a name that is not UTF-8 or has a byte of 0. The message calls it the name of
-/// `what`.
+/// Checks that a name from a file can be displayed everywhere.
+/// @throws FormatError with `where` if the name is not UTF-8 or contains a zero byte. `what` describes the thing that
+/// has the name, for the message.
 void check_name(std::string_view name, const char* what, const std::string& where);
 
-/// Adds a column of a file.
-/// @throws FormatError with `where` if its name exists already or is not text, or if its count of rows differs. The
-/// same holds beyond max_file_columns columns, and unless it has 1 to max_file_columns components.
+/// Adds a column read from a file.
+/// @throws FormatError with `where` if the name is already in use or not text, or if the number of rows differs from
+/// other columns. Also if there would be more than max_file_columns columns, or if the number of components is not 1 to
+/// max_file_columns.
 void add_column(Columns& columns, Column column, const std::string& where);
 
-/// Returns the columns with row i repeated counts[i] times, for cells of files that become several cells.
-/// @param file_size  size of the file. The copies may not be many times as large.
-/// @throws FormatError with `where` if they are.
+/// Returns columns in which row i is repeated counts[i] times. This is for cells of files that become several cells.
+/// @param file_size  size of the file in bytes. It limits the size of the copies.
+/// @throws FormatError with `where` if the copies would be many times as large as the file.
 [[nodiscard]] Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, std::uint64_t file_size,
                                const std::string& where);
 
-/// Calls set(index, value) with each value as a double.
+/// Calls set(index, value) for each value, converted to double.
 template <class Set>
 void for_each_number(const VoxelImage::Values& values, Set set) {
   std::visit(
@@ -118,8 +122,8 @@ void for_each_number(const VoxelImage::Values& values, Set set) {
       values);
 }
 
-/// Calls set(index, value) with each value as an int64.
-/// @throws FormatError with `where` if a value is not a whole number or is beyond int64.
+/// Calls set(index, value) for each value, converted to int64.
+/// @throws FormatError with `where` if a value is not an integer or is beyond int64.
 template <class Set>
 void for_each_integer(const VoxelImage::Values& values, const std::string& where, Set set) {
   std::visit(

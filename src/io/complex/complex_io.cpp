@@ -41,7 +41,7 @@ void check_columns(const Columns& columns, const char* kind) {
   }
 }
 
-/// @param holds_columns  true if the format holds columns.
+/// @param holds_columns  true if the format can store columns.
 void check_complex(const Complex& complex, bool holds_columns) {
   if (holds_columns) {
     check_columns(complex.vertex_columns, "vertices");
@@ -88,7 +88,7 @@ std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Reads, then validates the result as a whole.
+/// Calls a reader, and then validates the whole result.
 template <class Read>
 ComplexFile checked(const std::string& name, Read read) {
   try {

@@ -1,5 +1,5 @@
-// Text format of Q-MAT (Li et al. 2015) and of the Blender add-on for medial meshes. The add-on counts every line after
-// the first as a vertex, edge or triangle, also a comment. The writer therefore writes no comments, and the file has no
+// Text format of Q-MAT (Li et al. 2015) and of the Blender add-on for medial meshes. The add-on treats every line after
+// the first as a vertex, edge or triangle, even a comment. The writer therefore writes no comments, so the file has no
 // metadata.
 #include <algorithm>
 #include <array>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::string_view radius_column = "radius";
 
-/// Reader of vertices, edges and triangles in any order, because other programs may mix them. Additional text on their
-/// lines is ignored.
+/// Reader. Vertices, edges and triangles may be in any order, because other programs may mix them. Further text on
+/// their lines is ignored.
 class MaReader {
  public:
   MaReader(std::string_view text, std::string_view name) : cursor_(text, name, '#') {}
@@ -42,8 +42,8 @@ class MaReader {
  private:
   void read_counts() {
     if (!cursor_.skip_space()) cursor_.fail("the file must begin with the numbers of vertices, edges and triangles");
-    // Shortest lines with their line ends: "v 0 0 0 1" takes 10 bytes, "e 0 1" 6 and "f 0 1 2" 8. The last line may
-    // lack its end.
+    // Lengths in bytes of the shortest lines with their line ends. The line "v 0 0 0 1" takes 10, "e 0 1" 6 and "f 0 1
+    // 2" 8. The last line may lack its line end.
     constexpr std::array<std::uint64_t, 3> least{10, 6, 8};
     constexpr std::array<const char*, 3> what{"number of vertices", "number of edges", "number of triangles"};
     std::uint64_t needed = 0;
@@ -99,7 +99,7 @@ class MaReader {
       }
       out[i] = static_cast<std::uint32_t>(index);
       for (std::size_t k = 0; k < i; ++k) {
-        if (out[k] == out[i]) cursor_.fail("vertex " + std::to_string(index) + " is named twice");
+        if (out[k] == out[i]) cursor_.fail("vertex " + std::to_string(index) + " is used twice");
       }
     }
     return out;
@@ -114,10 +114,10 @@ class MaReader {
   TextCursor cursor_;
   Complex complex_;
   std::vector<double> radii_;
-  std::array<std::uint64_t, 3> counts_{};  ///< of vertices, edges and triangles
+  std::array<std::uint64_t, 3> counts_{};  ///< numbers of vertices, edges and triangles
 };
 
-/// Writes positions, the vertex column `radius`, edges and triangles. The edges include the sides of triangles.
+/// Writes positions, the vertex column `radius`, edges (including the sides of triangles) and triangles.
 void write_ma(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
               const ComplexWriteOptions& options, const Context& context) {
   const Column* const radius = complex.vertex_columns.find(radius_column);

@@ -1,5 +1,5 @@
-// Indices are int32. Blum's ids fit, and NumPy indexes with any integer type. Differences of int32 indices are correct,
-// unlike those of unsigned ones.
+// Indices are stored as int32. All ids of Blum fit, and NumPy accepts any integer type as index. Differences of int32
+// indices are correct; those of unsigned ones are not.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 3> kinds{"vertex_", "edge_", "triangle_"}
 constexpr std::array<std::string_view, 5> own_arrays{"vertices", "edges", "triangles", "metadata", "distance"};
 constexpr std::string_view further_mark = "_vertices";
 
-/// Returns true if the name of a vertex column can name its array without a prefix.
+/// Returns true if a vertex column's array can have the column's name without a prefix.
 bool is_plain(std::string_view name, const std::vector<NamedComplexRef>& further) {
   const auto begins = [&](std::string_view start) { return name.starts_with(start); };
   return std::none_of(kinds.begin(), kinds.end(), begins) &&
@@ -36,7 +36,7 @@ bool is_plain(std::string_view name, const std::vector<NamedComplexRef>& further
          std::none_of(further.begin(), further.end(), [&](const NamedComplexRef& f) { return begins(f.name + "_"); });
 }
 
-/// Writer of the arrays of a complex, with the complex's name as prefix.
+/// Writer of the arrays of a complex. Their names start with the name of the complex.
 class ComplexNpzWriter {
  public:
   ComplexNpzWriter(NpzWriter& npz, const std::vector<NamedComplexRef>& further) : npz_(npz), further_(further) {}
@@ -96,7 +96,7 @@ class ComplexNpzReader {
     if (npz_.has("distance") && npz_.has("vertex_distance")) {
       throw FormatError(source_.name() + ": it holds a surface map (array 'vertex_distance'), not a complex");
     }
-    // Fields of meshes have an array 'vertices', too.
+    // Fields of meshes also have an array 'vertices', so 'distance' is tested first.
     if (npz_.has("distance")) {
       throw FormatError(source_.name() + ": it holds a distance field (array 'distance'), not a complex");
     }
@@ -104,7 +104,7 @@ class ComplexNpzReader {
     check_sizes(arrays.size());
     ComplexFile file;
     for (const std::string& name : further_names(arrays)) {
-      std::vector<std::string> own;  // arrays of this complex, without its name
+      std::vector<std::string> own;  // arrays of this complex, without the complex's name as prefix
       std::erase_if(arrays, [&](const std::string& array) {
         if (!array.starts_with(name + "_")) return false;
         own.push_back(array.substr(name.size() + 1));
@@ -123,7 +123,7 @@ class ComplexNpzReader {
     throw FormatError(where(array) + ": " + reason);
   }
 
-  /// Rejects overlapping entries, because they could exhaust memory.
+  /// Throws if entries overlap, because reading them could exhaust memory.
   void check_sizes(std::size_t arrays) const {
     constexpr std::size_t most = 8 * max_file_columns;
     if (arrays > most) throw FormatError(source_.name() + ": it has too many arrays");
@@ -177,7 +177,7 @@ class ComplexNpzReader {
     return complex;
   }
 
-  /// Reads an array of n items with the given number of components, for any n.
+  /// Reads an array of n items with the given number of components. n can be any number.
   VoxelImage::Values items(const std::string& array, std::uint64_t components) {
     return npz_.read(array, [&](ByteStream& stream, const NpyHeader& header) {
       if (header.shape.size() != 2 || header.shape[1] != components) {
@@ -188,7 +188,7 @@ class ComplexNpzReader {
     });
   }
 
-  /// Reads the corners of cells, which are less than `count`. A missing array means that no cells exist.
+  /// Reads the corners of cells. All must be less than `count`. If the array is missing, there are no cells.
   template <std::size_t n>
   void read_cells(const std::string& array, std::vector<std::array<std::uint32_t, n>>& cells, std::size_t count) {
     if (!npz_.has(array)) return;
@@ -196,13 +196,14 @@ class ComplexNpzReader {
     cells.resize(std::visit([](const auto& v) { return v.size(); }, values) / n);
     for_each_integer(values, where(array), [&](std::size_t i, std::int64_t vertex) {
       if (vertex < 0 || std::cmp_greater_equal(vertex, count)) {
-        fail(array, "vertex " + std::to_string(vertex) + " is named, but there are only " + std::to_string(count));
+        fail(array, "vertex " + std::to_string(vertex) + " is used, but there are only " + std::to_string(count) +
+                        " vertices");
       }
       cells[i / n][i % n] = static_cast<std::uint32_t>(vertex);
     });
   }
 
-  /// @param mark  number of characters before the column's name.
+  /// @param mark  number of characters of the array's name before the column's name.
   void read_column(Columns& columns, const std::string& prefix, const std::string& array, std::size_t mark) {
     std::uint64_t components = 1;
     VoxelImage::Values values = npz_.read(prefix + array, [&](ByteStream& stream, const NpyHeader& header) {
@@ -231,7 +232,8 @@ class ComplexNpzReader {
   NpzReader npz_;
 };
 
-/// Returns false for a damaged archive, because its reader reports the damage.
+/// Tests if an archive contains a complex. Returns false for a damaged archive; the archive's reader reports the
+/// damage.
 bool holds_complex(std::string_view, const std::filesystem::path& path) {
   try {
     const volume_io::FileSource source(path);

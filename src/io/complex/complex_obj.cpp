@@ -12,12 +12,12 @@
 namespace blum::complex_files {
 namespace {
 
-/// Returns false, because a file of vertices, edges and triangles may also be a mesh.
+/// Always returns false: a file with vertices, edges and triangles may also be a mesh.
 bool never_matches(std::string_view, const std::filesystem::path&) {
   return false;
 }
 
-/// Replaces the vertices of an empty complex, because a file without bytes may be one that was never written.
+/// Written for a complex without vertices, because a file of 0 bytes looks as if it had never been written.
 constexpr std::string_view empty_file = "# a complex without vertices\n";
 
 template <std::size_t n>

@@ -22,7 +22,8 @@
 namespace blum::complex_files {
 namespace {
 
-/// Returns the metadata as comments, each a JSON object of one pair. Lines stay short enough for readers of PLY.
+/// Returns the metadata as comment lines. Each is a JSON object with one pair, so that lines stay short enough for
+/// readers of PLY.
 std::string comments_text(const FileMetadata& metadata) {
   std::string out;
   for (const auto& pair : metadata) out += "comment blum " + volume_io::to_json({pair}) + "\n";
@@ -42,7 +43,8 @@ std::string property_lines(const Columns& columns, const PlyNames& names) {
   return out;
 }
 
-/// Returns the column that vertices repeat for MeshLab. Null if no such column, or no room for its copy, exists.
+/// Returns the column that is written a second time for MeshLab. Null if there is no such column, or no room for the
+/// copy.
 const Column* derived_column(const Columns& columns) {
   if (columns.find(derived_property) != nullptr || columns.size() == max_file_columns) return nullptr;
   const Column* const column = columns.find(derived_from);
@@ -50,7 +52,7 @@ const Column* derived_column(const Columns& columns) {
   return is_real ? column : nullptr;
 }
 
-/// @throws InvalidOption if a row has more numbers than readers accept.
+/// @throws InvalidOption if a row has more numbers than Blum's reader accepts.
 void check_row(const std::filesystem::path& path, const Columns& columns) {
   std::size_t numbers = 0;
   for (const Column& column : columns) numbers += column.components;
@@ -75,7 +77,8 @@ std::string header_text(const Complex& complex, const FileMetadata& metadata) {
   if (has_derived) out += "property float " + std::string(derived_property) + "\n";
   out += "element face " + std::to_string(complex.triangles.size()) + "\nproperty list uchar int vertex_indices\n" +
          property_lines(complex.triangle_columns, of_faces);
-  // Some readers, for example trimesh, take everything in `edge` for corners. Others reject files with edges.
+  // Some readers, for example trimesh, treat everything in `edge` as corners. Others reject files with edges. So edges
+  // are written only if they are needed.
   if (!complex.edges.empty() || !complex.edge_columns.empty()) {
     out += "element edge " + edges + "\nproperty int vertex1\nproperty int vertex2\n";
   }
@@ -107,7 +110,7 @@ void write_vertices(RowWriter& out, const Complex& complex) {
   }
 }
 
-/// Returns true for an axis that write_medial() wrote. Other complexes cannot be distinguished from meshes.
+/// Returns true if the file is an axis written by write_medial(). Other complexes cannot be distinguished from meshes.
 bool holds_axis(std::string_view head, const std::filesystem::path&) {
   const std::string_view header = head.substr(0, head.find("end_header"));
   return header.find(R"(comment blum {"content": "medial axis"})") != std::string_view::npos;
@@ -152,16 +155,16 @@ constinit const ComplexCode complex_ply{
 namespace blum::complex_files {
 namespace {
 
-/// Use of a property of an element: a column, a list to skip, or a property known to the reader.
+/// Use of a property by the reader: part of a column, a list to skip, or a property known by name.
 struct Use {
   enum class What : std::uint8_t { column, nothing, known };
   What what = What::column;
-  std::size_t index = 0;  ///< of the column, or of the known name
+  std::size_t index = 0;  ///< index of the column, or of the known name
 };
 
-/// Properties of an element: those known to the reader, and the columns that the others form.
+/// Layout of an element: its known properties, and the columns that its other properties form.
 struct Layout {
-  std::vector<Use> uses;        ///< of the properties, in file order
+  std::vector<Use> uses;        ///< use of each property, in file order
   std::vector<Column> columns;  ///< filled while reading
 };
 
@@ -172,14 +175,14 @@ Column::Values values_for(PlyType type) {
   return std::vector<std::int32_t>{};
 }
 
-/// Converts to float. Values beyond its range become infinite.
+/// Converts to float. Values beyond float's range become infinite.
 float to_float(double value) {
   constexpr double most = std::numeric_limits<float>::max();
   if (value > most) return std::numeric_limits<float>::infinity();
   return value < -most ? -std::numeric_limits<float>::infinity() : static_cast<float>(value);
 }
 
-/// Reader of the elements of a file. `Source` is PlyText or PlyBinary.
+/// Reader of the elements of a file. `Source` is PlyText or PlyBinary, which reads the values.
 template <class Source>
 class ComplexPlyReader {
  public:
@@ -191,15 +194,15 @@ class ComplexPlyReader {
     source_.expect_end();
     if (!vertices_there_) source_.fail("the file has no element 'vertex'");
     if (const auto bad = builder_.bad_index()) {
-      source_.fail_at(bad->where, "vertex " + std::to_string(bad->index) + " is named, but the file has only " +
-                                      std::to_string(builder_.vertex_count()) + " (counted from 0)");
+      source_.fail_at(bad->where, "vertex " + std::to_string(bad->index) + " is used, but the file has only " +
+                                      std::to_string(builder_.vertex_count()) + " vertices (counted from 0)");
     }
     return finish();
   }
 
  private:
   void read_element(const PlyElement& element) {
-    if (element.properties.empty()) return;  // takes no bytes, whatever its count
+    if (element.properties.empty()) return;  // entries take no bytes, whatever their number
     const std::size_t least = std::max<std::size_t>(source_.least_size(element), 1);
     if (element.count > (source_.remaining() + 1) / least) {
       source_.fail("the header promises " + std::to_string(element.count) + " of element " + in_quotes(element.name) +
@@ -214,7 +217,8 @@ class ComplexPlyReader {
     }
   }
 
-  /// @param known  names that are not columns. `vertex_index` and `vertex_indices` name the same; only one may occur.
+  /// @param known  names of properties that are not columns. `vertex_index` and `vertex_indices` have the same meaning;
+  /// only one may occur.
   template <std::size_t n>
   Layout layout_of(const PlyElement& element, const std::array<std::string_view, n>& known) {
     if (element.properties.size() > max_ply_properties) source_.fail("the header has too many properties");
@@ -268,7 +272,7 @@ class ComplexPlyReader {
     source_.fail("element " + in_quotes(element.name) + " has no property " + in_quotes(name));
   }
 
-  /// Reads the next entry. known(index, property) reads a property that is not a column.
+  /// Reads the next entry of an element. Calls known(index, property) for each known property, which must read it.
   template <class Known>
   void read_entry(const PlyElement& element, Layout& layout, Known known) {
     for (std::size_t k = 0; k < layout.uses.size(); ++k) {
@@ -323,7 +327,7 @@ class ComplexPlyReader {
     file_.complex.vertex_columns = std::move(columns);
   }
 
-  /// Removes the copy of the radii for MeshLab.
+  /// Removes the copy of the column `radius` that is written for MeshLab.
   void drop_derived(Columns& columns) const {
     const Column* const copy = columns.find(derived_property);
     const Column* const source = columns.find(derived_from);
@@ -347,8 +351,8 @@ class ComplexPlyReader {
     const auto corners = std::count_if(layout.uses.begin(), layout.uses.end(), is_corners);
     if (corners == 0) need(element, "vertex_indices");
     if (corners > 1) source_.fail("element 'face' has the properties 'vertex_indices' and 'vertex_index'");
-    const std::size_t most = std::min(element.count, source_.remaining() / 4 + 1);  // four bytes: a length and three
-                                                                                    // corners
+    const std::size_t most = std::min(element.count, source_.remaining() / 4 + 1);  // a list takes at least four bytes:
+                                                                                    // a length and three corners
     triangle_counts_.reserve(most);
     builder_.reserve_triangles(most);
     for (std::size_t i = 0; i < element.count; ++i) {
@@ -390,7 +394,7 @@ class ComplexPlyReader {
     add_to(file_.complex.edge_columns, layout);
   }
 
-  /// Reads one record for each edge, in their order.
+  /// Reads the columns of the edges: one entry per edge, in the order of the edges.
   void read_edge_attributes(const PlyElement& element) {
     const std::size_t edges = file_.complex.edges.size();
     if (edges != element.count) {
@@ -441,9 +445,9 @@ class ComplexPlyReader {
   std::string_view name_;
   std::uint64_t file_size_;
   ComplexFile file_;
-  MeshBuilder builder_;  ///< checks indices and cuts polygons
+  MeshBuilder builder_;  ///< checks indices and cuts polygons into triangles
   Columns face_columns_;
-  std::vector<std::uint32_t> triangle_counts_;  ///< triangles that each face becomes
+  std::vector<std::uint32_t> triangle_counts_;  ///< for each face: the number of triangles that it becomes
   std::vector<std::uint32_t> corners_;
   bool vertices_there_ = false;
 };

@@ -19,7 +19,8 @@ std::string component_name(const Column& column, std::size_t i) {
   return column.name + "_" + (column.components == 3 ? std::string(1, axes[i]) : std::to_string(i));
 }
 
-/// Returns the name of a vector if this is the first of its three properties, else an empty text.
+/// If the property `first` is the first of the three properties of a vector, returns the vector's name; else an empty
+/// text.
 std::string_view vector_name(const std::vector<PlyProperty>& properties, std::size_t first) {
   if (first + 3 > properties.size()) return {};
   const std::string_view x = properties[first].name;
@@ -37,7 +38,7 @@ struct Listed {
   std::string_view name;
 };
 
-/// Returns the columns of an element that comments declare, by their first property.
+/// Returns the columns that comments declare for an element, with their first properties as keys.
 std::map<std::string_view, Listed> listed_columns(std::string_view element, const std::vector<std::string>& comments) {
   std::map<std::string_view, Listed> stated;
   for (const std::string& comment : comments) {
@@ -49,7 +50,7 @@ std::map<std::string_view, Listed> listed_columns(std::string_view element, cons
   return stated;
 }
 
-/// Returns true if `count` properties of one type begin at `first`.
+/// Returns true if there are `count` properties of the same type, starting with `first`.
 bool has_run(const std::vector<PlyProperty>& properties, std::size_t first, std::size_t count) {
   if (count > properties.size() - first) return false;
   const auto begin = properties.begin() + static_cast<std::ptrdiff_t>(first);
@@ -74,13 +75,13 @@ PlyNames property_names(const Columns& columns, std::string_view element, const 
     for (std::size_t i = 0; i < column.components; ++i) {
       std::string name = component_name(column, i);
       while (!used.insert(name).second) name += "_";
-      // The reading rule only checks whether types are equal, so any distinct values suffice.
+      // The rule for reading only checks if types are equal. So values that differ between types are enough.
       properties.push_back({name, false, PlyType::uint8, static_cast<PlyType>(column.values.index())});
       names.properties.push_back(std::move(name));
     }
   }
-  // A column needs a comment only if the reading rule finds another one in its place. A comment takes effect at the
-  // first property of a column, so every column that differs gets one.
+  // A column needs a comment only if the rule for reading finds a different column at its position. A comment takes
+  // effect at the first property of its column. So every column that would be read differently gets one.
   const std::vector<PlyColumn> read = find_columns(properties, element, {});
   std::size_t c = 0;
   for (const Column& column : columns) {

@@ -11,12 +11,12 @@
 
 namespace blum::complex_files {
 
-/// Vertices repeat the numbers of the column `radius` in this property, by which MeshLab colours. If they have a column
-/// of that name, there is no copy, and a comment declares the column.
+/// Property of vertices with a copy of the column `radius`, by which MeshLab colours. If the vertices have a column of
+/// that name, no copy is written, and a comment declares the column.
 inline constexpr std::string_view derived_property = "quality";
 inline constexpr std::string_view derived_from = "radius";
 
-/// Largest number of properties of an element, and largest number of those that are not columns.
+/// Largest number of properties of an element; below, the largest number of those that are not columns.
 inline constexpr std::size_t max_ply_properties = 100'000;
 inline constexpr std::size_t max_known_properties = 4;
 
@@ -27,26 +27,26 @@ struct PlyColumn {
   std::size_t components = 1;  ///< number of properties
 };
 
-/// Properties of columns, for writing.
+/// Properties that represent columns, for writing.
 struct PlyNames {
-  std::vector<std::string> properties;  ///< of all columns, one after the other
-  std::string comments;                 ///< lines without which readers would find other columns
+  std::vector<std::string> properties;  ///< names of the properties of all columns, in order
+  std::string comments;                 ///< comment lines; without them, readers would find other columns
 };
 
-/// Returns the properties of columns.
-/// @param element   as in the comments: "vertex", "face" or "edge".
-/// @param reserved  other properties of the element.
+/// Returns the properties that represent columns.
+/// @param element   name of the element in the comments: "vertex", "face" or "edge".
+/// @param reserved  names of other properties of the element, which columns must not use.
 [[nodiscard]] PlyNames property_names(const Columns& columns, std::string_view element,
                                       const std::vector<std::string>& reserved);
 
-/// Returns the columns that properties form, for reading. Comments declare columns. Without them NAME_x, NAME_y, NAME_z
-/// of one type form one column, and every other property is its own column. Comments that do not fit the properties are
-/// ignored.
+/// Returns the columns that properties represent, for reading. Comments may declare columns. Otherwise three properties
+/// NAME_x, NAME_y, NAME_z of one type are one column, and every other property is a column. Comments that do not fit
+/// the properties are ignored.
 /// @param properties  must not be lists.
 [[nodiscard]] std::vector<PlyColumn> find_columns(const std::vector<PlyProperty>& properties, std::string_view element,
                                                   const std::vector<std::string>& comments);
 
-/// Returns true if a comment declares this property.
+/// Returns true if a comment declares a column that starts with this property.
 [[nodiscard]] bool is_listed(std::string_view property, std::string_view element,
                              const std::vector<std::string>& comments);
 

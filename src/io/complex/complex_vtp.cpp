@@ -30,19 +30,19 @@ using volume_io::ScalarType;
 
 using Put = std::function<void(std::span<const std::byte>)>;
 
-/// Array of a file. Its bytes are computed only while they are written.
+/// Array of a file. Its bytes are computed while they are written, so that they need no memory.
 struct OutArray {
   std::string name;
   ScalarType type = ScalarType::f64;
   std::size_t components = 1;
-  std::uint64_t numbers = 0;  ///< total of all rows
+  std::uint64_t numbers = 0;  ///< number of numbers in all rows
   std::function<void(const Put&)> write;
 
   [[nodiscard]] std::uint64_t size() const { return numbers * volume_io::scalar_size(type); }
 };
 
 struct Section {
-  std::string tag;  ///< with its attributes
+  std::string tag;  ///< opening tag with its attributes
   std::vector<OutArray> arrays;
 };
 
@@ -84,9 +84,9 @@ OutArray whole_column(const Column& column) {
 template <class T>
 constexpr T fill_value = std::is_floating_point_v<T> ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(-1);
 
-/// Column of cells: of edges, triangles, or both.
+/// One array of a file's cells. It contains a column of edges, of triangles, or of both.
 struct CellColumn {
-  std::string name;  ///< of the array
+  std::string name;  ///< name of the array
   const Column* edges = nullptr;
   const Column* triangles = nullptr;
   [[nodiscard]] const Column& any() const { return edges != nullptr ? *edges : *triangles; }
@@ -96,10 +96,10 @@ bool is_alike(const Column& a, const Column& b) {
   return a.components == b.components && a.values.index() == b.values.index();
 }
 
-/// Arrays of a complex's cells, and the columns that they hold.
+/// Arrays for the columns of a complex's edges and triangles.
 struct CellColumns {
   std::vector<CellColumn> arrays;
-  FileMetadata edge_names, triangle_names;  ///< pairs of column and array
+  FileMetadata edge_names, triangle_names;  ///< pairs: name of a column, name of its array
 
   explicit CellColumns(const Complex& complex) {
     for (const Column& column : complex.edge_columns) {
@@ -120,7 +120,7 @@ struct CellColumns {
   }
 
  private:
-  /// Returns the column's own name, unless another column of the complex's cells has it.
+  /// Returns the column's name if no other column of edges or triangles uses it; otherwise a longer name.
   [[nodiscard]] std::string unused_name(const Complex& complex, const Column& column) const {
     if (complex.edge_columns.find(column.name) == nullptr && !has(column.name)) return column.name;
     std::string name = "triangle_" + column.name;
@@ -134,8 +134,8 @@ struct CellColumns {
   }
 };
 
-/// Returns the numbers of single vertices from the column of the same name, converted to T. They are the fill value if
-/// T may not hold them.
+/// Returns the numbers for single vertices (cells of a vertex each). They come from the vertex column with the same
+/// name, converted to T. If T may not represent the values, they are the fill value.
 template <class T>
 std::vector<T> numbers_of_verts(const Columns& columns, const std::string& name, std::size_t components,
                                 std::span<const std::uint32_t> verts) {
@@ -190,7 +190,7 @@ Section cells(const std::string& tag, std::uint64_t corners, std::uint64_t count
   return section;
 }
 
-/// Returns a tag that makes VTK show the first array of one component.
+/// Returns a tag that makes VTK display the first array with one component.
 std::string point_data_tag(const Columns& columns) {
   for (const Column& column : columns) {
     if (column.components == 1) return "PointData Scalars=\"" + column.name + "\"";
@@ -198,7 +198,7 @@ std::string point_data_tag(const Columns& columns) {
   return "PointData";
 }
 
-/// The sections refer to the arguments, which must outlive them.
+/// Returns the sections of a file. They refer to the arguments, which must outlive them.
 std::vector<Section> sections_of(const Complex& complex, const std::vector<CellColumn>& columns,
                                  std::span<const std::uint32_t> verts) {
   std::vector<Section> out{{point_data_tag(complex.vertex_columns), {}}, {"CellData", {}}, {"Points", {}}};
@@ -276,16 +276,17 @@ using volume_io::XmlTag;
 
 struct NamedArray {
   std::string key;   ///< section and name, for example "PointData/radius"
-  std::string name;  ///< without the section
+  std::string name;  ///< name without the section
   VtkArray array;
 };
 
 struct VtpHeader {
   VtkAppended appended;
   std::uint64_t points = 0, verts = 0, lines = 0, polys = 0;
-  std::vector<NamedArray> arrays;  ///< arrays of numbers, in file order
+  std::vector<NamedArray> arrays;  ///< arrays with numbers, in file order
   FileMetadata metadata;
-  std::optional<FileMetadata> edge_columns, triangle_columns;  ///< pairs of column and array, if the file lists them
+  /// Pairs (name of a column, name of its array), if the file lists them.
+  std::optional<FileMetadata> edge_columns, triangle_columns;
 
   [[nodiscard]] const VtkArray* find(std::string_view key) const {
     const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.key == key; });
@@ -351,11 +352,11 @@ class VtpParser {
     const bool is_data = section_ == "PointData" || section_ == "CellData";
     if (is_data && (name.empty() || type == "String" || type == "Bit")) return;
     if (!is_data && section_ != "Points" && name != "connectivity" && name != "offsets") return;
-    // The one array of the points contains their positions, whatever its name is.
+    // The section "Points" has one array, with the positions. Its name can be anything.
     const std::string shown(section_ == "Points" ? "Points" : name);
     const std::string key = std::string(section_) + "/" + shown;
     if (header_.find(key) != nullptr) fail("the array '" + key + "' occurs twice");
-    constexpr std::size_t others = 10;  // positions, corners and ends of cells
+    constexpr std::size_t others = 10;  // number of arrays for positions, corners and ends of cells
     if (header_.arrays.size() > 3 * max_file_columns + others) fail("it has too many arrays");
     header_.arrays.push_back({key, shown, volume_io::vtk_array(tag, name_)});
   }
@@ -377,10 +378,10 @@ class VtpParser {
   bool seen_piece_ = false;
 };
 
-/// Corners of cells, one cell after the other.
+/// Corners of all cells, one cell after the other.
 struct Cells {
   std::vector<std::uint32_t> corners;
-  std::vector<std::uint64_t> ends;  ///< of each cell, as indices of corners
+  std::vector<std::uint64_t> ends;  ///< for each cell: index after its last corner
 };
 
 class VtpReader {
@@ -392,7 +393,7 @@ class VtpReader {
     read_points();
     read_lines();
     read_polys();
-    (void)read_cells("Verts", header_.verts);  // adds nothing to the points, but may be damaged
+    (void)read_cells("Verts", header_.verts);  // adds nothing to the points, but reports damaged data
     file_.metadata = std::move(header_.metadata);
     return std::move(file_);
   }
@@ -405,7 +406,7 @@ class VtpReader {
 
   [[nodiscard]] std::uint64_t cell_count() const { return header_.verts + header_.lines + header_.polys; }
 
-  /// Rejects overlapping arrays, because they could exhaust memory.
+  /// Throws if arrays overlap, because reading them could exhaust memory.
   void check_sizes() const {
     std::uint64_t room = source_.size();
     for (const auto& [key, name, array] : header_.arrays) {
@@ -425,7 +426,7 @@ class VtpReader {
     }
   }
 
-  /// Returns the values of an array for `count` points or cells.
+  /// Reads an array with `count` rows, one per point or cell.
   VoxelImage::Values values(const VtkArray& array, std::uint64_t count, const char* needed_by) const {
     const std::uint64_t numbers = count * array.components;
     auto stream = volume_io::open_vtk_array(source_, header_.appended, array, numbers, needed_by);
@@ -435,7 +436,7 @@ class VtpReader {
     return out;
   }
 
-  /// Returns the values of a required array with the given number of components.
+  /// Reads a required array with `count` rows and the given number of components.
   VoxelImage::Values needed_values(const std::string& key, std::uint64_t count, std::uint64_t components,
                                    const char* needed_by) const {
     const VtkArray* array = header_.find(key);
@@ -450,7 +451,8 @@ class VtpReader {
     Complex& complex = file_.complex;
     if (header_.points > 0) {
       const VoxelImage::Values places = needed_values("Points/Points", header_.points, 3, "the number of points");
-      complex.positions.resize(header_.points);  // as long as the array that was just read
+      // Allocated only now: the array that was just read is as long, so the file is large enough.
+      complex.positions.resize(header_.points);
       for_each_number(places, [&](std::size_t i, double value) { complex.positions[i / 3][i % 3] = value; });
     }
     complex.vertex_columns = Columns(header_.points);
@@ -478,8 +480,8 @@ class VtpReader {
     for_each_integer(needed_values(corners, cells.ends.back(), 1, "the last of the offsets"), where(corners),
                      [&](std::size_t /*i*/, std::int64_t vertex) {
                        if (vertex < 0 || vertex >= static_cast<std::int64_t>(header_.points)) {
-                         fail(corners, "vertex " + std::to_string(vertex) + " is named, but there are only " +
-                                           std::to_string(header_.points));
+                         fail(corners, "vertex " + std::to_string(vertex) + " is used, but there are only " +
+                                           std::to_string(header_.points) + " vertices");
                        }
                        cells.corners.push_back(static_cast<std::uint32_t>(vertex));
                      });
@@ -487,7 +489,7 @@ class VtpReader {
   }
 
   /// Returns the columns of `count` cells, starting with `first`.
-  /// @param names  pairs of column and array; if unset, all arrays are columns.
+  /// @param names  pairs (name of a column, name of its array). If unset, every array is a column.
   Columns cell_columns(const std::optional<FileMetadata>& names, std::uint64_t first, std::uint64_t count) const {
     Columns columns(count);
     if (names) {
@@ -520,7 +522,7 @@ class VtpReader {
     add_column(columns, std::move(column), where(key));
   }
 
-  /// Reads lines. A line through several points becomes one edge for each of its steps.
+  /// Reads lines. A line through several points becomes several edges, one between each two consecutive points.
   void read_lines() {
     const Cells cells = read_cells("Lines", header_.lines);
     Complex& complex = file_.complex;

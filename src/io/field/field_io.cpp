@@ -64,7 +64,7 @@ Field read_field(std::span<const std::byte> bytes, FieldFormat format, const std
 namespace blum::volume_io {
 namespace {
 
-/// Returns the enumerator that to_string shows as `text`.
+/// Returns the enumerator for which to_string returns `text`.
 template <class Enum, std::size_t n>
 Enum from_text(std::string_view text, const std::array<Enum, n>& all, std::string_view key, const std::string& name) {
   for (const Enum value : all) {

@@ -17,7 +17,7 @@ namespace {
 
 using SiteVertices = std::vector<std::array<std::int32_t, 3>>;
 
-/// Returns the vertices of every site, in the order of the field's site ids.
+/// Returns the vertices of every site of the field's mesh, in the order of site ids.
 SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
   SiteVertices out;
   if (field.site_ids == SiteIds::triangles) {
@@ -35,12 +35,12 @@ SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
   return out;
 }
 
-/// @throws InvalidMesh if the field names a site that the mesh does not have.
+/// @throws InvalidMesh if the field contains the id of a site that the mesh does not have.
 void check_sites(const Buffer<SiteId>& sites, std::size_t site_count) {
   for (const SiteId site : sites) {
     if (!site.has_value() || site.value < site_count) continue;
-    throw InvalidMesh("the field names site " + std::to_string(site.value) + ", but the mesh given with it has only " +
-                      std::to_string(site_count) + ": the field belongs to another mesh");
+    throw InvalidMesh("the field uses site " + std::to_string(site.value) + ", but the mesh given with it has only " +
+                      std::to_string(site_count) + " sites: the field belongs to another mesh");
   }
 }
 

@@ -15,24 +15,24 @@
 namespace blum::volume_io {
 namespace {
 
-/// Returns the key that names the file of an array. Readers ignore a file left over from another run, because no key
-/// names it.
+/// Returns the key whose value is the file name of an array. A file left over from an earlier run is ignored, because
+/// no key refers to it.
 std::string key_of(BesideArray array) {
   return std::string(name_of(array)) + "_file";
 }
-/// Key that marks the file of another array and names the file of the distances.
+/// Key in the file of another array. Its value is the file name of the distances.
 constexpr const char* distances_key = "distance_file";
-/// Key that names the array of such a file. Without it, the file holds the sites.
+/// Key in the file of another array. Its value is the name of the array; without it, the array is "site".
 constexpr const char* array_key = "array";
 
-/// @throws FormatError for a file of another array of a field, because it looks like a file of distances.
+/// @throws FormatError if the file contains another array of a field. Without this check it would be read as distances.
 void check_holds_distances(const NrrdHeader& header, const std::string& name) {
   const std::string_view distances = find_value(header.key_values, distances_key);
   if (distances.empty()) return;
   const bool is_second = find_value(header.key_values, array_key) == name_of(BesideArray::distance2);
   throw FormatError(name + ": it holds the " + (is_second ? "second distances" : "site ids") +
                     " of a field, not its distances; open the file of the distances, '" + std::string(distances) +
-                    "', which finds " + (is_second ? "the others" : "its sites") + " by itself");
+                    "': " + (is_second ? "second distances and sites" : "sites") + " are read with it");
 }
 
 Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
@@ -41,14 +41,14 @@ Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
                         [&](std::span<std::byte> out) { read_nrrd_data(data, header, out); });
 }
 
-/// Reads an array from its own file.
+/// Reads an array from its separate file.
 void read_beside(const std::filesystem::path& path, BesideArray array, Field& field) {
   const FileSource source(path);
   const NrrdHeader header = read_nrrd_header(source);
   if (header.grid.size != field.grid.size) {
     throw FormatError(source.name() + ": it holds " +
                       (array == BesideArray::distance2 ? "second distances" : "site ids") +
-                      " for another grid than the distances beside it");
+                      " for another grid than that of the file with the distances");
   }
   if (!header.data_file.empty()) throw FormatError(source.name() + ": its data are in another file");
   if (array == BesideArray::distance2) {
@@ -78,7 +78,7 @@ bool has_own_beside(const std::filesystem::path& path, BesideArray array) {
     const NrrdHeader header = read_nrrd_header(FileSource(beside_path(path, array)));
     return find_value(header.key_values, distances_key) == path.filename().string();
   } catch (const Error&) {
-    return false;  // no such file exists, or Blum did not write it
+    return false;  // no such file exists, or it was not written by Blum
   }
 }
 
@@ -119,7 +119,8 @@ void write_field_nrrd(const std::filesystem::path& path, const Field& field, con
     if (other) other->commit();
   }
   distances.commit();
-  // Removes the files of an earlier field. If the removal fails, the new file does not name them.
+  // Removes the files of an earlier field. If this fails, they are ignored, because the new file does not refer to
+  // them.
   std::error_code ignored;
   for (const BesideArray array : beside_arrays) {
     const bool is_written = others[static_cast<std::size_t>(array)].has_value();
@@ -150,7 +151,7 @@ Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& pat
 
 namespace {
 
-/// Returns true for a NRRD file whose header marks it as a field of Blum.
+/// Returns true if the header of a NRRD file marks it as a field written by Blum.
 bool holds_field(std::string_view head, const std::filesystem::path&) {
   return head.substr(0, head.find("\n\n")).find("sign_rule:=") != std::string_view::npos;
 }

@@ -26,7 +26,7 @@ std::string vector_text(const Vec3d& v) {
   return exact_text(v.x) + " " + exact_text(v.y) + " " + exact_text(v.z);
 }
 
-/// Returns the matrix row by row.
+/// Returns the numbers of a matrix as text, row by row.
 std::string matrix_text(const Mat3& m) {
   std::string out;
   for (std::size_t row = 0; row < 3; ++row) {
@@ -162,7 +162,7 @@ class VtiParser {
     GridSpec& grid = header_.grid;
     set_frame(grid, {Vec3d{d[0], d[3], d[6]}, Vec3d{d[1], d[4], d[7]}, Vec3d{d[2], d[5], d[8]}},
               {spacing[0], spacing[1], spacing[2]}, name_);
-    // The origin of VTK is the position of index 0, even if the extent begins elsewhere.
+    // In VTK, the origin is the position of index 0, even if the extent starts at another index.
     const Vec3d offset{start.x * grid.spacing.x, start.y * grid.spacing.y, start.z * grid.spacing.z};
     grid.origin = Vec3d{origin[0], origin[1], origin[2]};
     if (start != Vec3d{}) grid.origin += grid.direction * offset;

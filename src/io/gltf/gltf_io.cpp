@@ -25,7 +25,7 @@ namespace {
 
 using Put = std::function<void(std::span<const std::byte>)>;
 
-/// Stream buffer that passes on everything written to it.
+/// Stream buffer that passes all written bytes to a function.
 class PutBuffer : public std::streambuf {
  public:
   explicit PutBuffer(Put put) : put_(std::move(put)) {}
@@ -50,14 +50,14 @@ std::uint64_t size_of(const gltf_library::Model& model) {
   return model.buffers.empty() ? 0 : model.buffers.front().data.size();
 }
 
-/// @param put  receives the bytes of the file, piece by piece; its exceptions are passed on.
+/// @param put  receives the bytes of the file, one piece after the other. Its exceptions are rethrown.
 void write_model(const gltf_library::Model& model, const Put& put) {
   PutBuffer buffer(put);
   std::ostream stream(&buffer);
   stream.exceptions(std::ios::badbit);
   gltf_library::TinyGLTF library;
   if (!library.WriteGltfSceneToStream(&model, stream, false, true)) {
-    throw FileError("tinygltf does not write what should be a mesh");
+    throw FileError("the library tinygltf failed to write the mesh");
   }
 }
 
@@ -105,7 +105,7 @@ void write_mesh_glb(const std::filesystem::path& path, const MeshView& mesh) {
 namespace complex_files {
 namespace {
 
-constexpr std::int64_t largest_whole = std::int64_t{1} << 24;  // single precision holds all whole numbers up to it
+constexpr std::int64_t largest_whole = std::int64_t{1} << 24;  // up to this, float represents all integers
 constexpr std::size_t most_components = 4;
 
 bool holds_whole_numbers(const Column& column) {
@@ -139,7 +139,7 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-/// Returns the names of columns in a file. They are in upper case, as glTF's own, if they still differ then.
+/// Returns the names of columns in a file. They are in upper case, like glTF's own names, if they stay distinct.
 std::vector<std::string> attribute_names(const Columns& columns) {
   std::map<std::string, int> counts;
   for (const Column& column : columns) ++counts[upper_case(column.name)];
@@ -151,7 +151,7 @@ std::vector<std::string> attribute_names(const Columns& columns) {
   return names;
 }
 
-/// @throws InvalidOption naming the content that the file would lose, unless the options allow it.
+/// @throws InvalidOption if the file would lose content and the options do not allow it. The message lists the content.
 void refuse_glb_loss(const std::filesystem::path& path, const Complex& complex, const ComplexWriteOptions& options) {
   if (options.allow_loss) return;
   std::string lost;

@@ -1,7 +1,7 @@
 // Blum: tinygltf, as Blum uses it. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Blum's library contains tinygltf under another name, because programs that use Blum may contain another copy.
+// Renames tinygltf's namespace in Blum's library, because programs that use Blum may contain another copy of tinygltf.
 #define tinygltf blum_tinygltf
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE

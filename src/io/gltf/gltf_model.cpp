@@ -36,7 +36,8 @@ void check_attributes(const GltfMesh& mesh) {
     if (!is_name) throw InvalidOption(what + ": names are made of letters, digits, '_', '-' and '.'");
     if (!names.insert(attribute.name).second) throw InvalidOption(what + " occurs twice");
     if (attribute.components < 1 || attribute.components > 4) {
-      throw InvalidOption(what + " has " + std::to_string(attribute.components) + " components; 1 to 4 are held");
+      throw InvalidOption(what + " has " + std::to_string(attribute.components) +
+                          " components, but glTF files hold 1 to 4");
     }
     if (attribute.values.size() != attribute.components * mesh.vertices.size()) {
       throw InvalidOption(what + " has " + std::to_string(attribute.values.size()) + " numbers, not " +
@@ -79,8 +80,8 @@ void check_corners(const Cells& cells, std::size_t vertices, const char* what) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (const std::uint32_t v : cells[i]) {
       if (v < vertices) continue;
-      throw InvalidMesh(std::string(what) + " " + std::to_string(i) + " names vertex " + std::to_string(v) +
-                        ", but there are only " + std::to_string(vertices));
+      throw InvalidMesh(std::string(what) + " " + std::to_string(i) + " uses vertex " + std::to_string(v) +
+                        ", but there are only " + std::to_string(vertices) + " vertices");
     }
   }
 }
@@ -91,7 +92,7 @@ void check_mesh(const GltfMesh& mesh) {
   check_corners(mesh.triangles, count, "triangle");
   check_corners(mesh.segments, count, "segment");
   for (const std::uint32_t point : mesh.points) {
-    if (point >= count) throw InvalidMesh("vertex " + std::to_string(point) + " is a point, but does not exist");
+    if (point >= count) throw InvalidMesh("a point uses vertex " + std::to_string(point) + ", which does not exist");
   }
   if (!mesh.normals.empty() && mesh.normals.size() != count) {
     throw InvalidOption("there are " + std::to_string(mesh.normals.size()) + " normals for " + std::to_string(count) +
@@ -99,7 +100,7 @@ void check_mesh(const GltfMesh& mesh) {
   }
 }
 
-/// Returns the number of bytes of all parts in a file with `vertices` vertices.
+/// Returns the number of bytes that all parts of a mesh need in a file with `vertices` vertices.
 std::uint64_t data_size(const GltfMesh& mesh, std::uint64_t vertices) {
   std::uint64_t of_vertex = 12 + (mesh.normals.empty() ? 0 : 12) + (mesh.texture_coordinates.empty() ? 0 : 8);
   for (const GltfAttribute& attribute : mesh.attributes) of_vertex += 4 * attribute.components;
@@ -108,13 +109,13 @@ std::uint64_t data_size(const GltfMesh& mesh, std::uint64_t vertices) {
 }
 
 void check_size(std::uint64_t bytes) {
-  constexpr std::uint64_t room = std::uint64_t{1} << 20;  // for the description and its texts
+  constexpr std::uint64_t room = std::uint64_t{1} << 20;  // room for the JSON description with its texts
   if (bytes <= most_bytes - room) return;
   throw FileError("a mesh with texture and attributes of " + count_text(bytes) +
                   " bytes does not fit into a binary glTF file, which has at most 2^32 - 1");
 }
 
-/// Returns the position of a mesh. Relative to it, single precision keeps the mesh's shape.
+/// Returns the origin that is subtracted from a mesh's coordinates, so that float32 preserves the mesh's shape.
 Vec3d origin_of(const Box3& box) {
   if (box.is_empty()) return {};
   const Vec3d center = box.lower * 0.5 + box.upper * 0.5;
@@ -148,7 +149,7 @@ gltf_library::Value extras_value(const GltfExtras& extras) {
   return gltf_library::Value(object);
 }
 
-/// Appends arrays to the buffer of a model.
+/// Builder of a model. It appends arrays to the model's buffer.
 class ModelBuilder {
  public:
   ModelBuilder(const GltfMesh& mesh, const Context& context) : mesh_(mesh), context_(context) {
@@ -175,7 +176,7 @@ class ModelBuilder {
   [[nodiscard]] std::size_t source_of(std::size_t vertex) const { return is_split() ? split_.source[vertex] : vertex; }
   [[nodiscard]] std::vector<unsigned char>& data() { return model_.buffers.front().data; }
 
-  /// @param target  use of the bytes, as in glTF; 0 for pictures.
+  /// @param target  purpose of the bytes, a constant of glTF; 0 for pictures.
   int add_view(std::span<const std::byte> bytes, int target) {
     throw_if_cancelled(context_);
     data().resize((data().size() + 3) / 4 * 4);
@@ -186,7 +187,7 @@ class ModelBuilder {
     view.target = target;
     const auto* const begin = reinterpret_cast<const unsigned char*>(bytes.data());
     data().insert(data().end(), begin, begin + bytes.size());
-    if (target != 0) {  // numbers of 32 bits
+    if (target != 0) {  // the bytes are 32-bit numbers
       const auto written = std::as_writable_bytes(std::span(data())).subspan(view.byteOffset);
       volume_io::to_native(written, volume_io::ScalarType::u32, std::endian::little);
     }
@@ -204,7 +205,7 @@ class ModelBuilder {
   }
   [[nodiscard]] int last_accessor() const { return static_cast<int>(model_.accessors.size()) - 1; }
 
-  /// Adds numbers of vertices under a name, `components` for each vertex.
+  /// Adds numbers with a name for the vertices, `components` for each vertex.
   gltf_library::Accessor& add_floats(const std::string& name, std::span<const float> numbers, int components) {
     constexpr std::array types{0, TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
     const int view = add_view(std::as_bytes(numbers), TINYGLTF_TARGET_ARRAY_BUFFER);
@@ -284,8 +285,8 @@ class ModelBuilder {
     add_floats("_" + attribute.name, numbers, static_cast<int>(attribute.components));
   }
 
-  /// Adds a part of the mesh, given by the vertices of its pieces.
-  /// @param mode  kind of the pieces, as in glTF.
+  /// Adds a part of the mesh: points, lines or triangles, given by vertex indices.
+  /// @param mode  kind of the part, a constant of glTF.
   gltf_library::Primitive* add_part(std::span<const std::byte> indices, int mode) {
     if (indices.empty()) return nullptr;
     const int view = add_view(indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
@@ -357,7 +358,7 @@ class ModelBuilder {
   SplitVertices split_;
   gltf_library::Model model_;
   gltf_library::Mesh shown_;
-  std::map<std::string, int> attributes_;  ///< accessors by name
+  std::map<std::string, int> attributes_;  ///< indices of accessors, by name
   Vec3d origin_;
 };
 static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
@@ -377,7 +378,7 @@ namespace {
 
 struct Key {
   std::uint32_t vertex = 0;
-  std::array<std::uint32_t, 2> place{};  ///< bits of the coordinates
+  std::array<std::uint32_t, 2> place{};  ///< bits of the two coordinates
   friend bool operator==(const Key&, const Key&) = default;
 };
 
@@ -393,7 +394,7 @@ struct KeyHash {
 };
 
 std::uint32_t bits_of(float coordinate) {
-  return std::bit_cast<std::uint32_t>(coordinate == 0 ? 0.0F : coordinate);  // +0 and -0 are equal
+  return std::bit_cast<std::uint32_t>(coordinate == 0 ? 0.0F : coordinate);  // so that +0 and -0 are equal
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct ListOf<std::vector<T>> : std::true_type {};
 template <class T, std::size_t count>
 struct ListOf<std::array<T, count>> : std::true_type {};
 
-/// Converts a value to JSON. Described structs become objects with the names of their members.
+/// Converts a value to JSON. Described structs become objects whose keys are the names of their members.
 template <class T>
 Json json_of(const T& value) {
   if constexpr (DescribedStruct<T>) {
@@ -55,15 +55,15 @@ Json json_of(const T& value) {
   }
 }
 
-/// Returns the whole content of a file. Numbers and lists of numbers take one line.
+/// Returns the content of a file with this JSON. A number, and a list of numbers, is written on one line.
 [[nodiscard]] std::string text_of(const Json& json);
 
-/// Named value of a graph, a node or an edge.
+/// Name and value of an attribute of a graph, node or edge.
 using Attribute = std::pair<std::string, std::variant<std::int64_t, double, bool, std::string>>;
 using Attributes = std::vector<Attribute>;
 
-/// Adds the members of a struct that are numbers, words or truth values as attributes. Members of nested structs get
-/// both names, joined by '_'.
+/// Adds attributes for the members of a struct that are numbers, enumerations or truth values. For members of a nested
+/// struct, the name is that of the struct, '_' and that of the member.
 template <DescribedStruct T>
 void add_members(const T& whole, Attributes& out, const std::string& prefix = {}) {
   for_each_member<T>([&](const auto& member) {
@@ -84,7 +84,7 @@ void add_members(const T& whole, Attributes& out, const std::string& prefix = {}
   });
 }
 
-/// Undirected graph. Nodes are named by their element and a number.
+/// Undirected graph for GraphML. A node's id consists of the name of its kind and a number.
 struct FlatGraph {
   struct Node {
     std::string name;
@@ -100,7 +100,7 @@ struct FlatGraph {
 
   static std::string numbered(const char* element, std::size_t number) { return element + std::to_string(number); }
 
-  /// Adds a node with the members of `part`.
+  /// Adds a node whose attributes are the members of `part`.
   template <class T>
   void add_node(const char* element, std::size_t number, const T& part) {
     Attributes attributes{{"element", std::string(element)}};
@@ -116,14 +116,14 @@ struct FlatGraph {
   }
 };
 
-/// Returns the whole content of a file.
+/// Returns the content of a GraphML file.
 /// @param whole  attributes of the graph.
 [[nodiscard]] std::string graphml_text(const char* id, const Attributes& whole, const FlatGraph& graph);
 
 /// Returns the metadata of the axis of a graph as attributes. Unknown values are omitted.
 [[nodiscard]] Attributes attributes_of(const MedialMetadata& metadata);
 
-/// Each function returns the whole content of a file.
+/// Each of the following functions returns the content of a file.
 [[nodiscard]] std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata);
 [[nodiscard]] std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata);
 [[nodiscard]] std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,

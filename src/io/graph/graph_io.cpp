@@ -51,8 +51,8 @@ constinit const GraphCode graph_graphml{graph_files::graphml_text, graph_files::
 namespace blum::graph_files {
 namespace {
 
-/// Returns true if a value takes one line. Numbers do, also in lists and in lists of lists. Objects of numbers and
-/// lists of numbers do, too.
+/// Returns true if a value is written on one line. These are numbers, lists and nested lists of numbers, and objects
+/// whose values are numbers or lists of numbers.
 bool is_flat(const Json& json, int depth = 0) {
   if (json.is_primitive()) return true;
   if (depth > (json.is_object() ? 0 : 1)) return false;
@@ -60,11 +60,11 @@ bool is_flat(const Json& json, int depth = 0) {
 }
 
 std::string flat_text(const Json& json) {
-  // File names may be invalid UTF-8.
+  // File names may contain invalid UTF-8, which is replaced.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Appends a value with each flat part on one line, because polylines have thousands of numbers.
+/// Appends a value. Each part for which is_flat() is true takes one line, because polylines have thousands of numbers.
 void append(const Json& json, std::string& text, std::size_t indent) {
   if (json.empty() || is_flat(json)) {
     text += flat_text(json);

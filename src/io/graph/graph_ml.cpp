@@ -13,9 +13,9 @@
 namespace blum::graph_files {
 namespace {
 
-/// Returns a text as XML, with entities for its special characters.
+/// Returns a text for XML, with special characters replaced by entities.
 std::string escaped(const std::string& text) {
-  // File names may be invalid UTF-8; dump() replaces invalid bytes by U+FFFD.
+  // File names may contain invalid UTF-8. dump() replaces invalid bytes by U+FFFD.
   using nlohmann::json;
   const auto valid = json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
   std::string out;
@@ -35,7 +35,7 @@ std::string escaped(const std::string& text) {
         break;
       default:
         if (static_cast<unsigned char>(c) < 0x20) {
-          out += "\xEF\xBF\xBD";  // U+FFFD: XML 1.0 has no control characters
+          out += "\xEF\xBF\xBD";  // U+FFFD, because XML 1.0 does not allow control characters
         } else {
           out += c;
         }
@@ -60,12 +60,12 @@ std::string text_of(const Attribute& attribute) {
       attribute.second);
 }
 
-/// Attributes of the graph, of nodes or of edges. Each is declared at its first occurrence.
+/// Declarations of attributes of the graph, of nodes or of edges. An attribute is declared when it first occurs.
 class Keys {
  public:
   explicit Keys(std::string_view of) : of_(of) {}
 
-  /// Returns the values, one per line.
+  /// Returns the values of attributes, one per line.
   /// @param indent  indentation of each line.
   std::string data(const Attributes& attributes, std::string_view indent) {
     std::string out;
@@ -117,7 +117,7 @@ std::string graphml_text(const char* id, const Attributes& whole, const FlatGrap
 
 namespace {
 
-/// Graph of an axis as nodes and edges.
+/// Graph of an axis in the form that GraphML needs: nodes and edges.
 class FlatAxis : public FlatGraph {
  public:
   explicit FlatAxis(const AxisGraph& graph) {

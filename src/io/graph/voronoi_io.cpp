@@ -30,7 +30,7 @@ using graph_files::FlatGraph;
 
 constexpr const char* content = "graph of a Voronoi diagram";
 
-/// Adds all metadata of the complex except `content`, because the graph has its own.
+/// Adds the metadata of the complex, except `content`, which is different for graphs.
 template <class Add>
 void add_stated(const FileMetadata& metadata, const Add& add) {
   for (const auto& [key, value] : metadata) {
@@ -38,7 +38,7 @@ void add_stated(const FileMetadata& metadata, const Add& add) {
   }
 }
 
-/// Returns a graph with a node for each site (which stands for its region), wall, seam and junction.
+/// Returns a graph with one node for each site, wall, seam and junction. The node of a site represents its region.
 FlatGraph flattened(const VoronoiGraph& graph, std::span<const VoronoiSite> sites) {
   const auto region = [](std::int32_t site) { return FlatGraph::numbered("region", static_cast<std::size_t>(site)); };
   FlatGraph out;

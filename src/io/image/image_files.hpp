@@ -14,41 +14,42 @@
 
 namespace blum::volume_io {
 
-/// @param data_source  the .img file of a pair; null if the data must follow the header. Each file may be
-///                     gzip-compressed.
+/// @param data_source  the .img file of a pair; null if the data follow the header. Both files may be gzip-compressed.
 [[nodiscard]] VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source);
 [[nodiscard]] VoxelImage read_vol(const ByteSource& source);
 
-/// Writes a header and the values after it, in the machine's byte order. The file appears when it is complete.
+/// Writes a header and then the values of an image, in the machine's byte order. The file appears under its name when
+/// it is complete.
 void write_values_after(const std::filesystem::path& path, const std::string& header, const VoxelImageView& image);
 
-/// Returns the bytes of a source, decompressed if they begin like a gzip file.
+/// Returns a stream of the bytes of a source. They are decompressed if they start like a gzip file.
 [[nodiscard]] std::unique_ptr<ByteStream> open_plain_or_gzip(const ByteSource& source);
 
-/// Largest cosine between the axes of a file, and largest deviation of unit axes from length 1. It covers rounding to
-/// six digits or to float32, with some room. Axes within it are replaced by the nearest perpendicular ones.
+/// Largest absolute cosine between two axes of a file, and largest deviation of a unit axis from length 1. It covers
+/// rounding to six digits or to float32. If all axes are within it, they are replaced by the nearest perpendicular
+/// ones.
 inline constexpr double frame_tolerance = 1e-4;
 
-/// Sets the spacing and direction of a grid from the unit vector of each index axis and the step along it.
-/// @throws FormatError with `name` for steps that are not positive and finite, and for axes that are not perpendicular
-/// unit vectors.
+/// Sets the spacing and direction of a grid. They are given by a unit vector and a step for each index axis.
+/// @throws FormatError with `name` if a step is not positive and finite, or if the axes are not perpendicular unit
+/// vectors.
 void set_frame(GridSpec& grid, const std::array<Vec3d, 3>& unit_axes, const Vec3d& steps, const std::string& name);
 
-/// Sets spacing and direction from the vectors between neighbouring nodes. An axis without a vector gets step 1 and a
-/// direction perpendicular to the others.
+/// Sets the spacing and direction of a grid from the vectors between neighbouring nodes. An axis without a vector gets
+/// step 1 and a direction perpendicular to the others.
 void set_frame(GridSpec& grid, const std::array<std::optional<Vec3d>, 3>& steps, const std::string& name);
 
 /// Returns true if the vectors are non-zero, finite and perpendicular within the tolerance.
 [[nodiscard]] bool is_perpendicular(const std::array<Vec3d, 3>& axes);
 
-/// Returns the orthonormal matrix nearest to a nearly orthonormal one (polar decomposition by Newton's iteration,
-/// Higham 1986).
+/// Returns the orthonormal matrix nearest to a given matrix, which must be nearly orthonormal (polar decomposition by
+/// Newton's iteration, Higham 1986).
 [[nodiscard]] Mat3 nearest_orthonormal(const Mat3& matrix);
 
-/// @throws FormatError with `name` unless each size is at least 1 and their product at most `limit`.
+/// @throws FormatError with `name` unless each size is at least 1 and their product is at most `limit`.
 void check_count(const std::array<std::int64_t, 3>& size, std::uint64_t limit, const std::string& name);
 
-/// Largest number of nodes of a field, which is that of grids.
+/// Largest number of nodes of a field. It is the limit of grids.
 inline constexpr std::uint64_t max_field_nodes = std::uint64_t{1} << 40U;
 
 }  // namespace blum::volume_io

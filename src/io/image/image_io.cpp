@@ -67,7 +67,7 @@ double largest_component(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Returns the length without overflow or underflow.
+/// Returns the length of a vector without overflow or underflow.
 double safe_length(const Vec3d& v) {
   const double scale = largest_component(v);
   return scale > 0 ? scale * length(v / scale) : 0;
@@ -78,8 +78,8 @@ Vec3d unit(const Vec3d& v) {
   return scaled / length(scaled);
 }
 
-/// Returns a unit vector perpendicular to all given unit vectors, which are at most two and perpendicular themselves.
-/// Prefers the world axis with the same number, so that y and z complete a lone x axis.
+/// Returns a unit vector perpendicular to all given unit vectors. At most two are given; they must be perpendicular to
+/// each other. Prefers the world axis with the number `axis`: an x axis alone is completed by y and z.
 Vec3d perpendicular(const std::array<std::optional<Vec3d>, 3>& known, std::size_t axis) {
   Vec3d best{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -108,7 +108,7 @@ bool is_perpendicular(const std::array<Vec3d, 3>& axes) {
 
 Mat3 nearest_orthonormal(const Mat3& matrix) {
   Mat3 m = matrix;
-  // Newton's iteration doubles the correct digits at each step; 1e-4 needs three.
+  // Each step of Newton's iteration doubles the number of correct digits. If the error is 1e-4, three steps are enough.
   for (int step = 0; step < 8; ++step) {
     const Vec3d* c = m.columns;
     const Vec3d cofactors[3] = {cross(c[1], c[2]), cross(c[2], c[0]), cross(c[0], c[1])};
@@ -131,7 +131,8 @@ void set_frame(GridSpec& grid, const std::array<Vec3d, 3>& unit_axes, const Vec3
     if (!is_unit) throw FormatError(name + ": the direction of axis " + axis_names[a] + " is not a unit vector");
   }
   if (!is_perpendicular(unit_axes)) {
-    throw FormatError(name + ": the axes are not perpendicular to each other; resample it to a grid without shear");
+    throw FormatError(name +
+                      ": the axes are not perpendicular to each other; resample the image to a grid without shear");
   }
   Mat3 direction;
   std::copy(unit_axes.begin(), unit_axes.end(), direction.columns);
@@ -159,7 +160,8 @@ void set_frame(GridSpec& grid, const std::array<std::optional<Vec3d>, 3>& steps,
 void check_count(const std::array<std::int64_t, 3>& size, std::uint64_t limit, const std::string& name) {
   std::uint64_t count = 1;
   for (const std::int64_t n : size) {
-    if (n < 1) throw FormatError(name + ": a size is " + std::to_string(n) + ", but it must be at least 1");
+    if (n < 1)
+      throw FormatError(name + ": a size in the header is " + std::to_string(n) + ", but it must be at least 1");
     if (static_cast<std::uint64_t>(n) > limit / count) {
       throw FormatError(name + ": it has more than " + std::to_string(limit) + " values, which is the limit");
     }

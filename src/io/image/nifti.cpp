@@ -1,5 +1,5 @@
-// Own parser, because the reader must accept bytes from memory, bound its memory by the file's length and survive any
-// input. The header is one fixed record of 348 or 540 bytes.
+// Blum has its own parser. It must accept bytes from memory, limit its memory by the file's length, and survive any
+// input. The header is a fixed record of 348 or 540 bytes.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -26,10 +26,10 @@ namespace {
 constexpr std::size_t size_1 = 348;
 constexpr std::size_t size_2 = 540;
 
-/// Content common to both versions of the header.
+/// Header data that both versions of the format have.
 struct NiftiHeader {
   std::endian order = std::endian::native;
-  std::size_t size = 0;  ///< of the header
+  std::size_t size = 0;  ///< size of the header in bytes
   bool detached = false;
   std::array<std::int64_t, 8> dim{};
   std::int64_t datatype = 0;
@@ -39,12 +39,12 @@ struct NiftiHeader {
   double intercept = 0;
   std::int64_t qform_code = 0;
   std::int64_t sform_code = 0;
-  Vec3d quaternion{};  ///< b, c, d
+  Vec3d quaternion{};  ///< components b, c, d
   Vec3d qoffset{};
   std::array<std::array<double, 4>, 3> srow{};
 };
 
-/// Numbers of a record in the file's byte order.
+/// Record of numbers in the file's byte order.
 class Record {
  public:
   Record(std::span<const std::byte> bytes, std::endian order) : bytes_(bytes), order_(order) {}
@@ -67,7 +67,8 @@ class Record {
   std::endian order_;
 };
 
-/// Offsets of the fields. The versions differ only in these and in the types of the fields (nifti1.h, nifti2.h).
+/// Offsets of a header's fields. The two versions differ only in these offsets and in the types of fields (nifti1.h,
+/// nifti2.h).
 struct Layout {
   std::size_t dim, datatype, pixdim, data_offset, slope, intercept, qform, sform, quaternion, qoffset, srow;
 };
@@ -159,7 +160,7 @@ std::array<std::int64_t, 3> image_size(const NiftiHeader& header, const std::str
   for (std::size_t d = 1; d <= static_cast<std::size_t>(header.dim[0]); ++d) {
     if (d <= 3) {
       size[d - 1] = header.dim[d];
-    } else if (header.dim[d] != 1 && header.dim[d] != 0) {  // some writers leave 0
+    } else if (header.dim[d] != 1 && header.dim[d] != 0) {  // some writers leave the sizes of unused axes at 0
       throw FormatError(name + ": it has " + std::to_string(header.dim[d]) + " images along dimension " +
                         std::to_string(d) + "; extract one of them first");
     }
@@ -186,7 +187,8 @@ std::array<Vec3d, 3> rotation(const Vec3d& q, const std::string& name) {
           Vec3d{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b}};
 }
 
-/// Returns the steps along the axes from the spacings. An axis of one layer may lack a spacing.
+/// Returns the steps along the axes, from the header's spacings. For an axis with one layer, the spacing may be
+/// missing.
 Vec3d spacings(const NiftiHeader& header, const GridSpec& grid) {
   Vec3d out{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -218,7 +220,7 @@ void read_frame(const NiftiHeader& header, GridSpec& grid, const std::string& na
     try {
       set_sform(header, grid, name);
     } catch (const FormatError&) {
-      // Registration may put shear into the sform. The qform then still has the scanner's grid.
+      // Registration may have put shear into the sform. Then the qform, which has the scanner's grid, is used.
       if (header.qform_code <= 0) throw;
       set_qform(header, grid, name);
     }
@@ -241,9 +243,10 @@ VoxelImage::Values scaled(const VoxelImage::Values& values, double slope, double
       values);
 }
 
-/// Returns the bytes to skip before the data: from the start of the data's own file, or from the end of the header.
+/// Returns the number of bytes to skip before the data. It is counted from the start of a separate data file, or from
+/// the end of the header.
 std::uint64_t gap(const NiftiHeader& header, const std::string& name) {
-  // Some writers leave the offset at 0 if the data follow the header and its four bytes of extension flags.
+  // Some writers leave the offset at 0. The data then follow the header and its four bytes of extension flags.
   const bool unset = !header.detached && header.data_offset == 0;
   const double least = header.detached ? 0.0 : static_cast<double>(header.size + 4);
   const double offset = unset ? least : header.data_offset;
@@ -280,7 +283,7 @@ VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source) {
     if (data_source == nullptr) throw FormatError(name + ": its data are in another file; open the .hdr and .img pair");
     stream = open_plain_or_gzip(*data_source);
   }
-  stream->skip(gap(header, name), "what precedes the data");
+  stream->skip(gap(header, name), "the part before the data");
   stream->check_left(image.grid.node_count() * scalar_size(type), "the data");
   image.values = make_values(type, image.grid.node_count());
   stream->read(as_bytes(image.values), "the data");
@@ -305,7 +308,7 @@ bool is_there(const std::filesystem::path& path) {
   return std::filesystem::exists(path, error);
 }
 
-/// Returns the path of one half of a pair, compressed or not.
+/// Returns the path of one file of a pair. The file may be compressed.
 std::filesystem::path half_of_pair(const std::filesystem::path& stem, const char* extension) {
   std::filesystem::path plain = stem;
   plain += extension;
@@ -314,7 +317,7 @@ std::filesystem::path half_of_pair(const std::filesystem::path& stem, const char
   return !is_there(plain) && is_there(packed) ? packed : plain;
 }
 
-/// Reads an image whose header and data are two files. The path names either of them.
+/// Reads an image whose header and data are in two files. The path is that of either file.
 std::optional<VoxelImage> read_pair(const std::filesystem::path& path) {
   std::filesystem::path stem = path;
   if (lower_case(stem.extension().string()) == ".gz") stem.replace_extension();

@@ -19,9 +19,9 @@ namespace blum::volume_io {
 namespace {
 
 constexpr std::uint64_t largest_header = std::uint64_t{4} << 20U;
-constexpr std::uint64_t most_axes = 16;  ///< as in Teem
+constexpr std::uint64_t most_axes = 16;  ///< the same limit as in Teem
 
-/// NRRD names of each scalar type; the first one is written.
+/// NRRD names of a scalar type. The first one is used for writing.
 struct TypeNames {
   ScalarType type;
   std::vector<std::string_view> names;
@@ -42,7 +42,7 @@ const std::vector<TypeNames>& type_names() {
   return all;
 }
 
-/// Spaces of three dimensions: full name and abbreviation. The abbreviation may be missing.
+/// Names of spaces with three dimensions: full name and abbreviation. Some have no abbreviation.
 constexpr std::array<std::array<std::string_view, 2>, 6> spaces{{{"right-anterior-superior", "ras"},
                                                                  {"left-anterior-superior", "las"},
                                                                  {"left-posterior-superior", "lps"},
@@ -70,7 +70,7 @@ std::string unescaped(std::string_view text) {
   return out;
 }
 
-/// Text of the header without its final empty line, and the start of the data.
+/// Text of the header, without the empty line at its end, and the position of the data.
 struct HeaderText {
   std::string text;
   std::uint64_t end = 0;
@@ -93,8 +93,8 @@ HeaderText read_header_text(const ByteSource& source) {
       }
       line = next + 1;
     }
-    if (!header.text.starts_with("NRRD")) return header;  // the caller refuses it
-    if (have == source.size()) break;                     // a detached header may end with the file
+    if (!header.text.starts_with("NRRD")) return header;  // the caller rejects it
+    if (have == source.size()) break;                     // the header of detached data may end with the file
     if (have == largest_header) throw FormatError(source.name() + ": its header does not end");
   }
   header.end = source.size();
@@ -166,7 +166,7 @@ class HeaderParser {
     }
   }
 
-  /// Returns the value of a field, or null. The name is in lower case without spaces.
+  /// Returns the value of a field, or null if there is none. The name must be in lower case without spaces.
   const std::string* find(const std::string& field) const {
     const auto found = fields_.find(field);
     return found == fields_.end() ? nullptr : &found->second;
@@ -218,7 +218,7 @@ class HeaderParser {
     if (sizes_.size() != axis_count_) fail("'sizes' must hold one number for each axis that 'dimension' counts");
   }
 
-  /// Returns the numbers of a field that has one per axis. They are empty if the field is missing.
+  /// Returns the numbers of a field that has one number per axis. Returns none if the field is missing.
   std::vector<double> numbers(const std::string& field) const {
     std::vector<double> out;
     const std::string* value = find(field);
@@ -232,7 +232,7 @@ class HeaderParser {
     return out;
   }
 
-  /// Parses vectors as in "(1,0,0) none (0,1,0)".
+  /// Parses vectors from text like "(1,0,0) none (0,1,0)".
   Vectors vectors(const std::string& field, std::string_view text) const {
     Vectors out;
     for (text = trim(text); !text.empty(); text = trim(text)) {
@@ -263,7 +263,7 @@ class HeaderParser {
     return {v[0], v.size() > 1 ? v[1] : 0.0, v.size() > 2 ? v[2] : 0.0};
   }
 
-  /// Returns true for an axis that counts components instead of positions, according to its kind.
+  /// Returns true if an axis, by its kind, enumerates components instead of positions.
   static bool counts_components(std::string_view kind) {
     constexpr std::array<std::string_view, 3> ends{"vector", "color", "matrix"};
     constexpr std::array<std::string_view, 6> names{"complex", "quaternion", "point", "gradient", "normal", "2-vector"};
@@ -294,7 +294,7 @@ class HeaderParser {
     check_count(header_.grid.size, max_field_nodes, name_);
   }
 
-  /// Removes axes of one entry, the last first, until at most three axes are left.
+  /// Removes axes with one entry, starting with the last axis, until at most three axes are left.
   void drop_single_layers() {
     for (std::size_t i = axes_.size(); i-- > 0 && axes_.size() > 3;) {
       if (sizes_[axes_[i]] == 1) axes_.erase(axes_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -317,7 +317,7 @@ class HeaderParser {
       const Vectors origin = vectors("space origin", *text);
       if (origin.size() != 1) fail("'space origin' must be one vector");
       if (origin[0]) header_.grid.origin = to_vec3(*origin[0]);
-      // A vector of NaN means that the origin is unknown.
+      // NaN coordinates mean that the origin is unknown.
       const Vec3d& o = header_.grid.origin;
       if (origin[0] && std::all_of(origin[0]->begin(), origin[0]->end(), [](double v) { return std::isnan(v); })) {
         header_.grid.origin = {};
@@ -327,7 +327,8 @@ class HeaderParser {
     }
   }
 
-  /// Reads axes without directions: x, y, z of the world, in their order. NaN means that a spacing is unknown.
+  /// Reads the spacings of axes without directions, which are x, y, z of the world in this order. NaN means that a
+  /// spacing is unknown.
   void read_spacings() {
     const std::vector<double> spacings = numbers("spacings");
     const std::vector<double> mins = numbers("axismins");
@@ -380,7 +381,7 @@ class HeaderParser {
   std::size_t axis_count_ = 0;
   std::vector<std::int64_t> sizes_;
   Vectors directions_;
-  std::vector<std::size_t> axes_;  ///< file axes that become x, y and z
+  std::vector<std::size_t> axes_;  ///< the axes of the file that become x, y and z
 };
 
 std::uint64_t skip_lines(const ByteSource& source, std::uint64_t at, std::uint64_t lines) {
@@ -396,7 +397,7 @@ std::uint64_t skip_lines(const ByteSource& source, std::uint64_t at, std::uint64
   return at;
 }
 
-/// Returns the data of a header, from their first byte on.
+/// Returns a stream that starts at the first byte of a header's data.
 std::unique_ptr<ByteStream> open_data(const ByteSource& source, const NrrdHeader& header, std::uint64_t bytes) {
   const std::uint64_t start = header.data_file.empty() ? header.data_start : 0;
   const std::uint64_t begin = skip_lines(source, start, header.line_skip);
@@ -410,7 +411,7 @@ std::unique_ptr<ByteStream> open_data(const ByteSource& source, const NrrdHeader
   } else {
     stream = std::make_unique<PlainStream>(source, begin, source.size());
   }
-  stream->skip(static_cast<std::uint64_t>(header.byte_skip), "the bytes to skip");
+  stream->skip(static_cast<std::uint64_t>(header.byte_skip), "the skipped part");
   return stream;
 }
 
@@ -481,7 +482,7 @@ NrrdHeader read_nrrd_header(const ByteSource& source) {
 void check_nrrd_data_size(const ByteSource& source, const NrrdHeader& header) {
   const std::uint64_t count = header.grid.node_count();
   if (header.encoding == NrrdEncoding::text) {
-    // Each value takes at least a digit and a separator, the last one only a digit.
+    // Each value needs at least two characters, a digit and a separator; the last one needs only a digit.
     open_data(source, header, 0)->check_left(2 * count - 1, "the data as text");
   } else {
     const std::uint64_t bytes = count * scalar_size(header.type);

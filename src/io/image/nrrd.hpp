@@ -18,45 +18,46 @@ namespace blum::volume_io {
 
 enum class NrrdEncoding : std::uint8_t { raw, gzip, text };
 
-/// Header of a NRRD file, without axes that have no position in space.
+/// Header of a NRRD file. Axes without a position in space are left out.
 struct NrrdHeader {
   ScalarType type = ScalarType::u8;
   std::endian order = std::endian::little;
   NrrdEncoding encoding = NrrdEncoding::raw;
   GridSpec grid;
-  std::string space;             ///< NRRD name, set only with directions; empty if unknown
-  std::string data_file;         ///< empty if the data follow the header
-  std::uint64_t data_start = 0;  ///< end of the header
+  std::string space;             ///< NRRD's name of the space; set only if there are directions, and empty if unknown
+  std::string data_file;         ///< path of the data file; empty if the data follow the header
+  std::uint64_t data_start = 0;  ///< position after the header
   std::uint64_t line_skip = 0;
-  std::int64_t byte_skip = 0;  ///< -1: the data are the last bytes of the file
+  std::int64_t byte_skip = 0;  ///< number of bytes to skip; -1 if the data are the last bytes of the file
   Metadata key_values;
 };
 
-/// Returns the header, including the empty line after it, of a file whose raw data follow in the machine's byte order.
-/// @param space  as VoxelImage::space; omitted if NRRD does not know it.
+/// Returns the header of a file whose raw data follow in the machine's byte order. It includes the empty line at its
+/// end.
+/// @param space  same meaning as VoxelImage::space. It is left out if NRRD does not know it.
 [[nodiscard]] std::string nrrd_header(ScalarType type, const GridSpec& grid, const std::string& space,
                                       const Metadata& key_values);
 
-/// Returns the full NRRD name of a space of three dimensions. `name` is that name or its abbreviation, in any case.
-/// Returns an empty text for other names.
+/// Returns the full NRRD name of a space with three dimensions. `name` may be the full name or the abbreviation, in
+/// upper or lower case. For other names, returns an empty text.
 [[nodiscard]] std::string nrrd_space(std::string_view name);
 
 /// Reads the header of a file. @throws FormatError.
 [[nodiscard]] NrrdHeader read_nrrd_header(const ByteSource& source);
-/// Reads the data of a header into memory of exactly their size, in the machine's byte order.
-/// @param source  the header's file or the detached data file. @throws FormatError.
+/// Reads the data of a file in the machine's byte order. `out` must have exactly their size.
+/// @param source  the file with the header, or the detached data file. @throws FormatError.
 void read_nrrd_data(const ByteSource& source, const NrrdHeader& header, std::span<std::byte> out);
-/// Checks the size before memory is allocated for the data.
-/// @throws FormatError unless the data file can hold the values that the header promises.
+/// Checks the size of the data file, so that callers can allocate memory for the data safely.
+/// @throws FormatError if the data file is too small for the values that the header promises.
 void check_nrrd_data_size(const ByteSource& source, const NrrdHeader& header);
 
-/// Returns the path of the detached data file of a header that was read from `header_path`.
+/// Returns the path of the detached data file. `header_path` is the path of its header.
 [[nodiscard]] std::filesystem::path nrrd_data_path(const NrrdHeader& header, const std::filesystem::path& header_path);
 
 /// Returns true if the first bytes of a file are those of a NRRD file.
 [[nodiscard]] bool begins_as_nrrd(std::string_view head);
 
-/// @param path  path of the header, to find detached data; if empty, detached data are refused.
+/// @param path  path of the header. Detached data are looked for next to it. If empty, detached data are rejected.
 [[nodiscard]] VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path);
 
 }  // namespace blum::volume_io

@@ -20,7 +20,7 @@ struct VolHeader {
   std::uint64_t end = 0;
 };
 
-/// Reads lines `Key: value` up to a line with a single dot.
+/// Reads lines of the form `Key: value`, up to a line that contains only a dot.
 VolHeader read_header(const ByteSource& source) {
   std::string text(static_cast<std::size_t>(std::min(source.size(), largest_header)), '\0');
   source.read(0, std::as_writable_bytes(std::span(text)));

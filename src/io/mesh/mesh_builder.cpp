@@ -16,15 +16,16 @@ namespace {
 /// Corner of a polygon, projected along a coordinate axis.
 using Point = std::array<double, 2>;
 
-/// Projects the corners along the coordinate axis nearest to the polygon's mean normal (Newell's). The result turns
-/// left and is scaled by a power of two. Both steps are exact, so corners on edges stay there. Together they are an
-/// affine map of the polygon's plane.
+/// Projects the corners of a polygon along the coordinate axis closest to its mean normal (Newell's). The result is
+/// counter-clockwise, and scaled by a power of two. Both steps are exact, so corners that lie on edges stay on them.
+/// Together they are an affine map of the polygon's plane.
 /// @returns empty if the area of the polygon is negligible.
 std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners) {
   Box3 box;
   for (const std::uint32_t corner : corners) box.extend(vertices[corner]);
   const Vec3d origin = box.lower;
-  const Vec3d size = box.upper * 0.5 - box.lower * 0.5;  // halves, because the difference itself might overflow
+  // Computed from halves, because the difference itself might overflow.
+  const Vec3d size = box.upper * 0.5 - box.lower * 0.5;
   const double largest = std::max({size.x, size.y, size.z});
   if (!(largest > 0)) return {};
   const auto scaled = [&](std::uint32_t corner) {
@@ -42,7 +43,7 @@ std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const st
   const std::size_t axis = magnitude.z >= magnitude.x && magnitude.z >= magnitude.y ? 2
                            : magnitude.y >= magnitude.x                             ? 1
                                                                                     : 0;
-  constexpr double rounding = 1e-15;  // each term above is below 1 and exact to about 1e-16
+  constexpr double rounding = 1e-15;  // each term above is below 1 and has an error of about 1e-16
   if (!(magnitude[axis] > rounding * static_cast<double>(corners.size()))) return {};
   std::vector<Point> points;
   points.reserve(corners.size());
@@ -58,7 +59,7 @@ std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const st
   return points;
 }
 
-/// Returns true if every corner turns left and the outline goes around once.
+/// Returns true if the outline turns left at every corner and goes around once.
 bool is_strictly_convex(const std::vector<Point>& points) {
   const std::size_t n = points.size();
   std::size_t upward_starts = 0;
@@ -106,11 +107,12 @@ void cannot_hold(const std::filesystem::path& path, std::string_view format, std
 
 void refuse_points(const std::filesystem::path& path, std::string_view format, const MeshView& mesh) {
   if (mesh.points.empty()) return;
-  if (!mesh.triangles.empty() || !mesh.segments.empty()) cannot_hold(path, format, "points beside other parts");
+  if (!mesh.triangles.empty() || !mesh.segments.empty())
+    cannot_hold(path, format, "points together with triangles or segments");
   std::vector<bool> named(mesh.vertices.size(), false);
   for (const std::uint32_t point : mesh.points) named[point] = true;
   if (std::find(named.begin(), named.end(), false) != named.end()) {
-    cannot_hold(path, format, "vertices that are not part of a point cloud");
+    cannot_hold(path, format, "unused vertices together with points");
   }
 }
 

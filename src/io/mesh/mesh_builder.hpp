@@ -15,17 +15,17 @@
 
 namespace blum {
 
-/// Builder of a mesh while a file is read. Vertices may follow the faces that name them. Indices are therefore checked
-/// by bad_index(), and polygons cut by finish(), after the last element.
+/// Builder of a mesh for readers of files. Faces may use vertices that are added later. So indices are checked by
+/// bad_index(), and polygons are cut by finish(), both after the last element.
 class MeshBuilder {
  public:
-  /// Vertex index that is too large, and its place in the file.
+  /// Vertex index that is too large, and the position of its face in the file.
   struct BadIndex {
     std::uint32_t index;
     std::size_t where;
   };
 
-  /// @param where  any number from which the reader finds the place in the file again, for messages.
+  /// @param where  any number by which the reader can find the face in the file again, for messages.
   void add_vertex(const Vec3d& vertex) { mesh_.vertices.push_back(vertex); }
   void add_triangle(const Triangle& corners, std::size_t where) {
     for (const std::uint32_t index : corners) note(index, where);
@@ -48,15 +48,15 @@ class MeshBuilder {
   [[nodiscard]] std::size_t vertex_count() const { return mesh_.vertices.size(); }
   [[nodiscard]] std::size_t face_count() const { return mesh_.triangles.size() - extra_triangles_; }
 
-  /// Returns the largest index if it is out of range. Call it before finish().
+  /// If the largest index is out of range, returns it. Must be called before finish().
   [[nodiscard]] std::optional<BadIndex> bad_index() const;
-  /// Cuts the polygons and applies the rule for point clouds. All indices must be in range.
+  /// Cuts polygons into triangles, and applies the rule for point clouds. All indices must be in range.
   [[nodiscard]] MeshFile finish(bool binary);
 
  private:
   struct Polygon {
-    std::size_t first_triangle;  ///< the first of its (corners - 2) entries in mesh_.triangles
-    std::size_t first_corner;    ///< in corners_
+    std::size_t first_triangle;  ///< the polygon has (corners - 2) entries in mesh_.triangles; this is the first
+    std::size_t first_corner;    ///< index of its first corner in corners_
     std::size_t corners;
   };
 
@@ -70,29 +70,31 @@ class MeshBuilder {
   TriangleMesh mesh_;
   std::vector<Polygon> polygons_;
   std::vector<std::uint32_t> corners_;
-  std::size_t extra_triangles_ = 0;  ///< triangles beyond the first of each polygon
-  std::size_t index_end_ = 0;        ///< one more than the largest index
+  std::size_t extra_triangles_ = 0;  ///< sum over polygons of their triangles, not counting the first of each
+  std::size_t index_end_ = 0;        ///< largest index + 1
   std::size_t index_where_ = 0;
 };
 
-/// Cuts a polygon of at least 4 corners into corners - 2 triangles with the same orientation. read_mesh documents the
-/// rule.
-/// @param corners    vertex indices, in range.
-/// @param triangles  receives the triangles: corners.size() - 2 entries.
-/// @param work_left  steps allowed beyond polygon_work_per_corner for each corner; receives the number left.
-/// @returns false if the triangles are a fan because no proper cut was found.
+/// Cuts a polygon with at least 4 corners into corners - 2 triangles with the polygon's orientation. read_mesh
+/// documents the rule.
+/// @param corners    vertex indices, all in range.
+/// @param triangles  receives corners.size() - 2 triangles.
+/// @param work_left  steps allowed in addition to polygon_work_per_corner for each corner; receives the number left.
+/// @returns false if no proper cut was found; the triangles are then a fan.
 bool cut_polygon(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners, std::span<Triangle> triangles,
                  std::int64_t& work_left);
 
-/// Largest number of steps of cutting: for each corner, and beyond that for a file. The latter takes about a second. A
-/// step looks at a corner or a group of corners. Usual polygons need a few dozen steps a corner, whatever their size.
+/// Largest number of steps for cutting polygons. This many are allowed for each corner; further ones are allowed for
+/// the whole file, which take about a second. A step examines one corner or one group of corners. Usual polygons of any
+/// size need a few dozen steps per corner.
 inline constexpr std::int64_t polygon_work_per_corner = 500;
 inline constexpr std::int64_t polygon_work = 200'000'000;
 
-/// @throws FileError saying that files of this format hold no `what`.
+/// @throws FileError whose message states that files of this format cannot contain `what`.
 [[noreturn]] void cannot_hold(const std::filesystem::path& path, std::string_view format, std::string_view what);
 
-/// Refuses points, unless the mesh is a cloud of all its vertices. A file without faces represents such a cloud.
+/// Throws if the mesh has points, unless it is a cloud of all its vertices. A file without faces represents such a
+/// cloud.
 void refuse_points(const std::filesystem::path& path, std::string_view format, const MeshView& mesh);
 
 }  // namespace blum

@@ -18,7 +18,7 @@
 namespace blum {
 namespace {
 
-/// Returns the format of an extension. @throws FileError for an unknown one.
+/// Returns the format for a path's extension. @throws FileError for an unknown extension.
 MeshFormat format_named(const std::filesystem::path& path, FileAccess access) {
   const std::vector<std::string> known = file_extensions(FileContent::mesh, access);
   if (std::find(known.begin(), known.end(), file_extension(path)) != known.end()) return MeshFormat::of(path, access);

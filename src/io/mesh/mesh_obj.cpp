@@ -21,14 +21,14 @@ class ObjReader {
     if (builder_.vertex_count() == 0) cursor_.fail("the file ends without a vertex ('v x y z'): is it an OBJ mesh?");
     if (const auto bad = builder_.bad_index()) {
       cursor_.fail_at(begin_ + bad->where, "vertex " + std::to_string(bad->index + std::size_t{1}) +
-                                               " is named, but the file has only " +
-                                               std::to_string(builder_.vertex_count()));
+                                               " is used, but the file has only " +
+                                               std::to_string(builder_.vertex_count()) + " vertices");
     }
     return builder_.finish(false);
   }
 
  private:
-  /// Reads one line. All keywords that Blum knows have one letter.
+  /// Reads one line. All keywords that Blum uses have one letter.
   void read_statement() {
     const std::string_view keyword = cursor_.peek_token();
     if (keyword.size() != 1) return;
@@ -84,7 +84,7 @@ class ObjReader {
     while (!cursor_.at_line_end()) indices_.push_back(read_index());
   }
 
-  /// Reads i, i/t, i//n or i/t/n. Only the vertex is used, but the rest must have the right form.
+  /// Reads a corner i, i/t, i//n or i/t/n. Only the vertex i is used, but the other parts must be well-formed.
   std::uint32_t read_index() {
     const char* const start = cursor_.position();
     const std::int64_t number = cursor_.take_integer_prefix("vertex index");

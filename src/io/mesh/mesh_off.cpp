@@ -18,10 +18,10 @@ class OffReader {
     read_header();
     const std::size_t vertices = read_count("number of vertices");
     const std::size_t faces = read_count("number of faces");
-    cursor_.skip_line();  // number of edges, which is not needed
+    cursor_.skip_line();  // the number of edges, which is not needed
     if (vertices == 0) cursor_.fail("the mesh has no vertices");
-    // Every vertex takes 6 bytes and every face 8, the last one 7. Headers that promise too much are thus rejected
-    // before memory is allocated.
+    // Every vertex takes at least 6 bytes, and every face at least 8 (the last one 7). So headers that promise too much
+    // are rejected before memory is allocated.
     if (vertices > max_id_count || vertices > cursor_.remaining() / 6 + 1) too_many("vertices", vertices);
     builder_.reserve_vertices(vertices);
     for (std::size_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
@@ -36,7 +36,8 @@ class OffReader {
   }
 
  private:
-  /// Reads the keyword [ST][C][N][4][n]OFF, which is optional. Points of more than 3 dimensions are rejected.
+  /// Reads the keyword [ST][C][N][4][n]OFF. The keyword may be missing. Points with more than 3 dimensions are
+  /// rejected.
   void read_header() {
     if (!cursor_.skip_space()) cursor_.fail("the file is empty");
     const char* const start = cursor_.position();
@@ -86,7 +87,7 @@ class OffReader {
     const double y = cursor_.take_number("y coordinate");
     const double z = cursor_.take_number("z coordinate");
     builder_.add_vertex({x, y, z});
-    cursor_.skip_line();  // normals and colours
+    cursor_.skip_line();  // skips normals and colours
   }
 
   void read_face(std::size_t index, std::size_t count) {
@@ -102,11 +103,11 @@ class OffReader {
     indices_.clear();
     for (std::int64_t i = 0; i < corners; ++i) indices_.push_back(read_index());
     builder_.add_face(indices_, static_cast<std::size_t>(start - begin_));
-    cursor_.skip_line();  // colours
+    cursor_.skip_line();  // skips colours
   }
 
   std::uint32_t read_index() {
-    cursor_.skip_space();  // a long face may span several lines
+    cursor_.skip_space();  // the indices of a long face may be on several lines
     const char* const start = cursor_.position();
     const std::int64_t vertex = cursor_.take_integer("vertex index");
     if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= builder_.vertex_count()) {

@@ -11,10 +11,10 @@
 namespace blum {
 namespace {
 
-/// Meaning of a property of an element for the mesh.
+/// Meaning of a property for the mesh.
 enum class Role { ignored, x, y, z, corners, first, second };
 
-/// Reader of the elements of a PLY file. `Source` is PlyText or PlyBinary.
+/// Reader of the elements of a PLY file. `Source` is PlyText or PlyBinary, which reads the values.
 template <class Source>
 class PlyReader {
  public:
@@ -25,15 +25,15 @@ class PlyReader {
     source_.expect_end();
     if (builder_.vertex_count() == 0) source_.fail("the mesh has no vertices");
     if (const auto bad = builder_.bad_index()) {
-      source_.fail_at(bad->where, "vertex " + std::to_string(bad->index) + " is named, but the file has only " +
-                                      std::to_string(builder_.vertex_count()) + " (counted from 0)");
+      source_.fail_at(bad->where, "vertex " + std::to_string(bad->index) + " is used, but the file has only " +
+                                      std::to_string(builder_.vertex_count()) + " vertices (counted from 0)");
     }
     return builder_.finish(header_.encoding != PlyEncoding::text);
   }
 
  private:
   void read_element(const PlyElement& element) {
-    if (element.properties.empty()) return;  // takes no bytes, whatever its count
+    if (element.properties.empty()) return;  // entries take no bytes, whatever their number
     const std::size_t least = std::max<std::size_t>(source_.least_size(element), 1);
     if (element.count > (source_.remaining() + 1) / least) {
       source_.fail("the header promises " + std::to_string(element.count) + " of element " + in_quotes(element.name) +
@@ -100,8 +100,8 @@ class PlyReader {
     builder_.add_face(corners_, where);
   }
 
-  /// Reads strips of triangles, separated by -1. Each triangle shares an edge with the last, and is oriented the other
-  /// way in the file.
+  /// Reads strips of triangles, separated by -1. Each triangle shares an edge with the one before. In a strip, every
+  /// other triangle has the opposite orientation.
   void read_strip(const PlyProperty& property, std::size_t where) {
     const std::size_t count = source_.list_count(property);
     std::size_t length = 0;
@@ -150,7 +150,7 @@ class PlyReader {
   };
 
   /// Returns the role of each property of an element.
-  /// @throws FormatError if one of the roles occurs twice or not at all, or is of the wrong kind.
+  /// @throws FormatError if a role occurs twice or is missing, or if its property has the wrong type.
   std::vector<Role> roles_of(const PlyElement& element, const std::vector<NamedRole>& known, bool list) const {
     std::vector<Role> roles;
     for (const PlyProperty& property : element.properties) {

@@ -9,8 +9,8 @@
 namespace blum {
 namespace {
 
-constexpr std::size_t header_size = 84;    // 80 arbitrary bytes, and the number of triangles
-constexpr std::size_t triangle_size = 50;  // normal and corners as 12 floats, and 2 arbitrary bytes
+constexpr std::size_t header_size = 84;    // in bytes: 80 arbitrary bytes, and the number of triangles
+constexpr std::size_t triangle_size = 50;  // in bytes: normal and corners as 12 floats, and 2 arbitrary bytes
 
 std::uint32_t little_endian_word(const char* bytes) {
   std::uint32_t value = 0;
@@ -90,19 +90,20 @@ class TextStlReader {
  private:
   void read_solid() {
     expect("solid");
-    cursor_.skip_line();  // its name
+    cursor_.skip_line();  // the name of the solid
     while (true) {
       const std::string_view word = next_word("'facet' or 'endsolid'");
       if (same_word(word, "endsolid")) break;
       if (!same_word(word, "facet")) fail_word(word, "'facet' or 'endsolid'");
       read_facet();
     }
-    cursor_.skip_line();  // its name
+    cursor_.skip_line();  // the name of the solid
   }
 
   void read_facet() {
     expect("normal");
-    for (int i = 0; i < 3; ++i) next_word("a normal");  // ignored: often wrong or not a number; the corners define it
+    // The normal is ignored: it is often wrong or not a number, and the corners define it.
+    for (int i = 0; i < 3; ++i) next_word("a normal");
     expect("outer");
     expect("loop");
     if (builder_.vertex_count() + 3 > max_id_count) cursor_.fail("too many triangles");
@@ -147,8 +148,9 @@ bool begins_with_solid(std::string_view bytes) {
   return cursor.skip_space() && same_word(cursor.take_token(), "solid");
 }
 
-/// Returns true for a binary file, which may begin with "solid", too. A file of the size that its header implies is
-/// binary. Any other file is text if it begins with "solid" and has no zero byte near its start.
+/// Returns true if a file is binary. A file whose size agrees with the number of triangles in its header is binary,
+/// even if it starts with "solid". Any other file is text if it starts with "solid" and has no zero byte near its
+/// start.
 bool is_binary(std::string_view bytes) {
   if (bytes.size() >= header_size) {
     const std::size_t count = little_endian_word(bytes.data() + 80);
@@ -168,7 +170,7 @@ MeshFile read_stl(std::string_view bytes, std::string_view name) {
   return BinaryStlReader(bytes, name).read();
 }
 
-/// Returns the unit normal of a triangle, or zero if it has none.
+/// Returns the unit normal of a triangle; zero if the triangle is degenerate.
 Vec3d normal_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d u = b - a;
   const Vec3d v = c - a;

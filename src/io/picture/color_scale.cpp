@@ -39,7 +39,7 @@ struct Stop {
   double lightness, chroma, hue;
 };
 
-/// Returns the colour at t between equidistant stops, mixed in OKLCh.
+/// Returns the colour at t, from 0 to 1. Colours between the equidistant stops are mixed in OKLCh.
 Color from_stops(std::span<const Stop> stops, double t) {
   const double at = std::clamp(t, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
   const std::size_t i = std::min(static_cast<std::size_t>(at), stops.size() - 2);
@@ -66,8 +66,8 @@ Color oklch(double lightness, double chroma, double hue) {
   const auto with = [&](double c) { return linear_of(lightness, c * std::cos(angle), c * std::sin(angle)); };
   Linear color = with(chroma);
   if (!color.in_gamut()) {
-    // Finds the largest chroma that the screen can show, by bisection. Steps of some per cent would show false borders
-    // in ramps.
+    // Finds, by bisection, the largest chroma that the screen can show. Coarser steps of a few per cent would cause
+    // false borders in ramps.
     double low = 0;
     double high = chroma;
     for (int step = 0; step < 24; ++step) {
@@ -122,7 +122,7 @@ constexpr double text_height = color_bar_text_height;
 constexpr int bar_width = 20;
 constexpr int title_rows = 24;
 
-/// Returns a level as text with as many decimals as the step has, for example "0.15".
+/// Returns a level as text. It has as many decimals as the step between levels, for example "0.15" for a step of 0.05.
 std::string level_text(double level, double step) {
   const int decimals = static_cast<int>(std::max(0.0, std::ceil(-std::log10(step) - 1e-9)));
   if (decimals > 5 || std::abs(level) >= 1e6) return level == 0 ? "0" : rounded_text(level);
@@ -132,7 +132,7 @@ std::string level_text(double level, double step) {
   return {text, result.ptr};
 }
 
-/// Returns the values that get a number, at most about one for each 34 pixels.
+/// Returns the values that are labelled with a number, at most about one per 34 pixels.
 std::vector<double> labelled_levels(const ColorBar& bar, int pixels) {
   std::vector<double> levels;
   if (bar.step <= 0) return levels;

@@ -14,9 +14,9 @@ struct Point {
 };
 using Stroke = std::vector<Point>;
 
-/// Strokes of a glyph, separated by blanks. The first character defines the joining of the points. '-' means straight
-/// lines, '~' a smooth curve from the first to the last, '@' a smooth closed curve. A point is two digits, x and y. The
-/// baseline is at y = 2, the height of small letters at 6 and that of digits at 8.
+/// Glyph, given by strokes that are separated by blanks. The first character of a stroke defines how its points are
+/// joined: '-' by straight lines, '~' by a smooth curve, '@' by a smooth closed curve. A point is two digits, x and y.
+/// The baseline is at y = 2, the top of small letters at 6 and that of digits at 8.
 struct Glyph {
   char character;
   const char* strokes;
@@ -71,11 +71,11 @@ constexpr Glyph glyphs[] = {
     {'z', "-06460242"},
 };
 
-constexpr double digit_units = 6;  // from baseline to the top of digits
+constexpr double digit_units = 6;  // height of digits above the baseline, in units of the font
 constexpr double gap_units = 1.9;
 constexpr double space_units = 2.2;
 
-/// Smooths by corner cutting (Chaikin). The ends of an open curve stay in place.
+/// Smooths a stroke by corner cutting (Chaikin). The ends of an open curve are kept.
 Stroke smooth(Stroke points, bool closed) {
   for (int round = 0; round < 3; ++round) {
     Stroke finer;
@@ -142,7 +142,7 @@ double distance_to_strokes(const Point& q, const std::vector<Stroke>& strokes) {
 /// `left` and `baseline` are in pixels; `unit` is the number of pixels per unit of the font.
 void draw_glyph(Picture& picture, const std::vector<Stroke>& strokes, double left, double baseline, double unit,
                 const Color& color) {
-  const double half_width = std::max(0.55, 0.42 * unit);  // pixels
+  const double half_width = std::max(0.55, 0.42 * unit);  // in pixels
   const double margin = half_width + 1;
   const int x0 = std::max(0, static_cast<int>(std::floor(left - margin)));
   const int x1 = std::min(picture.width() - 1, static_cast<int>(std::ceil(left + 4 * unit + margin)));

@@ -12,7 +12,7 @@
 namespace blum {
 namespace {
 
-constexpr std::uint32_t largest_side = 1000000;  // libpng's own limit
+constexpr std::uint32_t largest_side = 1000000;  // pixels; libpng's own limit
 
 std::size_t channel_count(PngChannels channels) {
   return static_cast<std::size_t>(channels);
@@ -26,7 +26,7 @@ void check(const PixelView& pixels) {
   }
   const std::size_t wanted = channel_count(pixels.channels) * pixels.width * pixels.height;
   if (pixels.bytes.size() != wanted) {
-    throw InvalidOption("a picture of " + size + " has " + std::to_string(wanted) + " bytes, not " +
+    throw InvalidOption("a picture of " + size + " needs " + std::to_string(wanted) + " bytes, but has " +
                         std::to_string(pixels.bytes.size()));
   }
 }

@@ -8,23 +8,23 @@
 
 namespace blum::surface_map_files {
 
-/// Content of a file. Its parts fit together, because check() was called.
+/// Content of a file. check() has verified that its parts fit together.
 struct Request {
   const std::filesystem::path& path;
   const MeshView& mesh;
   const SurfaceMap& map;
-  const FileMetadata& metadata;  ///< given metadata and those of the map
+  const FileMetadata& metadata;  ///< the given metadata, and those of the map
   const SurfaceMapWriteOptions& options;
   const Context& context;
 };
 
-/// Key of SurfaceAtlas::is_separate in metadata.
+/// Key in metadata for SurfaceAtlas::is_separate.
 inline constexpr std::string_view separate_key = "separate_charts";
 
-/// @throws InvalidMesh if a map lacks parts.
+/// @throws InvalidMesh if the map lacks required parts.
 void check(const SurfaceMap& map);
 
-/// Returns a title, for example "distance (mm)".
+/// Returns a title for the map, for example "distance (mm)".
 [[nodiscard]] std::string title_of(const SurfaceMap& map, const std::string& units);
 
 void write_npz(const Request& request);

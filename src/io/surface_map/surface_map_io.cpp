@@ -40,7 +40,7 @@ void check_metadata(const FileMetadata& metadata) {
   }
 }
 
-/// Returns the given metadata, and those of the map that are missing.
+/// Returns the given metadata, and the metadata of the map whose keys are not among them.
 FileMetadata all_metadata(const SurfaceMap& map, const FileMetadata& given, const SurfaceMapWriteOptions& options) {
   FileMetadata out = given;
   const auto add = [&](const char* key, const std::string& text) {
@@ -57,7 +57,7 @@ FileMetadata all_metadata(const SurfaceMap& map, const FileMetadata& given, cons
   return out;
 }
 
-/// Adds a column of triangles, taken from their summaries.
+/// Adds a column of triangles, with one member of their summaries.
 void add_summary(Columns& columns, const char* name, const SurfaceMap& map, float SurfaceMap::FaceSummary::* part) {
   const std::span<float> column = columns.add<float>(name);
   for (std::size_t t = 0; t < map.faces.size(); ++t) column[t] = map.faces[t].*part;
@@ -105,7 +105,7 @@ void write_surface_map(const std::filesystem::path& path, const MeshView& mesh, 
   surface_map_files::check(map);
   check_of(mesh, map);
   check_metadata(metadata);
-  static_cast<void>(color_scale_of(map, options));  // throws for a bad range, whatever the format
+  static_cast<void>(color_scale_of(map, options));  // throws if the range is invalid, for every format
   throw_if_cancelled(context);
   try {
     const FileMetadata all = all_metadata(map, metadata, options);

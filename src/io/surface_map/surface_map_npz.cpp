@@ -58,7 +58,7 @@ void add_summaries(NpzWriter& npz, const SurfaceMap& map) {
   add("mean", &SurfaceMap::FaceSummary::mean);
 }
 
-/// Returns the metadata of the file. Values that readers use must agree with the map.
+/// Returns the metadata of the file. The values that readers use are taken from the map.
 FileMetadata own_metadata(const Request& request) {
   FileMetadata out = request.metadata;
   const auto keep = [&](std::string_view key, std::string_view text) {
@@ -103,11 +103,12 @@ using volume_io::ScalarType;
 
 using Shape = std::vector<std::uint64_t>;
 
-/// Largest side of a texture, as in write_surface_map().
+/// Largest side of a texture in texels, as in write_surface_map().
 constexpr std::uint64_t most_a_side = 16384;
-/// Largest number of arrays: those of the writer, and as many that somebody added.
+/// Largest number of arrays. It leaves room for arrays added by others, as many as the writer's.
 constexpr std::size_t most_arrays = 64;
-/// Reading uses texels whose centres are up to this far beside a chart, along x and along y. It includes rounding.
+/// Interpolation uses texels whose centres are at most this far outside of a chart, along x and along y, in texels. It
+/// includes rounding.
 constexpr double reading_reach = 1 + 1e-6;
 
 std::string shape_text(const Shape& shape) {
@@ -147,13 +148,13 @@ class Reader {
                         ": it does not hold a surface map, which has the arrays 'distance' and 'vertex_distance'");
     }
     if (npz_.arrays().size() > most_arrays) throw FormatError(source_.name() + ": it has too many arrays");
-    // Overlapping entries could exhaust memory.
+    // Throw if entries overlap, because reading them could exhaust memory.
     if (npz_.packed_size() > source_.size()) {
       throw FormatError(source_.name() + ": its entries have more bytes than the file; it is damaged");
     }
   }
 
-  /// @param shape  0 stands for any length, and receives it.
+  /// @param shape  required shape. An entry 0 allows any length, and receives it.
   template <class Items>
   Items array(const std::string& name, ScalarType type, Shape& shape) {
     return npz_.read(name, [&](ByteStream& stream, const NpyHeader& header) {
@@ -162,7 +163,7 @@ class Reader {
                                    [](std::uint64_t wanted, std::uint64_t n) { return wanted == n || wanted == 0; });
       if (!fits) fail(name, "its shape is " + shape_text(header.shape) + wanted_text(shape));
       const std::uint64_t count = volume_io::check_npy_values(stream, header);
-      if (header.type != type) fail(name, "its numbers should be " + std::string(type_text(type)));
+      if (header.type != type) fail(name, "its numbers must be " + std::string(type_text(type)));
       if (header.fortran && shape.size() > 1) fail(name, "it is in Fortran order; C order is read");
       shape = header.shape;
       using Item = std::remove_cvref_t<decltype(*std::declval<Items&>().begin())>;
@@ -175,7 +176,7 @@ class Reader {
   }
   template <class Items>
   Items array_of(const std::string& name, ScalarType type, Shape shape) {
-    if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) fail(name, "the file has no elements for it");
+    if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) fail(name, "the map has no elements for this array");
     return array<Items>(name, type, shape);
   }
   static std::string wanted_text(const Shape& shape) {
@@ -253,7 +254,7 @@ class Reader {
     map.error = array_of<std::vector<float>>("triangle_error", ScalarType::f32, shape);
     for (std::size_t t = 0; t < map.error.size(); ++t) {
       if (!(map.error[t] >= 0))
-        fail("triangle_error", "that of triangle " + std::to_string(t) + " is not a number of at least 0");
+        fail("triangle_error", "the error of triangle " + std::to_string(t) + " is not a number of at least 0");
     }
   }
 
@@ -274,13 +275,13 @@ class Reader {
       }
       if (triangle.value >= atlas_->corners.size()) {
         refuse("triangle", "triangle " + std::to_string(static_cast<std::int32_t>(triangle.value)) +
-                               " is named, but there are only " + std::to_string(atlas_->corners.size()));
+                               " is used, but there are only " + std::to_string(atlas_->corners.size()) + " triangles");
       }
       if (std::isnan(map.distance[i])) refuse("distance", "it is not a number");
       if (!has_area(triangle.value)) {
         refuse("triangle", "the chart of that triangle has no area");
       }
-      if (!may_read(triangle.value, i)) refuse("triangle", "the chart of that triangle is elsewhere");
+      if (!may_read(triangle.value, i)) refuse("triangle", "the chart of that triangle does not contain the texel");
     }
   }
 
@@ -288,7 +289,7 @@ class Reader {
     const auto& [a, b, c] = atlas_->corners[triangle];
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y) != 0;
   }
-  /// Returns true if the texel is near the triangle's chart.
+  /// Returns true if interpolation in a triangle's chart may use a texel.
   [[nodiscard]] bool may_read(std::uint32_t triangle, std::size_t texel) const {
     const auto& [a, b, c] = atlas_->corners[triangle];
     const double x = static_cast<double>(texel % atlas_->width) + 0.5;

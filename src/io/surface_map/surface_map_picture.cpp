@@ -19,8 +19,8 @@ namespace blum::surface_map_files {
 namespace {
 
 constexpr int margin = 20;
-constexpr int title_rows = 24;    // above the bar
-constexpr int nothing_rows = 30;  // below the bar, for the colour of texels without a distance
+constexpr int title_rows = 24;    // rows above the colour bar
+constexpr int nothing_rows = 30;  // rows below the colour bar, for the colour of texels without a distance
 constexpr int least_bar = 100;
 constexpr int most_bar = 640;
 constexpr int wanted_numbers = 8;
@@ -40,7 +40,7 @@ void draw_nothing(Picture& picture, int left, int top) {
   draw_text(picture, left + 30, top + 12, color_bar_text_height, "none", ink_color);
 }
 
-/// Returns the bar with its numbers and a margin around it.
+/// Returns the colour bar with its numbers and a margin around it.
 Picture legend_of(const Request& request, const ColorScale& scale) {
   const int rows = static_cast<int>(std::min<std::uint32_t>(request.map.atlas->height, 65536));
   const int height = std::clamp(rows - 2 * margin - title_rows - nothing_rows, least_bar, most_bar);
@@ -91,13 +91,13 @@ namespace {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-constexpr int gutter = 4;  ///< texels around charts that are filled with their colours
+constexpr int gutter = 4;  ///< width in texels of the border around charts that is filled with their colours
 
 Rgb bytes_of(const Color& color) {
   return {byte_of(color.r), byte_of(color.g), byte_of(color.b)};
 }
 
-/// Table of a scale's colours. It is so fine that neighbouring entries nearly always have the same bytes.
+/// Table of a scale's colours. It is so fine that neighbouring entries nearly always have the same 8-bit colour.
 class ColorTable {
  public:
   explicit ColorTable(const ColorScale& scale)
@@ -111,7 +111,7 @@ class ColorTable {
   }
 
  private:
-  static constexpr int steps = 8192;  // even, so that zero has its own entry
+  static constexpr int steps = 8192;  // an even number, so that zero has its own entry
   [[nodiscard]] double place(int i) const { return first_ + (1 - first_) * i / steps; }
 
   const ColorScale& scale_;
@@ -120,7 +120,7 @@ class ColorTable {
   Rgb nothing_;
 };
 
-/// Extension of the colours of charts beyond their borders, by one texel in each round.
+/// Extends the colours of charts beyond their borders, by one texel per round.
 class GutterFill {
  public:
   GutterFill(const SurfaceAtlas& atlas, std::vector<std::uint8_t>& pixels)
@@ -156,7 +156,7 @@ class GutterFill {
     return out;
   }
 
-  /// Sets the mean colour of the texels around one that have a colour. Returns false if none has.
+  /// Sets the mean colour of those texels around a texel that have a colour. Returns false if none has one.
   [[nodiscard]] bool mean_around(std::size_t x, std::size_t y, Rgb& color) const {
     std::array<unsigned, 3> sum{};
     unsigned count = 0;
@@ -209,8 +209,8 @@ ColorScale color_scale_of(const SurfaceMap& map, const SurfaceMapWriteOptions& o
     return scale(first, second);
   }
   const auto range = finite_range(map).value_or(std::pair{0.0, 0.0});
-  // Distances start at 0. A thickness does not, because it is not a distance from something, and walls differ by
-  // little.
+  // The scale for distances starts at 0. That for thicknesses does not: a thickness is not measured from a reference,
+  // and walls often differ little.
   const bool is_thickness =
       map.quantity == SurfaceQuantity::ray_thickness || map.quantity == SurfaceQuantity::ball_thickness;
   double lowest = is_signed(map) ? std::min(range.first, 0.0) : 0.0;
@@ -241,7 +241,8 @@ namespace {
 
 using Places = std::array<std::array<float, 2>, 3>;
 
-/// Returns texture coordinates of corners as in glTF: fractions of the texture's sides, v down as the rows.
+/// Returns texture coordinates of corners as in glTF: fractions of the texture's sides, with v increasing downwards
+/// like rows.
 std::vector<Places> texture_coordinates(const SurfaceAtlas& atlas) {
   std::vector<Places> out;
   out.reserve(atlas.corners.size());
@@ -249,7 +250,7 @@ std::vector<Places> texture_coordinates(const SurfaceAtlas& atlas) {
   return out;
 }
 
-/// Converts to single precision. Values beyond its range become infinite.
+/// Converts to single precision. Values beyond float's range become infinite.
 std::vector<float> floats_of(const std::vector<double>& numbers) {
   std::vector<float> out;
   out.reserve(numbers.size());

@@ -20,7 +20,7 @@
 namespace blum {
 namespace {
 
-/// Branch of the centreline of a label.
+/// Branch of a label's centreline.
 struct BranchRow {
   const Centreline* line = nullptr;
   std::size_t branch = 0;
@@ -74,7 +74,7 @@ void write_csv(const std::filesystem::path& path, const Centrelines& lines, cons
   tables::write_csv(path, table, context);
 }
 
-/// Returns a JSON object without its end, so that a member can follow.
+/// Returns a JSON object without its closing brace, so that a member can be added.
 std::string opened(std::string_view object) {
   if (object.empty()) return "{";
   object = object.substr(0, object.rfind('}'));
@@ -84,7 +84,7 @@ std::string opened(std::string_view object) {
 
 void write_json(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& info,
                 const Context& /*context*/) {
-  // Writes label by label, so that the text of only one is in memory.
+  // The file is written label by label, so that the text of only one label is in memory.
   AtomicFile file(path);
   file.write(opened(info.head) + "\n \"labels\": [");
   for (std::size_t l = 0; l < lines.labels.size(); ++l) {
@@ -94,7 +94,8 @@ void write_json(const std::filesystem::path& path, const Centrelines& lines, con
   file.commit();
 }
 
-/// Writer of the points of a centreline from its nodes outwards. Each point has the line number of the point before it.
+/// Writer of the points of a centreline, starting from its nodes. Each point states the line number of the point before
+/// it.
 class SwcWriter {
  public:
   explicit SwcWriter(AtomicFile& file) : file_(file) {}
@@ -135,8 +136,8 @@ class SwcWriter {
   }
 
   /// Writes a branch, starting at a node.
-  /// @return the node at its other end; none if that node was written before. The branch then closes a loop, which is
-  /// cut.
+  /// @return the node at its other end; none if that node has already been written. In that case the branch would close
+  /// a loop, which is left open.
   std::optional<std::size_t> follow(const CentrelineBranch& branch, std::size_t from) {
     const bool is_forward = branch.nodes[0] == static_cast<std::int32_t>(from);
     const auto to = static_cast<std::size_t>(branch.nodes[is_forward ? 1 : 0]);
@@ -161,7 +162,7 @@ class SwcWriter {
   }
 
   AtomicFile& file_;
-  std::vector<std::int64_t> node_line_;  ///< line of each node; 0 if not written yet
+  std::vector<std::int64_t> node_line_;  ///< line number of each node; 0 if not written yet
   std::int64_t lines_ = 0;
 };
 

@@ -26,12 +26,12 @@ namespace {
 using Four = std::array<std::uint32_t, 4>;
 using Two = std::array<std::uint32_t, 2>;
 
-/// Collisions of one kind, column by column.
+/// Collisions of one kind (vertex and face, or two edges), column by column.
 struct Kind {
   std::string name;
   std::vector<Four> vertices = {};
   std::vector<double> times = {};
-  std::vector<Two> objects = {};  ///< objects of the two features, for scenes only
+  std::vector<Two> objects = {};  ///< for scenes only: the objects of the two features
 };
 
 /// Content of a file.
@@ -39,9 +39,9 @@ struct Contents {
   bool is_scene = false;
   Kind vertex_face{"vertex_face"};
   Kind edge_edge{"edge_edge"};
-  std::vector<std::uint32_t> faces = {};  ///< of vertex_face
+  std::vector<std::uint32_t> faces = {};  ///< faces of the collisions in vertex_face
 
-  /// @param mesh  mesh of the face.
+  /// @param mesh  mesh that has the face.
   void add(const VertexFaceCollision& one, const MeshView& mesh) {
     const auto& [a, b, c] = mesh.triangles[one.face.value];
     vertex_face.vertices.push_back({one.vertex, a, b, c});
@@ -56,12 +56,13 @@ struct Contents {
   [[nodiscard]] std::array<const Kind*, 2> kinds() const { return {&vertex_face, &edge_edge}; }
 };
 
-/// @param object  object that has the mesh, for scenes. @throws InvalidOption if the mesh has no such face.
+/// @param object  for scenes: the object that has the mesh. @throws InvalidOption if the mesh has no such face.
 void check_face(const MeshView& mesh, TriangleId face, std::optional<ObjectId> object = {}) {
   if (face.value < mesh.triangles.size()) return;
-  throw InvalidOption("a collision names face " + std::to_string(face.value) +
-                      (object ? " of object " + std::to_string(object->value) : "") + ", whose mesh has " +
-                      std::to_string(mesh.triangles.size()) + "; give the meshes that the collisions were found on");
+  throw InvalidOption("a collision uses face " + std::to_string(face.value) +
+                      (object ? " of object " + std::to_string(object->value) : "") + ", but that mesh has only " +
+                      std::to_string(mesh.triangles.size()) +
+                      " triangles; give the meshes in which the collisions were found");
 }
 
 Contents contents_of(const ContinuousCollisions& collisions, const MeshView& mesh) {
@@ -81,8 +82,8 @@ class Objects {
 
   [[nodiscard]] const MeshView& mesh(ObjectId object) const {
     if (object.value < meshes_.size()) return meshes_[object.value].start;
-    throw InvalidOption("a collision names object " + std::to_string(object.value) + ", but meshes of " +
-                        std::to_string(meshes_.size()) + " objects are given; give one for each object");
+    throw InvalidOption("a collision uses object " + std::to_string(object.value) + ", but meshes of " +
+                        std::to_string(meshes_.size()) + " objects are given; give one mesh for each object");
   }
 
  private:
@@ -114,7 +115,7 @@ Contents contents_of(const SceneCollisions& collisions, std::span<const MeshMoti
   return out;
 }
 
-/// Keys of metadata that are numbers, true or false in .json.
+/// Keys of metadata whose values are written as numbers, true or false in .json.
 constexpr std::array<std::string_view, 3> typed_keys{"self", "tolerance", "min_separation"};
 
 using tables::column_of;
@@ -132,10 +133,10 @@ TableColumn time_column(const Kind& kind) {
   return column_of(kind.name + "_time", {}, std::span<const double>(kind.times));
 }
 
-/// First column after the vertices of a kind.
+/// Order of columns: which one follows the vertices of a kind.
 enum class Order : std::uint8_t { times_first, objects_first };
 
-/// Returns a table for each kind, and one of the face numbers.
+/// Returns a table for each kind, and a table of the faces.
 std::vector<Table> lists_of(const Contents& contents, Order order) {
   std::vector<Table> out;
   for (const Kind* one : contents.kinds()) {
@@ -155,7 +156,7 @@ std::size_t rows_of(const Contents& contents) {
   return contents.vertex_face.times.size() + contents.edge_edge.times.size();
 }
 
-/// Returns a row for each collision: first those of vertices with faces, then those of edges.
+/// Returns a table with one row per collision: first those of vertices with faces, then those of two edges.
 Table rows_of_text(const Contents& contents) {
   using Indices = std::span<std::uint32_t>;
   const std::size_t faces = contents.faces.size();
@@ -192,8 +193,8 @@ Table rows_of_text(const Contents& contents) {
 Vec3d position_at(const MeshMotion& mesh, std::uint32_t vertex, double time) {
   const std::span<const Vec3d> start = mesh.start.vertices;
   if (vertex >= start.size()) {
-    throw InvalidOption("a collision names vertex " + std::to_string(vertex) + " of a mesh that has " +
-                        std::to_string(start.size()) + "; give the mesh that the collisions were found on");
+    throw InvalidOption("a collision uses vertex " + std::to_string(vertex) + " of a mesh that has only " +
+                        std::to_string(start.size()) + " vertices; give the mesh in which the collisions were found");
   }
   if (mesh.end.empty()) return start[vertex];
   if (mesh.end.size() != start.size()) {
@@ -204,7 +205,7 @@ Vec3d position_at(const MeshMotion& mesh, std::uint32_t vertex, double time) {
   return start[vertex] * (1 - time) + mesh.end[vertex] * time;
 }
 
-/// Features of pairs at the time of their contact, as vertices, lines and triangles.
+/// Collects the features of colliding pairs, at their positions when they touch, as vertices, lines and triangles.
 class Features {
  public:
   Features(const Contents& contents, std::span<const MeshMotion> objects)
@@ -222,7 +223,7 @@ class Features {
     face_ = complex_.triangle_columns.add<std::int32_t>("face");
   }
 
-  /// Returns the features. @throws InvalidOption for vertices that do not exist; Cancelled.
+  /// Returns the collected features. @throws InvalidOption if a vertex does not exist; Cancelled.
   Complex found(const Context& context) && {
     for (const Kind* kind : contents_.kinds()) {
       for (std::size_t n = 0; n < kind->times.size(); ++n) {
@@ -239,7 +240,7 @@ class Features {
   }
 
  private:
-  /// Columns of the pair and time of each row.
+  /// Columns with the pair and time of each row.
   struct OfPair {
     std::span<std::int32_t> pair;
     std::span<double> time;
@@ -338,14 +339,15 @@ class QueryReader {
     while (next_line()) {
       const Row own = read_row();
       (row < 4 ? points.start[row] : points.end[row - 4]) = own.point;
-      if (row > 0 && own.truth != truth) fail("the answer differs from that of the row before, of the same question");
+      if (row > 0 && own.truth != truth)
+        fail("the answer differs from the answer in the row before, but both rows belong to the same query");
       truth = own.truth;
       if (++row < rows_per_query) continue;
       row = 0;
       out.points.push_back(points);
       out.truth.push_back(truth);
     }
-    if (row != 0) fail("the file ends within a question: each has eight rows");
+    if (row != 0) fail("the file ends within a query: each query has eight rows");
     return out;
   }
 
@@ -359,7 +361,7 @@ class QueryReader {
     throw FormatError(name_ + ", line " + std::to_string(line_) + ": " + what);
   }
 
-  /// Moves to the next line that is not empty. Returns false at the end of the text.
+  /// Moves to the next non-empty line. Returns false at the end of the text.
   bool next_line() {
     while (!text_.empty()) {
       const std::size_t end = text_.find('\n');
@@ -407,14 +409,14 @@ class QueryReader {
     return value;
   }
 
-  /// Returns a whole number that a double represents exactly.
+  /// Reads an integer. It must be one that a double represents exactly.
   [[nodiscard]] double integer(std::string_view text) const {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const std::size_t sign = text.starts_with('-') ? 1 : 0;
     const bool is_whole = text.size() > sign && text.find_first_not_of("0123456789", sign) == std::string_view::npos;
     if (!is_whole || end != text.data() + text.size()) fail(in_quotes(text) + " is not a whole number");
-    constexpr std::size_t always_exact = 15;  // digits
+    constexpr std::size_t always_exact = 15;  // integers with this many digits are exact
     if (error == std::errc{} && text.size() - sign <= always_exact) return value;
     std::string_view rest = text.substr(sign);
     rest.remove_prefix(std::min(rest.find_first_not_of('0'), rest.size() - 1));

@@ -67,7 +67,7 @@ std::vector<Vec3d> read_npz(const std::filesystem::path& path) {
   return npz.read(array, points_of_array);
 }
 
-/// Reader of rows of numbers.
+/// Reader of rows of numbers from text.
 class RowReader {
  public:
   RowReader(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
@@ -105,7 +105,7 @@ class RowReader {
     return true;
   }
 
-  /// Returns the text up to the next comma, semicolon or blank.
+  /// Returns the text up to the next comma, semicolon or blank, and moves behind it.
   std::string_view take_word() {
     const std::size_t end = std::min(row_.find_first_of(",; \t"), row_.size());
     const std::string_view word = row_.substr(0, end);
@@ -134,7 +134,8 @@ class RowReader {
   std::size_t line_ = 0;
 };
 
-/// Returns the coordinates as `points`, then the columns. In .csv these have the names of PLY's properties.
+/// Returns a table with the coordinates as `points`, followed by the columns. In .csv, values have the names of PLY's
+/// properties.
 tables::Table table_of(const Complex& points) {
   const std::vector<std::string> axes{"x", "y", "z"};
   const auto names = complex_files::property_names(points.vertex_columns, "vertex", axes).properties;
@@ -218,7 +219,7 @@ void write_as_complex(const fs::path& path, const Complex& points, const FileMet
 constinit const PointCode points_npy{read_npy, nullptr, true};
 constinit const PointCode points_npz{read_npz, write_npz, true};
 constinit const PointCode points_text{read_text, write_csv, true};
-// A .vtp file may hold polygons, whose area would be lost.
+// A .vtp file may contain polygons. Their area would be lost.
 constinit const PointCode points_as_complex{read_positions, write_as_complex};
 constinit const PointCode points_of_mesh{read_vertices, nullptr};
 

@@ -21,11 +21,12 @@ namespace {
 template <class T>
 using Two = std::array<T, 2>;
 
-/// Pairs, column by column.
+/// Pairs of primitives, stored column by column.
 class PairColumns {
  public:
-  /// Keeps all arguments by reference.
-  /// @throws InvalidOption if a pair does not belong to the objects, or `more` not to the pairs; Cancelled.
+  /// All arguments are kept by reference.
+  /// @throws InvalidOption if the objects lack a primitive of a pair, or if `more` has another number of rows than
+  /// pairs; Cancelled.
   PairColumns(std::span<const PrimitivePair> pairs, std::span<const MeshView> objects, const Columns& more,
               const Context& context)
       : pairs_(pairs), objects_(objects), more_(more), context_(context) {
@@ -56,7 +57,7 @@ class PairColumns {
   /// Returns the additional columns.
   [[nodiscard]] const Columns& more() const { return more_; }
 
-  /// Calls visit(n) for each pair. @throws Cancelled.
+  /// Calls visit(n) for the index n of each pair. @throws Cancelled.
   template <class Visit>
   void for_each(const Visit& visit) const {
     constexpr std::size_t look_every = 65536;
@@ -70,7 +71,7 @@ class PairColumns {
   void check(const Columns& more) const {
     if (!more.empty() && more.rows() != pairs_.size()) {
       throw InvalidOption("further columns have " + std::to_string(more.rows()) + " rows, but there are " +
-                          std::to_string(pairs_.size()) + " pairs; give a row for each");
+                          std::to_string(pairs_.size()) + " pairs; give one row for each pair");
     }
     for (const Column& column : more) {
       if (std::find(own_names.begin(), own_names.end(), column.name) == own_names.end()) continue;
@@ -79,13 +80,13 @@ class PairColumns {
   }
   void check(ObjectId object, std::uint32_t primitive) const {
     if (object.value >= objects_.size()) {
-      throw InvalidOption("a pair names object " + std::to_string(object.value) + ", but meshes of " +
-                          std::to_string(objects_.size()) + " objects are given; give one for each object");
+      throw InvalidOption("a pair uses object " + std::to_string(object.value) + ", but meshes of " +
+                          std::to_string(objects_.size()) + " objects are given; give one mesh for each object");
     }
     if (const std::size_t count = primitive_count(objects_[object.value]); primitive >= count) {
-      throw InvalidOption("a pair names primitive " + std::to_string(primitive) + " of object " +
-                          std::to_string(object.value) + ", whose mesh has " + std::to_string(count) +
-                          "; give the meshes that the pairs were found on");
+      throw InvalidOption("a pair uses primitive " + std::to_string(primitive) + " of object " +
+                          std::to_string(object.value) + ", whose mesh has only " + std::to_string(count) +
+                          " primitives; give the meshes in which the pairs were found");
     }
   }
   [[nodiscard]] Triangle corners(ObjectId object, std::uint32_t primitive) const {
@@ -101,18 +102,18 @@ class PairColumns {
   const Context& context_;
 };
 
-/// Keys of metadata that are numbers, true or false in .json.
+/// Keys of metadata whose values are written as numbers, true or false in .json.
 constexpr std::array<std::string_view, 2> typed_keys{"max_distance", "self"};
 
 using tables::made_column;
 using tables::TableColumn;
 
-/// Names in .csv of the coordinates of points, and of the vertices of features.
+/// Names of columns in .csv for the coordinates of points; below, those for the vertices of features.
 const std::vector<std::string> point_names{"first_x", "first_y", "first_z", "second_x", "second_y", "second_z"};
 const std::vector<std::string> feature_names{"first_feature_0",  "first_feature_1",  "first_feature_2",
                                              "second_feature_0", "second_feature_1", "second_feature_2"};
 
-/// Returns the objects and primitives of each pair, in one array each.
+/// Returns two columns: the objects of each pair, and its primitives.
 std::vector<TableColumn> id_columns(const PairColumns& pairs) {
   const auto object = [&](std::size_t n, std::span<std::int32_t> out) {
     std::ranges::copy(pairs.object(n), out.begin());
@@ -123,7 +124,7 @@ std::vector<TableColumn> id_columns(const PairColumns& pairs) {
   return {made_column<std::int32_t>("object", {2}, object), made_column<std::int32_t>("primitive", {2}, primitive)};
 }
 
-/// Returns both in one column, side by side.
+/// Returns one column with the object and primitive of the first side, then those of the second side.
 TableColumn ids_by_side(const PairColumns& pairs) {
   const auto make = [&](std::size_t n, std::span<std::int32_t> out) {
     for (std::size_t side = 0; side < 2; ++side) {
@@ -135,7 +136,7 @@ TableColumn ids_by_side(const PairColumns& pairs) {
                                    {"first_object", "first_primitive", "second_object", "second_primitive"});
 }
 
-/// Adds the distance, closest points and features of each pair, and the additional columns.
+/// Adds columns for the distance, closest points and features of each pair, and the additional columns.
 void add_places(const PairColumns& pairs, std::vector<TableColumn>& columns) {
   const auto distance = [&](std::size_t n, std::span<double> out) { out[0] = pairs.distance(n); };
   const auto point = [&](std::size_t n, std::span<double> out) {
@@ -151,21 +152,21 @@ void add_places(const PairColumns& pairs, std::vector<TableColumn>& columns) {
   for (const Column& column : pairs.more()) columns.push_back(tables::column_of(column));
 }
 
-/// Returns a column for each fact.
+/// Returns a table with a separate column for each kind of data.
 tables::Table facts(const PairColumns& pairs) {
   tables::Table table{pairs.size(), id_columns(pairs)};
   add_places(pairs, table.columns);
   return table;
 }
 
-/// Returns the columns of rows of text. Ids of the first side come before those of the second.
+/// Returns a table for text files. Ids of the first side come before those of the second side.
 tables::Table rows_of_text(const PairColumns& pairs) {
   tables::Table table{pairs.size(), {ids_by_side(pairs)}};
   add_places(pairs, table.columns);
   return table;
 }
 
-/// Returns a line for each pair.
+/// Returns a complex with one line between the closest points of each pair.
 Complex lines_of(const PairColumns& pairs) {
   Complex lines;
   lines.positions.reserve(2 * pairs.size());

@@ -17,14 +17,14 @@
 namespace blum::tables {
 namespace {
 
-/// Rows of a column, one by one.
+/// Access to a column row by row.
 template <class T>
 class Rows {
  public:
   Rows(const Cells<T>& cells, std::size_t width) : cells_(cells), width_(width) {
     if (cells.make) made_.resize(width);
   }
-  /// Returns a row, which is valid until the next call.
+  /// Returns a row. It is valid until the next call.
   std::span<const T> operator[](std::size_t row) {
     if (!cells_.make) return cells_.all.subspan(row * width_, width_);
     cells_.make(row, made_);
@@ -69,7 +69,7 @@ void append_json(std::string& out, const T& value) {
   }
 }
 
-/// Appends the values of a row as nested lists, as deep as its shape. A single value is not put into a list.
+/// Appends the values of a row as nested lists, with the depth of its shape. A single value is written without a list.
 template <class T>
 void append_json(std::string& out, std::span<const T> values, std::span<const std::uint64_t> shape) {
   if (shape.empty()) return append_json(out, values.front());
@@ -90,7 +90,7 @@ std::size_t byte_size(const Table& table) {
   return bytes * table.rows;
 }
 
-/// Appends the values of one row to a line, with a comma before each.
+/// Appends the values of one row to a line. Each value is preceded by a comma.
 using AppendRow = std::function<void(std::string& line, std::size_t row)>;
 
 AppendRow csv_row_of(const TableColumn& column) {
@@ -201,7 +201,7 @@ void write_csv(const std::filesystem::path& path, const Table& table, const Cont
   std::string line;
   const auto end_line = [&] {
     line += '\n';
-    file.text(std::string_view(line).substr(1));  // without the first comma
+    file.text(std::string_view(line).substr(1));  // drops the first comma
     line.clear();
   };
   std::vector<AppendRow> columns;

@@ -19,35 +19,36 @@
 
 namespace blum::tables {
 
-/// Values of a column: all of them, row after row, or a function that computes those of one row.
+/// Values of a column: either all of them, row after row, or a function that computes those of one row.
 template <class T>
 struct Cells {
   std::span<const T> all = {};
   std::function<void(std::size_t row, std::span<T> values)> make = {};  ///< if set, `all` is ignored
 };
 
-/// Column with the same number of values, of one type, in each row.
+/// Column that has the same number of values in each row, all of one type.
 struct TableColumn {
-  std::string name;                  ///< of the array in .npz, of the list in .json
-  std::vector<std::uint64_t> shape;  ///< of a row: {} one value, {3} a vector, {2, 3} two vectors
-  /// Indices (uint32) become int32 in .npz files, which cannot hold texts.
+  std::string name;                  ///< name of the array in .npz and of the list in .json
+  std::vector<std::uint64_t> shape;  ///< shape of a row: {} for one value, {3} for a vector, {2, 3} for two vectors
+  /// Indices (uint32) are written as int32 to .npz files. Columns of texts cannot be written there.
   std::variant<Cells<double>, Cells<float>, Cells<std::int64_t>, Cells<std::int32_t>, Cells<std::uint32_t>,
                Cells<std::string>>
       cells;
-  /// Names of the values of a row in .csv. If empty: the column's name, or NAME_0, NAME_1, ... for several values.
+  /// Names of the values of a row in .csv. If empty, the column's name is used, or NAME_0, NAME_1, ... for several
+  /// values.
   std::vector<std::string> names = {};
 
   /// Returns the number of values in a row.
   [[nodiscard]] std::size_t width() const;
 };
 
-/// Table of columns. Values kept by reference must outlive it.
+/// Table of columns. Values that are kept by reference must outlive the table.
 struct Table {
   std::size_t rows = 0;
   std::vector<TableColumn> columns;
 };
 
-/// Returns a column of existing values, row after row. They are kept by reference.
+/// Returns a column with existing values, row after row. The values are kept by reference.
 template <class T>
 [[nodiscard]] TableColumn column_of(std::string name, std::vector<std::uint64_t> shape, std::span<const T> values,
                                     std::vector<std::string> names = {}) {
@@ -57,41 +58,44 @@ template <class T>
                                     std::vector<std::string> names = {});
 [[nodiscard]] TableColumn column_of(const Column& column, std::vector<std::string> names = {});
 
-/// Returns a column of T that make(row, values) fills row by row. Writers make one column after the other, so that only
-/// one is in memory.
+/// Returns a column of T. For each row, make(row, values) computes the values. Writers compute one column after the
+/// other, so that only one is in memory.
 template <class T, class Make>
 [[nodiscard]] TableColumn made_column(std::string name, std::vector<std::uint64_t> shape, Make make,
                                       std::vector<std::string> names = {}) {
   return {std::move(name), std::move(shape), Cells<T>{{}, std::move(make)}, std::move(names)};
 }
 
-/// Sources of files of rows. Formats call only those that they need.
+/// Functions that return the content of a file of rows. A format calls only those that it needs.
 struct RowFile {
-  std::function<std::vector<Table>()> arrays;  ///< a column for each fact
-  std::function<std::vector<Table>()> lists;   ///< the same, in the order of .json
-  std::function<Table()> rows;                 ///< rows of text
-  std::function<Complex()> shapes;             ///< shapes that represent the rows, with columns
+  std::function<std::vector<Table>()> arrays;  ///< for .npz: tables with a separate column for each kind of data
+  std::function<std::vector<Table>()> lists;   ///< for .json: the same columns in the order of that format
+  std::function<Table()> rows;                 ///< for text: one table of rows
+  std::function<Complex()> shapes;             ///< for shapes: a complex that represents the rows, with columns
   const FileMetadata& metadata;
-  std::span<const std::string_view> typed_keys = {};  ///< keys of metadata that are numbers, true or false in .json
-  bool has_dense_lists = false;                       ///< as JsonStyle::is_dense
+  /// Keys of metadata whose values are written as numbers, true or false in .json.
+  std::span<const std::string_view> typed_keys = {};
+  bool has_dense_lists = false;  ///< see JsonStyle::is_dense
 };
 
 /// Style of lists in .json files.
 struct JsonStyle {
-  std::span<const std::string_view> typed = {};  ///< keys of metadata that are numbers, true or false
-  bool is_dense = false;                         ///< columns of one value a row take one line, not one per row
+  /// Keys of metadata whose values are written as numbers, true or false.
+  std::span<const std::string_view> typed = {};
+  /// If true, a column with one value per row takes one line instead of one line per row.
+  bool is_dense = false;
 };
 
-/// The writers. A file appears under its name when it is complete. In files of several tables, the columns of one
-/// follow those of the other. Numbers in text are the shortest that read back as the same; in .json, numbers that are
-/// not finite are `null`. @throws FileError, Cancelled.
+/// The following functions write files. A file appears under its name when it is complete. If there are several tables,
+/// their columns follow each other. Numbers in text have as few digits as identify them exactly; in .json, numbers that
+/// are not finite are `null`. @throws FileError, Cancelled.
 ///
-/// Writes an array for each column, and `metadata`, a JSON object, unless there are none.
+/// Writes an array for each column. If there are metadata, also writes an array `metadata` with a JSON object.
 void write_npz(const std::filesystem::path& path, std::span<const Table> tables, const FileMetadata& metadata,
                const Context& context);
-/// Writes a row of names, then the rows. Metadata are not written.
+/// Writes one row of names, then the rows of the table. Metadata are not written.
 void write_csv(const std::filesystem::path& path, const Table& table, const Context& context);
-/// Writes an object: `metadata`, then a list for each column, of values or of lists of them.
+/// Writes a JSON object: `metadata`, then a list for each column. Its entries are values or lists of values.
 void write_json(const std::filesystem::path& path, std::span<const Table> tables, const FileMetadata& metadata,
                 const JsonStyle& style, const Context& context);
 

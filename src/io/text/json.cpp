@@ -24,12 +24,12 @@ std::string json_string(const std::string& text) {
   return json(text).dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// Reader of one flat object of strings, in its order. Anything else ends the parsing at once, so that deep nesting
-/// costs nothing.
+/// Reader of one flat object of strings; it keeps their order. Anything else stops the parser at once, so that deep
+/// nesting costs nothing.
 class FlatObject final : public nlohmann::json_sax<json> {
  public:
   FileMetadata pairs;
-  std::size_t position = 0;  ///< of the text that the parser refused
+  std::size_t position = 0;  ///< position in the text that the parser rejected
 
   bool start_object(std::size_t /*size*/) override { return !std::exchange(is_open_, true); }
   bool end_object() override { return true; }

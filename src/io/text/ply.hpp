@@ -21,7 +21,7 @@ enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, i
 [[nodiscard]] constexpr bool is_floating(PlyType type) {
   return type >= PlyType::float32;
 }
-/// Returns the number of bytes of a value in a binary file.
+/// Returns the number of bytes that a value of this type takes in a binary file.
 [[nodiscard]] constexpr std::size_t size_of(PlyType type) {
   constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   return sizes[static_cast<std::size_t>(type)];
@@ -30,7 +30,7 @@ enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, i
 struct PlyProperty {
   std::string name;
   bool is_list = false;
-  PlyType count_type = PlyType::uint8;  ///< of a list's length
+  PlyType count_type = PlyType::uint8;  ///< type of a list's length
   PlyType type = PlyType::float32;
 };
 
@@ -44,13 +44,13 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::text;
   std::vector<PlyElement> elements = {};
   std::vector<std::string> comments = {};
-  std::size_t size = 0;  ///< bytes before the data
+  std::size_t size = 0;  ///< size of the header in bytes
 };
 
 /// Reads the header of a file. @throws FormatError.
 [[nodiscard]] PlyHeader read_ply_header(std::string_view bytes, std::string_view name);
 
-/// Values of a text file, one after the other. Line ends count as blanks.
+/// Reader of the values of a text file. Line ends count as blanks.
 class PlyText {
  public:
   PlyText(std::string_view bytes, const PlyHeader& header, std::string_view name)
@@ -59,7 +59,8 @@ class PlyText {
   }
 
   [[nodiscard]] std::size_t remaining() const { return cursor_.remaining(); }
-  /// Returns the fewest bytes that an element can take: one character and one blank for each value.
+  /// Returns the smallest number of bytes that an entry of an element can take: one character and one blank for each
+  /// value.
   [[nodiscard]] static std::size_t least_size(const PlyElement& element) { return 2 * element.properties.size(); }
   [[nodiscard]] std::size_t where() {
     cursor_.skip_space();
@@ -70,7 +71,7 @@ class PlyText {
     cursor_.skip_space();
     return cursor_.take_number(what);
   }
-  /// Reads a number, also an infinity or NaN.
+  /// Reads a number, which may be infinite or NaN.
   double any_number(PlyType /*type*/, std::string_view what) {
     cursor_.skip_space();
     return cursor_.take_any_number(what);
@@ -108,7 +109,7 @@ class PlyText {
   TextCursor cursor_;
 };
 
-/// Values of a binary file.
+/// Reader of the values of a binary file.
 class PlyBinary {
  public:
   PlyBinary(std::string_view bytes, const PlyHeader& header, std::string_view name)
@@ -118,7 +119,7 @@ class PlyBinary {
         swap_((header.encoding == PlyEncoding::big_endian) != (std::endian::native == std::endian::big)) {}
 
   [[nodiscard]] std::size_t remaining() const { return bytes_.size() - position_; }
-  /// Returns the fewest bytes that an element can take. Lists may be empty.
+  /// Returns the smallest number of bytes that an entry of an element can take. Lists may be empty.
   [[nodiscard]] static std::size_t least_size(const PlyElement& element) {
     std::size_t size = 0;
     for (const PlyProperty& p : element.properties) size += size_of(p.is_list ? p.count_type : p.type);
@@ -132,14 +133,14 @@ class PlyBinary {
     if (!std::isfinite(value)) fail_at(start, "a " + std::string(what) + " is not finite");
     return value;
   }
-  /// Reads a number, also an infinity or NaN.
+  /// Reads a number, which may be infinite or NaN.
   double any_number(PlyType type, std::string_view what) {
     if (type == PlyType::float32) return std::bit_cast<float>(take<std::uint32_t>());
     if (type == PlyType::float64) return std::bit_cast<double>(take<std::uint64_t>());
     if (type == PlyType::uint64) return static_cast<double>(take<std::uint64_t>());
     return static_cast<double>(integer(type, what));
   }
-  /// Reads a value of a whole-number type.
+  /// Reads a value of an integer type.
   std::int64_t integer(PlyType type, std::string_view what) {
     switch (type) {
       case PlyType::int8:
@@ -179,7 +180,8 @@ class PlyBinary {
     require(count * size_of(property.type));
     position_ += count * size_of(property.type);
   }
-  /// Some programs end a file with a line end or zeros. Anything else means that counts are wrong.
+  /// Throws unless the data end here. Some programs add a line end or zeros at the end of a file; anything else means
+  /// that counts are wrong.
   void expect_end() const {
     if (bytes_.find_first_not_of(std::string_view("\0\r\n ", 4), position_) == std::string_view::npos) return;
     fail("the file goes on after its last element: the counts in the header are wrong");

@@ -61,8 +61,8 @@ class HeaderReader {
   }
 
  private:
-  /// Moves behind the end of this line. The first line defines how lines end. In a binary file whose lines end in CR,
-  /// the data might begin with the code of LF.
+  /// Moves behind the end of this line. The first line defines how lines end. The reason: in a binary file whose lines
+  /// end in CR, the data may start with the byte LF.
   std::string_view take_line_end() {
     cursor_.skip_blanks();
     const char* const start = cursor_.position();
@@ -77,7 +77,7 @@ class HeaderReader {
     return rest.substr(0, size);
   }
 
-  /// Returns the rest of the line, without blanks at its ends. The cursor stays.
+  /// Returns the remaining text of the line, without blanks at its ends. The cursor is not moved.
   [[nodiscard]] std::string_view rest_of_line() const {
     TextCursor end = cursor_;
     end.skip_line();
@@ -115,7 +115,7 @@ class HeaderReader {
     for (const PlyElement& other : header_.elements) {
       if (other.name == element.name) cursor_.fail("element " + in_quotes(element.name) + " occurs twice");
     }
-    constexpr std::size_t most = 1000;  // the search above is linear, and real files have far fewer
+    constexpr std::size_t most = 1000;  // the search above takes linear time, and real files have far fewer
     if (header_.elements.size() == most) cursor_.fail("the header has more than 1000 elements");
     header_.elements.push_back(std::move(element));
   }

@@ -19,23 +19,24 @@
 
 namespace blum {
 
-/// Writer of numbers to a file, as text or as little-endian bytes. The file appears with finish().
+/// Writer of numbers to a file, as text or as little-endian bytes. The file appears under its name when finish() is
+/// called.
 class RowWriter {
  public:
-  /// @param rows  number of calls of end_row(), for the progress.
+  /// @param rows  number of calls of end_row(), used to report progress.
   RowWriter(const std::filesystem::path& path, std::size_t rows, Context context)
       : file_(path), context_(std::move(context)), rows_(rows) {
     buffer_.reserve(piece_size + 4096);
   }
 
-  /// Writes without reporting progress.
+  /// Creates a writer that does not report progress.
   explicit RowWriter(const std::filesystem::path& path) : RowWriter(path, 0, {}) {}
 
   void text(std::string_view text) {
     buffer_ += text;
     if (buffer_.size() >= piece_size) flush();
   }
-  /// Writes a blank and the shortest text that reads back to the same number.
+  /// Writes a blank and a number, with as few digits as identify it exactly.
   template <class T>
   void number(T value) {
     std::array<char, 40> digits{};
@@ -60,7 +61,7 @@ class RowWriter {
   }
 
  private:
-  /// Small enough that a cancelled call ends soon.
+  /// Number of bytes between two checks for cancellation. It is small, so that a cancelled call ends soon.
   static constexpr std::size_t piece_size = std::size_t{1} << 20;
 
   void flush() {
@@ -83,10 +84,10 @@ class RowWriter {
 
 namespace blum::volume_io {
 
-/// Sink that passes bytes on to files in pieces, so that a caller can follow the writing and cancel it in time.
+/// Sink that passes bytes to a file in pieces. It reports progress and checks for cancellation between pieces.
 class FieldSink {
  public:
-  /// @param total  number of all bytes that will be written, for the progress.
+  /// @param total  number of bytes that will be written in total, used to report progress.
   FieldSink(std::uint64_t total, const Context& context) : context_(context), total_(total) {}
 
   void write(AtomicFile& file, std::span<const std::byte> bytes) {
@@ -106,7 +107,7 @@ class FieldSink {
   void write(AtomicFile& file, std::string_view text) { write(file, std::as_bytes(std::span(text))); }
 
  private:
-  /// Small enough that even a slow disk takes one within the time that a cancelled call may still run.
+  /// Number of bytes of a piece. Even a slow disk writes it within the time allowed for a cancelled call.
   static constexpr std::size_t piece_size = std::size_t{8} << 20;
 
   const Context& context_;

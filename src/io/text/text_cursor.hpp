@@ -16,7 +16,7 @@
 
 namespace blum {
 
-/// Returns a short printable form of text from a file, for messages.
+/// Returns text from a file in a short printable form, for messages.
 inline std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "'";
@@ -24,15 +24,16 @@ inline std::string in_quotes(std::string_view text) {
   return result + (text.size() > longest ? "...'" : "'");
 }
 
-/// Position in a text, with the steps from which readers are built. Lines may end in LF, CR LF or CR.
+/// Position in a text, with the basic steps of a parser. Lines may end in LF, CR LF or CR.
 ///
-/// "Blanks" separate tokens within a line. "Space" is blanks, line ends and, if the format has them, comments from
-/// `comment` to the end of the line. Lines are counted only for error messages.
+/// "Blanks" separate tokens within a line. "Space" means blanks, line ends and comments. Comments exist only in some
+/// formats, and extend from the character `comment` to the end of the line. Lines are counted only for error messages.
 class TextCursor {
  public:
-  /// @param name     name of the file in messages; must outlive the cursor, like text.
-  /// @param comment  character that starts a comment between tokens; 0 for none.
-  /// @param continuation  character that, at the end of a line, joins it with the next; 0 for none.
+  /// @param name     name of the file in messages. Name and text must outlive the cursor.
+  /// @param comment  character that starts a comment between tokens; 0 if the format has none.
+  /// @param continuation  character that joins a line with the next one if it is the line's last character; 0 if the
+  /// format has none.
   TextCursor(std::string_view text, std::string_view name, char comment, char continuation = 0)
       : begin_(text.data()),
         position_(begin_),
@@ -61,13 +62,13 @@ class TextCursor {
     }
   }
 
-  /// Skips blanks. Returns true if nothing but a comment is left on this line.
+  /// Skips blanks. Returns true if the rest of this line is empty or a comment.
   bool at_line_end() {
     skip_blanks();
     return at_end() || is_line_end(*position_) || (comment_ != 0 && *position_ == comment_);
   }
 
-  /// Moves behind the end of this line. A continued line is one line.
+  /// Moves behind the end of this line. Lines that are joined by a continuation count as one line.
   void skip_line() {
     for (; position_ < end_; ++position_) {
       if (is_line_end(*position_)) {
@@ -78,7 +79,7 @@ class TextCursor {
     }
   }
 
-  /// Moves to the next token, on this line or a later one. Returns false if none is left.
+  /// Moves to the next token, on this line or a later one. Returns false if there is none.
   bool skip_space() {
     while (at_line_end()) {
       if (at_end()) return false;
@@ -87,21 +88,21 @@ class TextCursor {
     return true;
   }
 
-  /// Returns the token here, up to a blank or line end; it is empty at a line end. The cursor stays.
+  /// Returns the token at the cursor, up to a blank or line end. It is empty at a line end. The cursor is not moved.
   [[nodiscard]] std::string_view peek_token() const {
     const char* last = position_;
     while (last < end_ && !is_blank(*last) && !is_line_end(*last)) ++last;
     return {position_, static_cast<std::size_t>(last - position_)};
   }
 
-  /// Returns the token here and moves behind it.
+  /// Returns the token at the cursor and moves behind it.
   std::string_view take_token() {
     const std::string_view token = peek_token();
     position_ += token.size();
     return token;
   }
 
-  /// Reads a finite number on this line. `what` names it in messages.
+  /// Reads a finite number on this line. `what` is its description in messages.
   double take_number(std::string_view what) {
     skip_blanks();
     const char* const start = position_;
@@ -110,13 +111,13 @@ class TextCursor {
     return value;
   }
 
-  /// Reads a number on this line, also an infinity or NaN.
+  /// Reads a number on this line, which may be infinite or NaN.
   double take_any_number(std::string_view what) {
     skip_blanks();
     return take_number_here(what);
   }
 
-  /// Reads a whole number on this line. A blank or line end must follow it.
+  /// Reads an integer on this line. A blank or line end must follow it.
   std::int64_t take_integer(std::string_view what) {
     skip_blanks();
     const char* const start = position_;
@@ -125,7 +126,7 @@ class TextCursor {
     return value;
   }
 
-  /// Reads a whole number here, whatever follows it.
+  /// Reads an integer at the cursor. Any character may follow it.
   std::int64_t take_integer_prefix(std::string_view what) {
     const char* const start = position_;
     std::int64_t value = 0;
@@ -183,12 +184,13 @@ class TextCursor {
     return value;
   }
 
-  /// Returns zero for numbers too small for a double, and fails for numbers too large. from_chars refuses both alike.
+  /// Handles a number that from_chars rejects as out of range. Returns zero if it is too small for a double, and throws
+  /// if it is too large.
   double tiny_or_fail(const char* start, const char* last, std::string_view what) const {
     std::string_view digits(start, static_cast<std::size_t>(last - start));
     const std::size_t mark = std::min(digits.find_first_of("eE"), digits.size());
     const bool small_exponent = mark + 1 < digits.size() && digits[mark + 1] == '-';
-    // 0.000...1 without an exponent is small as well. A long run of digits before the point is not.
+    // A number like 0.000...1 without an exponent is also small. One with many digits before the point is large.
     const std::size_t first = digits.find_first_of("123456789");
     const std::size_t point = std::min(digits.find('.'), mark);
     if (mark == digits.size() ? first > point : small_exponent) return digits.front() == '-' ? -0.0 : 0.0;
@@ -245,7 +247,7 @@ inline constexpr std::string_view white_space = " \t\r\n\v\f";
   return out;
 }
 
-/// Returns the number that makes up the whole text, which may begin with a plus sign.
+/// Parses a number that is the whole text. The text may start with a plus sign.
 template <class T>
 [[nodiscard]] std::optional<T> parse_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);

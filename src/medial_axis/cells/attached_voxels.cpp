@@ -20,8 +20,8 @@ using Place = std::array<std::int64_t, 3>;
 
 constexpr std::size_t steps_between_looks = std::size_t{1} << 16U;
 
-/// Returns the cells at a lattice node, as bits by axes, that one voxel around the node has. Along each axis the voxel
-/// lies ahead of the node (0) or behind it (1).
+/// Returns bits: bit a is set if the cell that spans axes `a` from a lattice node belongs to one given voxel around the
+/// node. Bit x, y or z of `behind` is 1 if the voxel lies on the lower side of the node along that axis.
 constexpr std::uint8_t cells_towards(unsigned behind) {
   std::uint8_t bits = 0;
   for (unsigned axes = 0; axes < 8; ++axes) {
@@ -30,8 +30,8 @@ constexpr std::uint8_t cells_towards(unsigned behind) {
   return bits;
 }
 
-/// Table of the neighbours that share a cell of a voxel. The cell spans `axes` from the corner `corner` (bits x, y, z:
-/// far side).
+/// Table of the neighbours of a voxel that also contain one of its cells. The cell spans `axes` from the voxel's corner
+/// `corner` (bits x, y, z: 1 on the upper side).
 constexpr auto make_sharers() {
   std::array<std::array<Neighbourhood, 8>, 8> table{};
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -95,8 +95,8 @@ class Thinner {
   }
 
  private:
-  /// Returns true if the depths are above zero for exactly the voxels. This fails if some voxels are extra cells of the
-  /// model.
+  /// Returns true if the solid's depths are above zero for all voxels of the set and for no others. This is false if an
+  /// extra cell of the model replaces a voxel.
   static bool is_depth_enough(const VoxelSolid& solid, const VoxelSet& voxels, const Context& context) {
     const auto layers = static_cast<std::size_t>(solid.grid.size[2]);
     std::vector<std::uint8_t> is_enough(layers, 1);
@@ -115,7 +115,7 @@ class Thinner {
     return std::all_of(is_enough.begin(), is_enough.end(), [](std::uint8_t is) { return is != 0; });
   }
 
-  /// Returns depths that are above zero for exactly the voxels.
+  /// Returns the solid's depths, changed so that they are above zero for all voxels of the set and for no others.
   static Buffer<float> depth_of(const VoxelSolid& solid, const VoxelSet& voxels) {
     Buffer<float> depth = solid.depth.clone();
     std::size_t at = 0;
@@ -131,13 +131,13 @@ class Thinner {
     return depth;
   }
 
-  /// Returns true if a voxel is simple among those around it and none of its cells is needed.
+  /// Returns true if a voxel is simple given the neighbours `around` and none of its cells is needed.
   [[nodiscard]] bool may_go(std::uint32_t voxel, const Place& at, Neighbourhood around, SimpleCache& simple) const {
     if (attached_.contain(at[0], at[1], at[2])) return attached_.may_go(voxel, around);
     return simple.is_simple(around) && !is_needed(at, around);
   }
 
-  /// Returns true if a cell of a voxel has importance and belongs to none of the voxels around.
+  /// Returns true if a cell of a voxel has an importance above 0 and belongs to none of the neighbours `around`.
   [[nodiscard]] bool is_needed(const Place& at, Neighbourhood around) const {
     const std::size_t node = lattice_.node(at[0], at[1], at[2]);
     for (unsigned corner = 0; corner < 8; ++corner) {
@@ -173,7 +173,7 @@ constexpr unsigned middle = place_of_voxel;
 
 using Place = std::array<std::int64_t, 3>;
 
-/// Returns true if one cell of a voxel is a face of another. Both are given by their places.
+/// Returns true if one cell of a voxel is a face of another one. Both arguments are places (see place_of_voxel).
 constexpr bool is_face(unsigned face, unsigned cell) {
   const auto f = along_axes(face);
   const auto c = along_axes(cell);
@@ -205,8 +205,8 @@ constexpr BorderTables make_tables() {
 }
 constexpr BorderTables tables = make_tables();
 
-/// Returns true if a part of the border of a voxel, closed under faces, is contractible: connected, with Euler number
-/// 1.
+/// Returns true if a set of border cells of a voxel is contractible: connected, with Euler number 1. The set must
+/// contain all faces of its cells.
 bool is_contractible(std::uint32_t cells) {
   if (cells == 0) return false;
   if (bit_count(cells & tables.even) != bit_count(cells & ~tables.even) + 1) return false;
@@ -251,7 +251,7 @@ void AttachedVoxels::find_plain(const VoxelSet& voxels) {
   }
 }
 
-/// Finds voxels around cells of the lattice that have an extra face or coface.
+/// Finds the voxels that touch a lattice cell with an extra cell as face or coface.
 void AttachedVoxels::find_attached() {
   attached_ = VoxelSet(plain_.size());
   const ExtraIncidence& extra = *structure_.extra();
@@ -291,7 +291,7 @@ void AttachedVoxels::for_each_attached(const Visit& visit) const {
   }
 }
 
-/// Lists the cells of a voxel: first itself, then its border.
+/// Lists the cells of a voxel: first the voxel itself, then the cells of its border.
 void AttachedVoxels::find_closure(const Place& voxel, std::vector<Cell>& cells) const {
   cells.assign(1, cell_at(structure_.lattice().node(voxel[0], voxel[1], voxel[2]), 7));
   for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -301,8 +301,8 @@ void AttachedVoxels::find_closure(const Place& voxel, std::vector<Cell>& cells) 
   }
 }
 
-/// Adds the cells of the lattice around an extra cell that no voxel contains. The extra cell itself may already be
-/// removed.
+/// Appends to `found` those lattice cells in the border of an extra polyhedron that no voxel contains. The polyhedron
+/// itself may already be removed.
 void AttachedVoxels::find_without_voxel(Cell polyhedron, std::vector<Cell>& found) {
   structure_.for_each_face(polyhedron, [&](Cell polygon) {
     const auto look_at = [&](Cell cell) {

@@ -16,16 +16,17 @@
 
 namespace blum::detail {
 
-/// Place of the voxel itself. The place of a cell of its border is x + 3 y + 9 z. Along each axis 0 is the low side, 2
-/// the high side; 1 means that the cell spans the axis. The 26 neighbours are numbered in the same way.
+/// Places number the 27 cells of a closed voxel: x + 3 y + 9 z. Along each axis, 0 is the low side and 2 the high side;
+/// 1 means that the cell spans the axis. This is the place of the voxel itself. The 26 neighbours of a voxel are
+/// numbered in the same way.
 inline constexpr unsigned place_of_voxel = 13;
 
-/// Coordinates of a place along the axes: 0, 1 or 2.
+/// Returns the coordinates x, y and z of a place, each 0, 1 or 2.
 constexpr std::array<unsigned, 3> along_axes(unsigned place) {
   return {place % 3, place / 3 % 3, place / 9};
 }
 
-/// Returns the place of the cell that spans `axes` from a corner (bits x, y, z: the high side).
+/// Returns the place of the cell that spans `axes` from a corner of the voxel (bits x, y, z: 1 on the high side).
 constexpr unsigned place_on_border(unsigned corner, unsigned axes) {
   unsigned place = 0;
   for (unsigned a = 3; a-- > 0;) {
@@ -35,7 +36,7 @@ constexpr unsigned place_on_border(unsigned corner, unsigned axes) {
   return place;
 }
 
-/// For each place, the neighbours that contain the cell at that place, too.
+/// For each place, the neighbours of the voxel that also contain the cell at that place.
 inline constexpr std::array<Neighbourhood, 27> sharers_of_place = [] {
   std::array<Neighbourhood, 27> sharers{};
   for (unsigned p = 0; p < 27; ++p) {
@@ -50,35 +51,36 @@ inline constexpr std::array<Neighbourhood, 27> sharers_of_place = [] {
   return sharers;
 }();
 
-/// Voxels of a model whose 26 neighbours do not determine what they share with the rest: walls pass between voxels, or
-/// extra cells are attached. Extra cells that are not faces of voxels stay when voxels are removed.
+/// Voxels of a model that touch an extra cell, or a cell that stays. For these, the 26 neighbours do not determine
+/// which cells a voxel shares with the rest of the model. Extra cells that no voxel contains stay when voxels are
+/// removed, and so do their faces.
 class AttachedVoxels {
  public:
-  /// @param model  contains all its voxels. It must outlive this object.
+  /// @param model  a complex that contains all `voxels`. It must outlive this object.
   AttachedVoxels(const CellComplex& model, const VoxelSet& voxels, const Importance& importance);
 
-  /// Voxels that are cells of the lattice. Other voxels of the model are extra cells.
+  /// Returns the voxels that are cells of the lattice. The model's other voxels are replaced by extra cells.
   [[nodiscard]] const VoxelSet& voxels() const { return plain_; }
   [[nodiscard]] bool contain(std::int64_t i, std::int64_t j, std::int64_t k) const {
     return attached_.contains(i, j, k);
   }
-  /// Returns true if elementary collapses can remove a voxel without removing a cell of importance.
-  /// @param voxel  one of these.
-  /// @param around  the neighbours that are still present.
+  /// Returns true if elementary collapses can remove a voxel without removing a cell whose importance is above 0.
+  /// @param voxel  a voxel for which contain() is true.
+  /// @param around  the neighbours that have not been removed.
   [[nodiscard]] bool may_go(std::uint32_t voxel, Neighbourhood around) const;
 
-  /// Returns the rest of the model: `kept` voxels and the extra cells that stay.
+  /// Returns the model without the removed voxels: the voxels `kept` with their extra faces, and the cells that stay.
   [[nodiscard]] CellComplex rest(const VoxelSet& kept, const Context& context) const;
 
  private:
   /// Cell in the border of a voxel.
   struct BorderCell {
     Cell cell = 0;
-    Neighbourhood sharers = 0;  ///< neighbours that contain it, too
-    bool stays = false;         ///< true if it is a cell, or a face of one, that stays
+    Neighbourhood sharers = 0;  ///< neighbours that also contain the cell
+    bool stays = false;         ///< true if the cell stays when all voxels are removed
     bool is_important = false;
   };
-  /// Voxel and its border, by place: x + 3 y + 9 z, where 1 is the middle along an axis.
+  /// Voxel and the cells of its border, indexed by place (see place_of_voxel).
   struct Attached {
     std::uint32_t voxel = 0;
     std::array<BorderCell, 27> border;
@@ -102,21 +104,23 @@ class AttachedVoxels {
   const CellStructure& structure_;
   VoxelSet plain_;
   VoxelSet attached_;
-  std::vector<Attached> list_;                         ///< By ascending voxel.
-  std::vector<std::uint8_t> stays_;                    ///< Extra cells: 1 if the cell, or a coface of it, stays.
-  std::unordered_set<Cell> plain_staying_;             ///< Cells of the lattice that stay for the same reason.
-  std::vector<std::vector<std::uint32_t>> voxels_of_;  ///< Extra cells: voxels of list_ that contain them.
+  std::vector<Attached> list_;                         ///< Ascending by voxel index.
+  std::vector<std::uint8_t> stays_;                    ///< Per extra cell: 1 if it stays.
+  std::unordered_set<Cell> plain_staying_;             ///< Lattice cells that stay.
+  std::vector<std::vector<std::uint32_t>> voxels_of_;  ///< Per extra cell: voxels of list_ that contain it.
 };
 
-/// Thins the voxels of a solid and returns those that are left. Each voxel is examined once, the shallowest first. A
-/// voxel stays if its removal would change the topology or take away a cell of importance. The closed voxels collapse
-/// to the result: the cells of a simple voxel can be removed by elementary collapses (Couprie, Bertrand 2009).
+/// Thins the voxels of a solid and returns the voxels that are left. The result is as if the voxels were examined one
+/// by one, the shallowest first. A voxel stays if its removal would change the topology or remove a cell whose
+/// importance is above 0. The closed voxels collapse to the result: the cells of a simple voxel can be removed by
+/// elementary collapses (Couprie, Bertrand 2009).
 ///
-/// If all shallower neighbours of a voxel are removed, only deeper ones are present at its turn. Such voxels are judged
-/// in any order, in parallel. Voxels near those that stay follow one by one.
-/// @param attached  of the model: its voxels, and those with extra cells attached.
-/// @return  the same for any number of threads.
-/// @throws Cancelled, OutOfMemory. Cost: about 30 ns per voxel, and 150 ns per voxel near what stays.
+/// First, each voxel is examined as if all its shallower neighbours were removed. This happens in parallel, in any
+/// order. Then the voxels that could not be removed, and the deeper neighbours of voxels that stay, are examined one by
+/// one.
+/// @param attached  the voxels of the model, and which of them touch extra cells.
+/// @return  a result that does not depend on the number of threads.
+/// @throws Cancelled, OutOfMemory. Cost: about 30 ns per voxel, and 150 ns per voxel that is examined again.
 [[nodiscard]] VoxelSet thin_voxels(const VoxelSolid& solid, const AttachedVoxels& attached, const CellLattice& lattice,
                                    const Importance& importance, const Context& context);
 

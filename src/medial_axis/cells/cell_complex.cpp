@@ -11,7 +11,7 @@ namespace {
 
 using Pair = std::array<Cell, 2>;
 
-/// Returns the second items of pairs, in one row for each first item.
+/// Returns rows of indices. Row r contains, in ascending order, the second items of all pairs whose first item is r.
 IndexRows rows_of(std::vector<Pair> pairs, std::size_t rows) {
   std::sort(pairs.begin(), pairs.end());
   std::vector<std::size_t> first(rows + 1, 0);
@@ -25,12 +25,12 @@ IndexRows rows_of(std::vector<Pair> pairs, std::size_t rows) {
   return {std::move(first), std::move(items)};
 }
 
-/// Returns the cells at a lattice node that the eight voxels around it have. Bit x + 2 y + 4 z of `voxels` is the voxel
-/// at (i - 1 + x, j - 1 + y, k - 1 + z).
+/// Returns bits: bit a is set if the cell that spans axes `a` from a node (i, j, k) belongs to a given voxel. Bit x + 2
+/// y + 4 z of `voxels` is the voxel at (i - 1 + x, j - 1 + y, k - 1 + z).
 std::uint8_t cells_at(unsigned voxels) {
   std::uint8_t cells = 0;
   for (CellAxes axes = 0; axes < 8; ++axes) {
-    // Along the axes that the cell spans, only the voxels ahead of the node touch it.
+    // A voxel contains the cell if it is on the upper side of the node along all axes that the cell spans.
     for (unsigned v = 0; v < 8; ++v) {
       if ((voxels >> v & 1U) != 0 && (v & axes) == axes) cells |= static_cast<std::uint8_t>(1U << axes);
     }
@@ -52,8 +52,8 @@ ExtraIncidence::ExtraIncidence(BodyCells cells)
       faces_(std::move(cells.faces)),
       mixed_(cells.lattice),
       replaced_(std::move(cells.replaced)) {
-  std::vector<Pair> cofaces;        // of extra cells
-  std::vector<Pair> extra_cofaces;  // of cells of the voxels
+  std::vector<Pair> cofaces;        // cofaces of extra cells
+  std::vector<Pair> extra_cofaces;  // extra cofaces of lattice cells
   std::vector<Pair> extra_faces;
   for (std::uint32_t k = 0; k < cells_.size(); ++k) {
     for (const Cell face : faces_[k]) {
@@ -97,7 +97,8 @@ CellComplex::CellComplex(const VoxelSet& voxels, CellStructure structure, const 
       for (std::int64_t j = 0; j < size[1]; ++j) {
         unsigned around = 0;
         for (std::int64_t i = 0; i < size[0]; ++i) {
-          around = around >> 1U & 0x55U;  // voxels ahead of the last node lie behind this one
+          // Voxels on the upper side of the previous node are on the lower side of this one.
+          around = around >> 1U & 0x55U;
           for (unsigned v = 0; v < 4; ++v) {
             const auto y = static_cast<std::int64_t>(v & 1U);
             const auto z = static_cast<std::int64_t>(v >> 1U);

@@ -20,8 +20,8 @@
 
 namespace blum::detail {
 
-/// Faces and cofaces of the extra cells of a model (see BodyCells). Also contains the extra faces and cofaces of cells
-/// of the voxels. The name of an extra cell is `first()` plus its number.
+/// Faces and cofaces of the extra cells of a model (see BodyCells). Also contains those faces and cofaces of lattice
+/// cells that are extra cells. The number of an extra cell as a Cell is `first()` plus its index.
 class ExtraIncidence {
  public:
   explicit ExtraIncidence(BodyCells cells);
@@ -32,16 +32,16 @@ class ExtraIncidence {
   [[nodiscard]] std::span<const Cell> faces_of(Cell extra) const { return faces_[extra - first_]; }
   [[nodiscard]] std::span<const Cell> cofaces_of(Cell extra) const { return cofaces_[extra - first_]; }
 
-  /// Returns true if a cell of the voxels has an extra face or coface.
+  /// Returns true if a lattice cell is mixed: if one of its faces or cofaces is an extra cell.
   [[nodiscard]] bool is_mixed(Cell cell) const { return mixed_.contains(cell); }
-  /// All mixed cells, ascending.
+  /// Returns all mixed cells, ascending.
   [[nodiscard]] std::vector<Cell> mixed() const { return mixed_.cells(); }
-  /// Extra faces of a mixed cell.
+  /// Returns the faces of a mixed cell that are extra cells.
   [[nodiscard]] std::span<const Cell> extra_faces_of(Cell mixed) const { return faces_of_mixed_[mixed_.number(mixed)]; }
   [[nodiscard]] std::span<const Cell> extra_cofaces_of(Cell mixed) const {
     return cofaces_of_mixed_[mixed_.number(mixed)];
   }
-  /// Cells of the voxels that are not part of the model, ascending.
+  /// Returns the lattice cells that extra cells replace, so that they are not part of the model; ascending.
   [[nodiscard]] std::span<const Cell> replaced() const { return replaced_; }
   [[nodiscard]] bool is_replaced(Cell cell) const {
     return std::binary_search(replaced_.begin(), replaced_.end(), cell);
@@ -58,27 +58,27 @@ class ExtraIncidence {
   std::vector<Cell> replaced_;
 };
 
-/// Incidence of the cells of a lattice and of the extra cells of a model, if any.
+/// Faces and cofaces of all cells of a lattice, and of the extra cells if the model has any.
 class CellStructure {
  public:
   CellStructure() = default;
-  /// @param extra  may be null.
+  /// @param extra  null if the model has no extra cells.
   CellStructure(const CellLattice& lattice, std::shared_ptr<const ExtraIncidence> extra)
       : lattice_(lattice), extra_(std::move(extra)) {}
 
   [[nodiscard]] const CellLattice& lattice() const { return lattice_; }
-  /// Null without extra cells.
+  /// Returns null if the model has no extra cells.
   [[nodiscard]] const ExtraIncidence* extra() const { return extra_.get(); }
   [[nodiscard]] std::size_t extra_count() const { return extra_ ? extra_->size() : 0; }
-  /// Index of the first extra cell.
+  /// Returns the number of the first extra cell.
   [[nodiscard]] Cell first_extra() const { return static_cast<Cell>(8 * lattice_.node_count()); }
   [[nodiscard]] bool is_extra(Cell cell) const { return extra_ && cell >= extra_->first(); }
   [[nodiscard]] int dimension(Cell cell) const {
     return is_extra(cell) ? extra_->cell(cell).dimension : dimension_of(cell);
   }
 
-  /// Calls visit(face) for the cells of one dimension less in a cell's border. For a cell of the lattice this includes
-  /// faces that extra cells replace. No complex contains those.
+  /// Calls visit(face) for the cells of one dimension less in a cell's border. For a cell of the lattice, this includes
+  /// faces that extra cells replace. No complex contains such replaced faces.
   template <class Visit>
   void for_each_face(Cell cell, const Visit& visit) const {
     if (is_extra(cell)) {
@@ -89,8 +89,8 @@ class CellStructure {
     if (!extra_ || !extra_->is_mixed(cell)) return;
     for (const Cell face : extra_->extra_faces_of(cell)) visit(face);
   }
-  /// Calls visit(coface) for the cells of one dimension more around a cell. All cofaces of a cell of the lattice must
-  /// lie in the lattice.
+  /// Calls visit(coface) for the cells of one dimension more around a cell. If the cell is a cell of the lattice, all
+  /// its cofaces must lie in the lattice.
   template <class Visit>
   void for_each_coface(Cell cell, const Visit& visit) const {
     if (is_extra(cell)) {
@@ -111,12 +111,12 @@ class CellStructure {
 class CellComplex {
  public:
   CellComplex() = default;
-  /// Union of the closed voxels of a set. No voxel may lie in the outermost layer of its box.
+  /// Makes the union of the closed voxels of a set. No voxel may lie in the outermost layer of the set's box.
   CellComplex(const VoxelSet& voxels, const Context& context);
-  /// Whole model: voxels and all its extra cells.
+  /// Makes the complex of a whole model: its voxels and all its extra cells.
   CellComplex(const VoxelSet& voxels, std::shared_ptr<const ExtraIncidence> extra, const Context& context);
 
-  /// Voxels of a model without extra cells.
+  /// Makes the complex of the voxels of a model, without its extra cells and without the cells that these replace.
   CellComplex(const VoxelSet& voxels, CellStructure structure, const Context& context);
 
   [[nodiscard]] CellComplex clone() const {
@@ -140,9 +140,10 @@ class CellComplex {
     }
   }
   /// Adds a cell of the structure and all its faces.
-  /// @param cell  not a cell of the lattice that extra cells replace.
+  /// @param cell  must not be a lattice cell that extra cells replace.
   void insert_closure(Cell cell);
-  /// Bit a of byte n is set if cell (n, axes a) is in the complex.
+  /// Returns one byte for each lattice node. Bit a of byte n is set if the cell that spans axes `a` from node n is in
+  /// the complex.
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return cells_.span(); }
   /// Calls visit(cell) for all cells, ascending; cells of the lattice come first.
   template <class Visit>
@@ -171,7 +172,7 @@ class CellComplex {
  private:
   CellStructure structure_;
   Buffer<std::uint8_t> cells_;
-  std::vector<std::uint8_t> extra_;  ///< 1 if in the complex
+  std::vector<std::uint8_t> extra_;  ///< per extra cell: 1 if in the complex
 };
 
 }  // namespace blum::detail

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t removals_between_looks = std::size_t{1} << 16U;
 
-/// Queue of free faces by depth, in steps. Within a step, the first pushed is the first popped.
+/// Queue of free faces, ordered by depth, which is rounded down to whole steps. Faces of one step are popped in the
+/// order in which they were pushed.
 class DepthQueue {
  public:
   void push(Cell face, double depth) {
@@ -71,7 +72,8 @@ class Collapser {
     run([](Cell, Cell, float) {}, [&](Cell cube, Cell) { offer_faces(cube); });
   }
 
-  /// Removes squares, edges and vertices of importance zero. remove_rest() then removes the others in order.
+  /// Removes pairs of a square and an edge, or of an edge and a vertex, with importance zero. remove_rest() then
+  /// removes the others by importance.
   void remove_unimportant() {
     level_ = 0;
     offer_all(0, 1);
@@ -118,7 +120,8 @@ class Collapser {
       unimportant_.push(face, depth * per_step_ + 1);
     }
   }
-  /// Queues all free cells of some dimensions, ascending; cells of the lattice come first.
+  /// Queues all free cells from `least_dimension` to `most_dimension`, both included, ascending; cells of the lattice
+  /// come first.
   void offer_all(int least_dimension, int most_dimension) {
     constexpr std::size_t grain = std::size_t{1} << 16U;
     unsigned wanted = 0;  // bit a: the cells that span `a` from a node

@@ -10,40 +10,41 @@
 
 namespace blum::detail {
 
-/// Elementary collapse: removes a cell together with a face that no other cell has.
+/// Elementary collapse: the removal of a cell and of a face that belongs to no other cell.
 struct Removal {
   Cell cell;
   Cell face;
-  /// Degrees: the largest importance among this removal and those before it.
+  /// Degrees: the largest importance of a face removed so far, this one included.
   float level;
 };
 
 /// Result of collapsing a complex, and the order of its further removals.
 struct CollapseOrder {
-  /// Contains no cubes and no cells of importance zero that homotopy does not need.
+  /// The complex after all removals of level zero. It contains no cubes, and cells of importance zero only if the
+  /// homotopy type requires them.
   CellComplex base;
-  /// Removals that follow, by level, up to the largest requested one. After those of level <= theta, the base has
-  /// become the complex at theta.
+  /// The removals after those that led to `base`, ascending by level, up to the largest requested level. The removals
+  /// with level <= theta turn `base` into the complex at theta.
   std::vector<Removal> removals;
 };
 
 /// Depths of the cells of a complex in the solid, mesh units.
 struct CellDepths {
-  std::span<const float> of_voxels;      ///< of the lattice, x fastest; negative outside the solid
-  std::span<const float> of_extra = {};  ///< of each extra cell
+  std::span<const float> of_voxels;      ///< for each voxel of the lattice, x fastest; negative outside the solid
+  std::span<const float> of_extra = {};  ///< for each extra cell
 };
 
-/// Removes extra cells of importance zero together with free faces that are also extra, until none is left. The result
-/// has the homotopy type of the complex and contains all its voxels.
+/// Removes pairs of an extra cell and its free face until there are none. The face must also be extra and have
+/// importance zero. The result has the homotopy type of the complex and contains all its voxels.
 void collapse_extra(CellComplex& complex, const Importance& importance);
 
-/// Collapses a complex until nothing can be removed. Cubes are removed first, then squares, edges and vertices. The
-/// least important cells come first, and the shallowest among equals. Each step is an elementary collapse. So
-/// every complex on the way has the homotopy type of the first, whatever the numbers are (Liu, Chambers, Letscher, Ju
-/// 2010; Chaussard, Couprie 2009).
-/// @param importance  of cells, in degrees; at least that of their cofaces.
+/// Collapses a complex until nothing can be removed. Cubes are removed first, then squares, edges and vertices. Faces
+/// of least importance come first; among equal ones, the shallowest. Each step is an elementary collapse. So all
+/// intermediate complexes have the homotopy type of the given one, for any importance and depth (Liu, Chambers,
+/// Letscher, Ju 2010; Chaussard, Couprie 2009).
+/// @param importance  degrees. A cell must be at least as important as its cofaces.
 /// @param most_level  degrees; removals of larger importance are not listed.
-/// @throws Cancelled. Cost: about linear in the cells, n log n in the important ones.
+/// @throws Cancelled. Cost: about linear in the number of cells, and n log n for n cells of importance above 0.
 [[nodiscard]] CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double depth_step,
                                      const Importance& importance, double most_level, const Context& context);
 

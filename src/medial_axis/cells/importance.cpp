@@ -5,7 +5,7 @@
 namespace blum::detail {
 namespace {
 
-/// Calls visit(cell) for a cell and all its faces; for some of them more than once.
+/// Calls visit(cell) for a cell, its faces and their faces. It may visit a cell more than once.
 template <class Visit>
 void for_each_in_closure(const CellStructure& structure, Cell cell, const Visit& visit) {
   visit(cell);

@@ -17,7 +17,7 @@
 
 namespace blum::detail {
 
-/// Cache of simple neighbourhoods: only a few of all possible ones occur.
+/// Cache of the results of is_simple() for neighbourhoods. Few of the 2^26 possible neighbourhoods occur.
 class SimpleCache {
  public:
   [[nodiscard]] bool is_simple(Neighbourhood around) {
@@ -43,7 +43,7 @@ struct Waiting {
   }
 };
 
-/// Queue of voxels by ascending depth. A pushed voxel must not come before the one popped last.
+/// Queue of voxels by ascending depth. A pushed voxel must not precede the voxel that was popped last.
 class Line {
  public:
   explicit Line(double step) : per_step_(1 / step) {}
@@ -80,7 +80,8 @@ class Line {
 /// Order in which voxels are examined: by depth, then by index.
 class DepthOrder {
  public:
-  /// @param depth  above zero for exactly the voxels to be thinned; none of them lies at the border of the box.
+  /// @param depth  above zero for the voxels to be thinned and for no others. None of these lies in the outermost layer
+  /// of the box.
   DepthOrder(std::span<const float> depth, const std::array<std::int64_t, 3>& size) : depth_(depth), size_(size) {
     for (std::size_t n = 0; n < 27; ++n) {
       const auto at = static_cast<std::int64_t>(n);
@@ -89,14 +90,15 @@ class DepthOrder {
   }
 
   [[nodiscard]] float depth(std::uint32_t voxel) const { return depth_[voxel]; }
-  /// Returns the neighbour of a voxel that a bit of Neighbourhood stands for.
+  /// Returns the linear index of the neighbour that a bit of Neighbourhood represents.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t voxel, std::size_t bit) const {
     return static_cast<std::uint32_t>(voxel + offset_[bit]);
   }
   [[nodiscard]] bool is_deeper(std::uint32_t a, std::uint32_t b) const {
     return depth_[a] != depth_[b] ? depth_[a] > depth_[b] : a > b && depth_[a] > 0;
   }
-  /// Returns the neighbours that are present at the turn of a voxel: the deeper ones, and the kept ones of the others.
+  /// Returns the neighbours that are present when a voxel is examined: all deeper neighbours, and the other neighbours
+  /// that are in `kept`.
   [[nodiscard]] Neighbourhood present_around(std::uint32_t voxel, const VoxelSet& kept) const {
     const auto at = kept.place(voxel);
     Neighbourhood around = neighbourhood(kept, at[0], at[1], at[2]);
@@ -106,8 +108,8 @@ class DepthOrder {
     return around & ~(1U << 13U);
   }
 
-  /// Returns the voxels that may not be removed after all shallower ones are removed. If all shallower neighbours of a
-  /// voxel are removed, only deeper ones are present at its turn. Such voxels are judged in any order, in parallel.
+  /// Returns the voxels that may not be removed if all their shallower neighbours are removed. Each voxel is examined
+  /// with only its deeper neighbours present, so the voxels can be examined in parallel.
   /// @param may_go  (voxel, place, neighbourhood, SimpleCache) -> bool; called by several threads.
   template <class Judge>
   [[nodiscard]] std::vector<std::uint32_t> stuck(const VoxelSet& voxels, const Judge& may_go,
@@ -152,7 +154,7 @@ class DepthOrder {
       if (n == 13) continue;
       const float* other = own + offset_[n];
       const Neighbourhood bit = 1U << n;
-      // Linear indices ascend with n, so later neighbours count as deeper among equals.
+      // Linear indices ascend with n. If two voxels are equally deep, the one with the larger index counts as deeper.
       if (n < 13) {
         for (std::size_t i = 1; i + 1 < length; ++i) out[i] |= other[i] > own[i] ? bit : 0;
       } else {

@@ -20,13 +20,14 @@ struct VoxelSolid {
   VoxelSet voxels;      ///< Voxels of the solid.
   Buffer<float> depth;  ///< Distance to the surface, positive inside; mesh units.
   Buffer<SiteId> site;  ///< Closest site.
-  /// Cells of a polyhedron's model beside `voxels`. Null for other solids, which equal their voxels.
+  /// The extra cells of a polyhedron's model. Null if the solid is an image or was made by winding numbers; its voxels
+  /// are then the whole model.
   std::shared_ptr<const ExtraIncidence> extra = {};
   bool is_exact = false;  ///< true if the solid is the union of the closed voxels, as for images
 };
 
 /// Fills a set with the voxels deeper than a limit, except those of the outermost layer of the box.
-/// @param depth  per voxel, x fastest: distance to the surface, positive inside, mesh units.  @throws Cancelled.
+/// @param depth  for each voxel, x fastest: distance to the surface, positive inside, mesh units.  @throws Cancelled.
 void take_deeper_than(std::span<const float> depth, double limit, VoxelSet& voxels, const Context& context);
 
 }  // namespace blum::detail

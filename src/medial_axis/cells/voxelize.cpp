@@ -19,12 +19,13 @@
 namespace blum::detail {
 namespace {
 
-/// Layers of voxels around a mesh. Voxels added outside the mesh lie within one diagonal of it, and one layer stays
-/// empty.
+/// Number of layers of voxels added around the box of a mesh. Voxels of the model that lie outside the mesh are within
+/// one voxel diagonal of it, and the outermost layer stays empty.
 constexpr int margin = 3;
 
-/// Displacement of the grid off the middle of a body, in voxels. Otherwise planes of symmetry and their diagonals would
-/// pass through voxel centres. Rounding would then decide on which side voxels lie, which makes ragged sheets.
+/// Displacement of the grid's middle from the body's middle, in voxels. Without it, planes of symmetry and diagonal
+/// planes would pass through voxel centres. Rounding would then decide on which side of a plane such a voxel lies,
+/// which makes ragged sheets.
 constexpr Vec3d off_middle{0.11, 0.27, 0.37};
 
 using Place = std::array<std::int64_t, 3>;
@@ -43,8 +44,8 @@ GridSpec voxels_around(const Box3& box, double spacing, double shift) {
   return grid;
 }
 
-/// Makes depths positive for exactly the voxels of a set. If a surface passes within rounding of a centre, field and
-/// model may disagree on its side.
+/// Makes the depths of the voxels of a set positive and those of all others zero or negative. If the surface passes
+/// within rounding of a voxel centre, the distance field and the model may disagree on the centre's side.
 void agree_with(const VoxelSet& inside, Buffer<float>& depth, const Context& context) {
   const Place& size = inside.size();
   parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
@@ -61,7 +62,8 @@ void agree_with(const VoxelSet& inside, Buffer<float>& depth, const Context& con
   });
 }
 
-/// Returns a solid whose depths are the negated distances of a field: positive inside.
+/// Returns a solid whose depths are the negated distances of a field, positive inside. The solid's set of voxels is
+/// empty.
 VoxelSolid solid_of(Field field) {
   VoxelSolid solid;
   solid.grid = field.grid;
@@ -107,7 +109,8 @@ Extent extent_of(const VoxelSet& voxels) {
   return out;
 }
 
-/// Returns an image with 1 for the voxels of a set, 0 for the others, in the box plus a layer on each side.
+/// Returns an image of the box `extent` plus one layer of voxels on each side. Its values are 1 for voxels of the set
+/// and 0 for others.
 VoxelImage cut_out(const VoxelSet& voxels, const Extent& extent, const GridSpec& grid) {
   VoxelImage image;
   image.grid = grid;

@@ -13,28 +13,31 @@
 
 namespace blum::detail {
 
-/// Solid as voxels, and a report of its construction.
+/// A solid that is represented by voxels, and a report of its construction.
 struct Voxelized {
   VoxelSolid solid;
   BodyReport report;
 };
 
-/// Returns the cellular model of a body: voxels and extra cells. The report contains places where the model may lack
-/// the body's topology.
+/// Returns the cellular model of a body: voxels and extra cells. The report lists the places where the model's topology
+/// may differ from the body's.
 /// @param spacing  mesh units.
-/// @param shift  displacement of the grid along each axis, voxels.
+/// @param shift  additional displacement of the grid, in voxels, the same along all axes.
 [[nodiscard]] Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift = 0);
 
-/// Splits the model of a body in the boxes `finer`, too: see body_cells(). Voxels, depths and sites stay.
+/// Replaces the extra cells of a body's model by those of a model that is also split in the boxes `finer`; see
+/// body_cells(). Voxels, depths and sites do not change.
 void split_further(Voxelized& voxelized, const SolidBody& body, std::span<const Box3> finer, const Context& context);
 
-/// Returns the voxels whose centre has a winding number above 1/2.
+/// Returns the solid of the voxels at whose centres the winding number is above 1/2.
 [[nodiscard]] Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context,
                                             double shift = 0);
 
-/// Returns the voxels of an image, in the smallest box that contains them plus a layer of empty voxels.
-/// @param first  output: place in the image of the box's voxel (0, 0, 0); may be -1.
-/// @param all  voxels of the image, at least one; `grid` has their centres as nodes.
+/// Returns the solid of the voxels of an image. Its box is the smallest one that contains these voxels, plus one layer
+/// of empty voxels on each side.
+/// @param first  receives the indices in the image of the box's voxel (0, 0, 0). An index may be -1.
+/// @param all  the voxels of the image that are in the solid, at least one.
+/// @param grid  its nodes are the centres of the image's voxels.
 [[nodiscard]] Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<std::int64_t, 3>& first,
                                        const Context& context);
 

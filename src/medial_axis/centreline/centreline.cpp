@@ -38,15 +38,15 @@ namespace {
 
 using Place = std::array<std::int64_t, 3>;
 
-/// Number of voxels of one value, and the box around them.
+/// Number of the image's voxels with one value, and the box around these voxels.
 struct LabelBox {
   std::int64_t label = 0;
   std::uint64_t voxels = 0;
   Place low{};   ///< lower corner
-  Place high{};  ///< upper corner, within the box
+  Place high{};  ///< upper corner; voxel `high` belongs to the box
 };
 
-/// Voxel 0 of a crop is this many voxels before that of its box.
+/// Number of layers of voxels around the box of a label that crop() adds on each side.
 inline constexpr std::int64_t margin = 2;
 
 constexpr double exact_integer_limit = 9007199254740992.0;  // 2^53
@@ -60,7 +60,7 @@ bool is_label(T value) {
   }
 }
 
-/// Adds the voxels [i, end) of a row.
+/// Adds the voxels i to end - 1 of row (j, k) to a box.
 void extend(LabelBox& box, std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
   const Place low{i, j, k};
   const Place high{end - 1, j, k};
@@ -80,7 +80,7 @@ void join(LabelBox& box, const LabelBox& other) {
   box.voxels += other.voxels;
 }
 
-/// Calls visit(value, begin, end, j) for the runs of equal values of one layer.
+/// Calls visit(value, begin, end, j) for each run of equal values in a row j of layer k.
 template <class T, class Visit>
 void for_each_run(std::span<const T> values, const Place& size, std::int64_t k, const Visit& visit) {
   for (std::int64_t j = 0; j < size[1]; ++j) {
@@ -88,7 +88,7 @@ void for_each_run(std::span<const T> values, const Place& size, std::int64_t k, 
     for (std::int64_t i = 0; i < size[0];) {
       const std::int64_t begin = i;
       const T value = row[i];
-      ++i;  // also past NaN, which equals nothing
+      ++i;  // also for NaN, which is not equal to itself
       while (i < size[0] && row[i] == value) ++i;
       visit(value, begin, i, j);
     }
@@ -131,13 +131,13 @@ std::vector<LabelBox> boxes(std::span<const T> values, const Place& size, const 
   return out;
 }
 
-/// Returns the boxes of all values except 0, ascending.
+/// Returns the boxes of all values of the image except 0, ascending by value.
 /// @throws InvalidImage if a value is not a whole number; Cancelled.
 std::vector<LabelBox> label_boxes(const VoxelImageView& image, const Context& context) {
   return std::visit([&](const auto& values) { return boxes(values, image.grid.size, context); }, image.values);
 }
 
-/// Returns the box of the voxels that a rule selects; an empty box if it selects none.
+/// Returns the box of the selected voxels; an empty box if no voxel is selected.
 LabelBox selection_box(const VoxelImageView& image, const LabelSelection& selection, const Context& context) {
   const Place& size = image.grid.size;
   std::vector<LabelBox> layers(static_cast<std::size_t>(size[2]));
@@ -162,8 +162,8 @@ LabelBox selection_box(const VoxelImageView& image, const LabelSelection& select
   return box;
 }
 
-/// Returns the selected voxels within a box, surrounded by two layers of others. Voxels at the border are never
-/// selected.
+/// Returns the selected voxels within a box. The set has two more layers of voxels on each side of the box, which are
+/// not selected.
 /// @throws Cancelled.
 VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, const LabelBox& box,
               const Context& context) {
@@ -216,7 +216,8 @@ Warning warning_of(const Centreline& line) {
 namespace centrelines {
 namespace {
 
-constexpr std::int64_t small_box = std::int64_t{1} << 18U;  // voxels; labels in such boxes run one per thread
+// Number of voxels. Labels in boxes up to this size are computed in parallel, each on one thread.
+constexpr std::int64_t small_box = std::int64_t{1} << 18U;
 
 std::string counted(std::int64_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -237,8 +238,8 @@ void judge_homotopy(Centreline& out) {
                  (out.label_betti[2] > 0 ? ": curves have no voids, so these were filled" : "");
 }
 
-/// Adds voxels of which at least five of the six neighbours beside them are in the set: pits one voxel wide, as noise
-/// makes them.
+/// Adds each voxel that shares faces with at least five voxels of the set. Such a pit, one voxel wide, is usually
+/// noise.
 VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
   VoxelSet out = voxels;
   const auto& size = voxels.size();
@@ -258,7 +259,7 @@ VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
           const std::uint64_t b = beside[1][w];
           const std::uint64_t c = beside[2][w];
           const std::uint64_t d = beside[3][w];
-          // At least two of each three bits, and all three of at least one side.
+          // At least five of six bits are set: at least two of each group of three, and all three of one group.
           const std::uint64_t two_here = (left & right) | (left & a) | (right & a);
           const std::uint64_t two_there = (b & c) | (b & d) | (c & d);
           to[w] |= two_here & two_there & ((left ^ right ^ a) | (b ^ c ^ d));
@@ -269,11 +270,11 @@ VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
   return out;
 }
 
-constexpr float most_shift = 1.0F / 4096;  // of a voxel: below the steps of distances up to a thousand voxels
+constexpr float most_shift = 1.0F / 4096;  // voxels: less than the difference of any two distances below 1000 voxels
 
-/// Makes equal depths differ, by less than most_shift of a voxel, and sets those of other voxels to zero. Otherwise
-/// equally deep voxels would be removed in the order of their indices, from one end of a tube to the other. The tube
-/// would vanish: a bar of two by two voxels has no deeper ones.
+/// Makes equal depths of the set's voxels differ, by less than most_shift, and sets the depths of other voxels to zero.
+/// Otherwise equally deep voxels would be removed in the order of their indices, from one end of a tube to the other. A
+/// bar of two by two voxels would vanish, because all its voxels are equally deep.
 void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
   const auto& size = voxels.size();
   const float scale = most_shift * static_cast<float>(std::min({spacing.x, spacing.y, spacing.z})) / 65536.0F;
@@ -284,7 +285,7 @@ void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing
         const auto row = voxels.row(j, static_cast<std::int64_t>(k));
         for (std::int64_t i = 0; i < size[0]; ++i, ++at) {
           const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
-          // Murmur's finalizer: its bits show no pattern of the place.
+          // Murmur's finalizer turns the index into pseudo-random bits.
           std::uint32_t bits = static_cast<std::uint32_t>(at) * 0x85ebca6bU;
           bits = (bits ^ bits >> 13U) * 0xc2b2ae35U;
           bits ^= bits >> 16U;
@@ -295,7 +296,7 @@ void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing
   });
 }
 
-/// Returns the distance of each voxel to the closest one outside of the set.
+/// Returns the distance of each voxel of the box to the closest voxel outside of the set.
 Buffer<float> depth_of(const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
   const auto& size = voxels.size();
   Buffer<std::uint8_t> is_in(static_cast<std::size_t>(size[0] * size[1] * size[2]));
@@ -320,7 +321,7 @@ Buffer<float> depth_of(const VoxelSet& voxels, const Vec3d& spacing, const Conte
   return std::move(distance_transform(image, options, context).distance);
 }
 
-/// Phases of all labels. Those of labels that run at the same time are not recorded.
+/// Times of the phases, summed over labels. The phases of labels that are computed in parallel are not recorded.
 struct Times {
   std::vector<PhaseTime> phases;
   PhaseTimer timer{phases};
@@ -348,7 +349,7 @@ Centreline centreline_of(VoxelSet voxels, const Vec3d& spacing, double spur, con
   return out;
 }
 
-/// Moves a centreline from the box of a label to the world.
+/// Converts the positions of a centreline from the coordinates of a label's box to world coordinates.
 void move_to_world(const GridSpec& grid, const LabelBox& box, Centreline& line) {
   const Vec3d shift{static_cast<double>(box.low[0] - margin) * grid.spacing.x,
                     static_cast<double>(box.low[1] - margin) * grid.spacing.y,

@@ -6,7 +6,7 @@
 namespace blum {
 namespace {
 
-/// Builds a complex branch by branch.
+/// Builds a complex from centrelines, branch by branch.
 class Builder {
  public:
   explicit Builder(const Centrelines& lines) {

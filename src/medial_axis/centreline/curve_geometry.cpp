@@ -20,21 +20,22 @@ namespace {
 struct CurveEnd {
   enum class Kind : std::uint8_t { free, junction, closed };
   Kind kind = Kind::free;
-  Vec3d centre{};     ///< of a junction's ball
-  double radius = 0;  ///< of a junction's ball
+  Vec3d centre{};     ///< centre of a junction's ball
+  double radius = 0;  ///< radius of a junction's ball
 };
 
-/// Points of a curve outside of the balls of its junctions: at least one. In a closed curve the first is also the last.
+/// Points of a curve outside of the balls of its junctions: at least one. The last point of a closed curve is also its
+/// first.
 struct Curve {
   std::vector<Vec3d> points;
-  std::vector<double> radii;  ///< of the circle with the area of the section there
+  std::vector<double> radii;  ///< for each point: radius of the circle with the area of the section there
 };
 
-constexpr int rounds = 3;            // of moving to centroids
-constexpr int smoothings = 2;        // before each of these
-constexpr double tail = 2;           // depths: part at a free end in which the width is compared
-constexpr double full_depth = 0.9;   // of the largest depth there
-constexpr double least_step = 1e-9;  // of the voxel
+constexpr int rounds = 3;            // number of times that the points are moved to the centroids of sections
+constexpr int smoothings = 2;        // number of smoothing steps before each round
+constexpr double tail = 2;           // multiples of the depth: length of the part at a free end that is examined
+constexpr double full_depth = 0.9;   // relative to the largest depth in that part
+constexpr double least_step = 1e-9;  // relative to the shortest side of a voxel
 
 class CurveMaker {
  public:
@@ -73,7 +74,7 @@ class CurveMaker {
   }
 
  private:
-  /// Removes the points at each end that lie in its ball. If none is left, the one in the middle stays.
+  /// Removes the points that lie in the balls of the junctions at the ends. If all points do, the middle one stays.
   void leave_balls() {
     std::size_t first = 0;
     std::size_t last = start_.size();
@@ -91,7 +92,8 @@ class CurveMaker {
                                 start_.begin() + static_cast<std::ptrdiff_t>(last));
   }
 
-  /// Returns the index of a point some places on. Closed curves go on from their start, others stop.
+  /// Returns the index of the point that is `places` points after point i. Indices of closed curves wrap around; those
+  /// of others stop at the ends.
   [[nodiscard]] std::size_t on(std::size_t i, std::ptrdiff_t places) const {
     const auto count = static_cast<std::ptrdiff_t>(points_.size());
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) + places;
@@ -99,7 +101,7 @@ class CurveMaker {
     return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, count - 1));
   }
 
-  /// Moves each point half way to the middle of its neighbours, within its reach.
+  /// Moves each point half way to the midpoint of its two neighbours, but not further than `reach_` from its voxel.
   void smooth() {
     std::vector<Vec3d> next = points_;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -115,7 +117,8 @@ class CurveMaker {
     return distance > reach_ ? start_[i] + (reach_ / distance) * off : point;
   }
 
-  /// Computes tangents: directions of the chord over about a radius to both sides.
+  /// Computes tangents. The tangent at a point is the direction of a chord. Its ends are about as far from the point,
+  /// along the curve, as the point is deep.
   void find_tangents() {
     tangents_.resize(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -128,7 +131,8 @@ class CurveMaker {
     }
   }
 
-  /// Returns the first point in one direction that is at least `wanted` away along the curve.
+  /// Returns the first point in one direction whose distance along the curve is at least `wanted`. If the curve ends
+  /// before, or after a quarter of a closed curve, it returns the last point reached.
   [[nodiscard]] std::size_t walk(std::size_t i, std::ptrdiff_t step, double wanted) const {
     double way = 0;
     std::size_t at = i;
@@ -152,7 +156,7 @@ class CurveMaker {
     points_ = std::move(next);
   }
 
-  /// Moves the first point, a free end, to where its ball touches the tip.
+  /// Moves the first point, a free end, so that the ball around it touches the tip of the label.
   void place_end() {
     if (points_.size() < 3) return;
     const std::size_t root = end_of_tail();
@@ -176,7 +180,8 @@ class CurveMaker {
     points_ = std::move(kept);
   }
 
-  /// Returns the first point at which the label is as wide as behind it. Points before it may lead into a corner.
+  /// Returns the first point whose depth is at least `full_depth` times the largest depth near the free end. Points
+  /// before it may lead into a corner of the label.
   [[nodiscard]] std::size_t end_of_tail() const {
     double deepest = 0;
     double way = 0;
@@ -191,7 +196,8 @@ class CurveMaker {
 
   [[nodiscard]] static double radius_of(double area) { return std::sqrt(area / std::numbers::pi); }
 
-  /// Returns the radii of the sections' areas, which are smoothed along the curve like the points.
+  /// Returns, for each point, the radius of the circle that has the same area as the cross-section at the point. The
+  /// areas are smoothed along the curve in the same way as the points.
   std::vector<double> radii() const {
     std::vector<double> areas(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -209,25 +215,27 @@ class CurveMaker {
     return areas;
   }
 
-  std::vector<Vec3d> start_;  ///< original places of the points
+  std::vector<Vec3d> start_;  ///< the points before they were moved
   std::array<CurveEnd, 2> ends_;
   const LabelShare& label_;
   double reach_;
   bool is_closed_;
-  bool is_in_balls_ = false;  ///< true if all of it lies in the balls of its junctions
+  bool is_in_balls_ = false;  ///< true if the whole curve lies in the balls of its junctions
   std::vector<Vec3d> points_;
   std::vector<Vec3d> tangents_;
 };
 
-/// @param voxels  centres of a chain, from end to end.
-/// @param reach   greatest distance of a point from its voxel.
+/// @param voxels  centres of the voxels of a chain, from end to end.
+/// @param reach   greatest distance of a point from its voxel's centre.
 Curve make_curve(const std::vector<Vec3d>& voxels, const std::array<CurveEnd, 2>& ends, const LabelShare& label,
                  double reach) {
   return CurveMaker(voxels, ends, label, reach).make();
 }
 
-constexpr double section_blur = 1.5;    // voxels: sections closer to the ball of a junction see other branches
-constexpr double pull_to_voxel = 1e-3;  // of a node, relative to that of a branch; decides if all are parallel
+// Voxels: sections this close to the ball of a junction also contain other branches.
+constexpr double section_blur = 1.5;
+// Weight of a node's voxel, relative to a branch. It decides if all branches are parallel.
+constexpr double pull_to_voxel = 1e-3;
 
 /// Point and direction.
 struct Ray {
@@ -235,7 +243,8 @@ struct Ray {
   Vec3d along;
 };
 
-/// Returns the point closest to all lines and, weakly, to `start`; at most `reach` away from `start`.
+/// Returns the point with the least sum of squared distances from all lines and, with a small weight, from `start`. It
+/// is at most `reach` away from `start`.
 Vec3d meeting_point(const std::vector<Ray>& rays, const Vec3d& start, double reach) {
   // Normal equations of sum |(I - t t')(p - q)|^2 + weight |p - start|^2, solved by Cramer's rule.
   std::array<Vec3d, 3> rows{Vec3d{pull_to_voxel, 0, 0}, Vec3d{0, pull_to_voxel, 0}, Vec3d{0, 0, pull_to_voxel}};
@@ -251,12 +260,12 @@ Vec3d meeting_point(const std::vector<Ray>& rays, const Vec3d& start, double rea
   const double determinant = dot(rows[0], cross(rows[1], rows[2]));
   Vec3d shift{dot(right, cross(rows[1], rows[2])), dot(right, cross(rows[2], rows[0])),
               dot(right, cross(rows[0], rows[1]))};
-  shift = shift / determinant;  // the matrix is symmetric, so that its rows are its columns
+  shift = shift / determinant;  // the matrix is symmetric: its rows are its columns
   const double length = blum::length(shift);
   return length > reach ? start + (reach / length) * shift : start + shift;
 }
 
-/// Returns the line of a branch a little outside of the ball of a node, where sections see it alone.
+/// Returns the line through points 3 and 10 of a branch, counted from a node. Sections there contain no other branch.
 std::optional<Ray> ray_at(const Curve& curve, bool at_end) {
   constexpr std::size_t first = 3;
   constexpr std::size_t last = 10;
@@ -270,8 +279,8 @@ std::optional<Ray> ray_at(const Curve& curve, bool at_end) {
   return Ray{from, (to - from) / length};
 }
 
-/// Computes mean and least radius along a branch, further than `margin` from the balls of its junctions. If no such
-/// part exists, it uses all points outside of the balls.
+/// Computes the mean and least radius of the part of a branch that is further than `margin` from the balls of its
+/// junctions. If there is no such part, it uses all points of the curve.
 void measure_radii(const Curve& curve, const std::array<CurveEnd, 2>& ends, double margin, CentrelineBranch& branch) {
   const auto is_free = [&](const Vec3d& point) {
     return std::none_of(ends.begin(), ends.end(), [&](const CurveEnd& end) {
@@ -313,7 +322,7 @@ class Placer {
   [[nodiscard]] bool is_free(std::int32_t node) const {
     return node != no_node && graph_.nodes[static_cast<std::size_t>(node)].chains.size() == 1;
   }
-  /// Returns the ball of a junction; other nodes have none.
+  /// Returns the kind of a curve's end at a node and, for a junction, its ball.
   [[nodiscard]] CurveEnd end_of(std::int32_t node) const {
     if (node == no_node) return {CurveEnd::Kind::closed, {}, 0};
     const std::uint32_t voxel = graph_.nodes[static_cast<std::size_t>(node)].voxel;

@@ -11,10 +11,10 @@
 
 namespace blum::centrelines {
 
-/// Puts nodes and branches into a centreline, in units of the world, with voxel (0, 0, 0) of the box at the origin.
-/// Chains are moved to the centroids of the sections across them, no point by more than a voxel, and smoothed. Within
-/// the balls of junctions, where sections are meaningless, they are straight. Free ends lie where their ball touches
-/// the tip of the label.
+/// Computes the nodes and branches of a centreline in world units, with the centre of the box's voxel (0, 0, 0) at the
+/// origin. The points of chains are smoothed and moved to the centroids of the sections across the chains, none by more
+/// than a voxel. Within the balls of junctions, where sections are meaningless, branches are straight. At a free end,
+/// the ball around the last point touches the tip of the label.
 void place_curves(const CurveGraph& graph, const ChainMeasure& measure, const LabelShare& label, Centreline& out,
                   const Context& context);
 

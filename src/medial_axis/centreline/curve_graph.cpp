@@ -21,10 +21,10 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 struct Edge {
   double length;
   std::uint32_t a;
-  std::uint32_t b;  ///< > a
+  std::uint32_t b;  ///< larger than a
 };
 
-/// Edge as seen from one of its voxels.
+/// An edge at one of its two voxels: the edge and its other voxel.
 struct Link {
   std::uint32_t to;
   std::uint32_t edge;
@@ -47,7 +47,8 @@ std::vector<std::uint32_t> listed(const VoxelSet& voxels) {
   return out;
 }
 
-/// Returns all pairs of neighbours, the shortest first.
+/// Returns an edge for each pair of neighbouring voxels, the shortest edges first. Voxels are given by their indices in
+/// `list`.
 std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::uint32_t>& list, const Vec3d& spacing,
                                 const Context& context) {
   std::vector<Edge> edges;
@@ -55,7 +56,7 @@ std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::u
   for (std::size_t v = 0; v < list.size(); ++v) {
     if (v % 65536 == 0) throw_if_cancelled(context);
     const auto at = voxels.place(list[v]);
-    for (std::int64_t n = 14; n < 27; ++n) {  // the neighbours that come later
+    for (std::int64_t n = 14; n < 27; ++n) {  // the 13 neighbours with larger linear indices
       const std::int64_t x = n % 3 - 1;
       const std::int64_t y = n / 3 % 3 - 1;
       const std::int64_t z = n / 9 - 1;
@@ -72,7 +73,7 @@ std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::u
   return edges;
 }
 
-/// Selects the edges that the graph keeps.
+/// Selects the edges that the graph keeps: those of the spanning forest, and one for each tunnel.
 class Tunnels {
  public:
   Tunnels(std::size_t voxels, const std::vector<Edge>& edges, const Context& context)
@@ -89,7 +90,7 @@ class Tunnels {
   [[nodiscard]] const std::vector<bool>& kept() const { return is_kept_; }
 
  private:
-  /// Adds the triangles whose longest edge is `edge`, which closes a loop of shorter ones.
+  /// Adds the triangles whose longest edge is `edge`. This edge closes a loop of shorter edges.
   void close(std::uint32_t edge) {
     const Edge& e = edges_[edge];
     for (const Link& one : links_[e.a]) {
@@ -99,7 +100,8 @@ class Tunnels {
     }
   }
 
-  /// Adds the border of a triangle, edges descending. It closes its longest edge that no earlier triangle closes.
+  /// Adds the border of a triangle: its edges, descending. Borders that begin with the same edge are added to it modulo
+  /// 2. If edges are left, the first of them need not be kept.
   void add(std::vector<std::uint32_t> border) {
     while (!border.empty()) {
       const auto [at, is_new] = closing_.try_emplace(border.front());
@@ -118,10 +120,10 @@ class Tunnels {
   const std::vector<Edge>& edges_;
   std::vector<std::vector<Link>> links_;
   std::vector<bool> is_kept_;
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> closing_;  ///< borders by their first edge
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> closing_;  ///< reduced borders by their first edge
 };
 
-/// Walks along the edges of voxels that have two.
+/// Joins edges to chains. Chains end at voxels that do not have exactly two edges.
 class Tracer {
  public:
   Tracer(const std::vector<std::uint32_t>& list, const std::vector<Edge>& edges, const std::vector<bool>& is_kept)
@@ -143,7 +145,7 @@ class Tracer {
       if (node_of_[v] != none) walk_all(v);
     }
     for (std::uint32_t v = 0; v < list_.size(); ++v) {
-      if (node_of_[v] == none) walk_all(v);  // closed curves, once around
+      if (node_of_[v] == none) walk_all(v);  // closed curves: one chain each
     }
     return std::move(graph_);
   }

@@ -14,16 +14,17 @@ namespace blum::centrelines {
 
 inline constexpr std::int32_t no_node = -1;
 
-/// Voxels in a row, each a neighbour of the next.
+/// Sequence of voxels, each a neighbour of the next one.
 struct Chain {
   std::array<std::int32_t, 2> nodes{no_node, no_node};
-  std::vector<std::uint32_t> voxels;  ///< those of its nodes included; in a closed chain the first is also the last
+  /// Voxels of the chain, including those of its nodes. The last voxel of a closed chain is also its first.
+  std::vector<std::uint32_t> voxels;
   bool is_there = true;
 };
 
 struct ChainNode {
   std::uint32_t voxel = 0;
-  std::vector<std::uint32_t> chains;  ///< one that comes back is listed twice
+  std::vector<std::uint32_t> chains;  ///< chains that end here; a chain with both ends here is listed twice
   bool is_there = true;
 };
 
@@ -32,16 +33,16 @@ struct CurveGraph {
   std::vector<Chain> chains;
 };
 
-/// Returns the graph of thin voxels, by their linear indices. Its edges join neighbours: a spanning forest of the
-/// shortest edges, and one edge for each tunnel.
+/// Returns the graph of thinned voxels, which it identifies by linear indices. Its edges join neighbours: the edges of
+/// a spanning forest of least length, and one more edge for each tunnel.
 ///
 /// Boxes that touch one another pairwise have a point in common. So the union of the closed voxels has the homotopy
-/// type of the complex of voxels that touch pairwise. An edge outside of the forest is kept if no triangle closes it:
-/// pairs are found by reduction modulo 2, as in persistent homology. So the graph has the components and tunnels of the
-/// voxels. It keeps no small loops of neighbours that touch crosswise.
+/// type of the complex of voxels that touch pairwise. An edge outside of the forest is kept unless its loop is a sum,
+/// modulo 2, of the borders of triangles of neighbours. The reduction of persistent homology finds these edges. So the
+/// graph has as many components and tunnels as the voxels. Neighbours that touch diagonally add no loops.
 [[nodiscard]] CurveGraph curve_graph(const VoxelSet& voxels, const Vec3d& spacing, const Context& context);
 
-/// Returns the numbers of components and loops.
+/// Returns the numbers of components and loops of a graph; the number of voids is 0.
 [[nodiscard]] BettiNumbers betti_numbers(const CurveGraph& graph);
 
 }  // namespace blum::centrelines

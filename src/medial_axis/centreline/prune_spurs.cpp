@@ -9,8 +9,10 @@
 namespace blum::centrelines {
 namespace {
 
-constexpr double noise = 1.5;        // voxels beyond the ball at its root: a voxel on the surface makes such a spur
-constexpr double fork_reach = 0.75;  // of the root's radius: the corner of a square strut's end is 0.73 beyond its ball
+// Voxels by which a spur may extend beyond the ball at its root. One extra voxel on the surface makes a spur that long.
+constexpr double noise = 1.5;
+// Radii of the ball at the root. The corner of a square strut's end is 0.73 radii beyond the ball.
+constexpr double fork_reach = 0.75;
 
 class Pruner {
  public:
@@ -22,7 +24,7 @@ class Pruner {
   void prune() {
     std::vector<std::uint32_t> order(graph_.nodes.size());
     std::iota(order.begin(), order.end(), 0U);
-    // Small balls come first, so that the contents of a large one are judged when they are clean.
+    // Nodes with small balls come first. So spurs inside a large ball are removed before its own branches are examined.
     std::sort(order.begin(), order.end(),
               [this](std::uint32_t a, std::uint32_t b) { return std::pair(radius(a), a) < std::pair(radius(b), b); });
     for (bool has_changed = true; has_changed;) {
@@ -51,7 +53,7 @@ class Pruner {
     return end != node && graph_.nodes[end].chains.size() == 1;
   }
 
-  /// Returns the branches of a node with free ends that `is_short` accepts, the shortest first.
+  /// Returns those branches of a node that have a free end and that `is_short` accepts, the shortest first.
   template <class Limit>
   std::vector<std::uint32_t> free_branches(std::uint32_t node, const Limit& is_short) const {
     std::vector<std::uint32_t> found;
@@ -76,7 +78,7 @@ class Pruner {
     return !spurs.empty();
   }
 
-  /// Returns true if no voxel of a branch is further from a node than `distance`.
+  /// Returns true if the distance of each voxel of a branch from a node is at most `distance`.
   [[nodiscard]] bool lies_within(std::uint32_t c, std::uint32_t node, double distance) const {
     const Vec3d centre = measure_.position(graph_.nodes[node].voxel);
     const auto is_near = [&](std::uint32_t voxel) { return length(measure_.position(voxel) - centre) <= distance; };
@@ -95,7 +97,7 @@ class Pruner {
     return true;
   }
 
-  /// Contracts a branch with two free ends to a point if neither lies far beyond the largest ball on it.
+  /// Contracts a branch with two free ends to a point if neither end is far beyond the largest ball on the branch.
   bool drop_blob(std::uint32_t node) {
     if (spur_ == 0 || graph_.nodes[node].chains.empty()) return false;
     const std::uint32_t c = graph_.nodes[node].chains.front();
@@ -127,14 +129,14 @@ class Pruner {
   }
   void drop(std::uint32_t chain) { graph_.chains[chain] = {{no_node, no_node}, {}, false}; }
 
-  /// Returns the voxels of a chain from a node on.
+  /// Returns the voxels of a chain in the order that starts at the given node.
   [[nodiscard]] std::vector<std::uint32_t> from(std::uint32_t chain, std::uint32_t node) const {
     std::vector<std::uint32_t> voxels = graph_.chains[chain].voxels;
     if (graph_.chains[chain].nodes[0] != static_cast<std::int32_t>(node)) std::reverse(voxels.begin(), voxels.end());
     return voxels;
   }
 
-  /// Joins the two branches of a node.
+  /// Joins the two branches of a node to one, if it has exactly two.
   void join_two(std::uint32_t node) {
     if (graph_.nodes[node].chains.size() != 2) return;
     const std::uint32_t a = graph_.nodes[node].chains[0];
@@ -157,7 +159,8 @@ class Pruner {
     drop(b);
   }
 
-  /// Merges two junctions if the branch between them is at most a voxel longer than the smaller radius of their balls.
+  /// Merges two junctions if the branch between them is not longer than the radius of the smaller of their balls plus
+  /// one voxel.
   bool contract(std::uint32_t chain) {
     const auto [first, last] = graph_.chains[chain].nodes;
     if (first == no_node || first == last) return false;
@@ -181,7 +184,7 @@ class Pruner {
     return true;
   }
 
-  /// Extends one end of a chain from a node along `way` to the start of `way`.
+  /// Extends the end of a chain at `from_node` along `way`, backwards, to the start of `way` at node `to`.
   void move_end(std::uint32_t c, std::uint32_t from_node, std::uint32_t to, const std::vector<std::uint32_t>& way) {
     Chain& chain = graph_.chains[c];
     if (chain.nodes[0] == static_cast<std::int32_t>(from_node)) {
@@ -197,10 +200,10 @@ class Pruner {
   const ChainMeasure& measure_;
   double spur_;
   const Context& context_;
-  std::vector<double> length_;  ///< of each chain
+  std::vector<double> length_;  ///< length of each chain
 };
 
-/// Removes nodes and chains that are gone.
+/// Removes the nodes and chains whose `is_there` is false.
 CurveGraph compact(CurveGraph&& graph) {
   CurveGraph out;
   std::vector<std::int32_t> node_of(graph.nodes.size(), no_node);

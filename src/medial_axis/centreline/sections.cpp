@@ -13,10 +13,10 @@ constexpr int most_rays = 64;
 
 }  // namespace
 
-/// Cell of eight voxel centres, and the place of a point in it.
+/// Box between eight voxel centres, and the position of a point in the box.
 struct LabelShare::Corner {
-  std::size_t index = 0;  ///< of the voxel with the smallest indices
-  Vec3d share{};          ///< 0 to 1 along each axis
+  std::size_t index = 0;  ///< linear index of the voxel at the lower corner
+  Vec3d share{};          ///< position in the box: 0 to 1 along each axis
 };
 
 LabelShare::LabelShare(std::span<const float> depth, const std::array<std::int64_t, 3>& size, const Vec3d& spacing)
@@ -41,7 +41,7 @@ bool LabelShare::locate(const Vec3d& point, Corner& corner) const {
 namespace {
 
 /// Interpolates between eight values, trilinearly.
-/// @param value  of a linear index.
+/// @param value  callable: returns the value at a linear index.
 template <class Value>
 double blend(std::size_t index, std::size_t row, std::size_t layer, const Vec3d& share, const Value& value) {
   const auto along = [&](std::size_t at) { return value(at) + share.x * (value(at + 1) - value(at)); };

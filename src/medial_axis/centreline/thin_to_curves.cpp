@@ -80,7 +80,8 @@ class Thinner {
     }
   }
 
-  /// Looks again at voxels that stayed while deeper ones were present, until none may be removed.
+  /// Examines the kept voxels again, until none may be removed. When they were first examined, all their deeper
+  /// neighbours were present.
   void look_again() {
     SimpleCache simple;
     std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> line(std::greater<>(), std::move(left_));
@@ -106,7 +107,7 @@ class Thinner {
   double step_;
   const Context& context_;
   VoxelSet kept_;
-  std::vector<Waiting> left_;  ///< those of `kept_`
+  std::vector<Waiting> left_;  ///< the voxels of `kept_`
 };
 
 }  // namespace

@@ -9,12 +9,12 @@
 
 namespace blum::centrelines {
 
-/// Removes simple voxels, the shallowest first, and returns those that are left. Voxels with one neighbour stay as
-/// ends. The closed voxels collapse to the result.
-/// @param voxels   none at the border of their box.
-/// @param depth    above zero for exactly these voxels; one value per voxel of the box.
-/// @param spacing  of the voxels.
-/// @return  the same for any number of threads. @throws Cancelled.
+/// Removes simple voxels, the shallowest first, and returns the voxels that are left. Voxels with exactly one neighbour
+/// stay, as ends of curves. The closed voxels collapse to the result.
+/// @param voxels   none of them lies in the outermost layer of the box.
+/// @param depth    one value for each voxel of the box: above zero for `voxels`, zero for others.
+/// @param spacing  sides of a voxel.
+/// @return  a result that does not depend on the number of threads. @throws Cancelled.
 [[nodiscard]] VoxelSet thin_to_curves(const VoxelSet& voxels, std::span<const float> depth, const Vec3d& spacing,
                                       const Context& context);
 

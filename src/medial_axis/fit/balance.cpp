@@ -12,20 +12,22 @@ namespace {
 
 constexpr int most_steps = 24;
 constexpr double equal_distances = 1e-9;  ///< voxels
-/// Walls further than the closest one by more than this do not take part, in voxels.
+/// Voxels: a wall gets no equation if its distance exceeds that of the closest wall by more than this.
 constexpr double nearly_as_close = 3;
-/// Squared sine between two equations, below which they count as dependent; the same for three equations, as a volume.
+/// Two equations count as dependent if the squared sine of the angle between their slopes is below
+/// `least_sine_squared`. Three do if the volume spanned by their unit slopes is below `least_volume`.
 constexpr double least_sine_squared = 0.02;
 constexpr double least_volume = 0.1;
 
-/// Equation of a wall: after a move with slope * move = difference, it is as close as the closest one.
+/// Equation of a wall: after a move of the point with dot(slope, move) = difference, the wall is as close as the
+/// closest wall.
 struct Equation {
   Vec3d slope;
   double difference = 0;
   std::size_t wall = 0;
 };
 
-/// Shortest move that solves some equations, and its squared length.
+/// Shortest move that solves one to three equations, its squared length, and the walls of these equations.
 struct Move {
   Vec3d by;
   double squared = std::numeric_limits<double>::infinity();
@@ -54,7 +56,7 @@ std::optional<Vec3d> solve(const Equation& e, const Equation& f, const Equation&
   return (fg * e.difference + cross(g.slope, e.slope) * f.difference + cross(e.slope, f.slope) * g.difference) / volume;
 }
 
-/// Returns the shortest move over all choices of walls.
+/// Returns the shortest of the moves that solve `count` equations, over all choices of `count` equations.
 Move shortest(std::span<const Equation> equations, std::size_t count) {
   Move best;
   const auto offer = [&](const std::optional<Vec3d>& move, std::array<std::size_t, 3> walls) {
@@ -75,7 +77,7 @@ Move shortest(std::span<const Equation> equations, std::size_t count) {
   return best;
 }
 
-/// Returns the vertex at a point, with the two footprints that are seen furthest apart.
+/// Returns the vertex at a point x. Its footprints are the two at the largest angle as seen from x.
 AxisVertex vertex_at(const Surface& surface, const Vec3d& x, const NearestPoint& nearest,
                      std::span<const Footprint> feet) {
   AxisVertex vertex = vertex_of_one_wall(x, nearest);
@@ -96,7 +98,7 @@ AxisVertex vertex_at(const Surface& surface, const Vec3d& x, const NearestPoint&
   return vertex;
 }
 
-/// Returns the equations of the walls other than the closest one.
+/// Returns the equations of walls that are nearly as close to x as the closest wall.
 std::vector<Equation> equations_of(const Walls& walls, const Vec3d& x, double voxel) {
   std::vector<Equation> equations;
   const Walls::Wall& closest = walls.closest();

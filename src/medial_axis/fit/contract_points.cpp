@@ -20,7 +20,7 @@ Pair ordered(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Returns the edges whose ends are at the same place, each once, ascending.
+/// Returns the edges whose two ends have equal positions, each once, ascending.
 std::vector<Pair> points_of(const Complex& axis, const Incidence& incidence) {
   std::vector<Pair> points;
   for (const Pair& edge : incidence.edges()) {
@@ -34,7 +34,7 @@ class Contractor {
   explicit Contractor(Complex& axis) : axis_(axis), cells_(axis.view()), merged_into_(axis.positions.size(), none) {}
 
   void contract(std::vector<Pair> points) {
-    // A contraction may allow others that were forbidden before.
+    // A contraction may make other contractions possible that the link condition forbade before.
     for (bool is_changed = true; is_changed && !points.empty();) {
       std::vector<Pair> left;
       for (const Pair& point : points) {
@@ -70,7 +70,7 @@ class Contractor {
     const auto [to, from] = edge;
     const auto angles = std::as_const(axis_.triangle_columns).get<float>(medial_columns::separation_angle);
     merged_into_[from] = to;
-    // Two sides of a removed triangle become one, which is a curve if no other triangle has it.
+    // Two sides of a removed triangle become one edge. It is a curve if it is not a side of another triangle.
     for (const auto& [triangle, third] : cells_.contract(from, to)) {
       if (!is_side(to, third)) add_curve(to, third, angles[triangle]);
     }

@@ -6,14 +6,14 @@
 
 namespace blum::detail {
 
-/// Contracts edges whose ends are at the same place, one after the other, if the homotopy type stays. The link
-/// condition decides: all that is linked to both ends must be linked to the edge. Sources: Dey, Edelsbrunner, Guha,
-/// Nekhayev, "Topology preserving edge contraction", 1999. Attali, Lieutier, Salinas, "Efficient data structure for
-/// representing and simplifying simplicial complexes in high dimensions", 2012. Nothing moves. Triangles without area
-/// are removed. If they were a ribbon around a curve, the curve is left.
-/// @param axis       with edges of curves only. Sheets and roles must be labelled afterwards.
-/// @param incidence  of the axis as it is given.
-/// @return           true if such edges existed. Only then the axis may differ.
+/// Contracts edges whose two ends have equal positions, one after the other, if the homotopy type stays. The link
+/// condition decides: the intersection of the links of both ends must be the link of the edge. Sources: Dey,
+/// Edelsbrunner, Guha, Nekhayev, "Topology preserving edge contraction", 1999. Attali, Lieutier, Salinas, "Efficient
+/// data structure for representing and simplifying simplicial complexes in high dimensions", 2012. No vertex moves.
+/// Only triangles without area are removed. A ribbon of such triangles around a curve becomes the curve.
+/// @param axis       its edges must be those of curves only. Sheets and roles must be labelled afterwards.
+/// @param incidence  the incidence of the axis before the call.
+/// @return           true if an edge had ends with equal positions. If false, the axis did not change.
 bool contract_points(Complex& axis, const Incidence& incidence);
 
 }  // namespace blum::detail

@@ -29,26 +29,29 @@
 namespace blum::detail {
 namespace {
 
-/// Directions in which vertices of rims, and ends of seams and curves, may slide. They have unit length, or are zero if
+/// Directions in which vertices of rims, and ends of seams and curves, may slide. They are unit vectors, or zero if
 /// unknown.
 class BorderDirections {
  public:
-  /// @param kinds  of the vertices. All arguments must outlive this object.
+  /// @param kinds  the kind of each vertex. All arguments must outlive this object.
   BorderDirections(const AxisLists& lists, const Incidence& incidence, const std::vector<Kind>& kinds)
       : lists_(lists), incidence_(incidence), kinds_(kinds) {}
 
-  /// Returns the direction away from the sheet, from nearby edges of the rim.
+  /// Returns the direction away from the sheet at a vertex of a rim, computed from up to four edges of the rim on
+  /// either side.
   [[nodiscard]] Vec3d of_rim(std::uint32_t v) const;
-  /// Returns the direction along the sheet to where it is less deep: over convex edges at which it ends.
+  /// Returns the direction along the sheet in which its depth decreases: from a vertex towards its two footprints.
   [[nodiscard]] Vec3d towards_surface(std::uint32_t v) const;
-  /// Returns the direction away from the only neighbour along a seam (at least `triangles` triangles) or curve (0).
+  /// Returns the direction in which a seam or curve ends at a vertex, from the last one or two of its edges. Edges
+  /// count if they have at least `triangles` triangles; for curves `triangles` is 0, and edges must have none.
   [[nodiscard]] Vec3d of_end(std::uint32_t v, std::size_t triangles) const;
-  /// Returns true if a curve that ends at a vertex comes back there beside a longer edge. It will be removed, so it
-  /// must not follow the other edge.
+  /// Returns true if the last edge of a curve runs beside another, longer edge of a curve from the same vertex. Such an
+  /// edge will be removed, so its end must not slide along the longer edge.
   [[nodiscard]] bool comes_back(std::uint32_t v) const;
 
  private:
-  /// Returns a vector from a triangle outwards through its side, as long as the side.
+  /// Returns a vector in the plane of the only triangle of an edge. It points outwards, at right angles to the edge,
+  /// and is as long as the edge.
   [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const;
 
   const AxisLists& lists_;
@@ -82,7 +85,7 @@ Vec3d BorderDirections::towards_surface(std::uint32_t v) const {
   const AxisVertex& vertex = lists_.vertices[v];
   const Vec3d way = vertex.footprints[0] + vertex.footprints[1] - 2 * vertex.position;
   const double size = length(way);
-  constexpr double least = 0.1;  // of the radius: 174 degrees
+  constexpr double least = 0.1;  // relative to the radius: a separation angle of 174 degrees
   return size > least * vertex.radius ? way / size : Vec3d{};
 }
 
@@ -131,8 +134,8 @@ bool BorderDirections::comes_back(std::uint32_t v) const {
   return false;
 }
 
-/// Hash of the data that a step depends on, of 64 bits. Among 10^6 different data, two share a hash in 10^-7 of all
-/// runs.
+/// 64-bit hash of the data that a step depends on. The probability that two of 10^6 different inputs have the same hash
+/// is 10^-7.
 class SightHash {
  public:
   void add(std::uint64_t word) {
@@ -155,50 +158,51 @@ class SightHash {
   std::uint64_t state_ = 0;
 };
 
-/// Hashes of the data with which a step left the vertex as it was.
+/// Hashes of the data of vertices that a step did not move.
 using Settled = std::unordered_set<std::uint64_t>;
 
-/// Returns true if two vertices are the same up to rounding.
+/// Returns true if two vertices are equal up to rounding.
 /// @param voxel  mesh units.
 inline bool is_same_vertex(const AxisVertex& a, const AxisVertex& b, double voxel) {
-  constexpr double next_to_nothing = 1e-6;  // voxels, degrees
+  constexpr double next_to_nothing = 1e-6;  // voxels for lengths, degrees for angles
   const double most = next_to_nothing * voxel;
   return a.sites == b.sites && squared_length(a.position - b.position) <= most * most &&
          std::abs(a.radius - b.radius) <= most && std::abs(a.separation_angle - b.separation_angle) <= next_to_nothing;
 }
 
-/// Moves vertices of lists, whose cells stay except in bend_curves(). Results that depend only on the cells are
-/// computed once.
+/// Moves vertices of lists. The cells of the lists do not change, except in bend_curves(), so results that depend only
+/// on cells are computed once.
 class Fitter {
   // Limits of all steps.
   static constexpr std::size_t vertices_per_range = 64;
-  /// Voxels that a vertex may move: on a seam, to a curve, to the middle of a round part.
+  /// Greatest distances that a vertex may move, in voxels: along a seam, to a curve, and to the middle of a round part.
   static constexpr double most_moved = 1.5;
   static constexpr double most_moved_to_curve = 2.5;
   static constexpr double most_moved_to_centre = 4;
-  /// Radius at which sheets end that reach the surface, in voxels.
+  /// Radius at which a sheet that would reach the surface ends, in voxels.
   static constexpr double least_radius = 0.02;
   static constexpr std::array short_radii{0.2, 0.1, 0.05};
-  /// Separation angle, in degrees, between walls that do not meet near by.
+  /// Degrees: two walls count as parallel at this separation angle or more. Parallel walls do not meet nearby.
   static constexpr double parallel = 175;
-  /// Next to the end of a sheet, at most this much more than theta is seen, in degrees.
+  /// Near the rim of a sheet, the separation angle exceeds theta by at most this much, in degrees.
   static constexpr double nearly_theta = 10;
-  /// Places on the way outwards and inwards at which the angle is evaluated, in voxels.
+  /// Distances along the direction outwards and inwards at which the angle is evaluated, in voxels.
   static constexpr std::array outwards{0.25, 0.5, 1.0, 1.5, 2.0, 2.5};
   static constexpr std::array inwards{-0.25, -0.5, -1.0, -1.5, -2.0, -2.5};
   static constexpr int halvings = 9;
-  /// Borders stay if they are this close to where they end, in voxels. The halvings find that place this exactly.
+  /// A border vertex does not move if it is this close to where its border should end, in voxels. The halvings find
+  /// that point with the same accuracy.
   static constexpr double settled = 0.001;
-  /// Distance from a vertex at which the point opposite of a footprint is searched for, in voxels. `facets` is how much
-  /// further than the footprint this point may be.
+  /// Voxels: the point opposite of a footprint is the closest point to a query this far from the vertex, on the other
+  /// side. It may be further from the vertex than the footprint by `facets` voxels.
   static constexpr double opposite_step = 0.3;
   static constexpr double facets = 0.02;
 
  public:
   /// Results that are kept for the next Fitter.
   struct Known {
-    std::set<std::array<double, 3>> not_round;  ///< places where centred() found nothing
-    Settled seams, rims;                        ///< of place_seams() and cut_rims()
+    std::set<std::array<double, 3>> not_round;  ///< positions at which centred() found nothing
+    Settled seams, rims;                        ///< hashes of vertices that place_seams() and cut_rims() did not move
   };
 
   Fitter(AxisLists& lists, const FitTarget& target, Known& known, const Context& context)
@@ -215,15 +219,16 @@ class Fitter {
         sight_(lists.vertices.size(), 0),
         mover_(lists, incidence_, target.surface, context) {}
 
-  // ---- Steps: they move vertices and return the largest move, mesh units ----
+  // ---- Steps: they move vertices and return the length of the largest move, mesh units ----
 
-  /// Moves vertices of ribbons to the middle of a round part. Otherwise trim() would remove those that are not shown.
+  /// Moves vertices of rims and curves that are not shown (see is_shown()) to the middle of a round part. Otherwise
+  /// trim() would remove them.
   double find_centres() {
     return move([&](std::uint32_t v) -> Moved {
       if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
       const Moved found = between(v, 3);
       if (!found || !is_shown(*found, 3)) return centred(v);
-      // Rims of sheets that know of one wall only are next to a place between two walls.
+      // A vertex of a rim that has only one footprint is often next to a point between two walls.
       const Moved between_two = on_sheet(v);
       const Vec3d& at = lists_.vertices[v].position;
       const bool is_nearer =
@@ -231,13 +236,13 @@ class Fitter {
       return is_nearer && is_shown(*between_two, 2) ? between_two : found;
     });
   }
-  /// Moves vertices that know of one wall only between two walls.
+  /// Moves vertices that have only one footprint to a point equally far from two walls.
   double find_sheets() {
     return move([&](std::uint32_t v) { return lists_.vertices[v].separation_angle > 0 ? std::nullopt : on_sheet(v); });
   }
-  /// Incidence of the lists, valid as long as none of their edges is removed.
+  /// Returns the incidence of the lists. It is valid until an edge of the lists is removed.
   [[nodiscard]] const Incidence& incidence() const { return incidence_; }
-  /// Returns the angle that each vertex sees, degrees.
+  /// Returns angle_seen() of each vertex, in degrees.
   [[nodiscard]] std::vector<double> angles() const {
     std::vector<double> out(lists_.vertices.size());
     parallel_for(context_, out.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
@@ -248,16 +253,17 @@ class Fitter {
   double place_seams() {
     return move_unsettled(known_.seams, [&](std::uint32_t v) { return balanced(v); });
   }
-  /// Moves only vertices of curves, after short edges beside them were contracted.
+  /// Does the same as place_seams() for vertices of curves only.
   double place_curves() {
     return move([&](std::uint32_t v) { return kinds_[v].curves > 0 ? balanced(v) : std::nullopt; });
   }
-  /// Moves vertices inside of a sheet to the seam if they were put on another sheet beyond it.
+  /// If a sheet bends at an inner vertex, moves the vertex to a nearby seam. Such vertices were put on another sheet,
+  /// beyond the seam.
   double straighten() {
     return move([&](std::uint32_t v) { return is_bent(v) ? straightened(v) : std::nullopt; });
   }
-  /// Moves vertices that are not shown, next to shown ones, to the middle of a round part. If that fails, those of rims
-  /// and curves between two shown ones go to the nearest of these.
+  /// Moves vertices that are not shown, but have a shown neighbour, to the middle of a round part. If that fails, a
+  /// vertex of a rim or curve with two or more shown neighbours moves to the nearest of them.
   double take_back() {
     return move([&](std::uint32_t v) -> Moved {
       if (is_shown(lists_.vertices[v], 3)) return std::nullopt;
@@ -277,7 +283,7 @@ class Fitter {
       return shown > 1 && kinds_[v].rims + kinds_[v].curves > 0 ? Moved(*nearest) : std::nullopt;
     });
   }
-  /// Inserts vertices into edges of curves that leave the bent middle of a round part.
+  /// Inserts vertices into edges of curves that cut short a bend of the middle of a round part.
   /// @return  true if any was inserted. The lists then have other cells, and this object must not be used any more.
   bool bend_curves() {
     return split_curves(
@@ -286,8 +292,8 @@ class Fitter {
   double cut_rims() {
     return move_unsettled(known_.rims, [&](std::uint32_t v) { return cut(v); });
   }
-  /// Moves rims that stayed far from the surface because edges between them would have cut off corners of holes. They
-  /// go to a radius of a fifth of a voxel, a tenth, a twentieth, as far as their edges allow.
+  /// Moves vertices of rims that stayed far from the surface, because otherwise edges of the rim would have cut off
+  /// corners of holes. They move to a radius of 1/5, then 1/10, then 1/20 of a voxel, as far as their edges allow.
   double cut_rims_short() {
     double furthest = 0;
     for (const double radius : short_radii) {
@@ -305,9 +311,10 @@ class Fitter {
  private:
   using Moved = std::optional<AxisVertex>;
 
-  // ---- Places of vertices ----
+  // ---- Positions of vertices ----
 
-  /// Returns the place of a vertex of a seam, junction or curve: between as many walls as it should have.
+  /// Returns the position of a vertex of a seam, junction or curve: equally far from four walls for a junction,
+  /// otherwise from three.
   [[nodiscard]] Moved balanced(std::uint32_t v) {
     const Kind& kind = kinds_[v];
     const bool is_alone = kind.rims + kind.seams + kind.curves + kind.inner == 0;
@@ -323,13 +330,13 @@ class Fitter {
 
   [[nodiscard]] Moved between(std::uint32_t v, std::size_t walls) const {
     const AxisVertex& vertex = lists_.vertices[v];
-    // A vertex that is not shown may lie more than a voxel beside a round part.
+    // A vertex that is not shown may be more than a voxel away from the middle of a round part.
     const double reach = is_shown(vertex, 3) ? most_moved : most_moved_to_curve;
     return balanced_at(vertex.position, feet_around(v), walls, {voxel_, reach * voxel_, true});
   }
 
-  /// Returns a place between the two walls of the rest of the sheet next to a vertex. If these are unknown, it is
-  /// between any two.
+  /// Returns a point equally far from two walls: those of the nearest neighbour that lies on the sheet only. If there
+  /// is none, any two walls near the vertex are used.
   [[nodiscard]] Moved on_sheet(std::uint32_t v) const {
     const AxisVertex& vertex = lists_.vertices[v];
     std::uint32_t beside = v;
@@ -347,7 +354,7 @@ class Fitter {
     return between(v, 2);
   }
 
-  /// Returns the middle of a round part around a vertex, if it is shown.
+  /// Returns the middle of a round part around a vertex, if that point is shown.
   [[nodiscard]] Moved centred(std::uint32_t v) {
     const Vec3d& at = lists_.vertices[v].position;
     if (known_.not_round.contains({at.x, at.y, at.z})) return std::nullopt;
@@ -359,7 +366,7 @@ class Fitter {
     const std::optional<RoundCentre> centre =
         round_centre(surface_, start, {voxel_, most_moved_to_centre * voxel_, target_.theta});
     if (!centre) return std::nullopt;
-    // Prefers a point where three facets are equally far, if it is next to the middle.
+    // Prefers a point equally far from three facets, if there is one next to the middle.
     const BalanceLimits next_to{voxel_, facets * voxel_, true};
     Moved found = balanced_at(centre->position, centre->feet, 3, next_to);
     if (found && is_shown(*found, 3)) return found;
@@ -371,7 +378,7 @@ class Fitter {
     return is_shown(*found, 3) ? found : std::nullopt;
   }
 
-  /// Returns the result of balance(), with sites of the input.
+  /// Returns the result of balance(), with sites of the input instead of sites of the surface.
   [[nodiscard]] Moved balanced_at(const Vec3d& start, const std::vector<Footprint>& feet, std::size_t walls,
                                   const BalanceLimits& limits) const {
     Moved found = balance(surface_, start, feet, walls, limits);
@@ -381,36 +388,39 @@ class Fitter {
     return found;
   }
 
-  /// Returns a place on the seam for a vertex that is_bent(), if the sheet bends less then.
+  /// Returns a point on the seam for a vertex for which is_bent() is true, if the sheet would bend less with the vertex
+  /// there.
   [[nodiscard]] Moved straightened(std::uint32_t v) const {
-    constexpr double better = 0.5;  // of the difference to 1
+    constexpr double better = 0.5;  // greatest ratio of 1 - cosine after the move to that before
     const double bend = least_cosine(v, lists_.vertices[v].position);
     const Moved found = between(v, 3);
     if (!found || 1 - least_cosine(v, found->position) > better * (1 - bend)) return std::nullopt;
     return found;
   }
 
-  /// Returns true if a vertex lies inside of a sheet that bends there.
+  /// Returns true if a vertex is an inner vertex of a sheet and the sheet bends there.
   [[nodiscard]] bool is_bent(std::uint32_t v) const {
     constexpr double sharp = 0.9;  // cosine: 25 degrees
     const Kind& kind = kinds_[v];
     return kind.seams + kind.curves + kind.rims == 0 && least_cosine(v, lists_.vertices[v].position) <= sharp;
   }
 
-  /// Returns the least cosine of the angles by which the sheet would bend at the edges of a vertex; 1 if it is flat.
+  /// Returns the least cosine of the angles by which the sheet would bend at a vertex's edges if the vertex were at
+  /// `position`.
   [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
     return least_cosine_at(lists_, incidence_, v, position);
   }
 
-  /// Returns the closest point to a place a little further away from the first footprint. The vertex must not be on the
-  /// surface.
+  /// Returns the closest point of the surface to a query: to the vertex, moved a little away from its first footprint.
+  /// The vertex must not be on the surface.
   [[nodiscard]] NearestPoint opposite_of(const AxisVertex& vertex) const {
     const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
     return surface_.nearest(vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius),
                             foot_of(vertex, 0));
   }
 
-  /// For round parts, takes the footprint opposite of the first one as the second, if it is as close.
+  /// Replaces the second footprint by the point opposite of the first one, if that is equally close and the angle
+  /// becomes larger. Vertices in round parts need this.
   void widen(AxisVertex& vertex) const {
     const NearestPoint opposite = opposite_of(vertex);
     const double limit = vertex.radius + 1e-6 * voxel_ + 1e-9 * vertex.radius;
@@ -423,7 +433,8 @@ class Fitter {
     vertex.separation_angle = angle;
   }
 
-  /// Returns the place of a vertex of a rim or end: where the angle is theta or the radius almost zero.
+  /// Returns the position of a vertex of a rim, or at the end of a seam or curve. The angle there is theta, or the
+  /// radius almost zero.
   [[nodiscard]] Moved cut(std::uint32_t v) const {
     const Kind& kind = kinds_[v];
     if (kind.is_rim()) {
@@ -435,8 +446,8 @@ class Fitter {
     return kind.rims + kind.seams + kind.curves == 0 ? at_mouth(v) : std::nullopt;
   }
 
-  /// Returns the mouth of a thin wall next to a vertex. There the angle drops to almost zero, also inside of a sheet
-  /// that goes on beyond for homotopy alone.
+  /// Returns the point where a thin part of the solid next to a vertex begins. There the angle drops to almost zero.
+  /// The sheet may continue beyond that point, only because homotopy requires it.
   [[nodiscard]] Moved at_mouth(std::uint32_t v) const {
     if (is_shown(lists_.vertices[v], 2) || incidence_.edges_of_vertex()[v].empty()) return std::nullopt;
     const std::uint32_t inner = best_neighbour(v);
@@ -444,20 +455,24 @@ class Fitter {
     constexpr double wider = 4;
     const bool is_thin = thin.radius < least_radius * voxel_ && thin.separation_angle >= parallel &&
                          wider * thin.radius < lists_.vertices[v].radius;
-    // Edges to vertices beyond come out of the wall, so the mouth must be found to well within the wall's thickness.
+    // Edges from this point to vertices beyond leave the thin part, so the error of the point must be well below the
+    // part's thickness.
     return is_thin && is_shown(thin, 2) ? towards(v, inner, 2, 3 * halvings) : std::nullopt;
   }
 
-  /// Returns true if a vertex is shown: it sees more than theta, and the sheet does not end there.
-  /// @param walls  of what the vertex lies on: on sheets (2), the two footprints determine the angle.
+  /// Returns true if a vertex is shown: its angle is above theta, and its radius is not so small that the sheet ends
+  /// there.
+  /// @param walls  2 for vertices of sheets, whose angle is that of the two footprints; more for others, whose angle is
+  /// angle_seen().
   [[nodiscard]] bool is_shown(const AxisVertex& vertex, std::size_t walls) const {
-    // Sheets end where their two walls meet. Between parallel walls the radius may be this small anywhere.
+    // Sheets end where their two walls meet. Between parallel walls, a small radius does not mean that the sheet ends.
     if (vertex.radius < least_radius * voxel_ && vertex.separation_angle < parallel) return false;
     return (walls > 2 ? angle_seen(vertex) : vertex.separation_angle) > target_.theta;
   }
 
-  /// Returns the largest angle between footprints of a vertex. The point opposite of the first one counts if it is as
-  /// far to within `facets`. Few facets of round parts meet in one point.
+  /// Returns the largest angle between footprints of a vertex, degrees. The point opposite of the first footprint
+  /// counts as a footprint if it is at most `facets` voxels further away. Exactly equal distances are rare in round
+  /// parts, because these consist of facets.
   [[nodiscard]] double angle_seen(const AxisVertex& vertex) const {
     const double own = vertex.separation_angle;
     if (own > target_.theta || !(vertex.radius > 0)) return own;
@@ -466,24 +481,25 @@ class Fitter {
     return std::max(own, angle_at(vertex.position, vertex.footprints[0], opposite));
   }
 
-  /// Way of a vertex along its sheet, seam or curve, and results at its last point.
+  /// Path of a vertex along its sheet, seam or curve, and findings at the points examined so far.
   struct Way {
     Vec3d origin;
     Vec3d direction;  ///< Unit length, or zero.
     std::size_t walls = 0;
-    bool is_curve = false;  ///< True if it is a curve that ends at the vertex.
+    bool is_curve = false;  ///< True if the vertex is the end of a curve.
     std::vector<Footprint> feet;
     const AxisVertex* sheet = nullptr;  ///< A shown vertex of the sheet.
-    double end_radius = least_radius;   ///< Radius at which it ends, in voxels.
-    bool is_past = false;               ///< True if the last point is past the border, and not past something else.
-    bool is_round = false;              ///< True if some point was in the middle of a round part.
+    double end_radius = least_radius;   ///< Radius at which the path ends, in voxels.
+    /// True if the last point was on the sheet, seam or curve but not shown: it is past the border.
+    bool is_past = false;
+    bool is_round = false;  ///< True if some point was in the middle of a round part.
   };
   [[nodiscard]] bool is_shown_on(const Way& way, const AxisVertex& vertex) const {
     if (vertex.radius < way.end_radius * voxel_ && vertex.separation_angle < parallel) return false;
-    // Where a curve ends, feet around it are seen at twice the angle that they make with the curve.
+    // At the end of a curve, opposite footprints are at twice the angle between a footprint and the curve.
     return is_shown(vertex, way.walls) && (!way.is_curve || angle_ahead(vertex, way.direction) > target_.theta);
   }
-  /// Returns the vertex that many voxels on, if it is shown.
+  /// Returns the vertex at a distance of `voxels` voxels along the path, if that vertex is shown.
   [[nodiscard]] Moved on(Way& way, double voxels) const {
     const Vec3d place = way.origin + way.direction * (voxels * voxel_);
     Moved found = balanced_at(place, way.feet, way.walls, {voxel_, most_moved * voxel_, true});
@@ -498,8 +514,8 @@ class Fitter {
     return found;
   }
 
-  /// Returns the last shown vertex on the way from a vertex along its sheet or seam, down to a radius of `end_radius`
-  /// voxels.
+  /// Returns the last shown vertex on the path of a vertex along its sheet, seam or curve. The radius of that vertex is
+  /// at least `end_radius` voxels, except between parallel walls.
   [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls,
                             double end_radius = least_radius) const {
     const AxisVertex& own = lists_.vertices[v];
@@ -521,7 +537,7 @@ class Fitter {
   [[nodiscard]] Moved slide_outwards(Way& way, AxisVertex start) const {
     const auto at = [&](double t) { return on(way, t); };
     way.origin = start.position;
-    // Most vertices are in their place already.
+    // Most vertices are already in their final position.
     if (!at(settled) && way.is_past) return start;
     double good = 0;
     for (const double t : outwards) {
@@ -530,10 +546,10 @@ class Fitter {
         good = t;
         continue;
       }
-      // Beyond the reach of the ball, the surface may have been passed.
+      // A step longer than the radius may have crossed the surface.
       const bool is_beyond = way.is_past || start.radius <= (t - good) * voxel_;
       start = *last_shown(at, good, t, start);
-      // Beyond the rim of a lens only one wall is near.
+      // Beyond the rim of a lens-shaped part, only one wall is near.
       return is_beyond || start.separation_angle < target_.theta + nearly_theta ? Moved(start) : std::nullopt;
     }
     return way.is_round ? Moved(start) : std::nullopt;
@@ -548,15 +564,16 @@ class Fitter {
     return std::nullopt;
   }
 
-  /// Returns the angle at which feet all around a curve are seen, in degrees. It is computed from the first foot and
-  /// the direction of the curve, because the opposite foot depends on the facets.
+  /// Returns the separation angle at the end of a curve, degrees: twice the angle between the first footprint and the
+  /// curve's direction. The second footprint is not used, because it depends on the facets.
   [[nodiscard]] static double angle_ahead(const AxisVertex& vertex, const Vec3d& direction) {
     if (!(vertex.radius > 0) || !(squared_length(direction) > 0)) return 180;
     const double cosine = dot(vertex.footprints[0] - vertex.position, direction) / vertex.radius;
     return cosine > 0 ? 2 * std::acos(std::min(cosine, 1.0)) * degrees_per_radian : 180;
   }
 
-  /// Returns true if two vertices lie on one smooth sheet. The directions from one footprint to the other decide.
+  /// Returns true if two vertices lie on one smooth sheet. The directions from the first to the second footprint of
+  /// both vertices decide.
   [[nodiscard]] static bool goes_on(const AxisVertex& a, const AxisVertex& b) {
     constexpr double least = 0.9;  // cosine
     const Vec3d p = a.footprints[1] - a.footprints[0];
@@ -564,7 +581,8 @@ class Fitter {
     return std::abs(dot(p, q)) >= least * length(p) * length(q);
   }
 
-  /// Returns the last shown vertex between a shown place and one that is not, by halving.
+  /// Returns the last shown vertex between the parameters `good`, where the vertex is shown, and `bad`, where it is
+  /// not, by halving.
   template <class At>
   [[nodiscard]] Moved last_shown(const At& at, double good, double bad, Moved best, int times = halvings) const {
     for (int n = 0; n < times; ++n) {
@@ -579,7 +597,7 @@ class Fitter {
     return best;
   }
 
-  /// Returns the last shown vertex on the way from a shown neighbour.
+  /// Returns the last shown vertex on the straight way from a shown neighbour to a vertex.
   [[nodiscard]] Moved towards(std::uint32_t v, std::uint32_t neighbour, std::size_t walls, int times = halvings) const {
     const AxisVertex& from = lists_.vertices[neighbour];
     const Vec3d way = lists_.vertices[v].position - from.position;
@@ -635,7 +653,7 @@ class Fitter {
     return feet;
   }
 
-  /// Moves all vertices for which `where` returns a place, except those whose edges would leave the solid.
+  /// Moves each vertex for which `where` returns a new vertex, unless its edges would leave the solid.
   /// @return  largest move, mesh units.
   template <class Where>
   double move(const Where& where) {
@@ -649,13 +667,13 @@ class Fitter {
     return mover_.make(std::move(moves));
   }
 
-  /// The same, but skips vertices that stayed before when all data around them were the same.
+  /// Does the same as move(), but skips a vertex of a border if an earlier call with the same data did not move it.
   template <class Where>
   double move_unsettled(Settled& settled, const Where& where) {
     const double furthest = move([&](std::uint32_t v) -> Moved {
       const Kind& kind = kinds_[v];
       const bool is_inside = kind.rims + kind.seams + kind.curves == 0 && kind.inner > 0;
-      if (is_inside) return where(v);  // most are; their kind decides quickly
+      if (is_inside) return where(v);  // most vertices; `where` decides these quickly by their kind
       const std::uint64_t sight = sight_of(v);
       if (settled.contains(sight)) return std::nullopt;
       Moved found = where(v);
@@ -668,7 +686,7 @@ class Fitter {
     }
     return furthest;
   }
-  /// Returns a hash of the data that determine the move of a vertex of a border.
+  /// Returns a hash of the data that determine how a vertex of a border moves.
   [[nodiscard]] std::uint64_t sight_of(std::uint32_t v) const {
     SightHash hash;
     const Kind& kind = kinds_[v];
@@ -690,25 +708,27 @@ class Fitter {
   std::vector<Kind> kinds_;
   BorderDirections directions_;
   Known& known_;
-  // Results of threads, for known_.
+  // Results of the current step, written by many threads, to be added to known_.
   std::vector<std::uint8_t> is_not_round_;
-  std::vector<std::uint64_t> sight_;  ///< of vertices that stay; else 0
+  std::vector<std::uint64_t> sight_;  ///< for each vertex: hash of its data if the step does not move it; else 0
   VertexMover mover_;
 };
 
-/// Triangles up to this height count as two of their sides, and curves this close count as one, in voxels.
+/// Limits in voxels. Triangles up to the height `thin` are replaced by two of their sides. In the middle of round parts
+/// the limit is `thin_if_round`. Curves closer together than `beside` are merged.
 constexpr double thin = 0.02;
 constexpr double thin_if_round = 0.2;
 constexpr double beside = 0.1;
-/// Radius in walls much thinner than cells, in voxels.
+/// Greatest radius in parts of the solid that are much thinner than a voxel, in voxels.
 constexpr double far_below_a_voxel = 0.05;
-/// Sheets up to this size, in square voxels, that lie this close to others, in voxels, are removed.
+/// Sheets with an area of up to `crumb` square voxels are removed if they lie within `on_others` voxels of other
+/// sheets.
 constexpr double crumb = 16;
 constexpr double on_others = 0.2;
-/// Edges up to this length that stick out of a rim count as a part of its sheet, in voxels.
+/// Edges up to this length, in voxels, that stick out of a rim are removed. The rim is later moved outwards instead.
 constexpr double whiskers = 1;
 
-/// Runs the steps one after the other. The Fitter is kept from step to step while the cells stay.
+/// Runs the steps one after the other. Steps use the same Fitter until one of them changes the cells.
 class Fitting {
  public:
   Fitting(AxisLists& lists, const FitTarget& target, const Context& context)
@@ -728,7 +748,7 @@ class Fitting {
       fitter_.reset();
     }
   }
-  /// Removes cells beyond the angle, and cells that lie on other cells, as far as possible.
+  /// Removes cells whose angle is at most theta, and cells that lie on other cells, as far as homotopy allows.
   /// @return  true if the number of triangles and edges changed.
   bool trim_excess() {
     const std::size_t before = lists_.triangles.size() + lists_.edges.size();
@@ -786,10 +806,11 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
   Fitting fitting(lists, target, context);
   fitting.take(&Fitter::find_centres);
   fitting.trim_excess();
-  // If vertices are close together, only one of them is put on its sheet.
+  // Vertices that are close together are first contracted to one, so that only one of them must be moved to its sheet.
   fitting.contract(inside);
   fitting.take(&Fitter::find_sheets, nothing);
-  // If walls are much closer than the cells, these do not determine the order of vertices along the walls.
+  // In parts much thinner than a voxel, the cells do not determine the order of vertices along the walls, so triangles
+  // may be folded.
   fitting.take_folds_away(far_below_a_voxel);
   const double moved = fitting.thin_out();
   fitting.take(&Fitter::place_seams, with_seams);
@@ -801,7 +822,7 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
   bool is_changed = fitting.trim_excess();
   fitting.take(&Fitter::place_seams, with_rims);
   fitting.bend_curves();
-  // Changes of one round may require the next one, and ends of curves go far in several steps.
+  // A change may require another round, and ends of curves that move far need several rounds.
   constexpr int most_rounds = 3;
   constexpr double far = 0.5;
   for (int round = 0; round < most_rounds; ++round) {

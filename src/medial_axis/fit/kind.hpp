@@ -14,7 +14,7 @@
 
 namespace blum::detail {
 
-/// Returns the end of an edge that is not the given one.
+/// Returns the other end of an edge of which one end is given.
 inline std::uint32_t other_end(const std::array<std::uint32_t, 2>& edge, std::uint32_t v) {
   return edge[0] == v ? edge[1] : edge[0];
 }
@@ -24,7 +24,8 @@ inline std::uint32_t third_corner(const std::array<std::uint32_t, 3>& triangle,
   return triangle[0] ^ triangle[1] ^ triangle[2] ^ side[0] ^ side[1];
 }
 
-/// Numbers of edges of each kind at a vertex.
+/// Kind of a vertex: the numbers of its edges on rims (one triangle), seams (three or more) and curves (none), and
+/// inside sheets (two).
 struct Kind {
   std::uint32_t rims = 0, seams = 0, curves = 0, inner = 0;
 
@@ -36,7 +37,7 @@ struct Kind {
   [[nodiscard]] bool is_junction() const { return seams > 2 || (seams > 0 && curves > 0); }
 };
 
-/// Joins triangles of one sheet: those connected through edges of exactly two triangles.
+/// Joins the triangles of each sheet: triangles that are connected through edges of exactly two triangles.
 inline detail::UnionFind sheets_of(const Incidence& incidence) {
   detail::UnionFind sheets(incidence.sides().size());
   for (std::size_t e = 0; e < incidence.edges().size(); ++e) {
@@ -47,7 +48,7 @@ inline detail::UnionFind sheets_of(const Incidence& incidence) {
 }
 
 /// Returns the kind of each vertex.
-/// @param incidence  of a complex with `vertices` vertices.
+/// @param incidence  the incidence of a complex with `vertices` vertices.
 inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertices) {
   std::vector<Kind> kinds(vertices);
   for (std::uint32_t e = 0; e < incidence.edges().size(); ++e) {
@@ -59,21 +60,21 @@ inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertic
   return kinds;
 }
 
-/// Returns the cosine of the angle by which two triangles of a sheet bend at their common side. It is -1 if one lies on
-/// the other, and 1 if they are flat or one has no area.
-/// @param p, q  their third corners.
+/// Returns the cosine of the angle by which two triangles of a sheet bend at their common side. It is -1 if one
+/// triangle is folded onto the other, and 1 if they form a flat sheet or one has no area.
+/// @param p, q  corners of the triangles that are not on the common side.
 [[nodiscard]] inline double cosine_of_bend(const Vec3d& from, const Vec3d& to, const Vec3d& p, const Vec3d& q) {
   const Vec3d along = to - from;
   const Vec3d u = cross(along, p - from);
   const Vec3d v = cross(along, q - from);
   const double scale = length(u) * length(v);
-  // The triangles lie on both sides of the edge, so that u and v point opposite ways.
+  // If the triangles lie side by side in one plane, u and v have opposite directions.
   return scale > 0 ? -dot(u, v) / scale : 1;
 }
 
-/// Returns the least cosine of the angles by which a sheet bends at the edges of a vertex inside of it. It is 1 if the
-/// sheet is flat.
-/// @param incidence  of the lists.
+/// Returns the least cosine of the angles by which a sheet bends at the edges of one of its inner vertices. It is 1 if
+/// the sheet is flat.
+/// @param incidence  the incidence of the lists.
 /// @param position   actual or assumed position of the vertex.
 [[nodiscard]] inline double least_cosine_at(const AxisLists& lists, const Incidence& incidence, std::uint32_t v,
                                             const Vec3d& position) {

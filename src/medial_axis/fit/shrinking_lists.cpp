@@ -25,7 +25,7 @@ ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, con
     const int weight = count == 2 ? 0 : count == 1 ? 1 : on_seam;
     for (const std::uint32_t v : incidence_.edges()[e]) rank_[v] += weight;
   }
-  // Ends of seams and curves stay in place, too, so that these do not become shorter.
+  // Ends of seams and curves get a high rank, so that they stay and the seams and curves do not become shorter.
   for (int& rank : rank_) rank += rank / on_seam == 1 ? (end_of_seam - 1) * on_seam : 0;
 }
 
@@ -41,7 +41,8 @@ bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to, LinkScra
 SolidPaths ShrinkingLists::paths_around(std::uint32_t from, const Stop& target) const {
   Box3 box;
   box.extend(target.at);
-  bool are_in_ball = true;  // of the target, which lies in the solid: no query of the surface is needed
+  // True if all points lie in the ball around the target, which is inside the solid: no query of the surface is needed.
+  bool are_in_ball = true;
   const auto include = [&](std::uint32_t v) {
     box.extend(position(v));
     are_in_ball = are_in_ball && length(position(v) - target.at) < target.nearest.distance;

@@ -17,7 +17,7 @@
 
 namespace blum::detail {
 
-/// Edge that is to be contracted to one of its ends.
+/// Contraction of an edge: vertex `from` is moved to vertex `to`.
 struct Contraction {
   std::uint32_t from = 0, to = 0;
 };
@@ -25,25 +25,26 @@ struct Contraction {
 /// Contracts edges of lists if that keeps the homotopy type and keeps edges in the solid.
 class ShrinkingLists {
  public:
-  /// Least rank of vertices of seams and curves. Vertices of rims have ranks from 1 to below this.
+  /// Least rank of vertices of seams and curves. Vertices of rims that are on no seam or curve have lower ranks, of at
+  /// least 1. Inner vertices of sheets have rank 0.
   static constexpr int on_seam = 1024;
-  /// Vertices at which one seam or curve ends have ranks from this many times `on_seam` on.
+  /// Vertices at which one seam or curve ends have a rank of at least this factor times `on_seam`.
   static constexpr int end_of_seam = 9;
 
-  /// @param lists      must not be changed until write().
-  /// @param incidence  of the lists; must outlive this object.
-  /// @param reach      changed() reports contractions up to this many edges away.
+  /// @param lists      must not be changed by others until write() is called.
+  /// @param incidence  the incidence of the lists; must outlive this object.
+  /// @param reach      number of edges: changed() reports contractions at most this far away from a vertex.
   ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface, int reach);
 
   [[nodiscard]] const ShrinkingComplex& cells() const { return cells_; }
-  /// Incidence of the original lists.
+  /// Returns the incidence of the lists before any contraction.
   [[nodiscard]] const Incidence& incidence() const { return incidence_; }
   [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
-  /// Separation angle at a vertex; 0 if only one wall is known.
+  /// Returns the separation angle at a vertex, degrees; 0 if the vertex has only one footprint.
   [[nodiscard]] double angle(std::uint32_t v) const { return lists_.vertices[v].separation_angle; }
   [[nodiscard]] double radius(std::uint32_t v) const { return lists_.vertices[v].radius; }
   [[nodiscard]] int rank(std::uint32_t v) const { return rank_[v]; }
-  /// Returns the vertex that another one was contracted to, or the vertex itself.
+  /// Returns the vertex to which a vertex was contracted, or the vertex itself if it was not.
   [[nodiscard]] std::uint32_t now(std::uint32_t v) const;
 
   /// Returns true if the edge between two vertices may be contracted to the second one. Any number of threads may call
@@ -51,18 +52,19 @@ class ShrinkingLists {
   [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const;
   void contract(std::uint32_t from, std::uint32_t to);
 
-  /// Number of contractions plus 1.
+  /// Returns the number of contractions so far, plus 1.
   [[nodiscard]] std::uint32_t contractions() const { return contractions_; }
-  /// Value of contractions() after the last contraction within reach of a vertex; 0 if there was none.
+  /// Returns the value that contractions() had after the last contraction within reach of a vertex; 0 if there was
+  /// none.
   [[nodiscard]] std::uint32_t changed(std::uint32_t v) const { return changed_[v]; }
 
   /// Writes the remaining cells to the lists.
   void write();
 
  private:
-  /// Returns true if edges stay in the solid and no part of the surface is passed over.
+  /// Returns true if a move of `from` to `to` keeps edges in the solid, and triangles do not pass over the surface.
   [[nodiscard]] bool stays_in_solid(std::uint32_t from, std::uint32_t to) const;
-  /// Returns paths that are prepared for queries around a vertex that is contracted.
+  /// Returns an object for queries of the solid, prepared for the surroundings of the vertex `from`.
   [[nodiscard]] SolidPaths paths_around(std::uint32_t from, const Stop& target) const;
   void note_change_at(std::uint32_t v);
   [[nodiscard]] bool is_joined(std::uint32_t a, std::uint32_t b) const;
@@ -77,22 +79,22 @@ class ShrinkingLists {
   std::vector<std::uint32_t> into_;
   std::vector<std::uint32_t> changed_;
   std::uint32_t contractions_ = 1;
-  std::vector<std::uint32_t> noted_;  ///< of note_change_at(), kept to avoid allocations
+  std::vector<std::uint32_t> noted_;  ///< memory of note_change_at(), kept to avoid allocations
 };
 
-/// Step at an edge, as chosen when the edge was examined.
+/// Step that was chosen for an edge when the edge was examined.
 struct ContractionStep {
-  bool is_gone = false;                 ///< no step: the edge was contracted before
-  std::array<std::uint32_t, 2> near{};  ///< vertices; while nothing changes around them, the step stays the same
+  bool is_gone = false;                 ///< true if there is no step, because the edge was contracted before
+  std::array<std::uint32_t, 2> near{};  ///< two vertices: if nothing changes near them, the step stays valid
   std::optional<Contraction> contraction{};
 };
 
-/// Number of edges for which steps are chosen at a time.
+/// Number of edges for which steps are chosen in parallel.
 inline constexpr std::size_t edges_in_batch = 1024;
 
-/// Cuts a list into as many strands as a batch has edges; each batch takes one edge of each strand. Adjacent edges of
-/// the list stay in order, which makes for good contractions. They are not in one batch, where they would be in each
-/// other's way.
+/// Reorders a list. The list is cut into `edges_in_batch` consecutive parts, and each batch of the result consists of
+/// one edge of each part. So adjacent edges of the list stay in order, which improves the contractions. They are in
+/// different batches, because steps in one batch must not change each other's surroundings.
 inline std::vector<std::uint32_t> in_strands(const std::vector<std::uint32_t>& list) {
   const std::size_t batches = (list.size() + edges_in_batch - 1) / edges_in_batch;
   std::vector<std::uint32_t> out;
@@ -103,12 +105,13 @@ inline std::vector<std::uint32_t> in_strands(const std::vector<std::uint32_t>& l
   return out;
 }
 
-/// Makes the steps of `count` edges in their order, as if each were chosen right before it is made. All threads choose
-/// the steps of `edges_in_batch` edges at a time. If something has changed around an edge since, its step is chosen
-/// again.
-/// @param lists    in which steps are chosen.
-/// @param step_of  ContractionStep(k, worker), called from many threads; worker is below thread_count().
-/// @param make     void(k, step) contracts, or does what else is needed.
+/// Makes the steps of `count` edges in their order, as if each step were chosen right before it is made. The steps of
+/// `edges_in_batch` edges at a time are chosen in parallel. If the surroundings of an edge change before its step is
+/// made, the step is chosen again.
+/// @param lists    the lists that the steps change.
+/// @param step_of  callable: (k, worker) -> ContractionStep, the step of edge k. Called from many threads; worker is
+/// below thread_count().
+/// @param make     callable: (k, step) -> void, makes the step of edge k.
 /// @throws Cancelled.
 template <class StepOf, class Make>
 void take_in_batches(const Context& context, std::size_t count, const ShrinkingLists& lists, const StepOf& step_of,

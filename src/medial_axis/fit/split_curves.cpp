@@ -16,7 +16,7 @@
 namespace blum::detail {
 namespace {
 
-/// Cosine of 18 degrees. Edges that leave a vertex at a larger angle go to different places, however short they are.
+/// Cosine of 18 degrees. Two edges with a larger angle between them are not merged, however short they are.
 constexpr double same_way = 0.95;
 
 class CurveMerger {
@@ -28,7 +28,7 @@ class CurveMerger {
     }
   }
 
-  /// @return  true if any edge begins elsewhere now.
+  /// @return  true if an end of any edge was moved to another vertex.
   bool run() {
     bool is_changed = false;
     std::vector<std::uint32_t> open;
@@ -55,7 +55,7 @@ class CurveMerger {
  private:
   using Edge = std::array<std::uint32_t, 2>;
   struct Pair {
-    std::uint32_t shorter = 0, longer = 0;  ///< listed edges
+    std::uint32_t shorter = 0, longer = 0;  ///< indices into lists_.edges
   };
 
   void find_sides() {
@@ -88,7 +88,7 @@ class CurveMerger {
     const double own_length = length(way);
     const double size = length(other);
     const double along = dot(way, other);
-    // The edge that slides becomes shorter, so that this ends.
+    // The edge whose end moves must become shorter, so that the loop in run() ends.
     if (u == w || !(own_length > 0) || along < same_way * own_length * size || along > size * size) return false;
     if (length(way - other * (along / (size * size))) > beside_ || !(length(other - way) < size)) return false;
     return !is_joined(u, w) && stays_in_solid(v, u, w);
@@ -117,19 +117,22 @@ class CurveMerger {
   SolidPaths paths_;
   double beside_;
   const Context& context_;
-  std::vector<std::vector<std::uint32_t>> curves_at_;  ///< Listed edges.
-  std::vector<Edge> sides_;                            ///< Sides of triangles between vertices of curves, sorted.
+  /// For each vertex: its edges of curves, as indices into lists_.edges.
+  std::vector<std::vector<std::uint32_t>> curves_at_;
+  std::vector<Edge> sides_;  ///< Sides of triangles with both ends on curves, sorted.
 };
 
 constexpr std::size_t edges_per_range = 16;
 constexpr int most_halvings = 5;
-/// Edges at least this long, in voxels, are split if they are at least this far from the middle.
+/// An edge is split if it is at least `least_length` voxels long and at least `least_bend` voxels away from the part's
+/// middle.
 constexpr double least_length = 1;
 constexpr double least_bend = 0.02;
-/// The middle of an edge must not be next to its ends. Otherwise edges would become shorter and shorter.
+/// The vertex that splits an edge must be at least this share of the edge's length away from both ends, along the edge.
+/// Otherwise splitting would not end.
 constexpr double least_share = 0.2;
 
-/// Returns the vertex at which an edge is to be split.
+/// Returns the vertex at which an edge is to be split, or nullopt if it is not.
 std::optional<AxisVertex> split_of(const AxisVertex& a, const AxisVertex& b, const SolidPaths& paths, double voxel,
                                    const std::function<std::optional<AxisVertex>(const Vec3d&)>& middle) {
   const Vec3d way = b.position - a.position;

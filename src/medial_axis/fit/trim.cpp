@@ -27,15 +27,16 @@
 namespace blum::detail {
 namespace {
 
-/// Allowed moves of sheets, one level after the other, as parts of the tolerance.
+/// Greatest moves of sheets, as fractions of the tolerance. Sheets are decimated with the first limit, then with the
+/// second.
 constexpr std::array levels{1.0 / 256, 1.0 / 16};
-/// Vertices up to this many edges from those that fitting may move stay. Edges up to `no_step` voxels long do not
-/// count.
+/// Vertices stay if they are at most this number of edges away from a vertex that fitting may move. Edges up to
+/// `no_step` voxels long are not counted.
 constexpr int rings = 3;
 constexpr double no_step = 0.3;
-/// Apart from borders, fitting may move vertices where a sheet bends by more than 18 degrees. It may move vertices that
-/// see less than theta plus `nearly_theta` degrees. It may also move vertices with a radius below `least_radius`
-/// voxels, unless they lie between parallel walls.
+/// Apart from borders, fitting may move vertices where a sheet bends by more than 18 degrees. It may move vertices
+/// whose angle is less than theta plus `nearly_theta` degrees. It may also move vertices with a radius below
+/// `least_radius` voxels, unless their angle is at least `parallel` degrees.
 constexpr double least_cosine = 0.95;
 constexpr double nearly_theta = 10;
 constexpr double least_radius = 0.05;
@@ -62,7 +63,8 @@ class InsideThinner {
     for (const AxisVertex& vertex : lists_.vertices) input.points.push_back({vertex.position, vertex.radius});
     for (std::size_t e = 0; e < incidence_.edges().size(); ++e) {
       const std::size_t triangles = incidence_.triangles_of_edge()[e].size();
-      if (triangles != 0 && triangles != 2) input.borders.push_back(incidence_.edges()[e]);  // the others are listed
+      // Curves are already in `borders`.
+      if (triangles != 0 && triangles != 2) input.borders.push_back(incidence_.edges()[e]);
     }
     input.border_kind.assign(input.borders.size(), 0);
     input.stays = next_to(movable());
@@ -84,15 +86,15 @@ class InsideThinner {
         const auto flatness = [&] {
           return least_cosine_at(lists_, incidence_, static_cast<std::uint32_t>(v), vertex.position);
         };
-        // Between such walls nothing moves far, however these bend.
+        // Between walls this close to each other, vertices hardly move, even if the walls bend.
         const bool is_thin = vertex.radius < least_radius * target_.voxel;
         out[v] = is_inside && is_shown && (is_thin || flatness() >= least_cosine) ? 0 : 1;
       }
     });
     return out;
   }
-  /// Returns some vertices and all next to them. Short edges are followed first, so that each vertex is reached by the
-  /// fewest steps.
+  /// Adds to the chosen vertices all vertices that are at most `rings` edges away. Short edges, which do not count, are
+  /// followed first, so that each vertex is reached by the least number of edges.
   [[nodiscard]] std::vector<std::uint8_t> next_to(std::vector<std::uint8_t> chosen) const {
     const double shortest = no_step * target_.voxel;
     std::vector<std::uint8_t> steps(chosen.size(), rings + 1);
@@ -156,7 +158,7 @@ class CrumbTaker {
   }
 
  private:
-  using Sheet = std::vector<std::uint32_t>;  ///< its triangles
+  using Sheet = std::vector<std::uint32_t>;  ///< triangles of a sheet
 
   [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
   [[nodiscard]] double area(std::uint32_t t) const {
@@ -184,7 +186,7 @@ class CrumbTaker {
     }
   }
 
-  /// Calls visit(triangle) for the triangles of larger sheets a few edges around a small one.
+  /// Calls visit(triangle) for the triangles of larger sheets within four edges of a small sheet.
   template <class Visit>
   void for_each_around(const Sheet& sheet, const Visit& visit) const {
     constexpr int rings = 4;
@@ -206,12 +208,12 @@ class CrumbTaker {
   }
 
   /// Returns true for each small sheet that lies on nearby triangles of larger sheets to which it is attached. The
-  /// middles of its triangles and its corners decide.
+  /// corners and centroids of its triangles are tested.
   [[nodiscard]] std::vector<bool> which_lie_on_others() const {
     TriangleMesh around;
     std::vector<bool> is_around(lists_.triangles.size(), false);
     std::vector<Vec3d> points;
-    std::vector<std::size_t> first{0};  // of the points of each sheet
+    std::vector<std::size_t> first{0};  // index of the first point of each sheet
     for (const Sheet& sheet : small_) {
       for (const std::uint32_t t : sheet) {
         const auto& [a, b, c] = lists_.triangles[t];
@@ -243,7 +245,7 @@ class CrumbTaker {
     return static_cast<std::size_t>(
         std::count_if(at.begin(), at.end(), [&](std::uint32_t t) { return has_triangle_[t]; }));
   }
-  /// Returns the edge on no triangle that is the only edge at a vertex.
+  /// Returns the only edge at a vertex, if it belongs to no triangle and is not an edge of the lists; else nullopt.
   [[nodiscard]] std::optional<std::uint32_t> whisker_at(std::uint32_t v) const {
     std::optional<std::uint32_t> only;
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
@@ -254,9 +256,10 @@ class CrumbTaker {
     return only;
   }
 
-  /// Collapses a sheet with its free sides and corners. If anything would be left that nothing else has, does nothing.
+  /// Collapses a sheet with its free sides and corners. If a triangle would be left, or a side that belongs to no other
+  /// cell, it changes nothing.
   bool collapse(const Sheet& sheet) {
-    std::vector<std::uint32_t> edges, vertices;  // removed
+    std::vector<std::uint32_t> edges, vertices;  // removed so far
     for (std::size_t left = sheet.size(), before = 0; left != before && left > 0;) {
       before = left;
       for (const std::uint32_t t : sheet) {
@@ -296,7 +299,7 @@ class CrumbTaker {
   CrumbLimits limits_;
   const Context& context_;
   std::vector<bool> has_triangle_, has_edge_, is_listed_, has_vertex_;
-  std::vector<bool> is_small_;  ///< triangles
+  std::vector<bool> is_small_;  ///< for each triangle: true if it belongs to a small sheet
   std::vector<Sheet> small_;
 };
 
@@ -344,11 +347,12 @@ class Trimmer {
  private:
   [[nodiscard]] double angle(std::uint32_t v) const { return angles_[v]; }
 
-  /// Returns the largest angle of a triangle's vertices, or the angle of the triangle if no vertex sees two walls.
+  /// Returns the largest angle of a triangle's vertices. If no vertex has two footprints, it returns the angle of the
+  /// triangle.
   [[nodiscard]] double angle_of_triangle(std::uint32_t t) const {
     double largest = 0;
     for (const std::uint32_t v : lists_.triangles[t]) largest = std::max(largest, angle(v));
-    // If no vertex knows two walls, the cell may know better.
+    // If no vertex has two footprints, the triangle's own angle is more reliable.
     return largest > 0 ? largest : lists_.triangle_angles[t];
   }
   [[nodiscard]] double angle_of_edge(std::uint32_t e) const {
@@ -361,7 +365,8 @@ class Trimmer {
   [[nodiscard]] double length_of(std::uint32_t e) const {
     return length(position(incidence_.edges()[e][0]) - position(incidence_.edges()[e][1]));
   }
-  /// Returns true if a triangle practically lies on its two other sides.
+  /// Returns true if `side` is the longest side of a triangle that is so flat that it practically lies on its other
+  /// sides.
   [[nodiscard]] bool is_covered(std::uint32_t t, std::uint32_t side) const {
     const auto& sides = incidence_.sides()[t];
     const double longest = length_of(side);
@@ -374,17 +379,17 @@ class Trimmer {
     return length(cross(position(b) - position(a), position(c) - position(a))) <= thin * longest;
   }
 
-  /// Returns true if the end of a curve lies on a sheet, or sticks out of a rim. In the second case the rim goes out to
-  /// it instead.
+  /// Returns true if the end of a curve lies on a sheet, or if its last edge is short and sticks out of a rim. In the
+  /// second case, the rim is later moved outwards instead.
   [[nodiscard]] bool is_whisker(std::uint32_t end, std::uint32_t own) const {
     if (is_on_sheet_[end]) return true;
     const auto at = incidence_.edges_of_vertex()[other_end(incidence_.edges()[own], end)];
     const bool is_at_rim = std::any_of(at.begin(), at.end(), [&](std::uint32_t e) { return triangles_left_[e] == 1; });
     return is_at_rim && length_of(own) <= limits_.whiskers;
   }
-  /// Finds vertices that lie on no triangle but are next to one.
+  /// Finds vertices that belong to no triangle but are within `limits_.beside` of one.
   void find_what_is_on_sheets() {
-    std::vector<std::pair<double, std::uint32_t>> alone;  // x and vertex
+    std::vector<std::pair<double, std::uint32_t>> alone;  // x coordinate and index
     for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) {
       if (incidence_.triangles_of_vertex()[v].empty()) alone.emplace_back(position(v).x, v);
     }
@@ -398,7 +403,7 @@ class Trimmer {
     for (std::size_t k = 0; k < alone.size(); ++k)
       is_on_sheet_[alone[k].second] = closest[k].distance <= limits_.beside;
   }
-  /// Returns triangles whose boxes are next to any of some vertices, which are sorted along x.
+  /// Returns the triangles whose boxes are within `limits_.beside` of any vertex of `alone`, which is sorted by x.
   [[nodiscard]] TriangleMesh triangles_near(const std::vector<std::pair<double, std::uint32_t>>& alone) const {
     constexpr std::size_t grain = 4096;
     const Vec3d reach{limits_.beside, limits_.beside, limits_.beside};
@@ -429,7 +434,8 @@ class Trimmer {
     return *std::find_if(at.begin(), at.end(), [&](std::uint32_t e) { return has_edge_[e]; });
   }
 
-  /// Queues a triangle or edge that is free and outside.
+  /// Queues an edge of exactly one triangle if the triangle's angle is at most theta, or if the triangle lies on its
+  /// other sides.
   void look_at_edge(std::uint32_t e) {
     if (!has_edge_[e] || triangles_left_[e] != 1) return;
     const std::uint32_t t = triangle_left_at(e);
@@ -467,8 +473,8 @@ class Trimmer {
     for (const std::uint32_t v : incidence_.edges()[e]) --edges_left_[v];
   }
 
-  /// Returns true if nothing was removed and edges are listed as write() would list them: curves only, ascending, the
-  /// smaller end first.
+  /// Returns true if nothing was removed and the edges of the lists are those that write() would write: curves only,
+  /// ascending, the smaller end first.
   [[nodiscard]] bool stays_as_it_is() const {
     const auto& listed = incidence_.edge_of_listed();
     for (std::size_t n = 0; n < listed.size(); ++n) {
@@ -479,7 +485,8 @@ class Trimmer {
     return !has_taken_;
   }
 
-  /// Writes the remaining cells, in the same order; edges in that of the incidence.
+  /// Writes the remaining cells to the lists. Vertices and triangles keep their order; edges have the order of the
+  /// incidence.
   void write() {
     std::vector<float> angle_of_edge(has_edge_.size(), 0);
     for (std::size_t n = 0; n < lists_.edges.size(); ++n) {

@@ -19,10 +19,10 @@
 namespace blum::detail {
 namespace {
 
-/// Sheets of up to this many triangles are crumbs.
+/// Greatest number of triangles of a sheet that counts as a crumb.
 constexpr std::uint32_t most_of_crumb = 8;
 
-/// Returns the edges of sheets of a few triangles, and of curves that end next to a sheet.
+/// Returns the edges of sheets that are crumbs, and the edges of curves that lead from a sheet to a free end.
 std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const Incidence& incidence) {
   detail::UnionFind sheets = sheets_of(incidence);
   std::vector<std::uint32_t> size(incidence.sides().size(), 0);
@@ -67,7 +67,7 @@ class ShortEdges {
   /// @return  true if any edge was contracted.
   bool run() {
     const std::size_t all = short_.size();
-    // A contraction may allow others that were forbidden before.
+    // A contraction may make other contractions possible that were forbidden before.
     for (bool is_changed = true; is_changed && !short_.empty();) {
       const std::size_t count = short_.size();
       std::vector<ShortEdge> left;
@@ -96,7 +96,8 @@ class ShortEdges {
   struct ShortEdge {
     double length;
     std::uint32_t a, b;
-    std::uint32_t looked = 0;  ///< ShrinkingLists::contractions() when it was examined in vain
+    /// ShrinkingLists::contractions() when the edge was last examined and not contracted; else 0
+    std::uint32_t looked = 0;
     bool operator<(const ShortEdge& other) const {
       return std::tie(length, a, b) < std::tie(other.length, other.a, other.b);
     }
@@ -130,7 +131,7 @@ class ShortEdges {
     detail::sort_unique(slivers_);
   }
 
-  /// Returns the length up to which an edge may be contracted because of the cells that it is a side of, in voxels.
+  /// Returns the greatest length, in voxels, at which a side of a sliver or crumb may be contracted; 0 for other edges.
   [[nodiscard]] double longest(std::uint32_t a, std::uint32_t b) const {
     const Edge edge{std::min(a, b), std::max(a, b)};
     const bool is_of_sliver = std::binary_search(slivers_.begin(), slivers_.end(), edge);
@@ -145,8 +146,7 @@ class ShortEdges {
     return std::max({voxels, least_voxels, is_at_corner(a, b) ? lengths_.at_corners : 0}) * voxel_;
   }
 
-  /// Returns true if an edge leads to the end of a seam next to the surface: in a corner of the solid. It must come
-  /// from the rim of a sheet, or from where a rim comes to a seam.
+  /// Returns true if an edge leads from a vertex on a rim to the end of a seam in a corner of the solid.
   [[nodiscard]] bool is_at_corner(std::uint32_t a, std::uint32_t b) const {
     constexpr double next_to = 2;  // voxels
     if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
@@ -156,8 +156,9 @@ class ShortEdges {
            lists_.radius(b) < next_to * voxel_;
   }
 
-  /// Returns true if the rim of a sheet would come to a seam that goes on, which cuts a notch into the sheet. A sheet
-  /// without inner vertices may be a ribbon in the middle of a round part, which is to become a curve.
+  /// Returns true if the contraction would move a vertex of a rim to an inner vertex of a seam. That would cut a notch
+  /// into the sheet. Sheets without inner vertices are excepted: such a ribbon in the middle of a round part shall
+  /// become a curve.
   [[nodiscard]] bool would_notch(std::uint32_t a, std::uint32_t b) const {
     if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
     const bool is_at_seam =
@@ -170,7 +171,7 @@ class ShortEdges {
     return has_inside;
   }
 
-  /// Returns the step at an edge.
+  /// Returns the step of a short edge: its contraction, if allowed.
   [[nodiscard]] ContractionStep step_of(const ShortEdge& edge, LinkScratch& scratch) const {
     std::uint32_t from = lists_.now(edge.a);
     std::uint32_t to = lists_.now(edge.b);
@@ -181,8 +182,8 @@ class ShortEdges {
     const double of_its_cells = longest(edge.a, edge.b);
     if (size > 2 * limit(from, to, of_its_cells)) return step;
     if (of_its_cells == 0 && would_notch(from, to)) return step;
-    // Seams and curves stay before rims, rims before the insides of sheets, and among these the vertices that know two
-    // walls.
+    // The vertex with the higher rank stays: vertices of seams and curves before those of rims, these before inner
+    // vertices. If the ranks are equal, the vertex with two footprints stays.
     const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
     if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);
     if (!lists_.may_contract(from, to, scratch)) {
@@ -194,22 +195,22 @@ class ShortEdges {
   }
 
   ShrinkingLists lists_;
-  std::vector<LinkScratch> scratch_;  ///< of each thread
+  std::vector<LinkScratch> scratch_;  ///< memory of each thread
   double voxel_;
   ShortLengths lengths_;
   std::vector<bool> is_on_curve_;
-  std::vector<Edge> crumbs_, slivers_;  ///< sides of these, sorted
+  std::vector<Edge> crumbs_, slivers_;  ///< sides of crumbs, and shortest sides of slivers; sorted
   const Context& context_;
   std::vector<ShortEdge> short_;
 };
 
 using Triangle3 = std::array<std::uint32_t, 3>;
 
-/// Cosine of the angle by which a sheet bends at an edge, below which it counts as folded.
+/// A sheet counts as folded at an edge if the cosine of the angle by which it bends there is below this.
 constexpr double folded = 0.3;
-constexpr double most_moved = 2;  ///< voxels
+constexpr double most_moved = 2;  ///< voxels: longest edge that is contracted
 constexpr int most_rounds = 4;
-/// The triangles that are examined around an edge have a corner up to three steps from its ends.
+/// Number of edges. All triangles that are examined for an edge have a corner at most three edges away from its ends.
 constexpr int reach = 4;
 
 class Unfolder {
@@ -249,21 +250,23 @@ class Unfolder {
     std::uint32_t third;
     bool operator<(const Side& other) const { return ends < other.ends; }
   };
-  /// Triangles around a vertex, prepared to count their folds for any position of the vertex.
+  /// Triangles around a vertex, prepared to count the folds between them for any position of the vertex.
   struct Around {
-    std::vector<Side> fixed;                            ///< of the triangles without the vertex; sorted
-    std::size_t fixed_folds = 0;                        ///< at these
-    std::vector<std::array<std::uint32_t, 2>> corners;  ///< the other two, of the triangles with the vertex
+    /// Sides of the triangles that do not contain the vertex; sorted.
+    std::vector<Side> fixed;
+    std::size_t fixed_folds = 0;  ///< number of folds at the sides in `fixed`
+    /// The two other corners of each triangle that contains the vertex.
+    std::vector<std::array<std::uint32_t, 2>> corners;
   };
 
-  /// Memory of one thread, kept to avoid allocations.
+  /// Memory of one thread, reused to avoid allocations.
   struct Scratch {
     LinkScratch links;
-    std::vector<Side> moved, at_edge;  ///< of folds()
+    std::vector<Side> moved, at_edge;  ///< memory of folds()
   };
 
   /// Returns the edges at which a sheet is folded. It skips edges near which nothing has changed since their last
-  /// examination. They are ordered by in_strands(): next to each one is the one a batch before.
+  /// examination. The edges are ordered by in_strands().
   [[nodiscard]] std::vector<std::uint32_t> folded_edges() {
     constexpr std::size_t grain = 4096;
     const auto& edges = lists_.incidence().edges();
@@ -285,7 +288,7 @@ class Unfolder {
     return step;
   }
 
-  /// Returns true if two triangles at an edge lie one over the other; false if one has no area.
+  /// Returns true if two triangles with a common edge are folded onto each other; false if one has no area.
   [[nodiscard]] bool is_folded(const std::array<std::uint32_t, 2>& edge, std::uint32_t p, std::uint32_t q) const {
     return cosine_of_bend(lists_.position(edge[0]), lists_.position(edge[1]), lists_.position(p), lists_.position(q)) <
            folded;
@@ -329,7 +332,8 @@ class Unfolder {
     for_each_edge(out.fixed, [&](std::span<const Side> at) { out.fixed_folds += is_folded(at) ? 1 : 0; });
     return out;
   }
-  /// Returns the number of folds between the triangles around a vertex if it were at another one.
+  /// Returns the number of folds that the triangles around a vertex would have if the vertex were contracted to vertex
+  /// `to`.
   [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to, Scratch& scratch) const {
     std::vector<Side>& moved = scratch.moved;
     moved.clear();
@@ -351,8 +355,8 @@ class Unfolder {
     return count;
   }
 
-  /// Returns the triangles of a vertex, and those with an edge between two vertices around it. These may fold when the
-  /// vertex moves to one of the vertices around it.
+  /// Returns the triangles that contain a vertex, and the triangles with an edge between two neighbours of it. These
+  /// may fold when the vertex moves to one of its neighbours.
   [[nodiscard]] std::vector<Triangle3> triangles_around(std::uint32_t v) const {
     std::vector<std::uint32_t> around{v};
     lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
@@ -382,7 +386,7 @@ class Unfolder {
         a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) { count += p == b || q == b ? 1 : 0; });
     return count;
   }
-  /// Returns true if a vertex can move without leaving a border behind: inside of a sheet, or along its rim or seam.
+  /// Returns true if a move keeps borders: if the vertex is inside a sheet, or moves along its rim or seam.
   [[nodiscard]] bool keeps_borders(std::uint32_t from, std::uint32_t to) const {
     const int rank = lists_.rank(from);
     if (rank == 0) return true;
@@ -390,9 +394,9 @@ class Unfolder {
     return rank == 2 ? count == 1 : rank == 2 * ShrinkingLists::on_seam && count > 2;
   }
 
-  /// Returns the contraction that removes most folds around a folded edge, or nullopt if none removes any.
+  /// Returns the contraction that removes most folds around a folded edge, or nullopt if no contraction removes any.
   [[nodiscard]] std::optional<Contraction> unfolded_by(std::uint32_t a, std::uint32_t b, Scratch& scratch) const {
-    // Fewer folds count first, then a shorter edge.
+    // The best contraction leaves the fewest folds; of equal ones, it has the shortest edge.
     using Found = std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>;
     std::optional<Found> best;
     std::vector<std::uint32_t> corners{a, b};
@@ -416,7 +420,7 @@ class Unfolder {
     return Contraction{std::get<2>(*best), std::get<3>(*best)};
   }
 
-  /// Returns true if nothing near an edge has changed since it was examined in vain.
+  /// Returns true if nothing near an edge has changed since it was examined and not contracted.
   [[nodiscard]] bool stays_as_it_was(std::size_t e, std::uint32_t p, std::uint32_t q) const {
     return looked_[e] > 0 && std::max(lists_.changed(p), lists_.changed(q)) <= looked_[e];
   }
@@ -434,8 +438,9 @@ class Unfolder {
   double most_moved_;
   double most_radius_;
   const Context& context_;
-  std::vector<Scratch> scratch_;       ///< Memory of each thread.
-  std::vector<std::uint32_t> looked_;  ///< Per edge of the lists: contractions() when it was examined in vain, or 0.
+  std::vector<Scratch> scratch_;  ///< For each thread.
+  /// For each edge of the incidence: contractions() when it was last examined and not contracted; else 0.
+  std::vector<std::uint32_t> looked_;
 };
 
 }  // namespace

@@ -10,19 +10,20 @@
 
 namespace blum::detail {
 
-/// Lengths up to which edges are contracted, in voxels.
+/// Greatest lengths of edges that are contracted, in voxels, by the kind of the edge.
 struct ShortLengths {
   double others = 0.15;
   double on_seams = 0.15;  ///< Between two vertices of seams or curves.
   double on_rims = 0.15;   ///< Between two vertices of rims.
-  double of_crumbs = 0;    ///< Edges of sheets of a few triangles.
-  double at_corners = 0;   ///< From a vertex of a rim to the end of a seam: rims meet there and cut no corner.
-  double of_slivers = 0;   ///< Shortest sides of triangles between borders whose corners lie on a line.
+  double of_crumbs = 0;    ///< Edges of sheets of at most 8 triangles.
+  /// From a vertex of a rim to the end of a seam in a corner of the solid, so that rims meet in the corner.
+  double at_corners = 0;
+  double of_slivers = 0;  ///< Shortest sides of triangles whose corners all lie on borders and nearly on one line.
 };
 
 /// Contracts edges much shorter than a voxel if that keeps the homotopy type and keeps edges in the solid. Ribbons
 /// become curves, and two adjacent seams become one.
-/// @param incidence  of the lists as they are.
+/// @param incidence  the incidence of the lists before the call.
 /// @param voxel      mesh units.
 /// @return           true if any edge was contracted.
 /// @throws Cancelled. Cost: near-linear.
@@ -32,13 +33,13 @@ bool contract_short(AxisLists& lists, const Incidence& incidence, const Surface&
 /// Limits of unfold().
 struct UnfoldLimits {
   double voxel = 0;               ///< mesh units
-  double most_radius = HUGE_VAL;  ///< mesh units: vertices with larger radii are left alone
+  double most_radius = HUGE_VAL;  ///< mesh units: vertices with larger radii are not moved
 };
 
-/// Contracts edges where two triangles of a sheet lie one over the other, as moved vertices leave them. At each such
-/// fold it contracts the adjacent edge that removes most folds. Seams stay on seams and rims on rims. The homotopy type
-/// is kept and edges stay in the solid, as in contract_short().
-/// @param incidence  of the lists as they are.
+/// Contracts edges where two triangles of a sheet are folded onto each other. Moves of vertices cause such folds. At
+/// each fold, it contracts the nearby edge whose contraction removes most folds. Vertices of seams move along seams
+/// only, those of rims along rims only. The homotopy type is kept and edges stay in the solid, as in contract_short().
+/// @param incidence  the incidence of the lists before the call.
 /// @return  true if any edge was contracted.  @throws Cancelled. Cost: near-linear.
 bool unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
             const Context& context);

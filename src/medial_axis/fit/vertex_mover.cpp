@@ -14,19 +14,21 @@
 namespace blum::detail {
 namespace {
 
-/// Distances from a point at which feet are searched for, in voxels; at most `most_of_depth` of its depth.
+/// Queries for closest points are made at these distances from a point, in voxels, one distance after the other. Each
+/// distance is at most `most_of_depth` times the depth of the point.
 constexpr std::array beside{4.0, 2.0, 1.0, 0.5, 0.3};
 constexpr double most_of_depth = 0.4;
-/// Feet further than the closest one by more than this, in voxels, do not belong to a round part.
+/// Voxels: footprints do not belong to a round part if their distance exceeds that of the closest one by more than
+/// this.
 constexpr double equally_far = 0.02;
-/// A round part must be seen in at least this many directions. No two are closer than `share_of_theta` of theta,
-/// clamped to `least_apart` and `most_apart` degrees.
+/// A round part must have footprints in at least this number of directions from its middle. The angle between any two
+/// of these must be at least `share_of_theta` times theta, clamped to `least_apart` and `most_apart` degrees.
 constexpr std::size_t least_directions = 5;
 constexpr double share_of_theta = 0.25;
 constexpr double least_apart = 5;
 constexpr double most_apart = 30;
 
-/// Returns the directions to the sides and corners of a cube.
+/// Returns the unit vectors from the centre of a cube to the centres of its 6 sides and to its 8 corners.
 std::array<Vec3d, 14> directions() {
   std::array<Vec3d, 14> out;
   for (std::size_t k = 0; k < 6; ++k) out[k][k / 2] = k % 2 == 0 ? 1 : -1;
@@ -47,7 +49,8 @@ std::vector<Footprint> feet_beside(const Surface& surface, const Vec3d& x, doubl
   return feet;
 }
 
-/// Returns feet that are no further from a point than a limit, one of each direction.
+/// Returns the footprints that are at most `limit` away from a point. If several lie in nearly the same direction, only
+/// the first is returned.
 std::vector<Footprint> all_around(const Vec3d& x, const std::vector<Footprint>& feet, double limit,
                                   double same_direction) {
   std::vector<Footprint> kept;
@@ -72,18 +75,18 @@ std::array<Vec3d, 2> directions_across(const Vec3d& direction) {
   return {u / length(u), v / length(v)};
 }
 
-/// Returns true if the surface may be all around, as seen from about the middle. This quick test saves most of the work
-/// if nothing is round.
+/// Returns true if the surface may surround a point near the middle on all sides. This quick test saves most of the
+/// work if the part is not round.
 bool may_be_round(const Surface& surface, const Vec3d& start, const NearestPoint& nearest, const RoundLimits& limits,
                   double same_direction) {
-  constexpr double most_of_way = 0.9;   // of the depth: the other side of round parts lies beyond
-  constexpr double to_the_side = 0.05;  // of the radius: walls are seen in the same direction from there
+  constexpr double most_of_way = 0.9;   // of the depth: the far side of a round part is further away
+  constexpr double to_the_side = 0.05;  // of the radius: a step so small that directions to walls hardly change
   if (!(nearest.distance > 0)) return false;
   const Vec3d inwards = (start - nearest.point) / nearest.distance;
   const Vec3d beyond = start + inwards * std::min(1.25 * limits.reach, most_of_way * nearest.distance);
   Vec3d other = surface.nearest(beyond, {}).point;
   if (!(angle_at(start, nearest.point, start + (other - beyond)) > limits.theta)) return false;
-  // Inwards to where both sides are equally far. This would be the middle if all this were round.
+  // The point inwards that is equally far from both sides. In a round part this is the middle.
   Vec3d middle = start;
   for (int n = 0; n < 2; ++n) {
     const Vec3d from_other = start - other;
@@ -117,7 +120,8 @@ std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& sta
     const double step = std::min(voxels * voxel, most_of_depth * depth);
     if (!(step > 0)) return std::nullopt;
     feet = feet_beside(surface, x, step);
-    // If the middle is less than a step away, feet all around are at most two steps further.
+    // If the middle is less than a step away, the distances of footprints on all sides exceed the depth by at most two
+    // steps.
     if (all_around(x, feet, depth + 2 * step, same_direction).size() < least_directions) return std::nullopt;
     std::vector<Vec3d> points;
     for (const Footprint& foot : feet) points.push_back(foot.point);
@@ -139,7 +143,7 @@ double VertexMover::make(std::vector<VertexMove> moves) {
     move_of_[moves[k].vertex] = k + 1;
     changed.push_back(moves[k].vertex);
   }
-  // A vertex that goes back may make edges beside it leave the solid.
+  // If the move of a vertex is undone, other edges of the vertex may leave the solid.
   while (!changed.empty()) {
     const std::vector<std::uint32_t> edges = edges_of(changed);
     const std::vector<std::uint8_t> leaves = which_leave(edges, moves);
@@ -163,7 +167,7 @@ double VertexMover::make(std::vector<VertexMove> moves) {
   return furthest;
 }
 
-/// Returns the edges for which which_leave() may change once some vertices are elsewhere.
+/// Returns the edges for which the result of which_leave() may change when some vertices move.
 std::vector<std::uint32_t> VertexMover::edges_of(const std::vector<std::uint32_t>& vertices) const {
   std::vector<std::uint32_t> edges;
   for (const std::uint32_t v : vertices) {
@@ -201,7 +205,7 @@ std::vector<std::uint8_t> VertexMover::which_leave(const std::vector<std::uint32
   return leaves;
 }
 
-/// Returns true if a triangle at an edge moved over a void as a whole, which edges do not show.
+/// Returns true if a triangle of an edge moved over a whole void. Tests of its edges alone do not detect this.
 bool VertexMover::moves_over_void(std::uint32_t e, const std::vector<VertexMove>& moves) const {
   const auto around = incidence_.triangles_of_edge()[e];
   return !surface_.voids().empty() && std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {

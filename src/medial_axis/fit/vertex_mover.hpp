@@ -17,37 +17,38 @@
 
 namespace blum::detail {
 
-/// Point in the middle of a nearby round tube. A ball has one only next to its middle.
+/// Point in the middle of a nearby round tube, or in the middle of a ball.
 struct RoundCentre {
   Vec3d position;
-  std::vector<Footprint> feet;  ///< on the surface all around, about equally far from it
+  std::vector<Footprint> feet;  ///< points of the surface on all sides, about equally far from `position`
 };
 
 /// Limits of round_centre().
 struct RoundLimits {
-  double voxel = 0;  ///< mesh units; feet count as equally far within 0.02 voxels
-  double reach = 0;  ///< mesh units, from the start
-  double theta = 0;  ///< degrees; the middle sees at least this
+  double voxel = 0;  ///< mesh units; distances of footprints count as equal to within 0.02 voxels
+  double reach = 0;  ///< mesh units: greatest distance of the middle from the start
+  double theta = 0;  ///< degrees: least separation angle at the middle
 };
 
-/// Returns the point from which the surface all around is equally far, by least squares over the closest points of
-/// places beside it. Walls are not distinguished, because facets of round parts hardly ever meet in one point.
-/// @param start  within the reach.
-/// @return       nullopt if the surface is not all around, as beside a sheet.
-/// Cost: some 80 closest points; mostly 2 or 8 if nothing is round.
+/// Returns the middle of a round part: the point that is, by least squares, equally far from the surface on all sides.
+/// The squares are summed over the closest points of the surface for 14 queries around the point. Three facets of a
+/// round part are hardly ever equally far from a point, so balance() is not used.
+/// @param start  a point at most `limits.reach` away from the middle.
+/// @return       nullopt if the surface is not on all sides, for example next to a sheet.
+/// Cost: about 80 queries of closest points; mostly 2 or 8 if the part is not round.
 [[nodiscard]] std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& start,
                                                       const RoundLimits& limits);
 
-/// Vertex and its new data. While vertices move, it contains the old data.
+/// A vertex and its new data. While VertexMover::make() runs, `other` contains the old data.
 struct VertexMove {
   std::uint32_t vertex = 0;
   AxisVertex other;
 };
 
-/// Moves vertices of lists as long as edges stay in the solid. The cells of the lists stay.
+/// Moves vertices of lists, unless edges would leave the solid. The cells of the lists do not change.
 class VertexMover {
  public:
-  /// @param incidence  of the lists. All arguments must outlive this object.
+  /// @param incidence  the incidence of the lists. All arguments must outlive this object.
   VertexMover(AxisLists& lists, const Incidence& incidence, const Surface& surface, const Context& context)
       : lists_(lists),
         incidence_(incidence),
@@ -56,8 +57,8 @@ class VertexMover {
         context_(context),
         move_of_(lists.vertices.size(), 0) {}
 
-  /// Returns the moves, in the order of vertices.
-  /// @param where  std::optional<AxisVertex>(vertex), called from many threads.
+  /// Returns the moves of all vertices for which `where` returns a vertex, in the order of vertices.
+  /// @param where  callable: (vertex) -> std::optional<AxisVertex>, called from many threads.
   template <class Where>
   [[nodiscard]] std::vector<VertexMove> moves_to(const Where& where) const {
     constexpr std::size_t grain = 64;
@@ -68,8 +69,10 @@ class VertexMover {
                                       });
   }
 
-  /// Makes all moves except those whose edges would leave the solid or sweep over a part of the surface.
-  /// @return  largest move of a vertex, mesh units.  @throws Cancelled. Cost: linear in the edges of moved vertices.
+  /// Makes the moves. A move is left out if an edge of the vertex would leave the solid or sweep over a part of the
+  /// surface.
+  /// @return  largest move of a vertex, mesh units.  @throws Cancelled. Cost: linear in the number of edges of moved
+  /// vertices.
   double make(std::vector<VertexMove> moves);
 
  private:
@@ -84,7 +87,8 @@ class VertexMover {
   const Surface& surface_;
   SolidPaths paths_;
   const Context& context_;
-  std::vector<std::uint32_t> move_of_;  ///< of each vertex, while they move: index of its move plus 1; else 0
+  /// For each vertex, while make() runs: index of its move plus 1; 0 if it does not move.
+  std::vector<std::uint32_t> move_of_;
 };
 
 }  // namespace blum::detail

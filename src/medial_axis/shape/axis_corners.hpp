@@ -14,20 +14,20 @@
 
 namespace blum::detail {
 
-/// Corners and sides of the cells of a piece. Cells are looked up by their names.
+/// Corners and sides of the cells of a piece. Indices of cells refer to `piece.cells`.
 class AxisCorners {
  public:
-  /// @param piece  with its cells and their structure. It must outlive this object.
+  /// @param piece  must contain its cells and their structure, and outlive this object.
   AxisCorners(const AxisPiece& piece, const Context& context);
 
-  /// Returns the place of a cell among those of the piece.
+  /// Returns the index of a cell in `piece.cells`.
   [[nodiscard]] std::uint32_t index_of(Cell cell) const;
-  /// Vertices among the cells, ascending. A vertex place is an index into this list.
+  /// Returns the cells that are vertices, ascending. A *vertex place* is an index into this list.
   [[nodiscard]] std::span<const Cell> vertex_cells() const { return vertex_cells_; }
-  /// Corners of each cell, as vertex places: a vertex itself, the two ends of an edge, or the corners of a polygon in
-  /// cyclic order.
+  /// Returns the corners of each cell, as vertex places: the vertex itself, both ends of an edge, or a polygon's
+  /// corners in cyclic order.
   [[nodiscard]] const IndexRows& of_cells() const { return corners_; }
-  /// Edges of polygons, as places of cells: edge k joins corners k and k + 1.
+  /// Returns the edges of each polygon, as indices of cells: edge k joins corners k and k + 1.
   [[nodiscard]] const IndexRows& sides() const { return sides_; }
 
  private:
@@ -38,13 +38,13 @@ class AxisCorners {
   RankedCells ranked_;
   std::vector<std::uint32_t> index_of_extra_;
   std::vector<Cell> vertex_cells_;
-  std::vector<std::uint32_t> vertex_place_;  ///< of each cell that is a vertex
+  std::vector<std::uint32_t> vertex_place_;  ///< for each cell that is a vertex
   IndexRows corners_;
   IndexRows sides_;
 };
 
-/// Returns the two triangles of a quadrangle, split along its shorter diagonal so that none is needlessly thin.
-/// @param corners  four, in cyclic order.
+/// Returns the two triangles of a quadrangle, split along its shorter diagonal so that neither is needlessly thin.
+/// @param corners  the four corners in cyclic order, as indices into `vertices`.
 [[nodiscard]] std::array<std::array<std::uint32_t, 3>, 2> triangles_of(std::span<const std::uint32_t> corners,
                                                                        std::span<const AxisVertex> vertices);
 

@@ -9,7 +9,8 @@
 namespace blum::detail {
 namespace {
 
-/// Adds a column with the numbers that `numbers_of` returns for each vertex, one after the other.
+/// Adds a column with `components` numbers for each vertex. `numbers_of` returns the number for a vertex and a
+/// component.
 template <ColumnNumber T, class NumbersOf>
 void add_column(Columns& columns, const std::vector<AxisVertex>& vertices, std::string_view name,
                 std::size_t components, const NumbersOf& numbers_of) {
@@ -49,7 +50,7 @@ Columns columns_of(std::vector<float> angles) {
 
 namespace {
 
-/// @param edge, triangle  return the vertices of a cell that is kept; nullopt for the others.
+/// @param edge, triangle  callables: return the vertices of an edge or triangle that is kept, and nullopt for others.
 template <class HasVertex, class Edge, class Triangle>
 void keep_in_place(AxisLists& lists, const HasVertex& has_vertex, const Edge& edge, const Triangle& triangle) {
   std::vector<std::uint32_t> number(lists.vertices.size(), 0);

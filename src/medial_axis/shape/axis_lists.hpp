@@ -21,10 +21,10 @@ struct AxisVertex {
   std::array<Vec3d, 2> footprints;
   std::array<SiteId, 2> sites;
   double separation_angle = 0;
-  std::array<std::uint32_t, 2> elements{};  ///< of the surface, that contain the footprints
+  std::array<std::uint32_t, 2> elements{};  ///< elements of the surface that contain the footprints
 };
 
-/// Returns a vertex for which only one wall is known.
+/// Returns a vertex that has only one footprint. Its separation angle is 0.
 inline AxisVertex vertex_of_one_wall(const Vec3d& x, const NearestPoint& nearest) {
   return {x,
           nearest.distance,
@@ -44,7 +44,7 @@ inline AxisVertex vertex_of_ball(const ThinBall& ball) {
           {ball.nearest.element, ball.other.element}};
 }
 
-/// Vertices, edges and triangles that are added one by one.
+/// Vertices, edges and triangles of an axis, to which more can be added.
 struct AxisLists {
   std::vector<AxisVertex> vertices;
   std::vector<std::array<std::uint32_t, 2>> edges;
@@ -62,17 +62,17 @@ struct AxisLists {
   }
 };
 
-/// Appends lists to others.
+/// Appends the cells of `more` to `lists`.
 void append(AxisLists more, AxisLists& lists);
 
-/// Keeps the remaining cells of a complex that was made of lists. Its edges are those of the lists, in their order, and
-/// maybe more.
+/// Removes from the lists all cells that are no longer in a complex made from them. The edges of the complex must begin
+/// with those of the lists, in the same order.
 void keep(const ShrinkingComplex& cells, AxisLists& lists);
-/// Keeps some vertices and triangles, and all edges. All ends of edges must be among the kept vertices.
+/// Removes the vertices and triangles whose flag is false. All edges stay, so all their ends must stay.
 void keep(const std::vector<bool>& has_vertex, const std::vector<bool>& has_triangle, AxisLists& lists);
 
-/// Returns a complex with the columns of a medial axis, one sheet, and edges that are curves. label_sheets() must label
-/// it.
+/// Returns a complex with the columns of a medial axis. All triangles get one sheet and all edges the role of curves,
+/// until label_sheets() is called.
 [[nodiscard]] Complex complex_of(AxisLists lists);
 
 }  // namespace blum::detail

@@ -28,12 +28,12 @@ constexpr double on_a_face = 1e-7;  ///< voxels
 
 using Voxel = std::array<std::int64_t, 3>;
 
-/// Box of the voxels that a segment can meet, both ends included. For a segment in a face, it contains the voxels on
-/// both sides.
+/// Box of the voxels that a segment can meet, from voxel `lower` to voxel `upper`, both included. If the segment lies
+/// in a face of voxels, the box contains the voxels on both sides.
 struct VoxelBox {
   Voxel lower, upper;
 
-  /// Returns true if a voxel lies between those at the ends.
+  /// Returns true if there is a voxel between those at the two ends, along any axis.
   [[nodiscard]] bool is_long() const {
     return upper[0] - lower[0] > 1 || upper[1] - lower[1] > 1 || upper[2] - lower[2] > 1;
   }
@@ -66,8 +66,8 @@ class GapFinder {
  public:
   explicit GapFinder(const VoxelSolid& solid) : grid_(solid.grid), voxels_(solid.voxels) {}
 
-  /// Returns true if a segment leaves the solid other than by cutting a corner. Then it meets a voxel between those of
-  /// its ends, or an end lies in no voxel of the solid that it passes through.
+  /// Returns true if a segment leaves the solid other than by cutting a corner. In this case a voxel lies between those
+  /// of its ends, or an end lies in no voxel of the solid.
   [[nodiscard]] bool crosses_a_gap(const Vec3d& from, const Vec3d& to) const {
     const Vec3d a = in_voxels(from);
     const Vec3d b = in_voxels(to);
@@ -76,12 +76,12 @@ class GapFinder {
   }
 
  private:
-  /// Converts to voxels: voxel (i, j, k) spans i to i + 1 along x, and so on.
+  /// Converts a point to voxel coordinates: voxel (i, j, k) spans i to i + 1 along x, and likewise along y and z.
   [[nodiscard]] Vec3d in_voxels(const Vec3d& x) const {
     const Vec3d seen = grid_.direction.transposed_times(x - grid_.origin);
     return {seen.x / grid_.spacing.x + 0.5, seen.y / grid_.spacing.y + 0.5, seen.z / grid_.spacing.z + 0.5};
   }
-  /// Returns true if a voxel of the box that is in the solid contains an end.
+  /// Returns true if a voxel of the box contains a point and is in the solid.
   [[nodiscard]] bool has_end(const VoxelBox& box, const Vec3d& x) const {
     bool is_found = false;
     box.for_each([&](const Voxel& v) { is_found = is_found || (contains(v) && has(v, x)); });
@@ -101,8 +101,8 @@ class GapFinder {
   }
   [[nodiscard]] bool contains(const Voxel& v) const { return voxels_.contains(v[0], v[1], v[2]); }
 
-  /// Returns true if a segment lies in the closed voxels of the solid, as all its parts between planes of the lattice
-  /// do.
+  /// Returns true if a segment lies in the closed voxels of the solid. It tests the middle of each part between two
+  /// planes of the lattice.
   [[nodiscard]] bool is_inside(const Vec3d& a, const Vec3d& b) const {
     std::vector<double> cuts{0, 1};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -128,13 +128,14 @@ class GapFinder {
   const VoxelSet& voxels_;
 };
 
-/// Moves ends of edges back to their lattice corners. In an image they may have moved into parts that have a gap
-/// between them, like the tips of a U. The edges of the corners lie in the solid: on its surface, where the radius of
-/// the vertices is 0. Edges that only cut a corner of the solid stay.
+/// Moves the ends of an edge back to their lattice corners if the edge crosses a gap of the solid. In an image, the two
+/// ends may have moved into parts with a gap between them, like the tips of a U. Edges between lattice corners lie in
+/// the solid or on its surface, where the radius of vertices is 0. Edges that only cut a corner of the solid do not
+/// change.
 void keep_edges_inside(AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors,
                        const Context& context) {
   const GapFinder gaps(governors.solid());
-  // Each round moves at least one vertex back for good. Mostly there is nothing to do.
+  // Each round moves at least one vertex back permanently. In most cases no vertex must be moved.
   for (bool is_done = false; !is_done;) {
     std::vector<std::uint8_t> goes_back(piece.vertices.size(), 0);
     std::atomic<bool> is_found = false;
@@ -150,7 +151,7 @@ void keep_edges_inside(AxisPiece& piece, const AxisCorners& corners, const Gover
           look(own[0], own[1]);
         } else if (piece.cells[c].dimension == 2) {
           const auto triangles = triangles_of(own, piece.vertices);
-          look(triangles[0][0], triangles[0][2]);  // the diagonal; the sides are edges of their own
+          look(triangles[0][0], triangles[0][2]);  // the diagonal; the sides are tested as edges
         }
       }
     });
@@ -169,7 +170,7 @@ void keep_edges_inside(AxisPiece& piece, const AxisCorners& corners, const Gover
 
 constexpr double same_place = 1e-6;  ///< voxels
 
-/// Returns the cells of a complex, ascending.
+/// Returns the cells of a complex, ascending, with infinite levels.
 std::vector<AxisCell> cells_of(const CellComplex& complex, const Importance& importance) {
   std::vector<AxisCell> cells;
   complex.for_each_cell([&](Cell cell) {
@@ -179,8 +180,8 @@ std::vector<AxisCell> cells_of(const CellComplex& complex, const Importance& imp
   return cells;
 }
 
-/// Returns the depths of extra cells in the solid. A polygon has half the length of its interval, a face the largest
-/// value of its polygons.
+/// Returns the depths of extra cells in the solid. The depth of a polygon is half the length of the interval that it
+/// represents. The depth of an edge or vertex is the largest one of its polygons.
 std::vector<float> depths_of_extra(const CellStructure& structure) {
   std::vector<float> depths(structure.extra_count(), 0);
   const Cell first = structure.first_extra();
@@ -197,8 +198,7 @@ std::vector<float> depths_of_extra(const CellStructure& structure) {
   return depths;
 }
 
-/// Makes the ends of an edge equal if they are at practically the same place, for example those of a ribbon around a
-/// curve.
+/// Makes the two ends of an edge equal if their positions are at most `tolerance` apart, as in a ribbon around a curve.
 void make_equal(AxisPiece& piece, const IndexRows& corners, double tolerance) {
   detail::UnionFind joined(piece.vertices.size());
   for (std::size_t c = 0; c < piece.cells.size(); ++c) {
@@ -211,7 +211,7 @@ void make_equal(AxisPiece& piece, const IndexRows& corners, double tolerance) {
   for (std::uint32_t v = 0; v < piece.vertices.size(); ++v) piece.vertices[v] = piece.vertices[joined.find(v)];
 }
 
-/// Part of a piece that is left at an angle.
+/// The cells of a piece that are left at an angle theta.
 class Remainder {
  public:
   Remainder(const AxisPiece& piece, double theta, AxisLists& lists)
@@ -238,7 +238,7 @@ class Remainder {
  private:
   static constexpr std::uint32_t nobody = 0xffffffffU;
 
-  /// Returns the number of a vertex of the piece in the lists, and adds it if it is new.
+  /// Returns the index in the lists of a vertex of the piece. If the vertex is not yet in the lists, it is added.
   [[nodiscard]] std::uint32_t number(std::uint32_t place) {
     if (vertex_[place] == nobody) {
       vertex_[place] = static_cast<std::uint32_t>(lists_.vertices.size());

@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::size_t nodes_per_range = 256;
 constexpr int most_steps = 24;
-/// Greatest move of a vertex from its corner along each axis, in voxels. A corner of the squares nearest to a plane is
-/// at most (1 + sqrt 3) / 4 away from it.
+/// Greatest distance of a vertex from its lattice corner along each axis, in voxels. The squares that approximate a
+/// plane have corners at most (1 + sqrt 3) / 4 voxels away from it.
 constexpr double most_moved = 0.7;
-/// Two distances count as equal from this difference on, in voxels.
+/// Two distances count as equal if they differ by at most this much, in voxels.
 constexpr double equal_distances = 1e-9;
 constexpr double on_surface = 1e-9;    ///< voxels
 constexpr double least_radius = 1e-6;  ///< voxels
 
-/// Returns true if the voxels around a corner, as bits, are connected through faces at it. The voxels around each edge
-/// at the corner must be connected, too.
+/// Returns true if the voxels around a lattice corner, given as bits, are connected through faces that contain the
+/// corner. The voxels around each edge at the corner must also be connected through faces.
 bool are_joined_by_faces(unsigned voxels) {
   for (const unsigned axis : {1U, 2U, 4U}) {
     const unsigned u = axis == 1 ? 2 : 1;
@@ -56,12 +56,12 @@ AxisVertex vertex_on_surface(const NearestPoint& nearest) {
   return vertex;
 }
 
-/// Point that is equally far from two footprints. No other known footprint is closer.
+/// Point that is equally far from two footprints, p and q. No other known footprint is closer.
 struct Placed {
   Vec3d x;
   Footprint p;
   Footprint q;
-  NearestPoint nearest;  ///< to x
+  NearestPoint nearest;  ///< closest point of the surface to x
 };
 
 class Placer {
@@ -73,7 +73,8 @@ class Placer {
     const GovernorsAround around = governors_.around(node);
     const Vec3d corner = corner_at(grid, node);
     if (const auto joint = joint_at(around, corner)) return *joint;
-    // Seams and axes come first: a point equally far from all footprints. Otherwise the nearest sheet is taken.
+    // Seams and axes of round parts are tried first: a point equally far from all footprints. If there is none, the
+    // vertex moves to the nearest sheet.
     std::array<Vec3d, 8> feet;
     for (std::size_t v = 0; v < 8; ++v) feet[v] = around[v].foot.point;
     const EquidistantPoints points(feet, corner);
@@ -96,7 +97,8 @@ class Placer {
     return true;
   }
 
-  /// Returns the corner itself if it alone joins voxels of an image. If it moved, edges would leave the solid there.
+  /// Returns the vertex at the corner itself if voxels of an image meet only at this corner or at an edge of it. If the
+  /// vertex moved, edges would leave the solid.
   [[nodiscard]] std::optional<AxisVertex> joint_at(const GovernorsAround& around, const Vec3d& corner) const {
     unsigned inside = 0;
     for (unsigned v = 0; v < 8; ++v) inside |= around[v].is_inside ? 1U << v : 0U;
@@ -106,7 +108,7 @@ class Placer {
     return vertex_on_surface(nearest);
   }
 
-  /// Makes Newton steps to the nearest point between the closest wall and another one.
+  /// Makes Newton steps to the nearest point that is equally far from the closest wall and another wall.
   [[nodiscard]] std::optional<Placed> settle(const GovernorsAround& around, const Vec3d& start,
                                              const Vec3d& corner) const {
     const double voxel = governors_.voxel();
@@ -145,8 +147,8 @@ class Placer {
     return std::nullopt;
   }
 
-  /// Returns true if a point is in the solid. If the balls around it and around a voxel's centre meet, no query is
-  /// needed.
+  /// Returns true if a point is in the solid. If the largest inner balls around the point and around a voxel's centre
+  /// overlap, no query is needed.
   [[nodiscard]] bool is_inside(const GovernorsAround& around, const Vec3d& x, const NearestPoint& nearest) const {
     const bool meets = std::any_of(around.begin(), around.end(), [&](const Governor& g) {
       return g.is_inside && length(x - g.centre) < nearest.distance + length(g.centre - g.foot.point);
@@ -154,11 +156,11 @@ class Placer {
     return meets || surface_.is_inside(x, nearest);
   }
 
-  /// Returns the vertex at a point if that is inside. The first footprint is exact; the second one is that of the other
-  /// wall if it is as close.
+  /// Returns the vertex at a point if the point is inside the solid. The first footprint is exact. The second one is p
+  /// or q, if that is equally close.
   [[nodiscard]] std::optional<AxisVertex> vertex_at(const std::optional<Placed>& placed,
                                                     const GovernorsAround& around) const {
-    // On the surface, for example at a convex edge, directions are rounding errors.
+    // On the surface, for example at a convex edge, rounding errors determine the directions to footprints.
     if (!placed || placed->nearest.distance < least_radius * governors_.voxel()) return std::nullopt;
     AxisVertex vertex = vertex_of_one_wall(placed->x, placed->nearest);
     if (!is_inside(around, placed->x, placed->nearest)) return std::nullopt;
@@ -181,9 +183,9 @@ class Placer {
     return ball ? std::optional(vertex_of_ball(*ball)) : std::nullopt;
   }
 
-  /// Returns a vertex if no bisector is within reach. It is at the corner; if that is outside, it is in the middle of a
-  /// thin part next to it. Otherwise it is at the deepest voxel's centre. If that is outside, too, it is on the
-  /// surface.
+  /// Returns the vertex of a corner with no point equally far from two walls within reach. The vertex is at the corner
+  /// if that is inside the solid, otherwise in the middle of a thin part next to the corner. If there is none, it is at
+  /// the centre of the deepest voxel. If all voxels are outside, it is on the surface.
   [[nodiscard]] AxisVertex without_bisector(const GovernorsAround& around, const Vec3d& corner) const {
     const NearestPoint nearest = surface_.nearest(corner, around[0].foot);
     if (is_inside(around, corner, nearest)) return vertex_of_one_wall(corner, nearest);
@@ -213,16 +215,16 @@ AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std
 
 namespace {
 
-/// Returns true if a vertex lies in the component that its cell stands for, as far as straight lines show. The walls of
-/// other components may have been closer.
+/// Returns true if a straight line inside the solid shows that a vertex lies in the component that its cell represents.
+/// Otherwise the vertex may lie between walls of another component.
 bool is_in_component(const Witnesses& witnesses, Cell cell, const AxisVertex& vertex) {
   const GovernorField& governors = witnesses.governors();
   const CellStructure& structure = witnesses.structure();
-  constexpr double furthest = 1.3;  // voxels, from the corner: 0.7 along each axis is 1.21
+  constexpr double furthest = 1.3;  // voxels from the corner; a move of 0.7 along each axis is 1.21 long
   const Vec3d corner = corner_at(governors.solid().grid, structure.lattice().place(node_of(cell)));
   if (length(vertex.position - corner) > furthest * governors.longest_voxel()) return false;
   if (!(vertex.radius > 0)) return false;
-  // Most lie in the ball around the centre of a voxel, by more than rounding.
+  // Most vertices lie in the ball around a voxel's centre, by more than the rounding error.
   bool is_in_ball = false;
   for_each_voxel_inside(governors, structure.lattice(), cell, [&](const std::array<std::int64_t, 3>& at) {
     const Governor g = governors.at(at[0], at[1], at[2]);
@@ -233,7 +235,8 @@ bool is_in_component(const Witnesses& witnesses, Cell cell, const AxisVertex& ve
   return !home || SolidPaths(governors.surface()).is_straight(*home, stop_of(vertex));
 }
 
-/// Returns a vertex in the middle of a thin part, if any. The ball there contains the point that it was found from.
+/// Returns a vertex in the component that a cell represents. It is at the centre of a ball that touches two walls and
+/// contains a known point of the component. If no such ball is found, it is at the known point.
 AxisVertex place_in_component(const Witnesses& witnesses, Cell cell) {
   const GovernorField& governors = witnesses.governors();
   const Surface& surface = governors.surface();

@@ -15,18 +15,19 @@
 
 namespace blum::detail {
 
-/// Returns the vertices of a complex. A vertex of the lattice moves from its lattice corner to a point within reach of
-/// its voxel. That point is equally far from two walls, or from all walls that the voxels around see. If only one wall
-/// is near, the vertex stays in place. Extra vertices lie in the middle of the component of the solid that they stand
-/// for. Radius and first footprint are those of an exact query.
-/// @param cells  vertices of the structure.
+/// Returns the vertices of a complex. A vertex of the lattice moves from its lattice corner by at most 0.7 voxels along
+/// each axis. The new position is equally far from two walls, or from all walls with footprints of the eight voxels
+/// around. If only one wall is near, the vertex stays at its corner. Extra vertices lie in the middle of the component
+/// of the solid that they represent. Radius and first footprint are those of an exact query.
+/// @param cells  the cells of dimension 0 for which vertices are computed.
 [[nodiscard]] std::vector<AxisVertex> place_vertices(const Witnesses& witnesses, std::span<const Cell> cells,
                                                      const Context& context);
 
-/// Returns the box of the grid in which a vertex of a model stands for a component, slightly enlarged.
+/// Returns a box around the component of the solid that a vertex of a model represents. The box is a cube of the grid
+/// or a part of it, slightly enlarged.
 [[nodiscard]] Box3 box_of_vertex(const GovernorField& governors, const CellStructure& structure, Cell vertex);
 
-/// Returns a vertex as a stop, at which paths begin and end.
+/// Returns the stop (a point of paths in the solid) at the position of a vertex.
 [[nodiscard]] inline Stop stop_of(const AxisVertex& vertex) {
   return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], vertex.elements[0]}};
 }

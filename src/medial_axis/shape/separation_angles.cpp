@@ -20,7 +20,7 @@ namespace {
 
 using Words = std::span<const std::uint64_t>;
 
-/// Computes the bits of a row, each also moved by up to `within` places either way.
+/// Sets each bit of `to` that is at most `within` bits away from a set bit of `from`.
 void spread_along(Words from, int within, std::span<std::uint64_t> to) {
   for (std::size_t w = 0; w < from.size(); ++w) {
     const std::uint64_t before = w > 0 ? from[w - 1] : 0;
@@ -36,24 +36,26 @@ void add(Words from, std::span<std::uint64_t> to) {
   for (std::size_t w = 0; w < from.size(); ++w) to[w] |= from[w];
 }
 
-/// Clears the bits at the end of a row that belong to no voxel.
+/// Clears the bits after the last voxel of a row.
 void clear_beyond(std::int64_t length, std::span<std::uint64_t> row) {
   const auto used = static_cast<std::size_t>(length);
   row[used / 64] &= (std::uint64_t{1} << (used % 64)) - 1;
 }
 
-/// Greatest move of a footprint, in voxels, when its point moves by less than one.
+/// Voxels: greatest allowed move of a footprint when its point moves by less than one voxel.
 constexpr double reach_around_axis = 1.5;
-/// A footprint counts at a point fitted to all if it is at most this much further than the closest one, in voxels.
+/// Voxels: at a point fitted to several footprints, a footprint counts if its distance exceeds that of the closest one
+/// by at most this.
 constexpr double fitted_tolerance = 0.1;
-constexpr double fitted_reach = 0.5;  ///< Voxels along each axis, from the middle of the cell of a point.
-/// The same for wires between the voxels, because balls in these are found less reliably.
+/// Voxels along each axis: greatest distance of a fitted point from the middle of its cell.
+constexpr double fitted_reach = 0.5;
+/// The same limit for wires that pass between all voxels, because balls in wires are found less reliably.
 constexpr double wire_reach = 0.7;
 constexpr int bisector_steps = 4;
 constexpr double opposite_step = 0.3;    ///< voxels
-constexpr double opposite_enough = 175;  ///< degrees: no footprint further apart is searched for
+constexpr double opposite_enough = 175;  ///< degrees: if an angle exceeds this, no larger angle is searched for
 
-/// Thick parts: there, footprints that are close together do not count even at clear angles.
+/// Voxels in thick parts of the solid. In these, two footprints that are close together never count as two.
 class ThickParts {
  public:
   ThickParts(const GovernorField& governors, const NoiseFloor& floor, const Context& context) {
@@ -68,7 +70,7 @@ class ThickParts {
   [[nodiscard]] bool contain(const std::array<std::int64_t, 3>& voxel) const {
     return at_.contains(voxel[0], voxel[1], voxel[2]);
   }
-  /// Returns true if a voxel and all its neighbours are contained.
+  /// Returns true if a voxel and all its 26 neighbours are in thick parts.
   [[nodiscard]] bool contain_all_around(const std::array<std::int64_t, 3>& voxel) const {
     return all_around_.contains(voxel[0], voxel[1], voxel[2]);
   }
@@ -78,8 +80,8 @@ class ThickParts {
   VoxelSet all_around_;
 };
 
-/// Governors of the voxels around the nodes of a layer, row after row. Each is found once per layer, and only when
-/// needed.
+/// Governors of the voxels around the lattice nodes of a layer, for one row of nodes after the other. Each governor is
+/// computed once per layer, and only if it is needed.
 class GovernorRows {
  public:
   GovernorRows(const GovernorField& governors, const NoiseFloor& floor, const ThickParts& thick, std::int64_t k)
@@ -95,7 +97,7 @@ class GovernorRows {
     for (Row& row : rows_) row.rough.resize(has_rough_ ? length : 0);
   }
 
-  /// Moves to the nodes of row j, which must ascend.
+  /// Moves to the nodes of row j. From call to call, j must ascend.
   void go_to(std::int64_t j) {
     if (j == j_ + 1) {
       std::swap(rows_[0], rows_[1]);
@@ -107,7 +109,7 @@ class GovernorRows {
     j_ = j;
   }
 
-  /// Returns true if the footprints of the voxels around a node certainly count as one wall.
+  /// Returns true if the footprints of the eight voxels around a node certainly lie on one wall.
   [[nodiscard]] bool has_one_wall(std::int64_t i) {
     const VoxelSolid& solid = governors_.solid();
     const auto [x0, y0, z0] = place(i, 7);
@@ -136,7 +138,8 @@ class GovernorRows {
  private:
   struct Row {
     std::vector<Governor> governors;
-    std::vector<std::uint8_t> known;  ///< bit 0: governor is known; bit 1: rough footprint is known
+    /// For each voxel of the row; bit 0: its governor is known; bit 1: its rough footprint is known.
+    std::vector<std::uint8_t> known;
     std::vector<Vec3d> rough;
   };
 
@@ -152,9 +155,9 @@ class GovernorRows {
     return row.rough[at];
   }
 
-  /// @param depth  of one of the voxels.
+  /// @param depth  depth of the last of the eight voxels around node i, mesh units.
   [[nodiscard]] bool has_one_rough_wall(std::int64_t i, double depth) {
-    // Rough footprints are off by up to half a voxel, and the node is up to one voxel from the voxel.
+    // Rough footprints have errors of up to half a voxel, and the node is at most one voxel away from the voxel.
     const double voxel = governors_.longest_voxel();
     if (!thick_.contain_all_around(place(i, 7))) return false;
     const double limit = std::max((floor_.voxels - 1) * voxel, chord_ * (depth - voxel) - voxel);
@@ -175,9 +178,9 @@ class GovernorRows {
   const ThickParts& thick_;
   std::int64_t k_;
   std::int64_t j_ = -2;
-  double chord_;  ///< between two footprints at the angle of the floor, per distance
+  double chord_;  ///< distance of two footprints at the noise floor's angle, relative to their distance from the point
   bool has_rough_ = false;
-  std::array<Row, 4> rows_;  ///< y + 2 z
+  std::array<Row, 4> rows_;  ///< the four rows of voxels around a row of nodes: index y + 2 z
 };
 
 class Measure {
@@ -193,8 +196,8 @@ class Measure {
 
   using Around = GovernorsAround;
 
-  /// Calls use(node, around) for the nodes of a layer that have cells and whose voxels have closest points in different
-  /// directions.
+  /// Calls use(node, around) for the nodes of layer k that have cells, if the directions from the voxels around them to
+  /// their footprints differ.
   template <class Use>
   void for_each_uneven_node(std::int64_t k, const Use& use) const {
     const CellLattice& lattice = complex_.lattice();
@@ -211,12 +214,13 @@ class Measure {
     }
   }
 
-  /// Returns the angle on the bisector between two voxels that share a square; 0 if both follow the same wall.
+  /// Returns the separation angle, in degrees, at the point between two voxels that is equally far from both walls.
+  /// Returns 0 if both voxels have the same wall.
   [[nodiscard]] double between(const Governor& a, const Governor& b) const {
     if (a.foot.element == b.foot.element) return 0;
     // A thin part of the solid may pass between two voxels outside of it.
     if (!a.is_inside && !b.is_inside && dot(a.direction, b.direction) > 0) return 0;
-    double low = 0;  // here a's wall is the closer one
+    double low = 0;  // position between a and b at which a's wall is closer
     double high = 1;
     double t = 0.5;
     Vec3d x;
@@ -229,7 +233,7 @@ class Measure {
       const double difference = depth_of(x, a, p) - depth_of(x, b, q);
       if (std::abs(difference) < 1e-3 * voxel_) break;
       (difference < 0 ? low : high) = t;
-      // The slopes of both distances are those along the directions to their footprints, as if they changed linearly.
+      // Newton step: both distances change with the slopes along the directions to their footprints, as if linear.
       const double slope = slope_along(a, b, x, a, p) - slope_along(a, b, x, b, q);
       const double next = slope > 0 ? t - difference / slope : -1;
       t = next > low && next < high ? next : 0.5 * (low + high);
@@ -238,7 +242,8 @@ class Measure {
     return above_floor(x, p.point, q.point);
   }
 
-  /// Returns the angle of an extra polygon: on the bisector between the ends of its interval.
+  /// Returns the angle of an extra polygon, in degrees. It is that at the point of its interval that is equally far
+  /// from the walls at both ends.
   [[nodiscard]] double between(const ExtraCell& polygon) const {
     std::array<Governor, 2> ends;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -247,7 +252,8 @@ class Measure {
     }
     return between(ends[0], ends[1]);
   }
-  /// Returns the angle in the middle of a part that is so thin that no line between nodes meets it.
+  /// Returns the angle in the middle of a part of the solid that is so thin that no line between nodes meets it,
+  /// degrees.
   [[nodiscard]] double in_wire(const ExtraCell& cell) const {
     const NearestPoint nearest = surface_.nearest(cell.witness, {});
     if (!surface_.is_inside(cell.witness, nearest)) return 0;
@@ -255,7 +261,7 @@ class Measure {
     return ball ? above_floor(ball->centre, ball->nearest.point, ball->other.point) : 0;
   }
 
-  /// Returns the largest angle between the directions of any two voxels of a cell.
+  /// Returns the largest angle between the directions from any two voxels around a cell to their footprints, degrees.
   [[nodiscard]] static double coarse(const Around& around, CellAxes axes) {
     double least = 1;
     for (unsigned v = 0; v < 8; ++v) {
@@ -267,8 +273,8 @@ class Measure {
     return std::acos(std::clamp(least, -1.0, 1.0)) * degrees_per_radian;
   }
 
-  /// Returns the angle at a point equally far from all footprints around an edge or vertex. It lies within
-  /// `fitted_reach` of the middle, or `wire_reach` for wires.
+  /// Returns the angle at the point equally far from the footprints of all voxels around an edge or vertex, degrees. It
+  /// returns 0 if that point is further from the middle of the cell than `fitted_reach`, or `wire_reach` for wires.
   [[nodiscard]] double fitted(const Around& around, CellAxes axes) const {
     std::array<Vec3d, 8> feet;
     std::array<const Governor*, 8> governors{};
@@ -282,7 +288,8 @@ class Measure {
       feet[count++] = around[v].foot.point;
       middle += around[v].centre;
     }
-    // Squares suffice for thin parts, but not for wires that pass between all voxels.
+    // If some voxels are inside and others outside, the angles of squares suffice. If all are outside, a wire may pass
+    // between them.
     if (inside != 0 && inside != count) return 0;
     middle *= 1.0 / static_cast<double>(count);
     const EquidistantPoints points({feet.data(), count}, middle);
@@ -312,18 +319,19 @@ class Measure {
     if (is_same) return false;
     const double size = length(sum);
     const double narrow = std::cos(0.5 * floor_.angle / degrees_per_radian);
-    if (size < 8 * narrow) return true;  // opposite walls, whose sum has no direction
+    if (size < 8 * narrow) return true;  // opposite walls: their directions add up to almost zero
     for (const Governor& g : around) {
       if (dot(g.direction, sum) < narrow * size) return true;
     }
     return false;
   }
 
-  /// Returns the distance of a point from the footprint that follows it from a governor's; negative beyond the wall.
+  /// Returns the distance of a point from `foot`, its footprint on the wall of a governor. It is negative if the point
+  /// is beyond the wall.
   [[nodiscard]] static double depth_of(const Vec3d& x, const Governor& g, const Footprint& foot) {
     return std::copysign(length(x - foot.point), dot(foot.point - x, g.direction));
   }
-  /// Returns the change of depth_of() when x moves all the way from a to b.
+  /// Returns the change of depth_of() when x moves by the vector from a to b, linearly extrapolated.
   [[nodiscard]] static double slope_along(const Governor& a, const Governor& b, const Vec3d& x, const Governor& g,
                                           const Footprint& foot) {
     const double depth = depth_of(x, g, foot);
@@ -335,7 +343,7 @@ class Measure {
     return dot(x - g.foot.point, g.direction) < 0;
   }
 
-  /// Returns the governor of a point of the surface.
+  /// Returns a governor at a point of the surface.
   [[nodiscard]] Governor governor_at(const ExtraCell::End& end) const {
     Governor g;
     g.centre = end.point;
@@ -403,7 +411,7 @@ class Measure {
       for (std::size_t b = a + 1; b < governors.size() && distance[a] <= limit; ++b) {
         if (distance[b] > limit) continue;
         const double cosine_scaled = dot(feet[a].point - x, feet[b].point - x);
-        if (cosine_scaled > least_cosine * distance[a] * distance[b]) continue;  // cheaper than the angle
+        if (cosine_scaled > least_cosine * distance[a] * distance[b]) continue;  // a test cheaper than the angle
         const double angle = above_floor(x, feet[a].point, feet[b].point);
         if (angle <= largest) continue;
         largest = angle;
@@ -416,8 +424,8 @@ class Measure {
     return length(x - opposite) > limit ? largest : std::max(largest, above_floor(x, feet[widest].point, opposite));
   }
 
-  /// Returns a footprint on the other side: the closest point to a place a little further away from the first
-  /// footprint. The voxels around an axis see only some of the directions.
+  /// Returns a footprint on the other side of x: the closest point to a query a little further away from the given
+  /// footprint. It may be missing among the footprints of the voxels around an axis of a round part.
   [[nodiscard]] Vec3d opposite_of(const Vec3d& x, const Footprint& foot) const {
     const Vec3d away = x - foot.point;
     const double distance = length(away);
@@ -438,7 +446,7 @@ class Measure {
 
 using Entries = std::vector<Importance::Entry>;
 
-/// Returns the angles of extra polygons, and of extra edges that are not a side of any.
+/// Returns the angles of extra polygons, and of extra edges that are not sides of polygons.
 Entries angles_of_extra(const Measure& measure, const CellStructure& structure, const Context& context) {
   std::vector<float> angles(structure.extra_count(), 0);
   const Cell first = structure.first_extra();
@@ -466,7 +474,7 @@ Entries joined(const std::vector<Entries>& layers) {
   return all;
 }
 
-/// Returns the largest value of the squares next to a node and of their faces. No cell of the complex lies on the
+/// Returns the largest angle of the squares that touch a node or one of its 26 neighbours. The node must not lie on the
 /// border of the lattice.
 double largest_around(const Importance& squares, const CellLattice& lattice, std::size_t node) {
   float largest = 0;
@@ -475,7 +483,7 @@ double largest_around(const Importance& squares, const CellLattice& lattice, std
       const std::size_t row =
           node + z * lattice.stride(2) + y * lattice.stride(1) - lattice.stride(2) - lattice.stride(1);
       for (std::size_t n = row - 1; n <= row + 1; ++n) {
-        // Vertices have at least the values of the squares around them.
+        // The value of a vertex is at least that of each square that it is a corner of.
         largest = std::max(largest, squares.of(cell_at(n, 0)));
       }
     }
@@ -487,7 +495,7 @@ double largest_around(const Importance& squares, const CellLattice& lattice, std
 
 VoxelSet spread(const VoxelSet& from, int within, const Context& context) {
   const auto& size = from.size();
-  VoxelSet in_layers(size);  // along x and y
+  VoxelSet in_layers(size);  // result for steps along x and y only
   VoxelSet out(size);
   const auto for_each_layer = [&](const auto& use) {
     parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
@@ -540,8 +548,9 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
   });
   found.push_back(angles_of_extra(measure, complex.structure(), context));
   const Importance squares(complex.structure(), joined(found));
-  constexpr double nearly_opposite = 170;  // degrees, on axes of round parts
-  constexpr double wide = 100;             // degrees between two of few voxels; others may be opposite
+  constexpr double nearly_opposite = 170;  // degrees; larger angles occur on axes of round parts
+  // Degrees: at this angle between a cell's footprints, there may be others on the opposite side.
+  constexpr double wide = 100;
   for_each_layer("separation angles of edges", [&](std::size_t k) {
     for (const std::uint32_t node : uneven[k]) {
       const double known = largest_around(squares, lattice, node);

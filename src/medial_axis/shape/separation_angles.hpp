@@ -8,32 +8,37 @@
 
 namespace blum::detail {
 
-/// Returns the voxels of the box that have a voxel of the set at most `within` steps away along each axis.
+/// Returns the voxels of the box that are at most `within` steps along each axis away from a voxel of the set.
 /// @param within  voxels, 0 to 32.
 [[nodiscard]] VoxelSet spread(const VoxelSet& from, int within, const Context& context);
 
-/// Criteria that distinguish a piece of the medial axis from noise of the grid and of facets, given two footprints.
+/// Limits for two footprints of a point. If they are not met, the footprints count as one, because a grid or the facets
+/// of a mesh can cause them.
 struct NoiseFloor {
-  double angle = 10;        ///< Degrees. Smaller separation angles count as zero.
-  double clear_angle = 45;  ///< Degrees. From here on, the distance of the footprints does not matter.
-  double voxels = 2;        ///< Long sides of voxels. At smaller angles, closer footprints count as one.
-  /// At clear angles, footprints closer than `voxels` count only if no voxel within this many is deeper than that. This
-  /// holds in thin parts, but not at the steps that voxels make of a round surface. 0: they count everywhere.
+  double angle = 10;  ///< Degrees. Smaller separation angles count as zero.
+  /// Degrees. At this angle or more, the distance of the footprints does not matter, except by `thin_within`.
+  double clear_angle = 45;
+  /// Multiples of the longest side of a voxel. Below `clear_angle`, footprints closer together than this count as one.
+  double voxels = 2;
+  /// At `clear_angle` or more, footprints closer together than `voxels` count as two only in thin parts. A part is thin
+  /// if no voxel within `thin_within` voxels is deeper than `voxels`. So they count as one at the steps by which voxels
+  /// represent a round surface. 0: they count as two everywhere.
   int thin_within = 0;
-  /// Degrees: points off the lines between voxels count if they see this much more than points on such lines around
-  /// them.
+  /// Degrees: a point off the lines between voxels counts if its angle exceeds the largest one on nearby lines by at
+  /// least this much.
   double clearly_more = 5;
-  double lambda = 0;  ///< mesh units; closer footprints count as one at any angle
+  double lambda = 0;  ///< mesh units: footprints closer together than this count as one at any angle
 };
 
-/// Computes the separation angle of each cell of a solid, in degrees. This is the largest one at a point of the medial
-/// axis within half a voxel of the cell. In parts that pass between all voxels, 0.7 voxels are allowed. The angle is 0
-/// if no such point is found.
+/// Computes the separation angle of each cell of a solid, in degrees. It is the largest one found at a point of the
+/// medial axis within half a voxel of the cell. In parts that pass between all voxels, the limit is 0.7 voxels. The
+/// angle is 0 if no such point is found.
 ///
-/// A square lies between two voxels. The parts of the surface closest to these are followed to the same point between
-/// the two. If they remain two parts, they give the angle. Edges and vertices also look for a point equally far from
-/// the footprints of all voxels around them. Axes of round parts cross no line between two voxels.
-/// @param complex  of the solid's voxels.
+/// A square lies between two voxels. The footprints of both are followed along the surface while their points move to
+/// one common point between the voxels. If they remain two footprints, they determine the angle. For edges and
+/// vertices, the point equally far from the footprints of all voxels around them is also tested. Axes of round parts
+/// cross no line between two voxels, so only this test finds them.
+/// @param complex  the complex of the solid's voxels and extra cells.
 [[nodiscard]] Importance separation_angles(const GovernorField& governors, const CellComplex& complex,
                                            const NoiseFloor& floor, const Context& context);
 

@@ -21,35 +21,37 @@
 namespace blum::detail {
 namespace {
 
-/// Numbers of ways past the surface that may still be tried while polygons are filled.
+/// Numbers of searches that may still be made while polygons are filled.
 struct FillBudget {
-  int detours = 60;  ///< paths that replace edges
-  int fans = 8;      ///< points that see all corners
+  int detours = 60;  ///< searches for a path that replaces an edge
+  int fans = 8;      ///< searches for a point from which segments to all corners stay in the solid
 };
 
-/// Fills polygons of a few corners with triangles whose edges stay in a solid.
+/// Fills polygons of a few corners with triangles whose edges stay in a solid. A *place* is the index of a vertex.
 class PolygonFiller {
  public:
   using Places = std::vector<std::uint32_t>;
 
   /// @param stop_of  returns the stop of a place.
-  /// @param add      makes a vertex and returns its place; empty if no vertex may be added.
-  /// @param budget   it must outlive this object.
+  /// @param add      adds a vertex and returns its place; an empty function if no vertices may be added.
+  /// @param budget   numbers of allowed searches, which are counted down. It must outlive this object.
   PolygonFiller(const SolidPaths& paths, std::function<Stop(std::uint32_t)> stop_of,
                 std::function<std::uint32_t(const Stop&)> add, FillBudget& budget)
       : paths_(paths), stop_of_(std::move(stop_of)), add_(std::move(add)), budget_(budget) {}
 
-  /// Cuts off ears, the shortest first: first those that the surface does not cross, then those that stay in the solid.
-  /// If none is left, cuts off one along a path of new vertices.
-  /// @param sides  groups of places that other polygons have, too. No edge joins two of a group, because another
-  /// polygon with both may join them as well.
-  /// @return  true if all edges stay in the solid. They belong to the complex in any case.
+  /// Fills a polygon by cutting off ears: triangles of three consecutive corners. Ears that the surface does not cross
+  /// are preferred to those whose edges just stay in the solid. Among equally good ears, the one with the shortest new
+  /// edge comes first. If there are none, it cuts off an ear along a path of new vertices.
+  /// @param sides  groups of places that other polygons also have. No new edge joins two places of a group, because
+  /// another polygon that has both may also join them.
+  /// @return  true if all edges stay in the solid. The triangles are added in any case.
   bool fill(Places polygon, const std::vector<Places>& sides);
 
-  /// Returns true if the surface crosses none of the triangles. `false` may also mean that this is hard to decide.
+  /// Returns true if the surface crosses none of the triangles. The result `false` may also mean that this is
+  /// undecided.
   [[nodiscard]] bool is_all_open() const { return is_all_open_; }
 
-  /// Triangles of all polygons, three places for each.
+  /// Returns the triangles of all polygons, three places for each triangle.
   [[nodiscard]] const Places& triangles() const { return triangles_; }
 
  private:
@@ -75,12 +77,12 @@ bool has(const PolygonFiller::Places& places, std::uint32_t place) {
 
 /// Corner of a polygon and its two neighbours.
 struct PolygonFiller::Ear {
-  double squared_length = 0;  ///< of the edge between the neighbours
-  std::size_t corner = 0;     ///< in the polygon
+  double squared_length = 0;  ///< squared length of the edge between the neighbours
+  std::size_t corner = 0;     ///< index in the polygon
   std::uint32_t before = 0, place = 0, after = 0;
 };
 
-/// Corner, and new places on a way between its neighbours.
+/// A corner, and new places on a path between its two neighbours.
 struct PolygonFiller::Detour {
   Ear over;
   Places places;
@@ -110,8 +112,9 @@ bool PolygonFiller::is_open(const Ear& ear) const {
   return is_joined(ear) && paths_.is_open(stop_of_(ear.before), stop_of_(ear.place), stop_of_(ear.after));
 }
 
-/// Returns a corner to cut off and new places on a way between its neighbours; the shortest ears come first. Ways over
-/// a corner of the polygon, or through the ball around it, are left out: they leave about the same polygon to fill.
+/// Returns a corner to cut off, and new places on a path between its neighbours. The shortest ears are tried first.
+/// Paths over a corner of the polygon, or through the ball around one, are left out, because almost the same polygon
+/// would remain.
 std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon, std::span<const Ear> ears) {
   for (const Ear& ear : ears) {
     if (!add_ || budget_.detours-- <= 0) return std::nullopt;
@@ -129,8 +132,8 @@ std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon
   return std::nullopt;
 }
 
-/// Adds triangles around a new vertex that all corners of a polygon can be joined to. Triangles that the surface
-/// crosses are filled in the same way. @return  true if a place for the vertex was found.
+/// Adds triangles around a new vertex from which segments to all corners of a polygon stay in the solid. Triangles that
+/// the surface crosses are filled in the same way. @return  true if a point for the vertex was found.
 /// @param least_open  least number of triangles that the surface does not cross.
 bool PolygonFiller::fan_out(const Places& polygon, std::size_t least_open) {
   if (!add_ || budget_.fans-- <= 0) return false;
@@ -156,7 +159,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
         const auto& [over, path] = *found;
         Places cut_off{over.before, over.place, over.after};
         cut_off.insert(cut_off.end(), path.rbegin(), path.rend());
-        // The rest of the polygon has the path as well.
+        // The path is a border of both the part cut off and the rest of the polygon.
         std::vector<Places> sides_there = sides;
         Places& shared = sides_there.emplace_back(path);
         shared.push_back(over.before);
@@ -170,7 +173,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
       ear = ears.begin();
       stays = false;
     }
-    if (ear == ears.end()) {  // no corners may be joined: take a vertex in the middle
+    if (ear == ears.end()) {  // no two corners may be joined: add a vertex in the middle
       if (!add_) return false;
       Vec3d sum;
       for (const std::uint32_t place : polygon) sum += stop_of_(place).at;
@@ -192,24 +195,26 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
   return stays;
 }
 
-/// Corners of a piece that are extra cells or next to such. There the solid may have holes narrower than a voxel, and a
-/// vertex may lie beyond one of them.
+/// Vertices of a piece that are extra cells or adjacent to extra cells. Near these, the solid may have holes narrower
+/// than a voxel, and a vertex may lie on the far side of such a hole.
 class NearExtra {
  public:
   NearExtra(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context);
 
-  /// @param place  of a vertex. Places after those of the corners count as near.
+  /// @param place  a vertex place (see AxisCorners). Places after these belong to vertices of shapes, and count as
+  /// near.
   [[nodiscard]] bool is_near(std::uint32_t place) const { return place >= is_near_.size() || is_near_[place] != 0; }
-  /// Returns a point of the component of a vertex that is near.
+  /// Returns a known point of the component that a near vertex represents, if there is one.
   [[nodiscard]] const std::optional<Stop>& home(std::uint32_t place) const { return homes_[place]; }
-  /// Returns true if an edge has the same ends as an earlier one. Files name edges by their ends.
+  /// Returns true if an edge has the same two ends as an earlier edge. Files identify edges by their ends, so one of
+  /// the two must be split.
   [[nodiscard]] bool has_twin(std::uint32_t edge) const;
 
  private:
   void find_twins(const AxisPiece& piece, const AxisCorners& corners);
 
-  std::vector<std::uint32_t> twins_;   ///< ascending
-  std::vector<std::uint8_t> is_near_;  ///< of each vertex place
+  std::vector<std::uint32_t> twins_;   ///< edges with the same ends as an earlier one, ascending
+  std::vector<std::uint8_t> is_near_;  ///< for each vertex place
   std::vector<std::optional<Stop>> homes_;
 };
 
@@ -257,13 +262,13 @@ void NearExtra::find_twins(const AxisPiece& piece, const AxisCorners& corners) {
 
 constexpr std::size_t cells_per_range = 512;
 
-/// Shape of a cell that is more than its corners. Places from `Shaper::first_own` on are those of its own vertices,
-/// `own`.
+/// Shape of a cell with more vertices or other triangles than its corners alone determine. Items are places of
+/// vertices. Item `Shaper::first_own` + k is vertex k of `own`.
 struct Shape {
   std::vector<std::uint32_t> items;
   std::vector<AxisVertex> own;
-  bool leaves = false;      ///< part of it leaves the solid
-  bool needs_more = false;  ///< with more effort, it might not
+  bool leaves = false;      ///< true if a part of the shape leaves the solid
+  bool needs_more = false;  ///< true if full effort may find a better shape
 };
 
 AxisVertex vertex_at(const Stop& stop) {
@@ -285,7 +290,8 @@ class Shaper {
         needs_more_(needs_more),
         paths_(governors_.surface(), needs_more) {}
 
-  /// Returns the chain of an edge that would leave the solid or that has a twin; nullopt if a segment suffices.
+  /// Returns the chain of segments of an edge that would leave the solid or that has a twin. Returns nullopt if one
+  /// segment suffices.
   [[nodiscard]] std::optional<Shape> bent(std::uint32_t c) {
     const auto ends = corners_.of_cells()[c];
     const Stop a = stop_at(ends[0]);
@@ -312,7 +318,8 @@ class Shaper {
     return shape;
   }
 
-  /// Returns the triangles of a polygon; nullopt if those of its corners alone suffice, see triangles_of().
+  /// Returns the triangles of a polygon. Returns nullopt if the triangles of its corners alone suffice; see
+  /// triangles_of().
   /// @param outline  its border, in cyclic order.
   [[nodiscard]] std::optional<Shape> filled(std::uint32_t c, const std::vector<std::uint32_t>& outline,
                                             std::span<const AxisVertex> vertices) {
@@ -331,7 +338,7 @@ class Shaper {
         return std::nullopt;
       }
     }
-    // Not if an edge is bent: the polygon on its other side would cut off the same corners of it.
+    // If an edge is bent, this is not tried: the polygon on the other side might cut off the same corners of the edge.
     if (outline.size() == corners_.of_cells()[c].size()) {
       FillBudget budget;
       PolygonFiller filler(paths_, stop, {}, budget);
@@ -341,7 +348,7 @@ class Shaper {
   }
 
  private:
-  /// Returns true if more effort might have found a way.
+  /// Returns true if full effort might have found a path.
   [[nodiscard]] bool has_given_up() const { return needs_more_ != nullptr && *needs_more_; }
 
   /// Prepares for queries about the components of vertices and the space between them.
@@ -355,7 +362,8 @@ class Shaper {
     paths_.prepare(box);
   }
 
-  /// Returns true if a polygon is extra or has an extra corner. Other polygons may then have the same corners.
+  /// Returns true if a polygon is an extra cell or has a corner that is one. Other polygons may then have the same
+  /// corners.
   [[nodiscard]] bool touches_extra(std::uint32_t c) const {
     if (piece_.structure.is_extra(piece_.cells[c].cell)) return true;
     const auto corners = corners_.of_cells()[c];
@@ -380,7 +388,8 @@ class Shaper {
     }
   }
 
-  /// Returns a path from end to end of an edge over a point of the component that it stands for.
+  /// Returns a path between the two ends of an edge that passes through a point of the component that the edge
+  /// represents.
   [[nodiscard]] std::optional<std::vector<Stop>> through_middle(std::uint32_t c, const Stop& a, const Stop& b) const {
     const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
     if (!middle) return std::nullopt;
@@ -392,9 +401,10 @@ class Shaper {
     path->insert(path->end(), rest->begin(), rest->end());
     return path;
   }
-  /// Returns the stops between the ends of an edge; none for a straight one. Within the solid, their way can be pulled
-  /// over the one from component to component that the edge stands for. Returns nullopt if no way was found.
-  /// @param stops_there  true if a stop in the component of the edge stays in any case.
+  /// Returns the stops between the ends of an edge; no stops if the edge can be straight. Within the solid, this path
+  /// can be deformed to the path through the components of both ends and of the edge. Returns nullopt if no path was
+  /// found.
+  /// @param stops_there  true if the stop in the component of the edge must stay.
   [[nodiscard]] std::optional<std::vector<Stop>> through_component(std::uint32_t c, bool stops_there) const {
     const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
     if (!middle) return std::nullopt;
@@ -411,8 +421,8 @@ class Shaper {
     return std::vector<Stop>(path->begin() + 1, path->end() - 1);
   }
 
-  /// Returns a way from a point of the component of an edge or polygon to a vertex of it, both included. It leads over
-  /// a point of the vertex's component and is pulled tight.
+  /// Returns a path from a point of the component of an edge or polygon to one of its vertices, both included. The path
+  /// passes through a point of the vertex's component. Stops that can be left out are then removed.
   [[nodiscard]] std::optional<std::vector<Stop>> from_component(const Stop& start, std::uint32_t vertex) const {
     const Stop end = stop_at(vertex);
     std::vector<Stop> way{start};
@@ -423,7 +433,7 @@ class Shaper {
     return paths_.pulled_over_open(std::move(way));
   }
 
-  /// Adds the stops to another one. @return  true if a way was found.
+  /// Extends a path to the stop `to`, which is added. @return  true if a path was found.
   [[nodiscard]] bool add_way(std::vector<Stop>& way, const Stop& to, std::uint32_t vertex) const {
     if (way.back().at == to.at) return true;
     if (!paths_.is_straight(way.back(), to)) {
@@ -442,10 +452,10 @@ class Shaper {
     return witnesses_.landmarks_of(corners_.vertex_cells()[vertex]);
   }
 
-  /// Returns a point of the component that a cell stands for.
+  /// Returns a known point of the component that a cell represents.
   [[nodiscard]] std::optional<Stop> home_of(Cell cell) const { return witnesses_.home_of(cell); }
 
-  /// Returns triangles around a vertex in the middle, the best of several.
+  /// Returns triangles around a vertex in the middle of a polygon. The best of several candidates becomes that vertex.
   [[nodiscard]] Shape fan(std::uint32_t c, const std::vector<std::uint32_t>& outline,
                           std::span<const AxisVertex> vertices) const {
     std::vector<Stop> corners;
@@ -492,12 +502,12 @@ class Shaper {
     return shape;
   }
 
-  /// Stops between a middle and places of an outline, by place.
+  /// Stops between a middle and items of an outline: pairs of an index in the outline and the stops.
   using Chains = std::vector<std::pair<std::size_t, std::vector<Stop>>>;
 
-  /// Returns chains from a point of the component of a polygon to its corners and to places between them. They lead
-  /// through the components of the corners. Returns nullopt if one to a corner was not found.
-  /// @param stops  at the outline.
+  /// Returns chains from a point of the component of a polygon to its corners, and to other vertices of its outline if
+  /// possible. They pass through the components of the corners. Returns nullopt if a chain to a corner was not found.
+  /// @param stops  the stops at the vertices of the outline.
   [[nodiscard]] std::optional<Chains> chains_from(const Stop& home, std::uint32_t c,
                                                   const std::vector<std::uint32_t>& outline,
                                                   std::span<const Stop> stops) const {
@@ -528,7 +538,7 @@ class Shaper {
     return chains;
   }
 
-  /// Returns a way between two points of the component of a vertex, in the box that the component lies in.
+  /// Returns a path between two points of the component of a vertex, inside the box of that component.
   [[nodiscard]] std::optional<std::vector<Stop>> within_component(const Stop& from, const Stop& to,
                                                                   std::uint32_t vertex) const {
     const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
@@ -538,8 +548,9 @@ class Shaper {
     return paths_.pulled_over_open(std::move(way));
   }
 
-  /// Returns chains to the places of an outline that a middle can be joined to, whatever lies between the chains.
-  /// @param leaves  set if one of them leaves the solid.
+  /// Returns chains from a middle to those vertices of an outline that it can be joined to. The space between the
+  /// chains is not tested.
+  /// @param leaves  set to true if a chain leaves the solid.
   [[nodiscard]] Chains any_chains(std::uint32_t c, const Stop& middle, std::span<const Stop> corners,
                                   bool& leaves) const {
     Chains chains;
@@ -558,7 +569,7 @@ class Shaper {
     return chains;
   }
 
-  /// Returns triangles around a middle, between chains to the corners that it is joined to.
+  /// Returns triangles around a middle. They fill the sectors between the chains from the middle to the outline.
   [[nodiscard]] Shape wheel(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
                             const Stop& middle, const Chains& chains) const {
     Shape shape;
@@ -581,7 +592,8 @@ class Shaper {
     };
     FillBudget budget;
     FillBudget second_budget{24, 4};
-    // A sector lies between two spokes and the border from one to the next. Its sides belong to others, too.
+    // A sector lies between two spokes and the part of the outline from one to the next. Other sectors and polygons
+    // have the same sides.
     for (std::size_t n = 0; n < spokes.size(); ++n) {
       const std::size_t next = (n + 1) % spokes.size();
       std::vector<std::uint32_t> border;
@@ -595,7 +607,7 @@ class Shaper {
       std::vector<std::vector<std::uint32_t>> sides{spokes[n], spokes[next], border};
       sides[0].push_back(border.front());
       sides[1].push_back(border.back());
-      // Beyond these boxes, triangles may be on the other side of a void. They are the second choice.
+      // Outside this box, triangles may be on the other side of a void. Such triangles are the second choice.
       const SolidPaths there = paths_.in(box_around(c, outline, chains[n].first, chains[next].first));
       const std::size_t own = shape.own.size();
       PolygonFiller filler(there, stop, add, budget);
@@ -619,8 +631,8 @@ class Shaper {
     return shape;
   }
 
-  /// Returns a box around the boxes of the vertices at a part of the outline of a polygon. This includes the vertices
-  /// of the edges on which the part begins and ends.
+  /// Returns a box around the boxes of the corners in a part of a polygon's outline. If the part begins or ends inside
+  /// a bent edge, both ends of that edge are included.
   [[nodiscard]] Box3 box_around(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::size_t first,
                                 std::size_t last) const {
     const auto corners = corners_.of_cells()[c];
@@ -640,7 +652,7 @@ class Shaper {
     }
   }
 
-  /// Returns the landmarks of all corners of a polygon.
+  /// Returns the landmarks (known points of the components) of all corners of a polygon.
   [[nodiscard]] std::vector<Stop> around(std::uint32_t c) const {
     std::vector<Stop> all;
     for (const std::uint32_t corner : corners_.of_cells()[c]) {
@@ -659,20 +671,20 @@ class Shaper {
   SolidPaths paths_;
 };
 
-/// Shapes of cells that are more than their corners.
+/// Shapes of those cells that their corners alone do not determine, as pairs of a cell's index and its shape.
 using Shapes = std::vector<std::pair<std::uint32_t, Shape>>;
 
-/// Makes the shapes of the cells of a dimension.
-/// @param make  makes the shape of an edge or polygon, with little effort; with full effort if the second argument is
-/// null.
+/// Makes the shapes of all cells of one dimension.
+/// @param make  makes the shape of an edge or polygon. If the second argument is null, it makes full effort, otherwise
+/// little effort.
 class ShapeMaker {
  public:
   using Make = std::function<std::optional<Shape>(std::uint32_t, bool*)>;
 
   ShapeMaker(const AxisPiece& piece, const Context& context) : piece_(piece), context_(context) {}
 
-  /// Returns the shapes by ascending cell. Full effort follows if little effort is not enough, but not if parts leave
-  /// the solid in many places: then the model will be refined.
+  /// Returns the shapes, ascending by cell. If little effort is not enough, full effort follows. It does not if more
+  /// than 16 shapes leave the solid, because the model will then be refined.
   [[nodiscard]] Shapes of(int dimension, const Make& make) const {
     constexpr std::ptrdiff_t most_leaving = 16;
     Shapes shapes = quick(dimension, make);
@@ -719,7 +731,7 @@ class ShapeMaker {
   const Context& context_;
 };
 
-/// Makes the vertices of shapes those of the piece.
+/// Adds the own vertices of shapes to the vertices of the piece.
 void take_vertices(AxisPiece& piece, Shapes& shapes) {
   for (auto& [cell, shape] : shapes) {
     const auto first = static_cast<std::uint32_t>(piece.vertices.size());
@@ -730,7 +742,7 @@ void take_vertices(AxisPiece& piece, Shapes& shapes) {
   }
 }
 
-/// Outlines of polygons: the shape of each edge, or its corners.
+/// Outlines of polygons: the chain of each bent edge, and the ends of each straight edge.
 class Outlines {
  public:
   Outlines(const AxisCorners& corners, const Shapes& bent) : corners_(corners), bent_(bent) {}
@@ -762,8 +774,8 @@ class Outlines {
   const Shapes& bent_;
 };
 
-/// Returns boxes of the vertices of the cells whose shapes leave the solid, each once. They are slightly shrunk, so
-/// that adjacent boxes contain none of their inner points.
+/// Returns the box of each vertex of the cells whose shapes leave the solid, each once. The boxes are slightly shrunk,
+/// so that they do not overlap adjacent boxes.
 std::vector<Box3> boxes_where_left(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors,
                                    const std::array<const Shapes*, 2>& shapes) {
   constexpr double less = 0.05;

@@ -8,10 +8,10 @@
 
 namespace blum::detail {
 
-/// Makes segments of edges and triangles of polygons, between the placed vertices. For a polyhedron, none of these
-/// leaves the solid if that can be avoided. Edges that would leave it are led through points of the components that
-/// they stand for. Polygons that would leave it get a vertex in their middle. If that fails, `piece.leaving` lists the
-/// boxes of the cell.
+/// Computes the segments of edges and the triangles of polygons, between the vertices of a piece. For a polyhedron,
+/// shapes that stay in the solid are preferred. An edge that would leave the solid gets vertices at points of the
+/// component that it represents. A polygon that would leave it gets a vertex in its middle. If a shape still leaves the
+/// solid, `piece.leaving` lists the boxes of the cell's vertices.
 void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context);
 
 }  // namespace blum::detail

@@ -22,7 +22,7 @@ std::optional<Stop> Witnesses::witness_of(Cell extra) const {
     return known.nearest ? std::optional(Stop{at, *known.nearest}) : std::nullopt;
   }
   const std::optional<Stop> stop = paths_.stop_at(at, {});
-  State expected = State::unknown;  // one thread writes; others that asked at the same time computed the same
+  State expected = State::unknown;  // one thread writes; others computed the same value at the same time
   if (known.state.compare_exchange_strong(expected, State::being_written)) {
     if (stop) known.nearest = stop->nearest;
     known.state.store(State::known, std::memory_order_release);
@@ -44,7 +44,7 @@ std::optional<Stop> Witnesses::deepest_voxel(Cell cell) const {
   return paths_.stop_at(g.centre, g.foot);
 }
 
-/// Calls use(stop) for points of the component of a cell: its own, and those of cells that it is a face of.
+/// Calls use(stop) for known points of a cell's component: its own point, and those of the cells that it is a face of.
 template <class Use>
 void Witnesses::for_each_witness(Cell cell, const Use& use) const {
   const auto offer_cell = [&](Cell other) {
@@ -53,7 +53,7 @@ void Witnesses::for_each_witness(Cell cell, const Use& use) const {
   if (structure_.is_extra(cell)) offer_cell(cell);
   const auto offer_cofaces = [&](Cell below) {
     structure_.for_each_coface(below, [&](Cell coface) {
-      // Cells of the lattice are found through their voxels, so only incidences with extra cells are followed.
+      // Points of lattice cells are found through their voxels, so only pairs with an extra cell are followed.
       if (structure_.is_extra(below) || structure_.is_extra(coface)) offer_cell(coface);
     });
   };

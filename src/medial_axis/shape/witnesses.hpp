@@ -13,7 +13,7 @@
 
 namespace blum::detail {
 
-/// Calls use(place) for the voxels around a cell of the lattice that are inside.
+/// Calls use(indices) for each voxel of the solid that contains a cell of the lattice.
 template <class Use>
 void for_each_voxel_inside(const GovernorField& governors, const CellLattice& lattice, Cell cell, const Use& use) {
   lattice.for_each_cube_around(cell, [&](const std::array<std::int64_t, 3>& at) {
@@ -21,16 +21,17 @@ void for_each_voxel_inside(const GovernorField& governors, const CellLattice& la
   });
 }
 
-/// Known points of the components of the solid that the cells of a model stand for. Points of extra cells are stored at
-/// the first look-up, because all cells around need them. Functions may be called from many threads.
+/// Known points of the components of the solid that the cells of a model represent. Points of extra cells are stored
+/// when they are first computed, because all adjacent cells need them. Functions may be called from many threads.
 class Witnesses {
  public:
   /// Cost: 56 bytes for each extra cell.
   Witnesses(const GovernorField& governors, const CellStructure& structure);
 
-  /// Returns the deepest known point of the component of a cell, or nullopt if no known point is off the surface.
+  /// Returns the deepest known point of the component of a cell, or nullopt if all known points are on the surface.
   [[nodiscard]] std::optional<Stop> home_of(Cell cell) const;
-  /// Returns the deepest voxel around a cell of the lattice.
+  /// Returns the centre of the deepest voxel of the solid that contains a cell of the lattice; nullopt if there is
+  /// none.
   [[nodiscard]] std::optional<Stop> deepest_voxel(Cell cell) const;
   /// Returns all known points of the component of a vertex, the deepest first.
   [[nodiscard]] std::vector<Stop> landmarks_of(Cell vertex) const;
@@ -40,7 +41,8 @@ class Witnesses {
 
  private:
   enum class State : std::uint8_t { unknown, being_written, known };
-  /// Closest point of the surface to the witness of an extra cell, if the witness is inside.
+  /// Closest point of the surface to the witness (the known point) of an extra cell, if the witness is inside the
+  /// solid.
   struct Known {
     std::atomic<State> state{State::unknown};
     std::optional<NearestPoint> nearest;

@@ -7,10 +7,10 @@
 namespace blum::detail {
 namespace {
 
-/// Least strength of a direction relative to that of the strongest, both as squares.
+/// Least squared strength of a direction, relative to that of the strongest direction.
 constexpr double weakest = 0.01;
-/// Relative to the squared distance from the start. Differences of points that are closer together than a millionth are
-/// rounding errors.
+/// Least squared strength of a direction, relative to the sum of squared distances of the points from the start. If
+/// points differ by less than a millionth of their distance, the differences are rounding errors.
 constexpr double rounding = 1e-12;
 
 struct Symmetric {
@@ -20,7 +20,7 @@ struct Symmetric {
 /// Computes eigenvectors as columns of v and eigenvalues on the diagonal of m, by Jacobi rotations.
 void diagonalise(Symmetric& m, Symmetric& v) {
   v.a[0][0] = v.a[1][1] = v.a[2][2] = 1;
-  // Smaller off-diagonal entries are below the rounding error of the largest eigenvalue.
+  // Off-diagonal entries below this are smaller than the rounding error of the largest eigenvalue.
   const double negligible = 1e-16 * (m.a[0][0] + m.a[1][1] + m.a[2][2]);
   bool is_done = false;
   for (int sweep = 0; sweep < 8 && !is_done; ++sweep) {
@@ -66,7 +66,7 @@ EquidistantPoints::EquidistantPoints(std::span<const Vec3d> points, const Vec3d&
   const double n = static_cast<double>(points.size());
   mean *= 1 / n;
   mean_square /= n;
-  // |x - p|^2 is the same for all p: 2 (p - mean) . x = |p|^2 - mean |p|^2.
+  // If |x - p|^2 is equal for all p, then 2 (p - mean) . x = |p|^2 - mean |p|^2.
   Symmetric normal;
   std::array<double, 3> right{};
   for (const Vec3d& p : points) {

@@ -14,29 +14,31 @@
 
 namespace blum::detail {
 
-/// Greatest number of walls around a point. The eight voxels around a corner may miss walls of round solids, so that as
-/// many others are allowed.
+/// Greatest number of walls around a point: eight for the footprints of the eight voxels around a corner, and eight
+/// more. In round solids, those voxels may miss walls.
 inline constexpr std::size_t most_walls = 16;
-/// Squared difference of the unit directions to two footprints from which they count as two walls: 6 degrees.
+/// Two footprints lie on different walls if the squared difference of the unit directions to them is at least this: 6
+/// degrees.
 inline constexpr double two_walls = 0.01;
 
-/// Walls around a point, and the closest point on each wall.
+/// Walls around a point, and the closest point on each wall. A wall is a part of the surface around a footprint.
 class Walls {
  public:
   struct Wall {
     Footprint start;
-    Vec3d outwards;       ///< at the start; zero if unknown
-    Footprint foot;       ///< of the point
-    double distance = 0;  ///< of the point; negative beyond the wall, as at corners next to thin parts
+    Vec3d outwards;       ///< direction away from the solid at `start`; zero if unknown
+    Footprint foot;       ///< footprint of the point on this wall
+    double distance = 0;  ///< of the point from the wall; negative if it is beyond, as at corners next to thin parts
   };
 
-  /// @param reach  greatest distance of a footprint from its start, mesh units.
+  /// @param reach  greatest distance that a footprint may move from its start, mesh units.
   Walls(const Surface& surface, double reach) : surface_(&surface), reach_(reach) {}
 
   [[nodiscard]] bool is_full() const { return walls_.is_full(); }
   void add(const Footprint& start, const Vec3d& outwards) { walls_.push_back({start, outwards, start, 0}); }
 
-  /// Moves the footprints to those of x. Two walls whose footprints meet become one.
+  /// Moves the point to x, and each footprint to the closest point of x on its wall. Two walls whose footprints become
+  /// equal are merged.
   void follow_to(const Vec3d& x) {
     std::size_t kept = 0;
     closest_ = 0;
@@ -55,10 +57,10 @@ class Walls {
     walls_.shrink(kept);
   }
 
-  /// Walls as of the last follow_to().
+  /// Returns the walls after the last call of follow_to().
   [[nodiscard]] std::span<const Wall> all() const { return walls_.span(); }
   [[nodiscard]] const Wall& closest() const { return walls_[closest_]; }
-  /// Returns true if the point lies on a wall.
+  /// Returns true if the point lies on one of the walls.
   [[nodiscard]] bool touch() const {
     return std::any_of(all().begin(), all().end(), [](const Wall& wall) { return wall.distance == 0; });
   }
@@ -72,11 +74,12 @@ class Walls {
 
 inline constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
-/// Centre of a voxel and its footprint.
+/// Centre of a voxel, or another point, and its footprint.
 struct Governor {
   Vec3d centre;
   Footprint foot;
-  Vec3d direction;  ///< outwards, of unit length; zero on the surface
+  /// Unit vector along the line to the footprint, out of the solid; zero if the point is on the surface.
+  Vec3d direction;
   bool is_inside = false;
 };
 
@@ -87,7 +90,8 @@ inline double angle_at(const Vec3d& x, const Vec3d& p, const Vec3d& q) {
   return std::atan2(length(cross(a, b)), dot(a, b)) * degrees_per_radian;
 }
 
-/// Governors of the voxels around a lattice node. Bits 0, 1 and 2 of the index are the sides along x, y and z.
+/// Governors of the eight voxels around a lattice node. Bits 0, 1 and 2 of the index are 1 for voxels on the upper side
+/// along x, y and z.
 using GovernorsAround = std::array<Governor, 8>;
 
 class GovernorField {
@@ -115,12 +119,12 @@ class GovernorField {
 
   [[nodiscard]] const VoxelSolid& solid() const { return solid_; }
   [[nodiscard]] const Surface& surface() const { return surface_; }
-  /// Longest side of a voxel, mesh units.
+  /// Returns the longest side of a voxel, mesh units.
   [[nodiscard]] double longest_voxel() const {
     const Vec3d& h = solid_.grid.spacing;
     return std::max({h.x, h.y, h.z});
   }
-  /// Shortest side of a voxel, mesh units.
+  /// Returns the shortest side of a voxel, mesh units.
   [[nodiscard]] double voxel() const {
     const Vec3d& h = solid_.grid.spacing;
     return std::min({h.x, h.y, h.z});

@@ -27,7 +27,8 @@ Vec3d in_plane(Vec3d v, std::size_t axis) {
 
 constexpr int most_steps = 64;
 
-// The functions of the search tree are slower and round differently: docs/decisions/0008-closest-points.md.
+// The corresponding functions of the search tree are slower and round differently:
+// docs/decisions/0008-closest-points.md.
 Footprint closest_on_edge(const Vec3d& query, const Vec3d& a, const Vec3d& b, unsigned bit_a, unsigned bit_b) {
   const Vec3d along = b - a;
   const double squared = squared_length(along);
@@ -163,7 +164,7 @@ Footprint MeshSurface::footprint(SiteId site, const Vec3d& centre, bool /*is_ins
 }
 
 NearestPoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) const {
-  // The closest point of the given element bounds the search, with room for rounding.
+  // The distance of the closest point of the given element, plus a margin for rounding, bounds the search.
   constexpr double room = 1e-6;
   std::optional<NearestSite> found;
   if (near.element < mesh_.triangles.size()) {
@@ -208,8 +209,8 @@ bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c, const 
   return is_found;
 }
 
-/// Calls visit(triangle) for the triangles that have two given vertices, ascending. It searches around the vertex with
-/// fewer triangles, because one vertex may have thousands.
+/// Calls visit(triangle) for the triangles with two given vertices, ascending. It searches the triangles of the vertex
+/// that has fewer, because one vertex may have thousands.
 template <class Visit>
 void MeshSurface::for_each_triangle_at(std::uint32_t a, std::uint32_t b, const Visit& visit) const {
   const auto count = [&](std::uint32_t v) { return first_[v + 1] - first_[v]; };
@@ -220,7 +221,7 @@ void MeshSurface::for_each_triangle_at(std::uint32_t a, std::uint32_t b, const V
   }
 }
 
-/// Calls visit(other triangle, ends of the side) for each side of a triangle that another triangle shares.
+/// Calls visit(other triangle, ends of the side) for each side of a triangle and each other triangle with that side.
 template <class Visit>
 void MeshSurface::for_each_neighbour(std::uint32_t triangle, const Visit& visit) const {
   const Triangle& own = mesh_.triangles[triangle];
@@ -314,8 +315,8 @@ Footprint MeshSurface::follow(const Footprint& start, const Vec3d& query, double
   for (int step = 0; step < most_steps; ++step) {
     Footprint better = best;
     double better_squared = squared_length(query - best.point) * (1 - 1e-12);
-    // Only triangles that contain the foot are tried. Others at the ends of its edge may be closer, but belong to other
-    // walls.
+    // Only triangles that contain the footprint are tried. Other triangles at the ends of the footprint's edge may be
+    // closer, but belong to other walls.
     const Triangle& own = mesh_.triangles[best.element];
     const auto first = static_cast<std::size_t>(std::countr_zero(best.corners));
     const unsigned others = best.corners & (best.corners - 1);

@@ -17,7 +17,8 @@
 
 namespace blum::detail {
 
-/// Part of a segment. The axes name the sides of a box that cut it off; an uncut end has no axis.
+/// Part of a segment in a box, as fractions of its length. At an end where a side of the box cuts the segment, the axis
+/// is the one perpendicular to that side. At an uncut end it is unset.
 struct SegmentPart {
   double low = 0, high = 1;
   std::optional<std::size_t> low_axis, high_axis;
@@ -25,21 +26,21 @@ struct SegmentPart {
   [[nodiscard]] double middle() const { return 0.5 * (low + high); }
 };
 
-/// Returns the part of a segment in a box, or nullopt if they do not meet.
+/// Returns the part of a segment in a box, or nullopt if the segment does not meet the box.
 [[nodiscard]] std::optional<SegmentPart> part_within(const Vec3d& a, const Vec3d& b, const Box3& box);
 
-/// Edge between two triangles.
+/// Edge between two triangles of a surface.
 struct ClippedEdge {
   std::array<Vec3d, 2> ends;
   std::array<Vec3d, 2> outwards;  ///< unit normals of the triangles; zero if a triangle has no area
 };
 
 /// Adds the middle of the part of an edge in a box, and the points where the edge crosses sides of the box. At a
-/// crossing, `inwards` lies in the side.
+/// crossing, `inwards` lies in the plane of the side.
 void add_clip_points(const ClippedEdge& edge, const Box3& box, std::vector<SurfacePoint>& points);
 
-/// Adds the points where edges of a box cross a triangle. At each, `inwards` is the direction of the box edge that
-/// leads into the solid.
+/// Adds the points where edges of a box cross a triangle. At each point, `inwards` is the direction along the box edge
+/// that leads into the solid.
 void add_clip_points(const std::array<Vec3d, 3>& triangle, const Vec3d& outwards, const Box3& box,
                      std::vector<SurfacePoint>& points);
 
@@ -80,8 +81,8 @@ class MeshSurface final : public Surface {
   Bvh bvh_;
   double size_ = 0;  ///< diagonal of the bounds
   Pseudonormals normals_;
-  std::vector<std::uint32_t> first_;      ///< per vertex, index into triangles_
-  std::vector<std::uint32_t> triangles_;  ///< around each vertex
+  std::vector<std::uint32_t> first_;      ///< for each vertex: index in triangles_ of its first triangle
+  std::vector<std::uint32_t> triangles_;  ///< triangles of each vertex, vertex after vertex
   std::vector<Vec3d> voids_;
 };
 

@@ -10,15 +10,15 @@
 namespace blum::detail {
 namespace {
 
-/// Greatest number of stops that pushing may put between two, and greatest number of halvings.
+/// Greatest number of stops that pushed() may put between two stops, and greatest depth of its recursion.
 constexpr int most_moves = 24;
 constexpr int most_depth = 8;
 constexpr std::size_t most_landmarks = 48;
-/// Greatest number of segments tested on ways over landmarks.
+/// Greatest number of segments that a search over landmarks tests.
 constexpr int most_looks = 200;
-/// Number of parts into which the box around two stops is cut along each axis, to scatter points there. The list gives
-/// the tries in their order. `most_parts` limits a step, in parts. `most_looks_at_strewn` limits the number of segments
-/// tested.
+/// To scatter points, a cube around two stops is cut into `parts` parts along each axis. `strewn_parts` lists the
+/// attempts in order; `has_creases` adds points at creases. A segment of the search is at most `most_parts` parts long.
+/// At most `most_looks_at_strewn` segments are tested.
 struct StrewnParts {
   int parts;
   bool has_creases;
@@ -28,16 +28,17 @@ constexpr std::size_t most_strewn = 6000;
 constexpr double most_parts = 2.2;
 constexpr int most_looks_at_strewn = 20000;
 constexpr double any_length = std::numeric_limits<double>::infinity();
-/// Least depth of a stop relative to its largest coordinate. Points closer to the surface may lie on either side of it.
+/// Least depth of a stop, relative to its largest coordinate. Because of rounding, points closer to the surface may lie
+/// on either side of it.
 constexpr double least_depth = 1e-12;
-/// Overlap of the balls around the ends, relative to the length, that exceeds rounding errors.
+/// Least overlap of the balls around the ends of a segment, relative to its length. It exceeds rounding errors.
 constexpr double overlap = 1e-9;
 
 Footprint foot_of(const NearestPoint& nearest) {
   return {nearest.point, nearest.element, 7};
 }
 
-/// Returns the unit direction from the wall next to a stop.
+/// Returns the unit direction away from the wall closest to a stop.
 Vec3d away_from_wall(const Stop& stop) {
   return (stop.at - stop.nearest.point) / stop.nearest.distance;
 }
@@ -67,7 +68,7 @@ const SurfacePart* SolidPaths::part_at(std::initializer_list<const Stop*> stops)
 
 bool SolidPaths::is_straight(const Stop& a, const Stop& b) const {
   const double size = length(b.at - a.at);
-  // The ball around a point whose radius is the depth of the point lies in the solid.
+  // A ball lies in the solid if its centre does and its radius is the depth of its centre.
   if (a.nearest.distance + b.nearest.distance >= size * (1 + overlap)) return true;
   return !surface_.first_crossing(a.at, b.at, part_at({&a, &b}));
 }
@@ -102,7 +103,8 @@ std::vector<Stop> SolidPaths::pulled_over_open(std::vector<Stop> path) const {
   return path;
 }
 
-/// Returns a stop as deep inside as a point is outside, or less deep if the solid is thin, then moved to the middle.
+/// Returns a stop inside the solid for a point outside: the point mirrored at the surface. If the solid is thin, the
+/// stop is less deep. It is then moved to the middle of a thin part.
 std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near) const {
   constexpr int most_tries = 24;
   const NearestPoint foot = surface_.nearest(outside, foot_of(near.nearest));
@@ -113,7 +115,9 @@ std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near
   return std::nullopt;
 }
 
-/// Returns the point closest to the middle of two stops where the walls next to them would meet. Thin walls turn there.
+/// Returns a stop at a crease, where a thin part of the solid bends. Take the planes through two stops that are
+/// parallel to the walls next to them. The stop is the point of both planes that is closest to the midpoint of the two
+/// stops.
 std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
   constexpr double least_turn = 1e-3;  // squared sine
   if (!(a.nearest.distance > 0 && b.nearest.distance > 0)) return std::nullopt;
@@ -131,14 +135,14 @@ std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
   return stop ? centred(*stop) : pushed_in(x, a);
 }
 
-/// Returns the point beside another one in the middle plane of a thin part. From there a line leads into the part.
+/// Returns the projection of a stop onto the middle plane of a thin part. From there, a segment leads into the part.
 std::optional<Stop> SolidPaths::at_mouth(const Stop& thin, const Stop& other) const {
   if (!(thin.nearest.distance > 0)) return std::nullopt;
   const Vec3d u = (thin.nearest.point - thin.at) / thin.nearest.distance;
   return stop_at(other.at - u * dot(u, other.at - thin.at), foot_of(other.nearest));
 }
 
-/// Returns a point that routes a segment around the place where it leaves the solid.
+/// Returns a stop that leads a path around the part of a segment that is outside the solid.
 std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
   for (const auto& [thin, other] : {std::pair{&b, &a}, std::pair{&a, &b}}) {
     const std::optional<Stop> mouth = at_mouth(*thin, *other);
@@ -152,7 +156,8 @@ std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
   return outermost_pushed_in(a, b);
 }
 
-/// Pushes the middle of the part of a segment that lies outside into the solid.
+/// Takes the part of a segment between its first exit from the solid and its last entry. Returns a stop at the middle
+/// of that part, or inside the solid next to it.
 std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b) const {
   const std::optional<double> leaves = surface_.first_crossing(a.at, b.at, nullptr);
   const std::optional<double> returns = surface_.first_crossing(b.at, a.at, nullptr);
@@ -162,8 +167,8 @@ std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b
   return stop ? stop : pushed_in(middle, a);
 }
 
-/// Adds the stops between two. Returns false if that fails.
-/// @param moves  number of stops that may still be added.
+/// Adds stops between two stops so that all segments stay in the solid. Returns false if none are found.
+/// @param moves  number of stops that may still be tried.
 bool SolidPaths::push_in(const Stop& a, const Stop& b, int depth, int& moves, std::vector<Stop>& between) const {
   if (is_straight(a, b)) return true;
   if (depth == 0 || moves-- <= 0) return false;
@@ -221,7 +226,7 @@ bool SolidPaths::gives_up() const {
   return true;
 }
 
-/// Returns the wall closest to a stop, and the one on the opposite side of a thin part.
+/// Returns the wall closest to a stop, and the opposite wall if the stop is in a thin part.
 std::vector<SolidPaths::Wall> SolidPaths::walls_of(const Stop& stop) const {
   std::vector<Wall> walls;
   const auto add = [&](const Vec3d& at) {
@@ -237,7 +242,7 @@ std::vector<SolidPaths::Wall> SolidPaths::walls_of(const Stop& stop) const {
   return walls;
 }
 
-/// Returns a path next to a way over the surface.
+/// Returns a path inside the solid that follows a path over its surface.
 std::optional<std::vector<Stop>> SolidPaths::along_walls(const Stop& a, const Stop& b) const {
   Box3 box;
   if (within_) {
@@ -270,8 +275,8 @@ std::optional<std::vector<Stop>> SolidPaths::pushed_or_along_walls(const Stop& a
   return found ? found : along_walls(a, b);
 }
 
-/// Moves the points of a way over the surface a little into the solid, less and less until all segments stay in it.
-/// Then moves them to the middle of thin parts.
+/// Moves the points of a path over the surface into the solid. The distance is small, and is reduced until all segments
+/// stay in the solid. Then it moves the points to the middle of thin parts.
 std::optional<std::vector<Stop>> SolidPaths::inside_of(std::span<const SurfacePoint> way, const Stop& a,
                                                        const Stop& b) const {
   const double size = length(b.at - a.at);
@@ -293,7 +298,8 @@ std::optional<std::vector<Stop>> SolidPaths::inside_of(std::span<const SurfacePo
   return std::nullopt;
 }
 
-/// Pushes from one point of a way over the surface to the next, each in the middle of the part behind it.
+/// Moves each point of a path over the surface into the solid, to the middle if the part is thin. Then it joins
+/// consecutive points by pushed().
 std::optional<std::vector<Stop>> SolidPaths::pushed_beside(std::span<const SurfacePoint> way, const Stop& a,
                                                            const Stop& b) const {
   std::vector<Stop> path{a};
@@ -312,8 +318,8 @@ std::optional<std::vector<Stop>> SolidPaths::pushed_beside(std::span<const Surfa
   return std::vector<Stop>(path.begin() + 1, path.end() - 1);
 }
 
-/// Returns a path over landmarks and points scattered around two stops, finer and finer. The last try adds the creases
-/// between these, because thin plates that cross are joined only there.
+/// Returns a path over landmarks and points scattered around two stops. Several densities of points are tried. The last
+/// attempt adds points at creases, because thin plates that cross are joined only there.
 std::optional<std::vector<Stop>> SolidPaths::over_strewn(const Stop& a, const Stop& b,
                                                          std::span<const Stop> landmarks) const {
   for (const auto& [parts, has_creases] : strewn_parts) {
@@ -326,8 +332,8 @@ std::optional<std::vector<Stop>> SolidPaths::over_strewn(const Stop& a, const St
   return std::nullopt;
 }
 
-/// Returns a path along the border of the part of the solid in the box. It leads over elements of the surface and
-/// through the sides of the box, as close to these as necessary. If this border is connected, such a path exists.
+/// Returns a path just inside the border of the part of the solid in the box. This border consists of elements of the
+/// surface and parts of the box's sides. If it is connected, such a path exists.
 std::optional<std::vector<Stop>> SolidPaths::over_border(const Stop& a, const Stop& b) const {
   if (!within_) return std::nullopt;
   std::vector<SurfacePoint> points = surface_.points_in(*within_);
@@ -365,7 +371,8 @@ void SolidPaths::add_creases(double longest, std::vector<Stop>& stops) const {
   }
 }
 
-/// Returns points of a lattice in a cube, each moved into the solid next to it. In thin parts the middle is added.
+/// Returns the points of a lattice in a cube. Points outside the solid are moved into it. For points in thin parts, the
+/// point in the middle of the part is added.
 std::vector<Stop> SolidPaths::strewn(const Vec3d& middle, double side, int parts) const {
   const double step = side / parts;
   std::vector<Stop> stops;
@@ -388,7 +395,8 @@ std::vector<Stop> SolidPaths::strewn(const Vec3d& middle, double side, int parts
 
 namespace {
 
-/// Removes stops whose wall is parallel to that of an earlier one, if both lie in one plane to within `apart`.
+/// Removes a stop if it lies in the plane of an earlier stop, to within `apart`, and both closest walls are parallel to
+/// that plane.
 std::vector<Stop> on_different_planes(std::span<const Stop> stops, double apart) {
   constexpr double parallel = 1e-6;
   std::vector<Stop> found;
@@ -404,11 +412,11 @@ std::vector<Stop> on_different_planes(std::span<const Stop> stops, double apart)
 
 }  // namespace
 
-/// Returns the points where three planes meet that lead through stops along the walls next to them. If the stops lie in
-/// the middle of thin plates, these plates meet there.
+/// For each three stops, returns the point where three planes meet: each plane contains one stop and is parallel to its
+/// closest wall. If the stops are in the middle of three thin plates, the plates meet there.
 std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, const Box3& box) const {
   constexpr std::size_t most_stops = 12;
-  constexpr double least = 1e-3;  // of the volume spanned by three directions
+  constexpr double least = 1e-3;  // least volume spanned by the three unit normals
   const std::size_t count = std::min(stops.size(), most_stops);
   const double size = box.diagonal();
   std::vector<Stop> found;
@@ -433,7 +441,7 @@ std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, cons
 
 std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::size_t least_open) const {
   std::optional<Hub> best;
-  // Returns true if no better point needs to be searched for.
+  // Returns true if a best possible point was found, so that the search can end.
   const auto look_at = [&](std::span<const Stop> stops) {
     for (const Stop& stop : stops) {
       if (!std::all_of(corners.begin(), corners.end(), [&](const Stop& c) { return is_straight(stop, c); })) continue;
@@ -454,7 +462,7 @@ std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::si
   if (gives_up()) return best;
   const std::vector<Stop> around = strewn(box.center(), size, 6);
   if (look_at(around) || look_at(where_walls_meet(on_different_planes(around, 1e-3 * size), box))) return best;
-  // Thin plates turn and meet at creases of the surface, so points there see more corners.
+  // Thin plates bend and meet at creases of the surface. From points there, segments to more corners stay in the solid.
   std::vector<Stop> creases;
   for (const SurfacePoint& point : surface_.points_in({box.lower - reach, box.upper + reach})) {
     for (double depth = 1e-2 * size; depth > 1e-6 * size; depth *= 0.1) {
@@ -469,7 +477,7 @@ std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::si
   return best;
 }
 
-/// Removes the stops of a path that longer segments can bypass.
+/// Removes the stops of a path that a longer segment in the solid can bypass.
 std::vector<Stop> SolidPaths::pulled_tight(const Stop& a, const Stop& b, const std::vector<Stop>& between) const {
   std::vector<Stop> all{a};
   all.insert(all.end(), between.begin(), between.end());
@@ -484,14 +492,14 @@ std::vector<Stop> SolidPaths::pulled_tight(const Stop& a, const Stop& b, const s
   return kept;
 }
 
-/// Moves a stop to the middle between two walls if the part is at most 65 times as thick as the stop is deep.
+/// Moves a stop to the middle between two walls if the solid there is at most 65 times as thick as the stop is deep.
 Stop SolidPaths::centred(const Stop& stop) const {
   constexpr double thick = 64;
   return centred(stop, thick * length(stop.at - stop.nearest.point));
 }
 
-/// Moves a stop to the middle between its closest wall and the opposite one. The latter is searched for up to `reach`
-/// from the stop.
+/// Moves a stop to the middle between its closest wall and the opposite one, if that is at most `reach` away from the
+/// stop.
 Stop SolidPaths::centred(const Stop& stop, double reach) const {
   const Vec3d away = stop.at - stop.nearest.point;
   const double depth = length(away);
@@ -503,7 +511,8 @@ Stop SolidPaths::centred(const Stop& stop, double reach) const {
   return middle && middle->nearest.distance > stop.nearest.distance ? *middle : stop;
 }
 
-/// Adds the points of a walk towards another stop. Each step leads along the wall next to the current point.
+/// Walks from one stop towards another and adds the points of the walk. Each step is parallel to the wall closest to
+/// the current point.
 void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const {
   constexpr int most_steps = 12;
   constexpr double before_wall = 0.9;
@@ -523,7 +532,8 @@ void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& 
   }
 }
 
-/// Dijkstra's search. Tests if two stops are joined only when the result matters.
+/// Searches the shortest path by Dijkstra's algorithm. It tests if two stops are joined only if the result can shorten
+/// a path.
 std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop& b, std::span<const Stop> landmarks,
                                                       const SearchLimits& limits) const {
   constexpr double far = std::numeric_limits<double>::infinity();

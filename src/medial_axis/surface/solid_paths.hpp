@@ -17,13 +17,13 @@ namespace blum::detail {
 /// Point in a solid.
 struct Stop {
   Vec3d at;
-  NearestPoint nearest;  ///< of the surface
+  NearestPoint nearest;  ///< closest point of the surface
 };
 
 /// Point from which segments to all corners of a polygon stay in the solid.
 struct Hub {
   Stop stop;
-  std::size_t open = 0;  ///< triangles with two adjacent corners that the surface does not cross
+  std::size_t open = 0;  ///< number of triangles of the hub and two adjacent corners that the surface does not cross
 };
 
 /// Returns true if a closed box contains a point.
@@ -31,16 +31,16 @@ struct Hub {
   return max(box.lower, at) == at && min(box.upper, at) == at;
 }
 
-/// Finds chains of segments that do not leave a solid.
+/// Finds paths: chains of segments that do not leave a solid. The vertices of a path are called stops.
 class SolidPaths {
  public:
-  /// @param surface     of the solid. It must outlive this object.
-  /// @param needs_more  null for full effort. Otherwise searches try no scattered points, which take about ten times as
-  /// long, and set the flag if such points might have helped.
+  /// @param surface     surface of the solid. It must outlive this object.
+  /// @param needs_more  null for full effort. Otherwise searches make little effort: they use no scattered points, and
+  /// set the flag if such points might have helped. Full effort takes about ten times as long.
   explicit SolidPaths(const Surface& surface, bool* needs_more = nullptr)
       : surface_(surface), needs_more_(needs_more) {}
 
-  /// @param within  box in which all stops that are found lie, and so the paths between them.
+  /// @param within  box that contains all stops that are found, and so all paths.
   SolidPaths(const Surface& surface, const Box3& within) : surface_(surface), within_(within) {}
 
   /// Returns a copy that is restricted to a box.
@@ -49,52 +49,54 @@ class SolidPaths {
     other.within_ = box;
     return other;
   }
-  /// Prepares for many queries about points in a box.
+  /// Makes later queries about points in a box faster.
   void prepare(const Box3& box) {
     auto part = surface_.part_in(box);
     part_ = part ? std::make_shared<const SurfacePart>(std::move(*part)) : nullptr;
   }
 
-  /// Returns a stop at a point if the point lies in the solid and not on its surface.
+  /// Returns a stop at a point if the point lies inside the solid and not on its surface; else nullopt.
   [[nodiscard]] std::optional<Stop> stop_at(const Vec3d& at, const Footprint& near) const;
 
-  /// Returns a stop at a point if the point lies in the solid. Otherwise pushes the point in through the surface next
-  /// to it. If that fails, returns its closest point on the surface.
+  /// Returns a stop at a point if the point lies in the solid. Otherwise returns a stop inside, on the other side of
+  /// the closest point of the surface. If that fails, returns the closest point of the surface itself.
   [[nodiscard]] Stop inside_near(const Vec3d& at, const Stop& near) const;
 
   /// Returns true if a segment between two points of the solid stays in the solid.
   [[nodiscard]] bool is_straight(const Stop& a, const Stop& b) const;
 
-  /// Returns true if the surface does not cross a triangle. Its sides can then be pulled over it.
+  /// Returns true if the surface does not cross a triangle. In this case, a path along one side can be deformed, in the
+  /// solid, to the path along the other two sides.
   [[nodiscard]] bool is_open(const Stop& a, const Stop& b, const Stop& c) const;
 
-  /// Returns true if a segment can be moved to another one within the solid, its ends along straight lines. `false` may
-  /// also mean that this is hard to decide.
+  /// Returns true if a segment can be moved to another segment within the solid, each end along a straight line. The
+  /// result `false` may also mean that this is undecided.
   [[nodiscard]] bool can_sweep(const std::array<Stop, 2>& from, const std::array<Stop, 2>& to) const;
 
-  /// Removes the stops of a path that the segments next to them can be pulled over. The ends stay, and so do stops
-  /// around obstacles.
+  /// Removes a stop of a path if the two segments at it can be deformed, in the solid, to one segment. This is
+  /// repeated. The ends of the path stay, and so do stops around obstacles.
   [[nodiscard]] std::vector<Stop> pulled_over_open(std::vector<Stop> path) const;
 
-  /// Returns the stops between two that pushing finds; none if the segment stays in the solid. Returns nullopt if
-  /// pushing fails.
+  /// Joins two stops by pushing: where a segment leaves the solid, a stop inside is inserted, recursively. Returns the
+  /// inserted stops; an empty list if the segment stays in the solid. Returns nullopt if pushing fails.
   [[nodiscard]] std::optional<std::vector<Stop>> pushed(const Stop& a, const Stop& b) const;
 
-  /// Returns stops between two stops such that segments from one to the next stay in the solid, or nullopt if none are
-  /// found.
+  /// Returns stops for a path between two stops, such that all segments stay in the solid. Returns nullopt if no path
+  /// is found.
   ///
-  /// First it tries no stops, then pushing, then some of the landmarks, then the walls next to the two stops. Next it
-  /// tries landmarks together with points that it meets when it walks along thin parts. With full effort it then
-  /// scatters points around the two, finer and finer. At last it follows the border of the solid in the box that bounds
-  /// the search.
+  /// Methods are tried in this order: one segment, pushing, a path over some of the landmarks, a path along the walls
+  /// next to both stops. Next is a path over the landmarks and over points on walks along thin parts. With full effort,
+  /// a path over points scattered around both stops follows, with increasing density. The last method follows the
+  /// border of the solid in the box that bounds the search.
   /// @param landmarks  points in the same part of the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
                                                       std::span<const Stop> landmarks) const;
 
-  /// Returns a point from which the segments to all given corners stay in the solid. It has the most triangles with two
-  /// adjacent corners that the surface does not cross. Candidates are points scattered around the corners. With little
-  /// effort, only points where the walls next to the corners meet are tried.
-  /// @param least_open  least number of these triangles.
+  /// Returns a point from which the segments to all given corners stay in the solid. With each two adjacent corners,
+  /// such a point forms a triangle. The point with the most triangles that the surface does not cross is returned.
+  /// Candidates are points scattered around the corners. With little effort, the only candidates are points where
+  /// planes along the walls next to the corners meet.
+  /// @param least_open  least number of triangles that the surface does not cross.
   [[nodiscard]] std::optional<Hub> seeing_all(std::span<const Stop> corners, std::size_t least_open) const;
 
  private:
@@ -112,15 +114,15 @@ class SolidPaths {
                                                            const Stop& b) const;
   [[nodiscard]] std::optional<std::vector<Stop>> pushed_beside(std::span<const SurfacePoint> way, const Stop& a,
                                                                const Stop& b) const;
-  /// Point of the surface that a stop sees.
+  /// Point of the surface next to a stop, and the element that contains it.
   struct Wall {
     SurfacePoint point;
     std::uint32_t element;
   };
   [[nodiscard]] std::vector<Wall> walls_of(const Stop& stop) const;
-  /// Returns true if little effort is to be made. In this case it also sets the flag that more might have helped.
+  /// Returns true if only little effort is allowed. In this case it also sets the flag `needs_more`.
   [[nodiscard]] bool gives_up() const;
-  /// Returns the prepared part of the surface if all given stops lie in its box, else null.
+  /// Returns the part of the surface that prepare() stored, if all given stops lie in its box; else null.
   [[nodiscard]] const SurfacePart* part_at(std::initializer_list<const Stop*> stops) const;
   void walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const;
   /// Limits of a search: no step is longer than `longest`, and at most `looks` segments are tested.

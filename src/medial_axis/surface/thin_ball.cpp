@@ -8,20 +8,21 @@ namespace blum::detail {
 namespace {
 
 constexpr int most_steps = 24;
-/// Degrees: two footprints at a smaller angle, seen from a small ball, count as one.
+/// Degrees: two footprints of a ball count as one if the angle between them at the ball's centre is smaller.
 constexpr double least_angle = 1;
-/// Number of depths that are tried behind the surface. Each is three quarters of the one before: down to 1/2400.
+/// Number of points tried on a ray behind the surface. Each is 3/4 as deep as the one before, down to 1/2400 of the
+/// first depth.
 constexpr int most_depths = 28;
 constexpr int most_climbs = 3;
-/// Length of the sum of the unit directions from both walls. At less the walls are opposite: more than 150 degrees
-/// between them.
+/// Least length of the sum of the unit directions from both walls to the centre. If it is shorter, the angle between
+/// the footprints is above 150 degrees: the walls are opposite.
 constexpr double least_slope = 0.5;
 
 Footprint footprint_of(const NearestPoint& at) {
   return {at.point, at.element, 7};
 }
 
-/// Returns the largest ball that touches the surface where the ball around a point inside does.
+/// Returns the largest inner ball that touches the surface at `touched`, the closest point to the point `inside`.
 std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint& touched, const Vec3d& inside,
                                       double radius) {
   const Vec3d inwards = (inside - touched.point) / touched.distance;
@@ -52,7 +53,7 @@ std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint
 /// Deepest of some points on a ray into the solid.
 struct Deepest {
   Vec3d point;
-  NearestPoint nearest;  ///< at distance 0 if none is inside
+  NearestPoint nearest;  ///< its distance is 0 if no point is inside
 };
 
 Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& direction, double furthest,
@@ -67,7 +68,7 @@ Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& di
   return best;
 }
 
-/// Returns a larger ball next to one that lies towards a corner of the part, by moving away from both walls.
+/// Returns a larger ball next to a ball in a corner of a part of the solid. The centre moves away from both walls.
 std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, double radius) {
   const double own = ball.nearest.distance;
   const Vec3d away = (ball.centre - ball.nearest.point) / own + (ball.centre - ball.other.point) / own;

@@ -7,28 +7,27 @@
 
 namespace blum::detail {
 
-/// Ball in the solid that touches the surface in two points, or in one.
+/// Ball in the solid that touches the surface at two points, or at one.
 struct ThinBall {
   Vec3d centre;
-  NearestPoint nearest;  ///< to the centre
-  NearestPoint other;    ///< as far, on another wall; equals `nearest` if none was found
-  double angle = 0;      ///< between the two, degrees
+  NearestPoint nearest;  ///< closest point of the surface to the centre
+  NearestPoint other;    ///< equally close point on another wall; equals `nearest` if none was found
+  double angle = 0;      ///< degrees: angle between both points at the centre
 };
 
-/// Returns a medial ball of a thin part next to a point outside the solid. It touches the surface where the ball around
-/// the deepest point straight behind the surface does. The largest such ball is found by shrinking (Ma, Bae, Choi, "3D
-/// medial axis point approximation using nearest neighbors and the normal field", 2012). From there the search goes on
-/// to larger balls.
-/// @param touched  closest point of the surface.
-/// @param radius   mesh units. Returns nullopt if the ball would be larger, or if no point behind the surface is
-/// inside.
+/// Returns a medial ball of a thin part of the solid next to a point outside, `beyond`. First, the deepest point on the
+/// ray from `beyond` through `touched` is found. The ball touches the surface at the closest point to that deepest
+/// point. The largest such ball is found by shrinking (Ma, Bae, Choi, "3D medial axis point approximation using nearest
+/// neighbors and the normal field", 2012). If there are larger balls next to it, the search continues with these.
+/// @param touched  closest point of the surface to `beyond`.
+/// @param radius   mesh units. The result is nullopt if the ball would be larger, or if no point of the ray is inside.
 [[nodiscard]] std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched,
                                                        const Vec3d& beyond, double radius);
 
-/// Returns the largest ball that touches the surface where the ball around a point of the solid does. It contains this
-/// point.
-/// @param nearest  to the point.
-/// @param radius  mesh units. Returns nullopt if the ball would be larger.
+/// Returns the largest ball in the solid that touches the surface at the closest point to a point of the solid. The
+/// ball contains this point.
+/// @param nearest  closest point of the surface to `inside`.
+/// @param radius  mesh units. The result is nullopt if the ball would be larger.
 [[nodiscard]] std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest,
                                                   const Vec3d& inside, double radius);
 

@@ -14,8 +14,7 @@ namespace {
 
 constexpr std::size_t most_chords = 32;
 
-/// Returns the triangles of each shell that faces inwards, by ascending first vertex. Such shells are the walls of
-/// voids.
+/// Returns the triangles of each shell that faces inwards, by ascending first vertex. Such shells enclose voids.
 std::vector<std::vector<std::uint32_t>> walls_of_voids(const MeshView& mesh) {
   detail::UnionFind shells(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
@@ -46,7 +45,8 @@ std::vector<std::vector<std::uint32_t>> walls_of_voids(const MeshView& mesh) {
   return walls;
 }
 
-/// Returns the middle of the chord from the centre of a triangle, away from the solid, to the first crossing.
+/// Returns the middle of a chord of a void: from the centroid of a triangle, away from the solid, to the first
+/// crossing.
 std::optional<Vec3d> middle_of_chord(const MeshView& mesh, const Surface& surface, std::uint32_t triangle,
                                      double reach) {
   const Triangle& t = mesh.triangles[triangle];

@@ -9,17 +9,18 @@
 namespace blum::detail {
 namespace {
 
-constexpr std::int64_t branching = 2;  // blocks along each axis of a block of the next level
+constexpr std::int64_t branching = 2;  // number of blocks, along each axis, that a block of the next level consists of
 constexpr int most_steps = 64;
-/// Squared cosine of 45 degrees. A footprint at a larger angle lies on another wall, unless a way along the surface
-/// leads there.
+/// Squared cosine of 45 degrees. If the direction to the footprint turns by more in one step, the new footprint is on
+/// another wall, unless the step follows the surface.
 constexpr double most_turned = 0.5;
 
 std::int64_t blocks(std::int64_t size, std::int64_t side) {
   return (size + side - 1) / side;
 }
 
-/// Marks in a row of blocks the missing voxels of a row: two for each block, from bit `shift` on.
+/// Sets, in a row of blocks, the bits of those voxels that a row of voxels lacks. In each block, bits `shift` and
+/// `shift` + 1 may be set.
 void add_missing(std::span<const std::uint64_t> row, std::int64_t length, unsigned shift, std::uint8_t* blocks) {
   for (std::size_t w = 0; w < row.size(); ++w) {
     const std::int64_t left = length - 64 * static_cast<std::int64_t>(w);
@@ -34,16 +35,16 @@ void add_missing(std::span<const std::uint64_t> row, std::int64_t length, unsign
 
 }  // namespace
 
-/// Squared distances of a query along each axis from three voxels: the one before, the voxel itself, and the one after.
-/// Bits mark those that may be chosen.
+/// For each axis: squared distances of a query along that axis from a voxel, the one before it and the one after it.
+/// Bit n of `allowed` is set if voxel n of the three may be chosen.
 struct VoxelSurface::Axes {
   std::array<std::array<double, 3>, 3> squared{};
   std::array<unsigned, 3> allowed{};
 };
 
-/// Best voxel so far.
+/// The query, and the closest voxel found so far.
 struct VoxelSurface::Search {
-  Vec3d query;  ///< local
+  Vec3d query;  ///< in coordinates of local()
   double squared = std::numeric_limits<double>::infinity();
   std::uint32_t voxel = 0;
 };
@@ -77,7 +78,7 @@ unsigned VoxelSurface::others_in_row(const VoxelIndex& middle) const {
   const VoxelIndex& size = voxels_.size();
   if (middle[1] < 0 || middle[1] >= size[1] || middle[2] < 0 || middle[2] >= size[2]) return 0;
   const std::span<const std::uint64_t> row = voxels_.row(middle[1], middle[2]);
-  // Rows end in unused bits. If the next voxel exists, so does the word that contains it.
+  // Rows end in unused bits. So if the next voxel exists, the word that contains it also exists.
   const std::int64_t first = middle[0] - 1;
   const auto word = static_cast<std::size_t>(std::max<std::int64_t>(first, 0) / 64);
   const auto shift = static_cast<unsigned>(std::max<std::int64_t>(first, 0) % 64);
@@ -85,7 +86,7 @@ unsigned VoxelSurface::others_in_row(const VoxelIndex& middle) const {
   if (shift > 61 && word + 1 < row.size()) selected |= row[word + 1] << (64 - shift);
   unsigned others = static_cast<unsigned>(~selected & 7U);
   if (first < 0) others = others << 1U & 7U;
-  const std::int64_t left = size[0] - first;  // number of voxels of the row from the first one on
+  const std::int64_t left = size[0] - first;  // number of voxels of the row from `first` to its end
   if (left < 3) others &= (1U << static_cast<unsigned>(left)) - 1;
   return others;
 }
@@ -110,7 +111,7 @@ Vec3d VoxelSurface::closest_in(const VoxelIndex& lower, std::int64_t side, const
 
 Footprint VoxelSurface::footprint(SiteId site, const Vec3d& centre, bool is_inside) const {
   if (is_inside) return {world(closest_in(voxels_.place(site.value), 1, local(centre))), site.value, 7};
-  // A voxel outside the solid is its own element: the footprint is its point closest to the solid.
+  // The element of a voxel outside the solid is the voxel itself. The footprint is its point closest to the solid.
   const VoxelIndex& size = voxels_.size();
   const Vec3d at = local(centre);
   VoxelIndex own{};
@@ -168,8 +169,8 @@ int VoxelSurface::closer_neighbour(const VoxelIndex& voxel, const Vec3d& query, 
   const double next_squared = squared_length(from_next);
   const double cosine_scaled = dot(from_foot, from_next);
   if (cosine_scaled > 0 && cosine_scaled * cosine_scaled >= most_turned * squared * next_squared) return best;
-  // This turns too far around a corner to be the same wall. Only voxels that touch the footprint, towards the query,
-  // are allowed.
+  // This step turns too far around a corner to stay on the same wall. Only voxels that touch the footprint on the side
+  // of the query are allowed.
   for (std::size_t a = 0; a < 3; ++a) {
     const double low = static_cast<double>(voxel[a]) * grid_.spacing[a];
     axes.allowed[a] = 2U | (query[a] <= low ? 1U : 0U) | (query[a] >= low + grid_.spacing[a] ? 4U : 0U);
@@ -199,7 +200,7 @@ int VoxelSurface::closest_of(const VoxelIndex& voxel, const Axes& axes, double s
 
 void VoxelSurface::search(Search& best, std::size_t level, const VoxelIndex& block) const {
   unsigned parts = levels_[level].parts[levels_[level].index(block)];
-  // Squared distances along each axis to the first and the second part.
+  // Squared distances of the query along each axis from the first and the second part of the block.
   const auto side = static_cast<double>(std::int64_t{1} << level);
   std::array<std::array<double, 2>, 3> squares{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -241,7 +242,7 @@ void VoxelSurface::search(Search& best, std::size_t level, const VoxelIndex& blo
 NearestPoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) const {
   Search best;
   best.query = local(query);
-  // The known footprint bounds the search, with room for rounding.
+  // The distance of the known footprint, plus a margin for rounding, bounds the search.
   best.squared = squared_length(query - near.point) * (1 + 1e-9);
   best.voxel = near.element;
   search(best, levels_.size() - 1, {0, 0, 0});

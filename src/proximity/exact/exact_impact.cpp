@@ -16,7 +16,7 @@
 namespace blum::detail {
 namespace {
 
-/// start + slope * t.
+/// The linear function start + slope * t.
 struct Linear {
   Integer start;
   Integer slope;
@@ -113,16 +113,17 @@ Polynomial dot(const PolynomialVector& a, const MovingVector& b) {
   return sum;
 }
 
-/// Returns the depth at which intervals are no wider than a tolerance, which is from 2^-40 to 1.
+/// Returns a number of halvings after which an interval of width 1 is no wider than a tolerance. The tolerance must be
+/// 2^-40 to 1.
 unsigned depth_of(double tolerance) {
   int exponent = 0;
   std::frexp(tolerance, &exponent);
   return static_cast<unsigned>(std::max(1 - exponent, 0)) + 1;
 }
 
-/// Two parts of features (a vertex, the inside of an edge or a face). They are no further apart than the distance if
-/// `excess` is not positive, all of `inside` are not negative, and `size` is positive. `inside` expresses that the
-/// closest points lie on the parts.
+/// Conditions over time for two parts of features; a part is a vertex, the inside of an edge, or the inside of a face.
+/// The parts are at most the distance apart if `excess` is not positive, no item of `inside` is negative, and `size` is
+/// positive. `inside` expresses that the closest points lie on the parts.
 struct Parts {
   Polynomial excess;
   std::vector<Polynomial> inside;
@@ -138,7 +139,7 @@ class Approach {
     const MovingVector between = vector(a, b);
     parts_.push_back({dot(between, between) - square_, {}, one_});
   }
-  /// Adds a point, and the edge from one point to another.
+  /// Adds the pair of a vertex and the inside of an edge. Arguments are indices of points.
   void add_vertex_and_edge(std::size_t point, std::size_t from, std::size_t to) {
     const MovingVector edge = vector(from, to);
     const MovingVector way = vector(from, point);
@@ -150,8 +151,9 @@ class Approach {
   void add_vertex_and_face() { add_insides(vector(1, 2), vector(1, 3), vector(1, 0), true); }
   void add_edge_and_edge() { add_insides(vector(0, 1), vector(2, 3), vector(0, 2), false); }
 
-  /// Returns the first time at which they are close. That is the start, or a time at which two parts are exactly as far
-  /// apart as the distance. For parts that always are, it is the time at which the closest points come to lie on them.
+  /// Returns the first time at which the distance of two parts is at most the limit, `points_.distance`. It is the
+  /// start, or a time at which a distance equals the limit. If a distance equals the limit at all times, it is the
+  /// first time at which the closest points lie on the parts.
   [[nodiscard]] std::optional<double> first(double tolerance) const {
     const RealRoots start(Polynomial{0, 1});
     const auto holds_at_start = [&](const Parts& parts) { return holds(parts, start, start.all().front()); };
@@ -173,7 +175,8 @@ class Approach {
     return points_.at[to] - points_.at[from];
   }
 
-  /// Adds features a + s u and b + r v, with w = b - a. For a face, adds the points a + s u + r v and the point a + w.
+  /// Adds the insides of the edges a + s u and b + r v, with w = b - a. If `is_face`, adds the inside of the face a + s
+  /// u + r v and the vertex a + w instead.
   void add_insides(const MovingVector& u, const MovingVector& v, const MovingVector& w, bool is_face) {
     const PolynomialVector normal = cross(u, v);
     const Polynomial size = dot(normal, normal);
@@ -214,10 +217,11 @@ class Approach {
   std::vector<Parts> parts_;
 };
 
-/// Two features, and two vectors that span their common plane.
+/// Two features: a vertex and a face, or two edges. Two vectors span the plane of the face, or the plane parallel to
+/// both edges.
 class Features {
  public:
-  /// A point that may lie on a segment, by their numbers.
+  /// A point that may lie on a segment; both are given by indices of points.
   struct Touch {
     std::size_t point;
     std::size_t from;
@@ -231,26 +235,29 @@ class Features {
     return {integer_points(points).at, {0, 1}, {2, 3}, {0, 2}, {{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}}};
   }
 
-  /// Returns zero if all points lie in one plane.
+  /// Returns a polynomial that is zero at times at which all four points lie in one plane.
   [[nodiscard]] Polynomial volume() const {
     return dot(cross(vector(first_[0], first_[1]), vector(second_[0], second_[1])), vector(between_[0], between_[1]));
   }
-  /// Returns zero along all axes if the points of a face, or the directions of edges, do not span a plane.
+  /// Returns one component of a vector: the cross product of two edge vectors of the face, or of both edges. It is zero
+  /// if these do not span a plane.
   [[nodiscard]] Polynomial normal(std::size_t axis) const {
     return cross_component(vector(first_[0], first_[1]), vector(second_[0], second_[1]), axis);
   }
-  /// Returns zero along all axes if the three points lie on a line.
+  /// Returns one component of a vector that is zero at times at which the three points of a touch lie on a line.
   [[nodiscard]] Polynomial area(const Touch& touch, std::size_t axis) const {
     return cross_component(vector(touch.from, touch.to), vector(touch.from, touch.point), axis);
   }
-  /// For a point on that line: returns a positive value beyond the ends of the segment.
+  /// Returns a polynomial that is positive if the point lies on the line of the segment beyond its ends. If the point
+  /// lies on the segment, it is zero or negative.
   [[nodiscard]] Polynomial beyond(const Touch& touch) const {
     return dot(vector(touch.from, touch.point), vector(touch.to, touch.point));
   }
-  /// Returns the points that may lie on segments. If no plane is spanned, features meet where one of them does.
+  /// Returns the points that may lie on segments of the other feature. If no plane is spanned, features meet if and
+  /// only if one of these points lies on its segment.
   [[nodiscard]] const std::vector<Touch>& touches() const { return touches_; }
 
-  /// Returns true if they meet at a root, where their points lie in one plane.
+  /// Returns true if the features meet at a root: at a time at which all four points lie in one plane.
   [[nodiscard]] bool meet_at(const RealRoots& roots, const RealRoot& root) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (roots.sign_at(root, normal(axis)) != 0) return overlap_along(axis, roots, root);
@@ -271,7 +278,7 @@ class Features {
 
   [[nodiscard]] MovingVector vector(std::size_t from, std::size_t to) const { return points_[to] - points_[from]; }
 
-  /// Returns true if they meet as seen along an axis that is not parallel to their plane.
+  /// Returns true if the features meet in the projection along an axis that is not parallel to their plane.
   [[nodiscard]] bool overlap_along(std::size_t axis, const RealRoots& roots, const RealRoot& root) const {
     const auto side = [&](std::size_t k) { return roots.sign_at(root, area(touches_[k], axis)); };
     const int first = side(0);
@@ -286,23 +293,23 @@ class Features {
   std::array<MovingVector, 4> points_;
   Ends first_;
   Ends second_;
-  Ends between_;  ///< a point of the first and one of the second
+  Ends between_;  ///< a point of the first feature and a point of the second
   std::vector<Touch> touches_;
 };
 
-/// Returns the first root at which the features meet.
+/// Returns the first root of a polynomial at which the features meet.
 std::optional<double> first_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance) {
   const RealRoots roots(polynomial);
   for (const RealRoot& isolated : roots.all()) {
-    // In a narrow interval, signs next to the root are decided fast.
+    // In a narrow interval around the root, signs of other polynomials are decided fast.
     const RealRoot root = roots.refined(isolated, depth_of(tolerance));
     if (features.meet_at(roots, root)) return root.lower_bound();
   }
   return std::nullopt;
 }
 
-/// Returns the first meeting of features whose points never leave their common plane. It is at the start, or where one
-/// of the signs that decide it changes.
+/// Returns the first time at which two features meet whose points lie in one plane at all times. It is the start, or a
+/// root of one of the polynomials whose signs decide if features meet.
 std::optional<double> first_in_plane(const Features& features, double tolerance) {
   std::optional<double> first = first_at_roots_of(Polynomial{0, 1}, features, tolerance);
   const auto look_at = [&](const Polynomial& polynomial) {

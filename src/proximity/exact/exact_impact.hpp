@@ -7,8 +7,8 @@
 
 namespace blum::detail {
 
-/// Returns the first time at which a vertex and a face, or two edges, are no further apart than a distance. The
-/// distance must be positive. Times are those of vertex_face_impact(). Takes some milliseconds at most for usual
+/// Returns the first time at which a vertex and a face, or two edges, are at most a given distance apart. The distance
+/// must be positive. Times are defined as for vertex_face_impact(). Cost: at most a few milliseconds for usual
 /// coordinates.
 [[nodiscard]] std::optional<double> exact_vertex_face_approach(const FourMovingPoints& points, double distance,
                                                                double tolerance);
@@ -16,7 +16,7 @@ namespace blum::detail {
                                                              double tolerance);
 
 /// Computes the results of vertex_face_impact() and edge_edge_impact() by integers alone, for any finite coordinates.
-/// Takes some ten to a hundred times as long as doubles that decide the answer.
+/// Cost: about 10 to 100 times as long as filtered_impact(), if that decides the answer.
 [[nodiscard]] std::optional<double> exact_vertex_face_impact(const FourMovingPoints& points, double tolerance);
 [[nodiscard]] std::optional<double> exact_edge_edge_impact(const FourMovingPoints& points, double tolerance);
 

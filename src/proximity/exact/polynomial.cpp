@@ -9,8 +9,8 @@
 namespace blum::detail {
 namespace {
 
-/// Returns the remainders of dividing the first by the second, that by the first remainder, and so on, with reversed
-/// signs.
+/// Returns the sequence that begins with two polynomials. Each further item is the negated remainder of dividing the
+/// last item but one by the last item, times a positive number.
 std::vector<Polynomial> remainders(const Polynomial& first, Polynomial second) {
   std::vector<Polynomial> all{first};
   while (!second.is_zero()) {
@@ -22,7 +22,7 @@ std::vector<Polynomial> remainders(const Polynomial& first, Polynomial second) {
   return all;
 }
 
-/// Returns how often the sign changes along a sequence.
+/// Returns the number of sign changes in a sequence of polynomials at t. Zeros are skipped.
 int variations(const std::vector<Polynomial>& sequence, const Dyadic& t) {
   int changes = 0;
   int last = 0;
@@ -60,7 +60,7 @@ RealRoots::RealRoots(Polynomial polynomial) : rest_(std::move(polynomial)) {
   std::sort(roots_.begin(), roots_.end(), is_less);
 }
 
-/// Narrows the intervals until none contains an exact root.
+/// Narrows the intervals of inexact roots until none of them contains an exact root.
 void RealRoots::separate() {
   for (RealRoot& root : roots_) {
     const auto holds = [&](const RealRoot& other) {
@@ -103,7 +103,7 @@ RealRoot RealRoots::refined(RealRoot root, unsigned depth) const {
   if (root.is_exact || root.depth >= depth) return root;
   const int low_sign = rest_.sign_at(root.low());
   const bool changes_sign = low_sign != rest_.sign_at(root.high());
-  // A guess by doubles is mostly right, and is verified.
+  // A guess by doubles is usually correct. It is verified by exact signs.
   constexpr unsigned double_digits = 50;
   if (changes_sign && depth <= double_digits) {
     const RealRoot guess = guessed(root, low_sign, depth);
@@ -122,10 +122,10 @@ RealRoot RealRoots::refined(RealRoot root, unsigned depth) const {
   return root;
 }
 
-/// Returns the part of [0, 1], 2^-depth wide, that halving with doubles leads to.
-/// @param low_sign  sign before the root.
+/// Returns an interval in [0, 1] of width 2^-depth that probably contains the root, found by bisection in doubles.
+/// @param low_sign  sign of the polynomial just before the root.
 RealRoot RealRoots::guessed(const RealRoot& root, int low_sign, unsigned depth) const {
-  // All are scaled alike, so that the largest has at most 63 bits.
+  // All coefficients are divided by the same power of 2, so that the largest has at most 63 bits.
   unsigned most_bits = 0;
   for (int k = 0; k <= rest_.degree(); ++k) {
     const Integer& c = rest_[static_cast<std::size_t>(k)];
@@ -153,12 +153,13 @@ RealRoot RealRoots::guessed(const RealRoot& root, int low_sign, unsigned depth) 
   return {Integer(static_cast<std::uint64_t>(std::ldexp(low, static_cast<int>(depth)))), depth};
 }
 
-/// Returns the sign of a polynomial of degree 2 or less all over the interval of a root; 0 if it may have several.
+/// Returns the sign of a polynomial of degree 2 or less in the interval of a root; 0 if it may have several signs
+/// there.
 int RealRoots::sign_over(const RealRoot& root, const Polynomial& other) {
   const int low = other.sign_at(root.low());
   if (low == 0 || other.sign_at(root.high()) != low) return 0;
   if (other.degree() < 2) return low;
-  // The Bernstein coefficient in between, twice: 2 a + b (low + high) + 2 c low high, times 4^depth.
+  // Twice the middle Bernstein coefficient of a + b t + c t^2: 2 a + b (low + high) + 2 c low high, times 4^depth.
   const Integer middle = (((other[0] << (root.depth + 1)) + other[1] * (2 * root.cell + 1)) << root.depth) +
                          other[2] * (root.cell * (root.cell + 1) * 2);
   return middle.sign() == low ? low : 0;
@@ -196,8 +197,8 @@ Polynomial Polynomial::derivative() const {
 }
 
 Polynomial Polynomial::without_root(const Dyadic& root) const {
-  // In lowest terms, the coefficients of 2^exponent * t - numerator have no common divisor. So the quotient by it has
-  // integer coefficients (Gauss).
+  // If numerator / 2^exponent is in lowest terms, the coefficients of 2^exponent * t - numerator have no common
+  // divisor. So the quotient of the polynomial by this factor has integer coefficients (Gauss).
   Dyadic factor = root;
   while (factor.exponent > 0 && !bit_test(factor.numerator, 0)) {
     factor.numerator >>= 1;

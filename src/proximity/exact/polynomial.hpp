@@ -12,25 +12,25 @@
 
 namespace blum::detail {
 
-/// numerator / 2^exponent.
+/// The number numerator / 2^exponent.
 struct Dyadic {
   Integer numerator = 0;
   unsigned exponent = 0;
 };
 
-/// A polynomial in one variable.
+/// A polynomial in one variable with integer coefficients.
 class Polynomial {
  public:
   static constexpr std::size_t most_coefficients = 13;
 
   Polynomial() = default;
-  /// Makes a polynomial from its coefficients, from the constant on.
+  /// Makes a polynomial from its coefficients, the constant one first.
   Polynomial(std::initializer_list<Integer> coefficients) {
     for (const Integer& c : coefficients) coefficients_[size_++] = c;
     trim();
   }
 
-  // Only coefficients in use are copied. Copies of the others would take most of the time.
+  // Only coefficients in use are copied. To copy the unused ones would take most of the time.
   Polynomial(const Polynomial& other) : size_(other.size_) {
     std::copy_n(other.coefficients_.begin(), size_, coefficients_.begin());
   }
@@ -51,7 +51,7 @@ class Polynomial {
   }
   ~Polynomial() = default;
 
-  /// Returns the degree; -1 for zero.
+  /// Returns the degree; -1 for the polynomial zero.
   [[nodiscard]] int degree() const { return static_cast<int>(size_) - 1; }
   [[nodiscard]] bool is_zero() const { return size_ == 0; }
   [[nodiscard]] const Integer& operator[](std::size_t power) const { return coefficients_[power]; }
@@ -59,10 +59,10 @@ class Polynomial {
 
   [[nodiscard]] int sign_at(const Dyadic& t) const;
   [[nodiscard]] Polynomial derivative() const;
-  /// Returns the polynomial without the factor (t - root), removed as often as it occurs.
+  /// Returns the polynomial, times a positive number, divided by the factor (t - root) as often as possible.
   [[nodiscard]] Polynomial without_root(const Dyadic& root) const;
 
-  /// Divides the coefficients by their greatest common divisor, which is positive.
+  /// Divides the coefficients by their positive greatest common divisor.
   void divide_by_content();
 
   friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
@@ -81,8 +81,8 @@ class Polynomial {
   std::size_t size_ = 0;
 };
 
-/// A root. If it is exact, its value is cell / 2^depth. Otherwise it is the only root between that and (cell + 1) /
-/// 2^depth, and both ends are not roots.
+/// A root of a polynomial. If it is exact, its value is cell / 2^depth. Otherwise it is the only root between cell /
+/// 2^depth and (cell + 1) / 2^depth, and neither of these is a root.
 struct RealRoot {
   Integer cell = 0;
   unsigned depth = 0;
@@ -90,21 +90,21 @@ struct RealRoot {
 
   [[nodiscard]] Dyadic low() const { return {cell, depth}; }
   [[nodiscard]] Dyadic high() const { return {cell + 1, depth}; }
-  /// Returns a number that is not above the root. It is below by at most 2^-52 and the width of the interval.
+  /// Returns a number that is not above the root. The root exceeds it by at most 2^-52 plus the width of the interval.
   [[nodiscard]] double lower_bound() const;
 };
 
-/// Real roots of a polynomial in [0, 1], and the signs of other polynomials there. All answers are exact.
+/// Real roots of a polynomial in [0, 1], and the signs of other polynomials at these roots. All answers are exact.
 /// Method: counts of roots by sequences of remainders (Sturm 1829), and of roots with a sign condition (Tarski 1951).
 class RealRoots {
  public:
   /// @param polynomial  not zero.
   explicit RealRoots(Polynomial polynomial);
 
-  /// Returns the roots, each once, by rising value.
+  /// Returns the roots, each once, in rising order.
   [[nodiscard]] const std::vector<RealRoot>& all() const { return roots_; }
 
-  /// Returns the same root in an interval no wider than 2^-depth.
+  /// Returns the same root with an interval that is at most 2^-depth wide.
   [[nodiscard]] RealRoot refined(RealRoot root, unsigned depth) const;
 
   /// Returns the sign, -1, 0 or 1, of another polynomial at a root.
@@ -116,7 +116,7 @@ class RealRoots {
   [[nodiscard]] RealRoot guessed(const RealRoot& root, int low_sign, unsigned depth) const;
   [[nodiscard]] static int sign_over(const RealRoot& root, const Polynomial& other);
 
-  Polynomial rest_;  ///< without the roots that were found exactly
+  Polynomial rest_;  ///< the polynomial without the roots that were found exactly
   std::vector<Polynomial> sequence_;
   std::vector<RealRoot> roots_;
 };

@@ -27,10 +27,10 @@ ContactTriangle for_contact(const ShrinkingSurface& mesh, const Triangle& t) {
   return {{mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])}, t};
 }
 
-/// Returns true if all of `b` but corners of an edge of `a` certainly lies beyond that edge, seen in a's plane. The
-/// function det(edge, n, x - corner) is 0 at both ends of the edge for every n. If it separates the rest of `a` from
-/// the rest of `b`, the two share only these ends. This decides nearly all coplanar neighbours, for which signs of
-/// determinants take long.
+/// Returns true if a plane through an edge of `a`, at a right angle to `a`, certainly separates the two triangles. Then
+/// they share at most ends of that edge. The plane's function det(edge, n, x - corner) is 0 at both ends of the edge
+/// for every vector n. So rounding of n does not matter. This test decides nearly all coplanar neighbours, for which
+/// exact determinants would take long.
 bool lies_beyond_an_edge(const ContactTriangle& a, const ContactTriangle& b) {
   constexpr double rounding = 1e-14;
   const Vec3d normal = cross(a.points[1] - a.points[0], a.points[2] - a.points[0]);
@@ -61,7 +61,7 @@ bool are_apart(const ContactTriangle& a, const ContactTriangle& b) {
   return lies_beyond_an_edge(a, b) || lies_beyond_an_edge(b, a) || contact(a, b) == Contact::none;
 }
 
-/// Returns true if a point lies in a closed tetrahedron that has a volume.
+/// Returns true if a point lies in a closed tetrahedron; false if the tetrahedron has no volume.
 bool holds(const std::array<Vec3d, 4>& corners, const Vec3d& p) {
   const int way = orient3d(corners[0], corners[1], corners[2], corners[3]);
   if (way == 0) return false;
@@ -82,7 +82,7 @@ std::vector<Box3> boxes_of(const ShrinkingSurface& mesh) {
   return out;
 }
 
-/// Returns the shell of each vertex; empty if only one shell exists.
+/// Returns for each vertex a number of its shell; empty if the mesh has only one shell.
 std::vector<std::uint32_t> shells_of(const ShrinkingSurface& mesh) {
   std::uint32_t vertices = 0;
   for (const Triangle& t : mesh.triangles()) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1});
@@ -100,22 +100,22 @@ std::vector<std::uint32_t> shells_of(const ShrinkingSurface& mesh) {
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Rings with more corners are not compared pair by pair.
+/// For rings with more corners than this, the edges of the two fans are not compared pair by pair.
 constexpr std::size_t most_pairwise = 40;
-// Fractions of the squared extent. Areas in the plane have errors of at most 2e-15 of it.
-constexpr double clear_area = 1e-12;  ///< of triangles that certainly turn left
-constexpr double clear_side = 1e-14;  ///< of points that certainly lie beside a line
-constexpr double steep_area = 1e-9;   ///< above it, quotients of areas are accurate to 4e-6
+// Fractions of the squared extent of the fans. Computed areas have errors of at most 2e-15 of the squared extent.
+constexpr double clear_area = 1e-12;  ///< a triangle with a larger area certainly turns left
+constexpr double clear_side = 1e-14;  ///< a point with a larger area certainly lies beside a line
+constexpr double steep_area = 1e-9;   ///< quotients by larger areas are accurate to 4e-6
 constexpr double quotient_error = 1e-5;
 constexpr double height_error = 1e-14;  ///< fraction of the extent
 
-/// Returns twice the area of the triangle with a corner in the origin, in the plane. Points have their heights over the
-/// plane in z.
+/// Returns twice the signed area of the triangle of the origin, a and b, projected onto the plane z = 0.
 double area(const Vec3d& a, const Vec3d& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// Both fans over the mean plane of the fan from the apex, which is the origin.
+/// The ring of both fans in coordinates with the apex as origin. The plane z = 0 is the mean plane of the fan from the
+/// apex.
 class Fans {
  public:
   Fans(std::span<const Vec3d> ring, const Vec3d& apex, bool closed) : closed_(closed), points_(ring.size()) {
@@ -139,7 +139,7 @@ class Fans {
     square_ = extent_ * extent_;
   }
 
-  /// Returns true if both fans are graphs of functions over the inside of the polygon in the plane.
+  /// Returns true if both fans are certainly graphs of functions over the projected polygon.
   [[nodiscard]] bool are_graphs() const {
     if (!(square_ > 0)) return false;
     const std::size_t last = points_.size() - 1;
@@ -153,17 +153,17 @@ class Fans {
     }
     for (std::size_t k = 1; k + 1 <= last; ++k) {
       if (!(area(points_[k] - points_[0], points_[k + 1] - points_[0]) > least)) return false;
-      // If the apex lies on a side, all corners lie within half a turn around it.
+      // If the apex lies on a side, all corners must lie within half a turn around it.
       if (!closed_ && !(area(points_[0], points_[k]) > least)) return false;
     }
     return !closed_ || turns == 1;
   }
 
-  /// Returns an upper bound on the distance of two points over one place.
+  /// Returns an upper bound on the distance of the fans in z: the height of the slab that contains both.
   [[nodiscard]] double slab() const { return (highest_ - lowest_) + height_error * extent_; }
 
-  /// Returns a bound on the largest distance of the fans over one place. Both are linear between the places evaluated
-  /// here.
+  /// Returns a smaller upper bound on the distance of the fans in z. It is evaluated at the apex and at crossings of
+  /// edges. Between these points both fans are linear.
   [[nodiscard]] double gap() const {
     double most = closed_ ? gap_at_apex() : 0;
     const std::size_t last = points_.size() - 1;
@@ -195,8 +195,8 @@ class Fans {
     return most;
   }
 
-  /// Returns the gap of two edges: from the apex to p, and from the first corner to q. Returns 0 if they do not cross,
-  /// infinity if they are nearly parallel.
+  /// Returns the difference in z where two edges cross: from the apex to p, and from the first corner to q. Returns 0
+  /// if they do not cross, infinity if they are nearly parallel.
   [[nodiscard]] double gap_at_crossing(const Vec3d& p, const Vec3d& q) const {
     const Vec3d& w = points_[0];
     const double clear = clear_side * square_;
@@ -222,24 +222,27 @@ class Fans {
   double highest_ = 0;
 };
 
-/// A vertex with more neighbours tries only the closest ones.
+/// For a vertex with more neighbours than this, only the `targets_of_many` closest ones are tried as targets.
 constexpr std::size_t many_neighbours = 24;
 constexpr std::size_t targets_of_many = 12;
-/// Steps that move the surface by less than this fraction of the tolerance count as equally good.
+/// A bound below this fraction of the tolerance is good enough. No better bound is then computed.
 constexpr double negligible = 0.002;
-/// Cost of the worst shape of new triangles; 1 is the whole tolerance.
+/// Cost of the worst possible shape of new triangles. A deviation of the whole tolerance costs 1.
 constexpr double cost_of_shape = 0.1;
-/// New triangles may be lower than the old ones by this factor, if they are not needles.
+/// The lowest new triangle must have at least this fraction of the height of the lowest old one. If a new triangle is a
+/// needle, the fraction is 1.
 constexpr double flattening = 0.25;
-/// Triangles lower than the tolerance are needles if they are also longer than high by this factor.
+/// A triangle is a needle if its height is below the tolerance, and its longest side exceeds this multiple of the
+/// height.
 constexpr double slenderness = 10;
-/// Cosine of the largest angle by which triangles may turn. Needles turn freely, but must not fold onto their
-/// neighbours.
+/// Cosine of the largest angle by which the normal of a triangle may turn. Needles may turn by any angle, but must not
+/// fold onto their neighbours. The second constant is their limit, measured to the neighbour's normal.
 constexpr double least_cosine = 0.2;
 constexpr double least_cosine_of_needle = -0.5;
-/// Edges are flipped only if this makes triangles higher by this factor, so that flipping ends.
+/// An edge is flipped only if this multiplies the height of the lower triangle by at least this factor. So flipping
+/// ends.
 constexpr double least_gain = 1.5;
-/// Flips come after collapses that are equally good.
+/// Extra cost of flips, so that collapses with the same deviation come first.
 constexpr double cost_of_flip = 0.1;
 constexpr double rounding = 1e-14;
 
@@ -250,8 +253,9 @@ double cosine(const Vec3d& a, const Vec3d& b) {
 
 constexpr std::size_t looks_between_reports = 256;
 constexpr std::size_t vertices_per_range = 256;
-/// Vertices with more triangles are visited again only if one in `part_to_change` of these changed. One visit of the
-/// middle of a disc takes time linear in its triangles, and each of these changes in turn.
+/// A vertex with more triangles than this is visited again only after one in `part_to_change` of them has changed. A
+/// visit takes time linear in the number of triangles. Without this limit, the centre of a large disc would be visited
+/// after each change of its triangles.
 constexpr std::size_t many_triangles = 64;
 constexpr std::size_t part_to_change = 8;
 
@@ -315,7 +319,7 @@ Box3 StepCheck::box_of(std::uint32_t t) const {
 
 void StepCheck::update(std::span<const std::uint32_t> triangles) {
   for (const std::uint32_t t : triangles) boxes_.replace(t, box_of(t));
-  // Triangles grow while others are removed. A new order of the remaining ones keeps queries short.
+  // Triangles grow while others are removed. A new tree of the remaining triangles keeps queries fast.
   if (2 * mesh_.triangles_left() > triangles_at_build_) return;
   boxes_ = TriangleBoxes(boxes_of(mesh_), context_);
   triangles_at_build_ = mesh_.triangles_left();
@@ -330,8 +334,8 @@ bool StepCheck::is_clear(const Triangle& triangle) const {
   });
 }
 
-/// Returns true if a triangle turns about an edge past the triangle on its other side. The solid would then cover what
-/// was outside, or the reverse.
+/// Returns true if the inner triangle at a border edge turns about that edge past the outer triangle. This would
+/// exchange inside and outside there.
 bool StepCheck::turns_over_a_neighbour(const BorderEdge& edge) const {
   const Vec3d& a = mesh_.point(edge.a);
   const Vec3d& b = mesh_.point(edge.b);
@@ -384,7 +388,7 @@ bool StepCheck::passes(const SurfaceStep& step) {
 }
 
 double fan_gap(std::span<const Vec3d> ring, const Vec3d& apex, bool closed, double enough) {
-  // A polygon of two corners, or of three with the apex on a side, covers one triangle or none, for every apex.
+  // With two corners, both fans cover the same segment.
   if (ring.size() < 3) return 0;
   const Fans fans(ring, apex, closed);
   if (!fans.are_graphs()) return infinity;
@@ -427,9 +431,9 @@ void CollapseSearch::choose_targets() {
   targets_.resize(targets_of_many);
 }
 
-/// The vertex first moves onto the chord from the target to another neighbour. Each side of the chord is then a fan of
-/// its own.
-/// @return  infinity if this gives no bound below `limit`.
+/// Bounds a collapse in two steps. First the vertex moves onto the chord from the target to another neighbour. Then it
+/// moves along the chord to the target, which changes one fan on each side of the chord. The best chord is taken.
+/// @return  the bound; infinity if it is not below `limit`.
 double CollapseSearch::bound_along_crease(double limit) const {
   const std::size_t count = rotated_.size();
   const double enough = negligible * tolerance_;
@@ -450,7 +454,8 @@ double CollapseSearch::bound_along_crease(double limit) const {
   return best;
 }
 
-/// Returns a bound on how far the surface moves; above the budget if no better bound is known.
+/// Returns an upper bound on how far the surface moves if the vertex is contracted onto ring corner `onto`. It may
+/// exceed the budget.
 double CollapseSearch::bound(std::size_t onto, double budget) {
   const std::size_t count = around_.size();
   rotated_.resize(count);
@@ -462,8 +467,8 @@ double CollapseSearch::bound(std::size_t onto, double budget) {
   return std::min(best, bound_along_crease(std::min(best, budget)));
 }
 
-/// Returns true if a triangle turns too far.
-/// @param side  of the ring: the triangle there turns to `normal`.
+/// Returns true if a triangle turns too far in a collapse.
+/// @param side  index of the triangle in the star. `normal` is its normal after the collapse.
 bool CollapseSearch::folds(std::uint32_t v, std::size_t side, const Vec3d& normal) const {
   if (!sides_[side].is_needle) return cosine(sides_[side].normal, normal) < least_cosine;
   const EdgePair edge = mesh_.opposite_edge(star_.triangles[side], v);
@@ -530,7 +535,8 @@ EdgeFlip CollapseSearch::find_flip(std::uint32_t t) const {
   const Vec3d a = mesh_.point(e.a) - origin;
   const Vec3d b = mesh_.point(e.b) - origin;
   const Vec3d d = mesh_.point(e.apex_right) - origin;
-  // Both old triangles are within this distance of the new ones: the apex moves onto the edge, which it cuts in two.
+  // Every point of the old triangles is within `height` of the new ones, and vice versa. The flip is bounded by a move
+  // of the apex onto the edge, which the apex then divides.
   const double height = length(closest_point_on_segment({}, a, b)) + rounding * (length(a) + length(b));
   out.deviation = (std::max(deviations_[e.left], deviations_[e.right]) + height) * (1 + rounding);
   out.cost = out.deviation / tolerance_ + cost_of_flip;
@@ -647,7 +653,8 @@ bool MeshCleaner::passes(std::uint32_t v, const Star& star, const VertexCollapse
     const std::size_t side = (way.onto + k) % count;
     const std::uint32_t a = star.ring[side];
     const std::uint32_t b = star.ring[(side + 1) % count];
-    // Next to the target, the new apex is a corner of the adjacent new triangle.
+    // The two triangles at the target vanish. For their outer edges, the new apex is a corner of the new triangle that
+    // takes their place.
     const std::uint32_t new_apex = k == 0           ? star.ring[(side + 2) % count]
                                    : k + 1 == count ? star.ring[(side + count - 1) % count]
                                                     : way.target;
@@ -699,7 +706,7 @@ void MeshCleaner::flip(const EdgeFlip& way) {
   refresh(changed, corners);
 }
 
-/// Updates what a step changed, and its surroundings.
+/// Updates the trees and heights after a step, and queues the steps that it may have changed.
 void MeshCleaner::refresh(std::span<const std::uint32_t> changed, std::span<const std::uint32_t> corners) {
   check_.update(changed);
   for (const std::uint32_t t : changed) {
@@ -716,15 +723,15 @@ bool MeshCleaner::has_many_triangles(std::uint32_t v) const {
   return mesh_.triangles_at(v).size() > many_triangles;
 }
 
-/// Offers a vertex after a change of some of its triangles, and its triangles.
+/// Queues a vertex and its triangles after some of the triangles changed. Vertices with many triangles are postponed.
 void MeshCleaner::offer_changed(std::uint32_t v) {
   if (has_many_triangles(v) && ++changes_[v] * part_to_change < mesh_.triangles_at(v).size()) return;
   offer_vertex(v);
   for (const std::uint32_t t : mesh_.triangles_at(v)) offer_triangle(t);
 }
 
-/// Offers the vertices that were postponed.
-/// @return  true if anything waits.
+/// Queues all postponed vertices.
+/// @return  true if the queue is not empty.
 bool MeshCleaner::offer_postponed() {
   for (std::uint32_t v = 0; v < changes_.size(); ++v) {
     if (changes_[v] > 0 && !mesh_.triangles_at(v).empty()) offer_vertex(v);
@@ -732,7 +739,7 @@ bool MeshCleaner::offer_postponed() {
   return !line_.empty();
 }
 
-/// Offers a vertex at its smallest possible cost: how far its triangles have moved.
+/// Queues a vertex at the smallest possible cost, which is the largest deviation of its triangles so far.
 void MeshCleaner::offer_vertex(std::uint32_t v) {
   changes_[v] = 0;
   double most = 0;

@@ -16,18 +16,18 @@
 
 namespace blum::detail {
 
-/// Binary tree over boxes, in an order that keeps neighbours together. Boxes may be replaced; the boxes above are
-/// updated. Cost of a change, and of a query in a small place: the logarithm of the number of boxes.
+/// Binary tree over boxes, in an order that keeps neighbours together. replace() changes a box and updates the boxes
+/// above it. Cost of a change or of a query with a small box: the logarithm of the number of boxes.
 class TriangleBoxes {
  public:
-  /// @param boxes  empty for elements that do not exist and never will.
+  /// @param boxes  an empty box stands for an element that does not exist, and cannot be replaced later.
   /// @throws Cancelled.
   TriangleBoxes(std::span<const Box3> boxes, const Context& context);
 
   void replace(std::uint32_t index, const Box3& box);
 
-  /// Calls visit(index) for the boxes that touch a box, until it returns false.
-  /// @return  true if it never returned false.
+  /// Calls visit(index) for each box of the tree that touches the given box, until visit() returns false.
+  /// @return  true if visit() never returned false.
   template <class Visit>
   bool for_each_touching(const Box3& box, const Visit& visit) const {
     std::size_t stack[most_depth];
@@ -54,21 +54,21 @@ class TriangleBoxes {
            a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
   }
 
-  std::size_t leaves_ = 1;   ///< a power of two; node k has the children 2 k and 2 k + 1, leaves come last
+  std::size_t leaves_ = 1;   ///< a power of two; node k has the children 2 k and 2 k + 1; leaves come last
   std::vector<Box3> nodes_;  ///< entry 0 is unused
   std::vector<std::uint32_t> at_leaf_;
   std::vector<std::uint32_t> leaf_of_;
 };
 
-/// An edge at the border of a change. The triangle inside gets another apex; the one on the other side stays.
+/// An edge at the border of the changed triangles. The inner triangle at the edge gets another apex; the outer one
+/// stays the same.
 struct BorderEdge {
   std::uint32_t a = 0, b = 0;
   std::uint32_t old_apex = 0, new_apex = 0;
   std::uint32_t outer_apex = 0;
 };
 
-/// A change of a surface: removed triangles, new triangles, and tetrahedra between them. The volume that the surface
-/// sweeps lies in these.
+/// A change of a surface: removed triangles, new triangles, and tetrahedra that contain the volume between them.
 struct SurfaceStep {
   std::vector<std::uint32_t> old_triangles;
   std::vector<Triangle> new_triangles;
@@ -82,12 +82,12 @@ class StepCheck {
   /// @throws Cancelled.
   StepCheck(const ShrinkingSurface& mesh, const Context& context);
 
-  /// Returns true if a step preserves inside and outside. Exact. New triangles must have areas. They must not cross or
-  /// touch each other or remaining triangles, except at common corners and edges. Neither another shell nor the
-  /// neighbours may lie between old and new triangles.
+  /// Returns true if the solid keeps its topology in a step. The test is exact. New triangles must have areas. They
+  /// must not cross or touch each other or the remaining triangles, except at common corners and edges. No other shell
+  /// and no neighbouring triangle may lie between old and new triangles.
   [[nodiscard]] bool passes(const SurfaceStep& step);
 
-  /// Updates the tree after triangles of the mesh changed or were removed.
+  /// Updates the tree after the given triangles of the mesh changed or were removed.
   void update(std::span<const std::uint32_t> triangles);
 
  private:
@@ -100,30 +100,31 @@ class StepCheck {
   Context context_;
   TriangleBoxes boxes_;
   std::size_t triangles_at_build_;
-  std::vector<std::uint32_t> shell_of_;  ///< of each vertex; empty if only one shell exists
-  std::vector<std::uint32_t> mark_;      ///< of triangles that a step removes
+  std::vector<std::uint32_t> shell_of_;  ///< for each vertex; empty if only one shell exists
+  std::vector<std::uint32_t> mark_;      ///< for each triangle: `current_` if the current step removes it
   std::uint32_t current_ = 0;
 };
 
-/// Returns a bound on the Hausdorff distance of two fans of triangles over one polygon, including rounding. One fan
-/// leads from `apex` to the sides of the polygon, the other from its first corner. Returns infinity if no bound is
-/// known: if the fans are not both clearly graphs of functions over one plane. Method: docs/theory/solid.md. Cost: the
-/// square of the number of corners, for up to 40; else linear.
+/// Returns an upper bound on the Hausdorff distance of two fans of triangles over the same polygon, including rounding.
+/// One fan joins `apex` to the sides of the polygon, the other joins the first corner to them. Returns infinity if it
+/// is not certain that both fans are graphs of functions over the same plane. Method: docs/theory/solid.md. Cost:
+/// quadratic in the number of corners if it is at most 40; otherwise linear.
 ///
-/// @param ring    corners of the polygon in order, two or more, relative to a nearby point.
-/// @param closed  true if the apex lies inside the polygon; else it lies on the side from the last corner to the first.
-/// @param enough  a quick bound that is at most this is good enough.
+/// @param ring    two or more corners of the polygon in order, relative to a nearby point.
+/// @param closed  true if the apex lies inside the polygon. Otherwise it lies on the side from the last corner to the
+///                first.
+/// @param enough  the quick bound is returned if it is at most this.
 [[nodiscard]] double fan_gap(std::span<const Vec3d> ring, const Vec3d& apex, bool closed, double enough);
 
-/// A way to remove a vertex.
+/// A way to remove a vertex: moving it onto a neighbour.
 struct VertexCollapse {
-  double cost = 0;       ///< the way with the lower cost is taken
-  double deviation = 0;  ///< bound on the distance of the new triangles from the input mesh, both ways
+  double cost = 0;       ///< ways of lower cost are tried first
+  double deviation = 0;  ///< bound on the distances between the new triangles and the input mesh, in both directions
   std::uint32_t target = 0;
   std::size_t onto = 0;  ///< the target's index in the ring
 };
 
-/// A way to remove a flat triangle: flipping its longest side.
+/// A way to remove a flat triangle: a flip of its longest side.
 struct EdgeFlip {
   EdgePair edge;
   double cost = 0;
@@ -133,20 +134,21 @@ struct EdgeFlip {
 
 class CollapseSearch {
  public:
-  /// @param deviations  of each triangle: bound on its distance from the input mesh, both ways.
+  /// @param deviations  for each triangle: bound on the distances between it and the input mesh, in both directions.
   CollapseSearch(const ShrinkingSurface& mesh, std::span<const double> deviations, double tolerance)
       : mesh_(mesh), deviations_(deviations), tolerance_(tolerance) {}
 
-  /// Returns the collapses that keep the bounds within the tolerance and make no worse triangles, by rising cost, then
-  /// target. Checks neither the link condition nor contacts. The list and the star are valid until the next call.
+  /// Returns the collapses of a vertex that keep the deviation within the tolerance and the shapes acceptable. They are
+  /// in ascending order of cost, then target. Checks neither the link condition nor contacts of triangles. The list and
+  /// star() are valid until the next call.
   [[nodiscard]] std::span<const VertexCollapse> find(std::uint32_t v);
   [[nodiscard]] const Star& star() const { return star_; }
 
-  /// Returns the flip of a triangle's longest side, under the same conditions.
+  /// Returns the flip of a triangle's longest side. It is possible under the same conditions.
   [[nodiscard]] EdgeFlip find_flip(std::uint32_t t) const;
 
  private:
-  /// Data of a triangle at the vertex, before the vertex is removed.
+  /// Data of a triangle at the vertex before the collapse.
   struct Side {
     Vec3d normal;
     double height = 0;
@@ -154,7 +156,7 @@ class CollapseSearch {
   };
   struct Shape {
     bool is_allowed = false;
-    double quality = 0;  ///< 1 if all triangles are equilateral
+    double quality = 0;  ///< quality of the worst new triangle; 1 for an equilateral one
   };
 
   [[nodiscard]] bool is_needle(const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
@@ -174,31 +176,31 @@ class CollapseSearch {
   std::vector<Side> sides_;
   std::vector<std::size_t> targets_;
   std::vector<VertexCollapse> found_;
-  double deviation_ = 0;     ///< largest of the star's triangles
-  double least_height_ = 0;  ///< smallest of the star's triangles
+  double deviation_ = 0;     ///< largest deviation of the star's triangles
+  double least_height_ = 0;  ///< smallest height of the star's triangles
 };
 
 class MeshCleaner {
  public:
-  /// @param mesh  the boundary of a solid, without crossings; its vertices must stay in place.
+  /// @param mesh  the boundary of a solid, without crossings. Its vertices must stay valid and unchanged.
   /// @throws Cancelled.
   MeshCleaner(const MeshView& mesh, double tolerance, const Context& context);
 
-  /// Cleans the mesh.
+  /// Performs all possible collapses and flips.
   /// @throws Cancelled.
   void run();
 
   [[nodiscard]] const ShrinkingSurface& mesh() const { return mesh_; }
   [[nodiscard]] std::size_t collapses() const { return collapses_; }
   [[nodiscard]] std::size_t flips() const { return flips_; }
-  /// Returns a bound on the Hausdorff distance between the current and the given mesh.
+  /// Returns an upper bound on the Hausdorff distance between the current mesh and the given one.
   [[nodiscard]] double deviation() const;
 
  private:
   enum class Kind : std::uint8_t { collapse, flip };
   /// A queued step: a vertex that may be removed, or a triangle whose longest side may be flipped.
   struct Waiting {
-    double cost = 0;  ///< lower bound, if not evaluated since its surroundings changed
+    double cost = 0;  ///< lower bound if the step was not evaluated since its surroundings changed
     Kind kind = Kind::collapse;
     std::uint32_t index = 0;
     std::uint32_t version = 0;
@@ -227,12 +229,12 @@ class MeshCleaner {
   double tolerance_;
   Context context_;
   StepCheck check_;
-  std::vector<double> deviations_;  ///< of each triangle; see CollapseSearch
-  std::vector<double> heights_;     ///< of each triangle
+  std::vector<double> deviations_;  ///< for each triangle; see CollapseSearch
+  std::vector<double> heights_;     ///< for each triangle
   CollapseSearch search_;
   std::vector<std::uint32_t> vertex_versions_;
   std::vector<std::uint32_t> triangle_versions_;
-  std::vector<std::uint32_t> changes_;  ///< of vertices with many triangles, since they were offered
+  std::vector<std::uint32_t> changes_;  ///< of vertices with many triangles, since they were queued
   Line line_;
   SurfaceStep step_;
   std::size_t looks_ = 0;

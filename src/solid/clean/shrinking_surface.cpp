@@ -6,7 +6,7 @@
 namespace blum::detail {
 namespace {
 
-/// Returns the index of a vertex in a triangle.
+/// Returns which corner (0, 1, 2) of a triangle is the given vertex.
 std::size_t place_of(const Triangle& triangle, std::uint32_t v) {
   return triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
 }
@@ -62,7 +62,7 @@ EdgePair ShrinkingSurface::opposite_edge(std::uint32_t t, std::uint32_t corner) 
   out.apex_left = corner;
   out.a = triangles_[t][(k + 1) % 3];
   out.b = triangles_[t][(k + 2) % 3];
-  // Finds the triangle that has b and a in this order, at the end with fewer triangles.
+  // Finds the triangle that contains b and a in this order, among the triangles at the end with fewer of them.
   const bool at_a = at_[out.a].size() <= at_[out.b].size();
   for (const std::uint32_t other : at_[at_a ? out.a : out.b]) {
     const Triangle& triangle = triangles_[other];
@@ -78,12 +78,12 @@ EdgePair ShrinkingSurface::opposite_edge(std::uint32_t t, std::uint32_t corner) 
 bool ShrinkingSurface::may_collapse(const Star& star, std::size_t onto) const {
   const std::size_t count = star.ring.size();
   const std::uint32_t w = star.ring[onto];
-  // Among the ring's corners, only those next to w may already be its neighbours.
+  // Only the two corners next to w in the ring may already be neighbours of w.
   for (std::size_t step = 2; step + 1 < count; ++step) {
     if (has_edge(star.ring[(onto + step) % count], w)) return false;
   }
   if (count > 3) return true;
-  // If w already has the triangle of the ring, the surface is a tetrahedron.
+  // If w has only 3 triangles, the surface is a tetrahedron.
   return at_[w].size() > 3;
 }
 

@@ -12,24 +12,25 @@
 
 namespace blum::detail {
 
-/// The triangles around a vertex, in order. Triangle k has the vertex, ring[k] and ring[k + 1]; the last one has
-/// ring[0].
+/// The triangles around a vertex, in order. Triangle k has the corners vertex, ring[k] and ring[k + 1]. For the last
+/// triangle, ring[0] follows the last ring vertex.
 struct Star {
   std::vector<std::uint32_t> ring;
   std::vector<std::uint32_t> triangles;
 };
 
-/// An edge and its two triangles: `left` has a, b, apex_left and `right` has b, a, apex_right, in this order.
+/// An edge and its two triangles. The corners in order are a, b, apex_left for `left` and b, a, apex_right for `right`.
 struct EdgePair {
   std::uint32_t a = 0, b = 0;
   std::uint32_t left = 0, right = 0;
   std::uint32_t apex_left = 0, apex_right = 0;
 };
 
-/// A closed, oriented, manifold surface. Its triangles keep their numbers while vertices are removed and edges flipped.
+/// A closed, oriented, manifold surface. Its triangles keep their indices when vertices are removed and edges are
+/// flipped.
 class ShrinkingSurface {
  public:
-  /// @param mesh  closed, oriented and manifold; its vertices must stay in place.
+  /// @param mesh  closed, oriented and manifold. Its vertices must stay valid and unchanged.
   explicit ShrinkingSurface(const MeshView& mesh);
 
   [[nodiscard]] const Vec3d& point(std::uint32_t v) const { return points_[v]; }
@@ -43,20 +44,20 @@ class ShrinkingSurface {
   }
 
   /// Finds the star of a vertex.
-  /// @param out  is overwritten; its memory is reused.
+  /// @param out  is overwritten, with its memory reused.
   void find_star(std::uint32_t v, Star& out) const;
   [[nodiscard]] bool has_edge(std::uint32_t a, std::uint32_t b) const;
-  /// Returns the side of a triangle that is opposite to one of its corners.
+  /// Returns the side of triangle `t` opposite to one of its corners, with `t` as `left`.
   [[nodiscard]] EdgePair opposite_edge(std::uint32_t t, std::uint32_t corner) const;
 
-  /// Returns true if moving the middle of a star onto a corner of its ring gives a homeomorphic surface: the link
-  /// condition.
+  /// Returns true if the link condition holds: moving the centre of a star onto corner `onto` of its ring gives a
+  /// homeomorphic surface.
   [[nodiscard]] bool may_collapse(const Star& star, std::size_t onto) const;
-  /// Performs this collapse.
-  /// @param v  the middle of the star.
+  /// Performs the collapse that may_collapse() allows.
+  /// @param v  the centre of the star.
   void collapse(std::uint32_t v, const Star& star, std::size_t onto);
-  /// Flips an edge, which then joins the two apexes. No edge may join these before. `left` becomes apex_left, a,
-  /// apex_right and `right` becomes apex_right, b, apex_left.
+  /// Flips an edge, so that it joins the two apexes. They must not be joined by an edge before. `left` becomes
+  /// apex_left, a, apex_right; `right` becomes apex_right, b, apex_left.
   void flip(const EdgePair& edge);
 
  private:
@@ -69,7 +70,7 @@ class ShrinkingSurface {
 };
 
 [[nodiscard]] double longest_side(const Vec3d& a, const Vec3d& b, const Vec3d& c);
-/// Returns the height of a triangle above its longest side; 0 if that side is a point.
+/// Returns the height of a triangle above its longest side; 0 if all corners coincide.
 [[nodiscard]] double least_height(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 }  // namespace blum::detail

@@ -14,8 +14,9 @@
 namespace blum::detail {
 namespace {
 
-/// Returns how many boxes lie below a plane that cuts none. The boxes are sorted by their lower ends along an axis.
-/// Among several planes, the one nearest to the middle of the list is taken.
+/// Returns the number of boxes below a plane across an axis that cuts no box; nullopt if no such plane exists. The
+/// boxes are sorted by their lower ends along the axis. Among several planes, the one nearest to the middle of the list
+/// is chosen.
 std::optional<std::size_t> cut_of(std::span<const BoxCell> boxes, std::span<const std::uint32_t> sorted,
                                   std::size_t axis) {
   std::optional<std::size_t> best;
@@ -36,7 +37,7 @@ bool is_before(const Vec3d& a, const Vec3d& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// A line along an axis, and a coordinate on it.
+/// A point on a line along an axis: the axis, the line's two coordinates, and the coordinate along the axis.
 using OnLine = std::tuple<std::size_t, double, double, double>;
 
 OnLine on_line(std::size_t axis, const Vec3d& p) {
@@ -103,12 +104,12 @@ void BoxCells::find_corners(const Context& context) {
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
-/// Returns the points inside a plane where edges of boxes below and above it cross.
+/// Returns the points at which edges of boxes cross in planes across an axis.
 std::vector<Vec3d> BoxCells::crossings(std::size_t across) const {
   std::vector<Vec3d> found;
   const std::size_t u = next_axis(across);
   const std::size_t v = next_axis(u);
-  // Edges along u: plane, v, begin, end. Edges along v: plane, u, begin, end.
+  // Edges along u contain: plane, v, begin, end. Edges along v contain: plane, u, begin, end.
   using Edge = std::array<double, 4>;
   std::vector<Edge> along_u;
   std::vector<Edge> along_v;
@@ -148,7 +149,7 @@ void BoxCells::find_segments(const Context& context) {
     for (std::size_t axis = 0; axis < 3; ++axis) lines.push_back(on_line(axis, p));
   }
   std::sort(lines.begin(), lines.end());
-  std::vector<std::pair<OnLine, double>> pieces;  // begin of each, and coordinate of its end
+  std::vector<std::pair<OnLine, double>> pieces;  // begin of each piece, and the coordinate of its end
   for (const BoxCell& box : boxes_) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < 8; ++k) {
@@ -200,7 +201,7 @@ BoxRef BoxCells::locate(const Vec3d& p, const std::array<bool, 3>& up) const {
   return {found->second.find(p, up), true};
 }
 
-/// Rectangles are numbered by their first segment.
+/// Finds the rectangles, and numbers them in the order of their first segments.
 void BoxCells::find_rectangles() {
   struct Piece {
     BoxPair key;
@@ -226,7 +227,7 @@ void BoxCells::find_rectangles() {
     }
   }
   std::sort(pieces.begin(), pieces.end());
-  std::vector<std::size_t> order;  // the first piece of each pair; sorted by place below
+  std::vector<std::size_t> order;  // index of the first piece of each pair of boxes; sorted below by place()
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     if (k == 0 || pieces[k].key != pieces[k - 1].key) order.push_back(k);
   }
@@ -240,7 +241,7 @@ void BoxCells::find_rectangles() {
     BoxRectangle& rectangle = rectangles_.emplace_back();
     rectangle.axis = (segment.axis + 1 + one.side) % 3;
     rectangle.boxes = {segment.around[one.quarter], segment.around[one.quarter | 1U << one.side]};
-    // order_sides() separates the sides later. Here the first one lists all segments.
+    // The first side lists the segments of all sides until order_sides() separates them.
     for (std::size_t k = begin; k < pieces.size() && pieces[k].key == one.key; ++k) {
       rectangle.sides[0].push_back(pieces[k].segment);
     }

@@ -18,30 +18,30 @@ namespace blum::detail {
 
 struct BoxCell;
 
-/// Tree of planes over boxes that fill a larger box and come from cutting it repeatedly.
+/// Tree of planes that cut a large box into boxes, one cut after the other.
 class SplitTree {
  public:
   SplitTree() = default;
-  /// @param boxes  all boxes; the span must stay valid.
-  /// @param own  the boxes of this tree, at least one.
+  /// @param boxes  boxes of this tree and of others; the span must stay valid.
+  /// @param own  indices of the boxes of this tree, at least one.
   SplitTree(std::span<const BoxCell> boxes, std::vector<std::uint32_t> own);
 
-  /// Returns the box that holds a point of the large box, if the point is moved infinitesimally along each axis: down
-  /// (false) or up. Cost: the depth of the tree.
+  /// Returns the box that contains a point of the large box. On a plane, the point counts as below it (false) or above
+  /// it (true), as `up` states for each axis. Cost: the depth of the tree.
   [[nodiscard]] std::uint32_t find(const Vec3d& p, const std::array<bool, 3>& up) const;
 
  private:
   struct Node {
-    std::size_t axis = 3;  ///< 3: a leaf
+    std::size_t axis = 3;  ///< 3 for a leaf
     double at = 0;
-    std::uint32_t below = 0;  ///< node; for leaves the box
+    std::uint32_t below = 0;  ///< index of a node; of the box for a leaf
     std::uint32_t above = 0;
   };
 
   std::vector<Node> nodes_;
 };
 
-/// A part of a cube of a grid, or the whole cube.
+/// A box: a part of a cube of a grid, or the whole cube.
 struct BoxCell {
   Vec3d low;
   Vec3d high;
@@ -49,44 +49,45 @@ struct BoxCell {
 };
 
 /// Returns a corner of a box.
-/// @param k  bits x, y, z: high.
+/// @param k  bit 0, 1, 2: set for the high end along x, y, z.
 inline Vec3d corner_of(const BoxCell& box, std::size_t k) {
   return {(k & 1U) != 0 ? box.high.x : box.low.x, (k & 2U) != 0 ? box.high.y : box.low.y,
           (k & 4U) != 0 ? box.high.z : box.low.z};
 }
 
-/// A box by its index, or a cube of the grid around all boxes.
+/// Reference to a box, or to a cube of the grid that is not split into boxes.
 struct BoxRef {
   static constexpr std::uint32_t nothing = 0xffffffffU;
-  std::uint32_t id = nothing;  ///< of a box, or a cube (Cell)
+  std::uint32_t id = nothing;  ///< index of a box, or the cube's Cell
   bool is_box = false;
 
   [[nodiscard]] bool exists() const { return is_box || id != nothing; }
   [[nodiscard]] friend auto operator<=>(const BoxRef&, const BoxRef&) = default;
 };
 
-/// An edge of the decomposition: a part of edges of boxes around which the boxes are the same.
+/// An edge of the decomposition: a part of edges of boxes along which the boxes around it are the same.
 struct BoxSegment {
   std::size_t axis = 0;
-  std::array<std::uint32_t, 2> ends{0, 0};  ///< corners, the lower one first
-  /// Boxes below and above along the next axis (bit 0) and the one after (bit 1). Two may be equal.
+  std::array<std::uint32_t, 2> ends{0, 0};  ///< indices of corners, the lower end first
+  /// The boxes around the segment. Index bit 0 is set above it along the next axis, bit 1 along the axis after that.
+  /// Two entries may be equal.
   std::array<BoxRef, 4> around;
 };
 
-/// The rectangle shared by two boxes. At least one of them is not a cube of the grid around.
+/// The rectangle shared by two boxes, or by a box and a cube of the grid.
 struct BoxRectangle {
-  std::size_t axis = 0;         ///< axis across which it lies
-  std::array<BoxRef, 2> boxes;  ///< below and above
-  /// Segments of the border. The first two sides run along the lower of the other axes, at its low and its high end.
-  /// The last two run along the upper one. Each side is rising.
+  std::size_t axis = 0;         ///< axis at a right angle to the rectangle
+  std::array<BoxRef, 2> boxes;  ///< the box below and the box above
+  /// Segments of the four sides, each in ascending order. Sides 0 and 1 run along the first of the other two axes, at
+  /// the low and high end of the second. Sides 2 and 3 run along the second, at the low and high end of the first.
   std::array<std::vector<std::uint32_t>, 4> sides;
 };
 
-/// The cells of the common refinement of boxes that fill some cubes of a grid, and of the cubes around them. Edges and
-/// rectangles may meet without sharing all of their ends: a corner of one may lie inside a side of another.
+/// The cells of a decomposition into boxes, which fill some cubes of a grid, and the cubes around these. A corner of
+/// one edge or rectangle may lie inside another edge or side.
 class BoxCells {
  public:
-  /// @param boxes  fill the cubes of which they are parts. The span must stay valid.
+  /// @param boxes  together fill each cube of which one is a part. The span must stay valid.
   /// @throws Cancelled.
   BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice,
            const Context& context = {});
@@ -94,9 +95,10 @@ class BoxCells {
   [[nodiscard]] std::span<const Vec3d> corners() const { return corners_; }
   [[nodiscard]] std::span<const BoxSegment> segments() const { return segments_; }
   [[nodiscard]] std::span<const BoxRectangle> rectangles() const { return rectangles_; }
-  /// Returns the rectangle shared by two boxes, which must exist.
+  /// Returns the index of the rectangle shared by two boxes. It must exist.
   [[nodiscard]] std::uint32_t rectangle(const BoxRef& one, const BoxRef& other) const;
-  /// Returns the two rectangles of a box that share a segment around which the box lies.
+  /// Returns the indices of the two rectangles of a box that meet at a segment. The box must be one of those around the
+  /// segment.
   [[nodiscard]] std::array<std::uint32_t, 2> rectangles_at(const BoxSegment& segment, const BoxRef& box) const;
 
  private:
@@ -106,8 +108,8 @@ class BoxCells {
   void find_rectangles();
   void order_sides();
   [[nodiscard]] std::uint32_t corner(const Vec3d& p) const;
-  /// Returns the box or cube that holds a point, if the point is moved infinitesimally along each axis: down (false) or
-  /// up.
+  /// Returns the box or cube that contains a point. On a plane, the point counts as below it (false) or above it
+  /// (true), as `up` states for each axis.
   [[nodiscard]] BoxRef locate(const Vec3d& p, const std::array<bool, 3>& up) const;
 
   std::span<const BoxCell> boxes_;
@@ -118,7 +120,7 @@ class BoxCells {
   std::vector<BoxSegment> segments_;
   std::vector<BoxRectangle> rectangles_;
   using BoxPair = std::array<BoxRef, 2>;
-  std::vector<std::pair<BoxPair, std::uint32_t>> rectangle_of_;  ///< lesser box first; sorted
+  std::vector<std::pair<BoxPair, std::uint32_t>> rectangle_of_;  ///< smaller box first; sorted
 };
 
 }  // namespace blum::detail

@@ -11,16 +11,17 @@
 namespace blum::detail {
 namespace {
 
-/// Boxes are not cut below this fraction of the spacing.
+/// Cuts keep at least this fraction of the spacing from both ends of a box.
 constexpr double least_part = 1e-12;
 
-/// Returns the index of a box's side along an axis: 4 axis + 2 bits for the other axes. The corner is low along the
-/// axis.
+/// Returns the index of a box's edge along an axis: 4 * axis + two bits for its position along the other axes. `corner`
+/// is the lower end of the edge.
 constexpr std::size_t side_index(std::size_t axis, std::size_t corner) {
   return 4 * axis + (corner >> next_axis(axis) & 1U) + 2 * (corner >> next_axis(next_axis(axis)) & 1U);
 }
 
-/// Returns the sides around a face (2 axis, + 1 above): along one axis, low and high, then along the other.
+/// Returns the indices of the four edges around a face: two along the next axis, low and high, then two along the axis
+/// after it. `face` is 2 * axis, + 1 for the upper face.
 std::array<std::size_t, 4> sides_of(std::size_t face) {
   const std::size_t u = next_axis(face / 2);
   const std::size_t v = next_axis(u);
@@ -33,7 +34,7 @@ bool is_inside(const SplitBox& box, std::size_t corner) {
   return (box.inside >> corner & 1U) != 0;
 }
 
-/// Returns true if two boxes share interior points.
+/// Returns true if two boxes have common interior points.
 bool overlap(const BoxCell& box, const Box3& other) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(box.low[a] < other.upper[a] && other.lower[a] < box.high[a])) return false;
@@ -94,7 +95,7 @@ std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {
 }
 
 std::optional<BoxSplitter::Cut> BoxSplitter::further_cut(const SplitBox& box) const {
-  constexpr double part = 0.3;  // a quarter, with a margin for rounding
+  constexpr double part = 0.3;  // a quarter of the size of `finer`, with a margin for rounding
   if (box.triangles.empty()) return std::nullopt;
   const Vec3d size = box.box.high - box.box.low;
   const std::size_t axis = longest(size);
@@ -229,7 +230,7 @@ BoxSplitter::Hole BoxSplitter::hole_between(const SplitBox& box, std::size_t fac
                                             std::span<const std::uint32_t> edges) const {
   const std::size_t axis = face / 2;
   const double plane = face % 2 == 0 ? box.box.low[axis] : box.box.high[axis];
-  Vec3d slant{};  // of the edges, per unit along the axis
+  Vec3d slant{};  // sum over the edges: their shift across, per unit along the axis
   Box3 around;
   Vec3d sum{};
   for (const std::uint32_t edge : edges) {
@@ -255,7 +256,7 @@ void BoxSplitter::connect_edges(const SplitBox& box) {
     const Side& side = sides_[index];
     const std::size_t u = next_axis(side.axis);
     const std::size_t v = next_axis(u);
-    // The two faces at a side, and the first of its intervals in each.
+    // The two faces at an edge of the box, and the index of the edge's first interval in each.
     std::array<std::size_t, 2> faces{2 * u + (side.corner >> u & 1U), 2 * v + (side.corner >> v & 1U)};
     std::array<std::uint32_t, 2> first{};
     for (std::size_t f = 0; f < 2; ++f) {
@@ -267,15 +268,15 @@ void BoxSplitter::connect_edges(const SplitBox& box) {
     for (std::uint32_t k = 0; k < side.intervals; ++k) {
       const std::uint32_t part = interval_part_[faces[0]][first[0] + k];
       cube_.join_at_interval(part, interval_part_[faces[1]][first[1] + k]);
-      if (side.axis != 0) continue;  // each corner is the end of one side along x
+      if (side.axis != 0) continue;  // each corner is an end of exactly one edge along x
       if (k == 0 && is_inside(box, side.corner)) cube_.add_corner(part);
       if (k + 1 == side.intervals && is_inside(box, side.corner | 1U)) cube_.add_corner(part);
     }
   }
 }
 
-/// Returns a cut through a hole of a face, which opens the hole. It is across the longer side, so that boxes stay
-/// compact.
+/// Returns a cut through the middle of a hole in a face, which opens the hole. The cut is across the face's longer
+/// side, so that boxes stay compact.
 BoxSplitter::Cut BoxSplitter::cut_beside(const SplitBox& box, std::size_t face, const Hole& hole) const {
   const Vec3d size = box.box.high - box.box.low;
   const std::size_t u = next_axis(face / 2);
@@ -297,8 +298,8 @@ BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, ModelObsta
       }
     }
   }
-  // Small structures are cut themselves, instead of approached by halving. A cut never goes through a vertex alone,
-  // around which all scales look the same.
+  // If the vertices in the box are close together, the cut goes through their middle. Repeated halving of the box would
+  // take longer. A cut never aims at a single vertex, because the surface looks the same at all scales there.
   const Vec3d size = box.box.high - box.box.low;
   const Vec3d inner = high - low;
   const std::size_t inner_axis = longest(inner);
@@ -327,7 +328,8 @@ std::array<SplitBox, 2> BoxSplitter::halves(SplitBox&& box, const Cut& cut) cons
       if (may_meet(mesh_.corners(t), out[upper].box.low, out[upper].box.high)) out[upper].triangles.push_back(t);
     }
   }
-  // New corners lie on the sides that are cut. Each crossing on the way there switches between inside and outside.
+  // New corners lie on the edges that are cut. Each crossing between the lower end and the new corner switches between
+  // inside and outside.
   for (std::size_t corner = 0; corner < 8; ++corner) {
     const auto bit = static_cast<std::uint8_t>(1U << corner);
     const std::size_t other = corner ^ 1U << cut.axis;

@@ -7,7 +7,7 @@
 namespace blum::detail {
 namespace {
 
-/// Returns the index of a value in a rising list; the list's size if the value is absent.
+/// Returns the index of a value in an ascending list; the list's size if the value is absent.
 std::size_t place_in(std::span<const std::uint32_t> rising, std::uint32_t value) {
   const auto at = std::lower_bound(rising.begin(), rising.end(), value);
   return at != rising.end() && *at == value ? static_cast<std::size_t>(at - rising.begin()) : rising.size();
@@ -24,7 +24,7 @@ bool may_meet(const TriangleCorners& t, const Vec3d& low, const Vec3d& high) {
 }
 
 bool may_reach(const TriangleCorners& t, const Vec3d& low, const Vec3d& high) {
-  constexpr double rounding = 1e-12;  // of the lengths involved: far more than the actual rounding
+  constexpr double rounding = 1e-12;  // relative to the lengths; far more than the actual rounding error
   if (!may_meet(t, low, high)) return false;
   const Vec3d centre = 0.5 * (low + high);
   const Vec3d half = max(high - centre, centre - low);
@@ -68,7 +68,7 @@ bool passes_through(const EdgeEnds& edge, std::size_t across, const Vec3d& low, 
   const double plane = low[across];
   if (is_above(edge[0][across], plane) == is_above(edge[1][across], plane)) return false;
   const int rises = is_above(edge[1][across], plane) ? 1 : -1;
-  // If the edge passes, a line across that lies left of the rising edge, seen in the plane of both axes, is above.
+  // The edge passes if, in the plane of `across` and `a`, it meets the plane above low[a] and below high[a].
   for (const std::size_t a : {next_axis(across), next_axis(next_axis(across))}) {
     const std::size_t along = 3 - across - a;
     const auto is_line_above = [&](double coordinate) {
@@ -143,7 +143,7 @@ void BoxPieces::find(const SurfaceMesh& mesh, const BoxCell& box, std::span<cons
     is_open_[piece] = true;
     components.add_arc(piece, arc.part);
   }
-  // A piece without an arc is a whole shell. The shell of an outermost vertex bounds a body; others are voids.
+  // A piece without an arc is a whole shell. It bounds a body if it contains an outermost vertex, otherwise a void.
   const std::size_t first_vertex = triangles_.size() + edges_.size();
   const auto piece_of = [&](std::size_t vertex) {
     return joined_.find(static_cast<std::uint32_t>(first_vertex + vertex));
@@ -158,7 +158,7 @@ void BoxPieces::find(const SurfaceMesh& mesh, const BoxCell& box, std::span<cons
   for (std::size_t k = 0; k < vertices_.size(); ++k) {
     const std::uint32_t piece = piece_of(k);
     if (is_open_[piece]) continue;
-    is_open_[piece] = true;  // visited
+    is_open_[piece] = true;  // marks the piece as visited
     if (is_outer_[piece] && euler_[piece] == 2) {
       bodies_.push_back(vertices_[k]);
     } else {

@@ -18,11 +18,11 @@ namespace blum::detail {
 namespace {
 
 constexpr std::size_t surface_grain = 4096;
-constexpr std::uint32_t own_number = 0x80000000U;  ///< marks pieces made by a chunk, until it is appended
+constexpr std::uint32_t own_number = 0x80000000U;  ///< bit of piece numbers of a chunk, until it is appended
 constexpr std::uint64_t most_passes = std::uint64_t{1} << 29U;
 constexpr std::uint32_t no_piece = 0xffffffffU;
 
-/// The squares that edges of a surface pass from cube to cube.
+/// The squares of the grid through which edges of a surface pass from one cube to the next.
 class TracedEdges {
  public:
   TracedEdges(const SurfaceMesh& mesh, const GridPlanes& planes, const CellLattice& lattice,
@@ -36,7 +36,7 @@ class TracedEdges {
       for (std::size_t a = 0; a < 3; ++a) {
         sum += static_cast<std::uint64_t>(std::abs(cubes[edges[e][1]][a] - cubes[edges[e][0]][a]));
       }
-      // Numbers of all pieces must stay below own_number.
+      // The numbers of all pieces must stay below own_number.
       if (sum > most_passes) throw InvalidGrid("the surface crosses the grid too often: use a coarser grid");
     }
     first_.back() = static_cast<std::uint32_t>(sum);
@@ -46,12 +46,12 @@ class TracedEdges {
     });
   }
 
-  /// Returns the squares that an edge passes, from its smaller vertex.
+  /// Returns the squares that an edge passes, in order from its smaller vertex.
   [[nodiscard]] std::span<const Cell> squares(std::uint32_t edge) const {
     return std::span(squares_).subspan(first_[edge], first_[edge + 1] - first_[edge]);
   }
   [[nodiscard]] std::size_t passes() const { return squares_.size(); }
-  /// Returns the number of the part of an edge after `passed` squares.
+  /// Returns the number of the part of an edge that follows after `passed` squares.
   [[nodiscard]] std::uint32_t part(std::uint32_t edge, std::size_t passed) const {
     if (passed == 0) return mesh_.edges()[edge][0];
     if (passed == first_[edge + 1] - first_[edge]) return mesh_.edges()[edge][1];
@@ -78,10 +78,10 @@ class TracedEdges {
     }
   }
 
-  /// Returns true if an edge passes the next plane across `one` before that across `other`.
+  /// Returns true if an edge passes the next plane across axis `one` before the next plane across axis `other`.
   [[nodiscard]] bool is_first(const EdgeEnds& ends, std::size_t one, std::size_t other, const Place& at,
                               const Place& end) const {
-    // The common line of both planes lies on one side of the edge.
+    // The side of the edge on which the common line of both planes lies decides this.
     const bool is_cyclic = next_axis(one) == other;
     const std::size_t u = is_cyclic ? one : other;
     const std::size_t v = is_cyclic ? other : one;
@@ -101,21 +101,21 @@ class TracedEdges {
   std::vector<Cell> squares_;
 };
 
-/// Intersections of some consecutive triangles with the grid.
+/// Intersections of consecutive triangles with the grid.
 struct Chunk {
   std::vector<GridCrossing> crossings;
   std::vector<Arc> arcs;
-  std::vector<std::uint32_t> parts;  ///< for each triangle and cube: a piece that it belongs to
+  std::vector<std::uint32_t> parts;  ///< for each triangle and each cube that it meets: its piece there
   std::vector<std::array<std::uint32_t, 2>> joins;
-  std::uint32_t own = 0;  ///< number of pieces without a part of a vertex or edge
+  std::uint32_t own = 0;  ///< number of pieces first numbered here: parts of triangles without a vertex or edge
 };
 
-/// A pass of a triangle's edge through a plane.
+/// A pass of a triangle's side through a plane of the grid.
 struct Pass {
   std::size_t axis;
   std::int32_t plane;
-  std::size_t side;     ///< of the triangle: 0, 1, 2
-  std::uint32_t index;  ///< index among the squares of the edge
+  std::size_t side;     ///< side of the triangle: 0, 1, 2
+  std::uint32_t index;  ///< index in the squares of the side's edge
 };
 
 class TriangleTracer {
@@ -134,7 +134,7 @@ class TriangleTracer {
     corners_ = mesh_.corners(triangle);
     find_passes();
     first_arc_ = out_.arcs.size();
-    // Two sides pass each plane that the triangle crosses.
+    // Each plane that the triangle crosses is passed by exactly two of its sides.
     for (std::size_t k = 0; k + 1 < passes_.size(); k += 2) walk(passes_[k], passes_[k + 1]);
     join_in_cubes();
   }
@@ -155,15 +155,15 @@ class TriangleTracer {
     });
   }
 
-  /// Follows the triangle in a plane from one side to the other.
+  /// Follows the section of the triangle with a plane from one side to the other, square by square.
   void walk(const Pass& one, const Pass& two) {
     const Triangle& t = mesh_.triangles()[triangle_];
     const std::size_t w = one.axis;
     const std::size_t u = next_axis(w);
     const std::size_t v = next_axis(u);
-    // The common corner of both sides is alone on its side of the plane. The walk starts on the side after that corner.
-    // Seen against the axis, the triangle's normal points right of the walk if the corner is above the plane, else
-    // left.
+    // The common corner of both sides is alone on its side of the plane. The walk starts on the triangle's side that
+    // follows that corner. For a viewer who looks against the axis, the normal points right of the walk if the corner
+    // is above the plane. Otherwise it points left.
     const std::size_t alone = two.side == one.side + 1 ? two.side : one.side;
     const bool is_above = cubes_[t[alone]][w] >= one.plane;
     const bool normal_is_left = !is_above;
@@ -194,7 +194,7 @@ class TriangleTracer {
       }
       const std::size_t along = is_along_u ? v : u;
       const Cell edge = cell_at(lattice_.node(crossed[0], crossed[1], crossed[2]), 1U << along);
-      // Each crossing is met in two planes, and recorded in one.
+      // A crossing lies in two planes. Only one of them records it.
       if (is_along_u) out_.crossings.push_back({edge, triangle_, (u_step > 0) == normal_is_left});
       add_arc(square, from, {edge, true});
       from = {edge, true};
@@ -218,7 +218,7 @@ class TriangleTracer {
     out_.arcs.push_back({square, triangle_, {from, to}, {no_piece, no_piece}});
   }
 
-  /// Gives an arc the pieces of the edge's parts below and above its end.
+  /// Sets the pieces of an arc from the parts of the edge just below and just above the arc's end.
   void take_pieces(const Pass& pass, Arc& arc) {
     const std::uint32_t edge = edge_of(pass);
     const auto [a, b] = mesh_.edges()[edge];
@@ -230,7 +230,7 @@ class TriangleTracer {
     }
   }
 
-  /// Gives the arcs around each part of the triangle in a cube one piece, joined from the parts of edges there.
+  /// In each cube, gives all arcs of the triangle the same piece. It joins the pieces that the arcs have from edges.
   void join_in_cubes() {
     beside_.clear();
     for (std::size_t arc = first_arc_; arc < out_.arcs.size(); ++arc) {
@@ -274,10 +274,10 @@ class TriangleTracer {
   TriangleCorners corners_;
   std::vector<Pass> passes_;
   std::size_t first_arc_ = 0;
-  std::vector<std::pair<Cell, std::size_t>> beside_;  ///< cubes, and twice the arcs on their sides (+ 1: above)
+  std::vector<std::pair<Cell, std::size_t>> beside_;  ///< cube, and 2 * arc (+ 1 if the cube is above it)
 };
 
-/// Adds the intersections of a chunk of triangles.
+/// Appends the intersections of a chunk of triangles to `out`.
 void append(Chunk&& chunk, std::uint32_t& count, TracedSurface& out) {
   const auto number = [&](std::uint32_t piece) {
     return (piece & own_number) != 0 ? count + (piece & ~own_number) : piece;
@@ -295,7 +295,7 @@ void append(Chunk&& chunk, std::uint32_t& count, TracedSurface& out) {
 
 constexpr std::size_t grain = 2048;
 
-/// Returns the lower and the upper axis of a square, as bits.
+/// Returns the two axes that a square spans, the lower one first, as bits.
 constexpr std::array<CellAxes, 2> span_of(Cell square) {
   const CellAxes axes = axes_of(square);
   const CellAxes lower = axes & (~axes + 1U);
@@ -308,7 +308,7 @@ constexpr std::array<CellAxes, 2> span_of(Cell square) {
                     std::to_string(p.z) + "): its surface is open, or crosses itself");
 }
 
-/// Returns the items in the order of their keys.
+/// Returns the keys and indices of the items in the order of the keys.
 template <class Item, class Key>
 std::vector<KeyedIndex> sorted_by(const std::vector<Item>& items, const Key& key) {
   std::vector<KeyedIndex> order(items.size());
@@ -441,7 +441,8 @@ CutGrid::CutGrid(const SurfaceMesh& mesh, GridPlanes planes, const Context& cont
   failing_.erase(std::unique(failing_.begin(), failing_.end()), failing_.end());
 }
 
-/// Records shells that no plane cuts. A void fails its cube; an outer shell is a whole body.
+/// Records shells that no plane of the grid cuts. Their cube fails, unless the shell is the outer shell of a body
+/// without tunnels.
 void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface) {
   std::vector<bool> is_cut(surface.euler.size(), false);
   for (const Arc& arc : surface.arcs) {
@@ -450,7 +451,7 @@ void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface
   const auto vertices = mesh.vertices();
   std::vector<std::uint32_t> closed;
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
-    // The smallest index of a piece represents it. Pieces not represented by a vertex are cut.
+    // find() returns the smallest number in a piece. If that is not a vertex, a plane cuts the piece.
     if (surface.pieces.find(v) == v && !is_cut[v]) closed.push_back(v);
   }
   if (closed.empty()) return;
@@ -508,7 +509,8 @@ void CutGrid::sort_crossings(const SurfaceMesh& mesh, const TracedSurface& surfa
       if ((row[k].leaves == row.front().leaves) != (k % 2 == 0)) throw_crossing(planes_, lattice_, edge);
       crossings_[i + k] = row[k].triangle;
     }
-    // Temporarily: 1 if the ends of the edge along z to a node are on different sides.
+    // Until find_inside(), `inside_` is 1 if the node and the node below it along z are on different sides of the
+    // surface.
     if (axis == 2 && row.size() % 2 == 1) inside_[node_of(edge) + lattice_.stride(2)] = 1;
     i = j;
   }
@@ -580,7 +582,7 @@ bool CutGrid::connect_square(const SurfaceMesh& mesh, Cell square, Scratch& scra
   for (std::size_t s = 0; s < 4; ++s) first[s + 1] = first[s] + components(sides[s]);
   SquareComponents& components_here = scratch.square;
   components_here.start(first[4]);
-  // Each corner joins intervals of two sides, the first or the last of each.
+  // An inside corner joins the intervals of two sides that end there: the first or last interval of each.
   const auto [lower, upper] = span_of(square);
   const std::size_t node = node_of(square);
   const std::size_t along_lower = lattice_.stride(axis_of(lower));
@@ -644,7 +646,7 @@ bool CutGrid::connect_cube(const TracedSurface& surface, Cell cube, Scratch& scr
   CubeComponents& components_here = scratch.cube;
   components_here.start(first[6]);
   const std::size_t node = node_of(cube);
-  // An edge along an axis lies in two faces: across the next axis and the one after, each below or above.
+  // An edge along an axis lies in two faces of the cube: one across the next axis, and one across the axis after that.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t u = next_axis(axis);
     const std::size_t v = next_axis(u);
@@ -658,7 +660,7 @@ bool CutGrid::connect_cube(const TracedSurface& surface, Cell cube, Scratch& scr
       for (std::uint32_t k = 0; k < intervals; ++k) {
         const std::uint32_t one = first[face_u] + component_of_interval(faces[face_u], edge, k);
         components_here.join_at_interval(one, first[face_v] + component_of_interval(faces[face_v], edge, k));
-        // The corners of the cube are the ends of its four edges along x.
+        // Each corner of the cube is an end of exactly one edge along x, so it is added once.
         if (axis != 0) continue;
         if (k == 0 && is_inside(node_of(edge))) components_here.add_corner(one);
         if (k + 1 == intervals && is_inside(node_of(edge) + 1)) components_here.add_corner(one);

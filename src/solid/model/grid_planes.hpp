@@ -12,13 +12,13 @@ namespace blum::detail {
 
 using Place = std::array<std::int32_t, 3>;
 
-/// The coordinates of the planes across each axis, rising and about evenly spaced. Cube i lies between planes i and i +
-/// 1. A point in a plane counts as above it.
+/// The coordinates of the planes across each axis, in ascending order and evenly spaced up to rounding. Cube i lies
+/// between planes i and i + 1. A point in a plane counts as above it.
 class GridPlanes {
  public:
   GridPlanes() = default;
-  /// Planes `first` to `last` across each axis. Plane i lies at origin + i spacing.
-  /// @param spacing  > 0, and large enough for the coordinates of planes to differ.
+  /// Makes planes `first` to `last` across each axis, both included. Plane i lies at origin + i * spacing.
+  /// @param spacing  > 0, and so large that neighbouring planes have different coordinates.
   GridPlanes(const Vec3d& origin, const Vec3d& spacing, const Place& first, const Place& last) : spacing_(spacing) {
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::int32_t i = first[a]; i <= last[a]; ++i) at_[a].push_back(origin[a] + i * spacing[a]);
@@ -30,14 +30,14 @@ class GridPlanes {
   }
   [[nodiscard]] std::int32_t count(std::size_t axis) const { return static_cast<std::int32_t>(at_[axis].size()); }
   [[nodiscard]] const Vec3d& spacing() const { return spacing_; }
-  /// Returns the node at a place.
-  /// @param place  a Place, or a place of a CellLattice.
+  /// Returns the position of the node with the given indices.
+  /// @param place  indices along x, y, z: a Place, or a place of a CellLattice.
   template <class Integer = std::int32_t>
   [[nodiscard]] Vec3d node(const std::array<Integer, 3>& place) const {
     return {at(0, place[0]), at(1, place[1]), at(2, place[2])};
   }
-  /// Returns the cube of a point between the outermost planes. If the point lies in the last plane, returns a place
-  /// beyond the last cube.
+  /// Returns the cube that contains a point between the outermost planes. If the point lies in the last plane, returns
+  /// a place beyond the last cube.
   [[nodiscard]] Place cube(const Vec3d& p) const { return {between(0, p.x), between(1, p.y), between(2, p.z)}; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_cells = 0xfffffff0U;
 
-/// Returns the cells of a grid that belong to a cube of a region, rising.
+/// Returns the cells of a grid that belong to a cube of a region, in ascending order.
 std::vector<Cell> cells_of(const CutGrid& grid, std::span<const RefinedRegion> regions) {
   std::vector<Cell> cells;
   for (const RefinedRegion& region : regions) {
@@ -42,7 +42,7 @@ class Assembly {
   Assembly(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const RefinedRegion> regions, const Context& context)
       : mesh_(mesh), grid_(grid), lattice_(grid.lattice()), regions_(regions), context_(context) {}
 
-  /// Assembles all cells.
+  /// Assembles all cells of the model.
   ModelCells assemble() {
     refined_ = cells_of(grid_, regions_);
     std::vector<Cell> all;
@@ -55,7 +55,7 @@ class Assembly {
     return assemble(all);
   }
 
-  /// Assembles the cells that differ from the voxels on a lattice.
+  /// Assembles the cells of the model that differ from those of the voxels on a lattice.
   ExtraModelCells assemble_extra(const CellLattice& voxels) {
     refined_ = cells_of(grid_, regions_);
     voxels_ = &voxels;
@@ -86,7 +86,7 @@ class Assembly {
   }
 
  private:
-  /// @param named  cells of the grid that no region has, rising.
+  /// @param named  cells of the grid that belong to no region, in ascending order.
   ModelCells assemble(const std::vector<Cell>& named) {
     name_cells(named);
     out_.first_face.reserve(out_.size() + 1);
@@ -107,27 +107,27 @@ class Assembly {
     }
     return false;
   }
-  /// Returns a node moved by one step along each of some axes.
+  /// Returns the node one step further along each of the given axes.
   [[nodiscard]] std::size_t moved(std::size_t node, CellAxes axes) const {
     for (std::size_t a = 0; a < 3; ++a) node += (axes >> a & 1U) * lattice_.stride(a);
     return node;
   }
-  /// Returns the cell of the lattice of voxels that stands for a cell of the grid.
+  /// Returns the cell of the voxels' lattice that stands for a cell of the grid.
   [[nodiscard]] Cell dual(Cell cell) const {
     std::array<std::int64_t, 3> at = lattice_.place(node_of(cell));
     for (std::size_t a = 0; a < 3; ++a) at[a] += axes_of(cell) >> a & 1U;
     return cell_at(voxels_->node(at[0], at[1], at[2]), 7U ^ axes_of(cell));
   }
-  /// Returns the id of a component of a cell of the grid that no region has.
+  /// Returns the id of a component of a grid cell that belongs to no region.
   [[nodiscard]] std::uint32_t id_of(Cell cell, std::uint32_t component) const {
     return first_.contains(cell) ? base_ + first_.of(cell) + component : dual(cell);
   }
-  /// Returns true if a cell of the grid is the same cell in the model and among the voxels.
+  /// Returns true if the voxels' cell that stands for a cell of the grid is also a cell of the model.
   [[nodiscard]] bool is_plain(Cell cell) const {
     return !first_.contains(cell) && grid_.components(cell) > 0 && !is_refined(cell);
   }
 
-  /// Pairs each component of a cell with the plain cells of which it is a face.
+  /// Adds pairs of a component of a cell and a plain cell (see is_plain()) of which the component is a face.
   void add_cofaces(Cell cell, std::vector<std::array<std::uint32_t, 2>>& pairs) const {
     const auto add = [&](Cell side, std::uint32_t component) {
       pairs.push_back({first_.of(cell) + component, dual(side)});
@@ -148,8 +148,8 @@ class Assembly {
     }
   }
 
-  /// Extra cells without a witness lie around a corner that is inside. It is a corner of a plain cell of which they are
-  /// faces.
+  /// Sets missing witnesses of extra cells. Such a cell is a face of a plain cell, and an inside node of that plain
+  /// cell becomes the witness.
   void witness_by_cofaces(ExtraModelCells& out) const {
     for (const auto& [extra, plain] : out.cofaces) {
       if (has_witness_[extra]) continue;
@@ -157,7 +157,7 @@ class Assembly {
       out.cells.witness[extra] = grid_.planes().node(voxel);
     }
   }
-  /// Returns an inside node that is a corner of the grid's cell for which a cell of the voxels stands.
+  /// Returns an inside node at a corner of the grid cell for which a cell of the voxels stands.
   [[nodiscard]] std::array<std::int64_t, 3> voxel_at(Cell plain) const {
     std::array<std::int64_t, 3> found = voxels_->place(node_of(plain));
     voxels_->for_each_cube_around(plain, [&](const std::array<std::int64_t, 3>& at) {
@@ -166,7 +166,7 @@ class Assembly {
     return found;
   }
 
-  /// First id of each cell of the grid that has any.
+  /// For each cell of the grid that has ids: the first of them.
   class FirstIds {
    public:
     void reset(const CellLattice& lattice) { ranked_ = RankedCells(lattice); }
@@ -185,7 +185,7 @@ class Assembly {
   };
 
   struct RegionIds {
-    std::vector<std::uint32_t> boxes, rectangles, segments, corners;  ///< first ids
+    std::vector<std::uint32_t> boxes, rectangles, segments, corners;  ///< first id of each
   };
 
   [[nodiscard]] bool is_refined(Cell cell) const { return std::binary_search(refined_.begin(), refined_.end(), cell); }
@@ -230,12 +230,13 @@ class Assembly {
   }
 
   void begin_cell() { out_.first_face.push_back(static_cast<std::uint32_t>(out_.faces.size())); }
-  /// Sets the witness of the cell begun last.
+  /// Sets the witness of the current cell, which begin_cell() began.
   void set_witness(const Vec3d& p) {
     out_.witness[out_.first_face.size() - 1] = p;
     has_witness_[out_.first_face.size() - 1] = true;
   }
-  /// Gives cells without a witness that of a cell around them, whose component lies in theirs.
+  /// Copies witnesses from cells to those of their faces that have none. The component of a face contains the component
+  /// of the cell.
   void spread_witnesses() {
     for (int dimension = 3; dimension > 0; --dimension) {
       for (std::uint32_t cell = 0; cell < out_.size(); ++cell) {
@@ -250,8 +251,8 @@ class Assembly {
     }
   }
 
-  /// Sets the ends of an interval of a part of a line that these triangles cross. The interval's middle becomes the
-  /// witness.
+  /// Sets the ends of interval `interval` on a segment along an axis, from `low` to the coordinate `high`. Its middle
+  /// becomes the witness. `crossings` are the triangles that cross the segment, from below.
   void set_interval(std::size_t axis, const Vec3d& low, double high, bool begins_inside,
                     std::span<const std::uint32_t> crossings, std::uint32_t interval) {
     const auto end_at = [&](std::size_t k) {
@@ -259,7 +260,7 @@ class Assembly {
       end.point[axis] = std::clamp(crossing_height(mesh_.corners(crossings[k]), axis, low), low[axis], high);
       return end;
     };
-    const std::size_t begin = 2 * std::size_t{interval} + (begins_inside ? 0 : 1);  // crossing k is number k + 1
+    const std::size_t begin = 2 * std::size_t{interval} + (begins_inside ? 0 : 1);  // it lies after crossing begin - 1
     IntervalEnd top{low};
     top.point[axis] = high;
     const std::array<IntervalEnd, 2> ends{begin == 0 ? IntervalEnd{low} : end_at(begin - 1),
@@ -268,14 +269,15 @@ class Assembly {
     if (voxels_ != nullptr) out_.ends[out_.first_face.size() - 1] = ends;
   }
   [[nodiscard]] Vec3d node_position(std::size_t node) const { return grid_.planes().node(lattice_.place(node)); }
-  /// Sets the witness to the middle of the edges around a component of a square, if any exist.
+  /// Sets the witness to the mean of the points where edges of the mesh pass through a plane. Does nothing without
+  /// edges.
   void set_middle(const std::vector<ArcEnd>& ends, std::size_t across, double plane) {
     if (ends.empty()) return;
     Vec3d sum;
     for (const ArcEnd& end : ends) sum += point_on(end, across, plane);
     set_witness(sum / static_cast<double>(ends.size()));
   }
-  /// Returns the point where an edge of the mesh meets a plane.
+  /// Returns the point where an edge of the mesh meets a plane of the grid.
   [[nodiscard]] Vec3d point_on(const ArcEnd& end, std::size_t across, double plane) const {
     const auto [a, b] = mesh_.ends(end.id);
     const double t = (plane - a[across]) / (b[across] - a[across]);
@@ -304,7 +306,7 @@ class Assembly {
     if (component >= others) set_witness(mesh_.vertices()[shells[component - others].second]);
   }
 
-  /// Adds the faces of an edge of the model.
+  /// Adds the faces of an edge of the model: the vertices in the cubes on both sides of the square.
   void add_ends(Cell square, std::uint32_t component) {
     const std::size_t across = normal_axis(square);
     set_middle(grid_.loose_ends(square, component), across, node_position(node_of(square))[across]);
@@ -313,7 +315,7 @@ class Assembly {
     add_face(id_of(above, grid_.component_of_part(above, 2 * across, component)));
   }
 
-  /// Adds the faces of a polygon.
+  /// Adds the faces of a polygon: the edges in the four squares around the grid's edge.
   void add_border(Cell edge, std::uint32_t interval) {
     const std::size_t axis = axis_of(axes_of(edge));
     set_interval(axis, node_position(node_of(edge)), node_position(node_of(edge) + lattice_.stride(axis))[axis],
@@ -328,7 +330,7 @@ class Assembly {
     }
   }
 
-  /// Adds the faces of a polyhedron.
+  /// Adds the faces of a polyhedron: the polygons on the six edges of the grid at the node.
   void add_sides(Cell node) {
     set_witness(node_position(node_of(node)));
     for (std::size_t a = 0; a < 3; ++a) {
@@ -403,7 +405,7 @@ class Assembly {
     }
   }
 
-  /// Returns the edge of the grid that a segment covers wholly.
+  /// Returns the edge of the grid that a segment covers completely.
   [[nodiscard]] Cell edge_of(const RefinedRegion& region, const BoxSegment& segment) const {
     const Place at = grid_.planes().cube(region.cells().corners()[segment.ends[0]]);
     return cell_at(lattice_.node(at[0], at[1], at[2]), 1U << segment.axis);
@@ -426,7 +428,7 @@ class Assembly {
       for (const std::uint32_t side : sides[c]) add_face(side);
       const Place at = grid_.planes().cube(cells.corners()[c]);
       if (grid_.planes().node(at) != cells.corners()[c]) continue;
-      // Edges of the grid that no cube of the region has.
+      // Adds edges of the grid that belong to no region.
       const Cell node = cell_at(lattice_.node(at[0], at[1], at[2]), 0);
       for (std::size_t a = 0; a < 3; ++a) {
         const Cell above = node | 1U << a;
@@ -442,8 +444,8 @@ class Assembly {
   const CellLattice& lattice_;
   std::span<const RefinedRegion> regions_;
   const Context& context_;
-  const CellLattice* voxels_ = nullptr;  ///< set if only extra cells are named
-  std::uint32_t base_ = 0;               ///< added to numbers of cells
+  const CellLattice* voxels_ = nullptr;  ///< set if only extra cells are assembled
+  std::uint32_t base_ = 0;               ///< added to the numbers of extra cells to get ids
   std::vector<Cell> refined_;            ///< cells of the grid that belong to a region
   FirstIds first_;
   std::vector<RegionIds> of_region_;

@@ -16,22 +16,23 @@
 
 namespace blum::detail {
 
-/// An end of an interval: on a triangle, or at a corner that is inside.
+/// An end of an interval: on a triangle, or at an inside corner (then `triangle` is not set).
 struct IntervalEnd {
   Vec3d point;
   std::optional<std::uint32_t> triangle = {};
 };
 
-/// A regular cell complex. A vertex stands for a component of the solid in a cube, an edge for one in a square. A
-/// polygon stands for an interval of an edge of the grid, a polyhedron for a corner inside.
+/// A regular cell complex, dual to the grid. A vertex stands for a component of the solid in a cube, an edge for a
+/// component in a square. A polygon stands for an interval of an edge of the grid, a polyhedron for a node inside the
+/// solid.
 struct ModelCells {
   std::vector<std::uint8_t> dimension;
-  std::vector<std::uint32_t> first_face;         ///< first of each cell's faces, and the end
-  std::vector<std::uint32_t> faces;              ///< cells of one dimension less
-  std::vector<Vec3d> witness;                    ///< a point of each cell's component
-  std::vector<std::array<IntervalEnd, 2>> ends;  ///< of each extra cell: ends of a polygon's interval, the lower first
+  std::vector<std::uint32_t> first_face;         ///< for each cell: index of its first face; then the number of faces
+  std::vector<std::uint32_t> faces;              ///< cells, one dimension lower
+  std::vector<Vec3d> witness;                    ///< for each cell: a point of its component
+  std::vector<std::array<IntervalEnd, 2>> ends;  ///< for extra cells: a polygon's interval, lower end first
 
-  std::vector<std::optional<Box3>> boxes;  ///< of each extra cell: the box of a vertex in a split cube
+  std::vector<std::optional<Box3>> boxes;  ///< for extra cells: the box of a vertex in a split cube
 
   [[nodiscard]] std::size_t size() const { return dimension.size(); }
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t cell) const {
@@ -39,21 +40,23 @@ struct ModelCells {
   }
 };
 
-/// The cells of a model that differ from the union of the closed voxels around the grid's inside nodes. A cell of the
-/// lattice of these voxels stands for the dual cell of the grid: a voxel for a node, and so on.
+/// The differences between a model and the union of the closed voxels around the grid's inside nodes. A cell of the
+/// voxels' lattice stands for the dual cell of the grid. For example, a voxel stands for a node, and a face of a voxel
+/// for an edge.
 struct ExtraModelCells {
-  ModelCells cells;  ///< those for which no cell of the voxels stands; faces are numbered as `first` explains
-  /// Faces below this are cells of the lattice. Others are this plus the number of an extra cell.
+  ModelCells cells;  ///< the extra cells; see `first` for the numbers of their faces
+  /// A face with a number below this is a cell of the lattice. Otherwise it is the extra cell with this number
+  /// subtracted.
   std::uint32_t first = 0;
-  /// For the first extra cells: the cell of the voxels that would stand for each. The others are parts of split boxes.
+  /// For each extra cell outside split cubes, which come first: the cell of the voxels that would stand for it.
   std::vector<Cell> places;
-  /// Cells of the voxels that are not in the model, rising. The model has extra cells there.
+  /// Cells of the voxels that are not in the model, in ascending order. The model has extra cells in their place.
   std::vector<Cell> replaced;
-  /// Extra cells, by number, and cells of the voxels of which they are faces; rising.
+  /// Pairs of an extra cell, by number, and a cell of the voxels of which it is a face; in ascending order.
   std::vector<std::array<std::uint32_t, 2>> cofaces;
 };
-/// Returns the cells of a model that the voxels do not give.
-/// @param voxels  their lattice: one more node along each axis than the grid's lattice.
+/// Returns the differences between a model and its voxels.
+/// @param voxels  lattice of the voxels, with one more node along each axis than the grid's lattice.
 /// @throws Cancelled; InvalidGrid.
 [[nodiscard]] ExtraModelCells extra_model_cells(const SurfaceMesh& mesh, const CutGrid& grid,
                                                 std::span<const RefinedRegion> regions, const CellLattice& voxels,
@@ -64,7 +67,7 @@ struct ExtraModelCells {
 [[nodiscard]] ModelCells model_cells(const SurfaceMesh& mesh, const CutGrid& grid,
                                      std::span<const RefinedRegion> regions, const Context& context);
 
-/// Returns the numbers of cells by dimension, without listing the cells.
+/// Returns the number of cells of each dimension 0 to 3, without listing the cells.
 [[nodiscard]] std::array<std::int64_t, 4> count_model_cells(const CutGrid& grid,
                                                             std::span<const RefinedRegion> regions);
 

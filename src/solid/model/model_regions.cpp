@@ -16,7 +16,7 @@
 namespace blum::detail {
 namespace {
 
-/// Returns cubes and all cubes around them, rising.
+/// Returns the given cubes and all cubes that touch them, in ascending order.
 std::vector<Cell> spread(const CellLattice& lattice, std::span<const Cell> cubes) {
   std::vector<Cell> out;
   for (const Cell cube : cubes) {
@@ -39,7 +39,7 @@ std::optional<std::uint32_t> index_of(std::span<const Cell> sorted, Cell cell) {
   return static_cast<std::uint32_t>(at - sorted.begin());
 }
 
-/// A range of cubes along each axis.
+/// A range of cubes along each axis, with both ends included.
 struct CubeRange {
   std::array<std::int64_t, 3> low{};
   std::array<std::int64_t, 3> high{};
@@ -54,7 +54,7 @@ struct CubeRange {
   }
 };
 
-/// Returns the cubes that the box around a triangle meets.
+/// Returns the closed cubes that the bounding box of a triangle meets.
 CubeRange cubes_around(const SurfaceMesh& mesh, const GridPlanes& planes, std::uint32_t triangle) {
   CubeRange range;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -64,12 +64,12 @@ CubeRange cubes_around(const SurfaceMesh& mesh, const GridPlanes& planes, std::u
       range.high[a] = k == 0 ? at[a] : std::max<std::int64_t>(range.high[a], at[a]);
     }
   }
-  // A coordinate in a plane also belongs to the closed cube below.
+  // A point in a plane also belongs to the closed cube below the plane.
   for (std::int64_t& low : range.low) low = std::max<std::int64_t>(low - 1, 0);
   return range;
 }
 
-/// Returns, for each of some cubes, the triangles that meet it, and perhaps others.
+/// Returns for each of the given cubes the triangles that meet it, and perhaps others.
 std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, const CutGrid& grid,
                                                        std::span<const Cell> cubes, const Context& context) {
   std::vector<std::vector<std::uint32_t>> out(cubes.size());
@@ -105,7 +105,7 @@ std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, 
   return out;
 }
 
-/// Returns the cubes that share inner points with boxes.
+/// Returns the cubes that meet boxes; a cube may occur more than once.
 std::vector<Cell> cubes_in(const CutGrid& grid, std::span<const Box3> boxes) {
   std::vector<Cell> cubes;
   for (const Box3& box : boxes) {

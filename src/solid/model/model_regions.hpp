@@ -12,15 +12,16 @@
 
 namespace blum::detail {
 
-/// Splits the cubes of a grid that fail. Returns regions of neighbouring cubes, which do not touch each other.
-/// @param most_splits  limit for each cube.
-/// @param finer  boxes in which boxes are split even if they pass: see body_cells().
+/// Splits the cubes of a grid that fail. Returns regions of neighbouring cubes. Different regions do not touch each
+/// other.
+/// @param most_splits  limit on successive cuts of each cube.
+/// @param finer  regions in which boxes are split even if they pass: see body_cells().
 /// @throws Cancelled.
 [[nodiscard]] std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid& grid, int most_splits,
                                                         std::span<const Box3> finer, const Context& context);
 
-/// Returns the boxes in which splitting ended without success.
-/// @param exponent  coordinates were multiplied by two to its power: see scale_of().
+/// Returns the boxes that fail and could not be split further.
+/// @param exponent  the mesh was multiplied by 2^exponent, which is undone here: see scale_of().
 [[nodiscard]] std::vector<ModelFailure> failures_of(std::span<const RefinedRegion> regions, int exponent);
 
 }  // namespace blum::detail

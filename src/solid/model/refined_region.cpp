@@ -14,14 +14,13 @@ namespace blum::detail {
 
 namespace {
 
-/// Limit on the number of boxes of neighbouring cubes. A slanted tunnel takes about as many boxes as its length is a
-/// multiple of its width.
+/// Limit on the number of boxes in a region. A slanted tunnel takes about length / width boxes.
 constexpr std::size_t most_boxes = std::size_t{1} << 17U;
 constexpr std::size_t cubes_in_batch = 32;
-/// Limit for one cube, while others are split at the same time.
+/// Limit for one cube while the cubes of a batch are split concurrently.
 constexpr std::size_t most_at_first = most_boxes / cubes_in_batch;
 
-/// Calls visit(k, worker) for each k below a count, from all threads.
+/// Calls visit(k, worker) for each k below `count`, distributed over all threads.
 template <class Visit>
 void for_each(const Context& context, std::size_t count, const Visit& visit) {
   constexpr std::size_t grain = 256;
@@ -47,7 +46,8 @@ RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::
   for (int k = 0; k < thread_count(context); ++k) {
     splitters.emplace_back(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits, finer);
   }
-  // Same result as splitting one cube after the other, each into as many boxes as those before leave room for.
+  // The result is the same as if the cubes were split one after the other, each with the limit that earlier cubes
+  // leave. A cube that exceeds a limit is split again, alone.
   std::vector<std::vector<SplitBox>> parts(cubes_in_batch);
   for (std::size_t first = 0; first < cubes.size(); first += cubes_in_batch) {
     const std::size_t count = std::min(cubes_in_batch, cubes.size() - first);
@@ -130,7 +130,7 @@ const std::vector<std::uint32_t>& RefinedRegion::candidates(std::span<const BoxR
     const auto& own = triangles_[box.id];
     if (fewest == nullptr || own.size() < fewest->size()) fewest = &own;
   }
-  static const std::vector<std::uint32_t> nothing;  // for no box; segments and rectangles always lie beside one
+  static const std::vector<std::uint32_t> nothing;  // fallback; in fact every segment and rectangle lies at a box
   return fewest != nullptr ? *fewest : nothing;
 }
 
@@ -145,7 +145,8 @@ void RefinedRegion::find_crossings(std::uint32_t segment) {
   sort_along(mesh_, s.axis, low, found);
 }
 
-/// Corners of the grid are known. The state of others follows along segments.
+/// Finds which corners are inside the solid. At nodes of the grid this is known. It spreads from there along segments,
+/// whose crossings switch between inside and outside.
 void RefinedRegion::find_inside() {
   constexpr std::uint8_t unknown = 2;
   const auto corners = cells_->corners();
@@ -156,7 +157,7 @@ void RefinedRegion::find_inside() {
       inside_[c] = grid_.is_inside(grid_.lattice().node(at[0], at[1], at[2])) ? 1 : 0;
     }
   }
-  std::vector<std::vector<std::uint32_t>> around(corners.size());  // segments at each corner
+  std::vector<std::vector<std::uint32_t>> around(corners.size());  // for each corner: its segments
   for (std::uint32_t s = 0; s < segments_.size(); ++s) {
     for (const std::uint32_t end : cells_->segments()[s].ends) around[end].push_back(s);
   }
@@ -192,7 +193,7 @@ void RefinedRegion::find_arcs(std::uint32_t rectangle) {
     }
   }
   std::sort(on_border.begin(), on_border.end());
-  std::map<std::uint32_t, bool> passes;  // for each edge of the mesh
+  std::map<std::uint32_t, bool> passes;  // for each edge of the mesh: true if it passes through the rectangle
   for (const std::uint32_t t : candidates(own.boxes)) {
     if (!may_meet(mesh_.corners(t), low, high)) continue;
     std::array<ArcEnd, 4> ends{};
@@ -238,7 +239,7 @@ void RefinedRegion::connect_rectangle(std::uint32_t rectangle, Scratch& scratch)
   for (const BoxArc& arc : own.arcs) {
     components.add_arc(end_of(arc.ends[0], arc.triangle), end_of(arc.ends[1], arc.triangle));
   }
-  // The boxes beside it passed, or their obstacle is known. A hole no longer matters.
+  // BoxSplitter has tested the boxes at this rectangle, so holes need not be found again.
   static_cast<void>(components.finish([](std::span<const std::uint32_t>) { return false; }));
   own.components = components.count();
   for (std::uint32_t k = 0; k < count; ++k) own.interval_component.push_back(components.of_interval(k));
@@ -290,7 +291,7 @@ void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {
   components.start(parts);
   join_at_segments(box, components);
   std::vector<BoxPieces::ArcPart> arcs;
-  std::vector<std::uint32_t> passing;  // edges of the mesh that pass its sides
+  std::vector<std::uint32_t> passing;  // edges of the mesh that pass through the box's faces
   std::size_t offset = 0;
   for (const std::uint32_t r : rectangles) {
     for (const BoxArc& arc : rectangles_[r].arcs) {
@@ -302,7 +303,8 @@ void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {
     offset += rectangles_[r].components;
   }
   scratch.pieces.find(mesh_, boxes_[box], triangles_[box], arcs, passing, components);
-  // The box passes, or its obstacle is known. Sides cut into rectangles do not change this.
+  // BoxSplitter has tested this box, so the result is not needed. Dividing its faces into rectangles does not change
+  // it.
   static_cast<void>(components.finish([&](std::uint32_t piece) { return scratch.pieces.euler(piece); }));
   for (std::size_t k = 0; k < parts; ++k) part_component_[box].push_back(components.of_part(k));
   const auto bodies = scratch.pieces.bodies();

@@ -19,21 +19,21 @@
 
 namespace blum::detail {
 
-/// A box that fails and could not be split further.
+/// A box that fails and could not be split further, with its obstacle.
 struct StuckBox {
   BoxCell box;
   ModelObstacle obstacle;
   double cuts_left = 0;
 };
 
-/// Some cubes of a grid, split into boxes, with the solid's components in their cells. Conventions are those of
-/// CutGrid, with boxes for cubes, rectangles for squares and segments for edges. Components of rectangles and segments
-/// that are whole cells of the grid have the same numbers as there.
+/// Some cubes of a grid, split into boxes, with the solid's components in the cells of the boxes. Conventions are those
+/// of CutGrid, with boxes for cubes, rectangles for squares and segments for edges. If a rectangle or segment is a
+/// whole cell of the grid, its components have the same numbers as in CutGrid.
 class RefinedRegion {
  public:
-  /// @param cubes  those that fail, and all around them, rising.
-  /// @param triangles  for each of the cubes, all that may meet it.
-  /// @param most_splits  limit for each cube.
+  /// @param cubes  the cubes to split and all cubes around them, in ascending order.
+  /// @param triangles  for each of the cubes: all triangles that may meet it.
+  /// @param most_splits  limit on successive cuts of each cube.
   /// @param finer  see BoxSplitter.
   /// @throws Cancelled.
   RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
@@ -51,50 +51,50 @@ class RefinedRegion {
     return rectangles_[rectangle].components;
   }
   [[nodiscard]] std::uint32_t components_of_box(std::uint32_t box) const { return box_components_[box]; }
-  /// Returns the component of a rectangle to which an interval of a segment at its border belongs.
+  /// Returns the component of a rectangle that contains an interval of a segment at the rectangle's border.
   [[nodiscard]] std::uint32_t component_of_interval(std::uint32_t rectangle, std::uint32_t segment,
                                                     std::uint32_t interval) const;
-  /// Returns the component of a box to which a component of a rectangle at its border belongs.
+  /// Returns the component of a box that contains component `part` of a rectangle at the box's border.
   [[nodiscard]] std::uint32_t component_of_part(std::uint32_t box, std::uint32_t rectangle, std::uint32_t part) const;
-  /// Returns the triangles that cross a segment, from below.
+  /// Returns the triangles that cross a segment, in the order of their crossings upwards along it.
   [[nodiscard]] std::span<const std::uint32_t> crossings(std::uint32_t segment) const {
     return segments_[segment].crossings;
   }
 
-  /// Returns the edges of the mesh around a component of a rectangle without intervals, each twice. Empty if the
-  /// component has intervals.
+  /// For a component of a rectangle without intervals, returns the edges of the mesh on its border, each twice. Empty
+  /// if the component has intervals.
   [[nodiscard]] std::vector<ArcEnd> loose_ends(std::uint32_t rectangle, std::uint32_t component) const;
-  /// Returns a vertex of each body that lies wholly in a box. These bodies are the last components of the box.
+  /// Returns one vertex of each body that lies wholly in a box. These bodies are the last components of the box.
   [[nodiscard]] std::span<const std::uint32_t> bodies_in(std::uint32_t box) const { return bodies_of_box_[box]; }
 
-  /// Returns the boxes that fail; empty if all cells pass.
+  /// Returns the boxes that fail; empty if all boxes pass.
   [[nodiscard]] std::span<const StuckBox> stuck() const { return stuck_; }
-  /// Returns the number of boxes that come from splits.
+  /// Returns the number of boxes that are smaller than a cube.
   [[nodiscard]] std::size_t split_boxes() const { return split_boxes_; }
-  /// Returns the largest number of splits that led to a box.
+  /// Returns the largest number of successive cuts between a cube and a box.
   [[nodiscard]] int depth() const { return depth_; }
 
  private:
   struct SegmentSurface {
-    std::vector<std::uint32_t> crossings;  ///< triangles
+    std::vector<std::uint32_t> crossings;  ///< triangles, upwards along the segment
     bool begins_inside = false;
     std::uint32_t components = 0;
   };
   struct BoxArc {
     std::uint32_t triangle = 0;
-    std::array<ArcEnd, 2> ends;  ///< ids on the border: segments
+    std::array<ArcEnd, 2> ends;  ///< the id of an end on the border is a segment
     std::uint32_t component = 0;
   };
   struct RectangleSurface {
     std::vector<BoxArc> arcs;
-    std::vector<std::uint32_t> interval_component;  ///< for the intervals of all sides, one side after the other
-    /// First entry of each segment among these; by segment.
+    std::vector<std::uint32_t> interval_component;  ///< for all intervals of the sides, in order
+    /// Pairs of a segment and the index of its first interval in `interval_component`; sorted by segment.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> first_interval;
     std::uint32_t components = 0;
   };
   struct Scratch;
 
-  /// Returns the first entry of a segment at the border of a rectangle.
+  /// Returns the index in `interval_component` of the first interval of a segment.
   [[nodiscard]] static std::uint32_t first_interval(const RectangleSurface& rectangle, std::uint32_t segment);
   [[nodiscard]] SplitBox whole_box(Cell cube, std::vector<std::uint32_t> triangles) const;
   void take(SplitBox part);
@@ -112,16 +112,16 @@ class RefinedRegion {
   const CutGrid& grid_;
   std::vector<Cell> cubes_;
   std::vector<BoxCell> boxes_;
-  std::vector<std::vector<std::uint32_t>> triangles_;  ///< by box: all that meet it
+  std::vector<std::vector<std::uint32_t>> triangles_;  ///< for each box: all that meet it
   std::unique_ptr<BoxCells> cells_;
-  std::vector<std::uint8_t> inside_;  ///< by corner
+  std::vector<std::uint8_t> inside_;  ///< for each corner: 1 if inside the solid, otherwise 0
   std::vector<SegmentSurface> segments_;
   std::vector<RectangleSurface> rectangles_;
-  std::vector<std::vector<std::uint32_t>> rectangles_of_box_;  ///< rising
-  std::vector<std::vector<std::uint32_t>> segments_of_box_;    ///< rising
-  std::vector<std::vector<std::uint32_t>> part_component_;     ///< by box
+  std::vector<std::vector<std::uint32_t>> rectangles_of_box_;  ///< for each box, ascending
+  std::vector<std::vector<std::uint32_t>> segments_of_box_;    ///< for each box, ascending
+  std::vector<std::vector<std::uint32_t>> part_component_;     ///< for each box and part
   std::vector<std::uint32_t> box_components_;
-  std::vector<std::vector<std::uint32_t>> bodies_of_box_;  ///< a vertex of each body that lies wholly in the box
+  std::vector<std::vector<std::uint32_t>> bodies_of_box_;  ///< for each box: see bodies_in()
   std::vector<StuckBox> stuck_;
   std::size_t split_boxes_ = 0;
   int depth_ = 0;

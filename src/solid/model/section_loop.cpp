@@ -5,7 +5,7 @@
 namespace blum::detail {
 namespace {
 
-/// Returns the corner of a triangle that is not an end of an edge.
+/// Returns the corner of a triangle that is not an end of the given edge.
 Vec3d apex(const SurfaceMesh& mesh, std::uint32_t triangle, std::uint32_t edge) {
   const Triangle& t = mesh.triangles()[triangle];
   const Segment& ends = mesh.edges()[edge];
@@ -24,8 +24,8 @@ bool is_around_hole(const SurfaceMesh& mesh, std::span<const std::uint32_t> edge
   for (const std::uint32_t edge : edges.subspan(1)) {
     if (passes_before(mesh.ends(edge), mesh.ends(lowest), across, plane, along)) lowest = edge;
   }
-  // Below the lowest point is outside the curve. The ray is tilted slightly to the side, so that no triangle is
-  // parallel to it.
+  // The curve's lowest point is tested: the region below it lies outside the curve. A ray downwards from there is
+  // tilted slightly to the side, so that it is parallel to no triangle.
   const auto& [one, two] = mesh.triangles_of(lowest);
   const auto is_behind = [&](const TriangleCorners& corners) {
     const int component = normal_sign(corners, along);

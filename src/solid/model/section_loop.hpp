@@ -9,9 +9,9 @@
 
 namespace blum::detail {
 
-/// Returns true if the solid lies outside a closed curve, near the curve. In this curve, the plane across an axis cuts
-/// the solid's surface. Exact.
-/// @param edges  of the mesh, that the curve passes; at least one.
+/// Returns true if, near a closed curve, the solid lies outside the curve. The curve is a section of the solid's
+/// surface with a plane across an axis. The test is exact.
+/// @param edges  the edges of the mesh at which the curve passes from triangle to triangle; at least one.
 [[nodiscard]] bool is_around_hole(const SurfaceMesh& mesh, std::span<const std::uint32_t> edges, std::size_t across,
                                   double plane);
 

@@ -8,7 +8,7 @@
 namespace blum::detail {
 namespace {
 
-/// In a mesh scaled to about 1, predicates are exact for coordinates of at least this magnitude, and for 0.
+/// In a mesh scaled to size 1/2 to 1, predicates are exact for coordinates that are 0 or have at least this magnitude.
 constexpr double least_coordinate = 1e-45;
 
 }  // namespace
@@ -28,7 +28,7 @@ TriangleMesh scaled(TriangleMesh mesh, int exponent) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (given[a] == 0 || std::abs(v[a]) >= least_coordinate) continue;
       throw InvalidMesh("a vertex has the coordinate " + exact_text(given[a]) +
-                        ", too small next to the others for exact results: round it to 0");
+                        ", which is too small next to the other coordinates for exact results: round it to 0");
     }
   }
   return mesh;

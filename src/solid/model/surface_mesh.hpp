@@ -18,27 +18,28 @@
 
 namespace blum::detail {
 
-/// Returns the exponent of the power of two that scales the largest coordinate of a box to between 1/2 and 1.
+/// Returns the exponent for which 2^exponent scales the coordinate of largest magnitude of a box to at least 1/2 and
+/// below 1.
 [[nodiscard]] int scale_of(const Box3& box);
 
-/// Returns a point multiplied by a power of two.
-/// @param exponent  of the power of two.
+/// Returns a point multiplied by 2^exponent.
+/// @param exponent  may be negative.
 [[nodiscard]] inline Vec3d scaled(const Vec3d& p, int exponent) {
   return {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
 }
 
-/// Returns a mesh multiplied by a power of two.
+/// Returns a mesh multiplied by 2^exponent.
 /// @throws InvalidMesh if a coordinate becomes too small for exact predicates.
 [[nodiscard]] TriangleMesh scaled(TriangleMesh mesh, int exponent);
 
-/// A closed, manifold mesh of one body or several, which faces outwards and does not touch itself. The given mesh must
-/// outlive it.
+/// A closed, manifold mesh of one or several bodies. It faces outwards and does not touch itself. The given mesh must
+/// outlive this object.
 class SurfaceMesh {
  public:
-  /// For one body.
+  /// Makes the mesh of one body.
   SurfaceMesh(const MeshView& mesh, const Context& context)
       : SurfaceMesh(mesh, {outermost_vertex(mesh.vertices)}, context) {}
-  /// @param outermost  a vertex of each body's outer shell, rising.
+  /// @param outermost  one vertex of each body's outer shell, in ascending order.
   SurfaceMesh(const MeshView& mesh, std::vector<std::uint32_t> outermost, const Context& context)
       : mesh_(mesh), sites_(mesh, context), outermost_(std::move(outermost)) {
     constexpr std::uint32_t nobody = 0xffffffffU;
@@ -51,18 +52,18 @@ class SurfaceMesh {
     }
   }
 
-  /// Returns the vertex of largest x, which is a vertex of a body's outer shell.
+  /// Returns the vertex with the largest x-coordinate. It belongs to the outer shell of a body.
   [[nodiscard]] static std::uint32_t outermost_vertex(std::span<const Vec3d> vertices) {
     const auto at =
         std::max_element(vertices.begin(), vertices.end(), [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; });
     return static_cast<std::uint32_t>(at - vertices.begin());
   }
-  /// Returns a vertex of each body's outer shell, rising.
+  /// Returns one vertex of each body's outer shell, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> outermost() const { return outermost_; }
 
   [[nodiscard]] std::span<const Vec3d> vertices() const { return mesh_.vertices; }
   [[nodiscard]] std::span<const Triangle> triangles() const { return mesh_.triangles; }
-  /// Returns vertex pairs, smaller vertex first.
+  /// Returns the edges as pairs of vertices, the smaller vertex first.
   [[nodiscard]] std::span<const Segment> edges() const { return sites_.edges(); }
   /// Returns the edges of a triangle. Edge k lies between corners k and k + 1.
   [[nodiscard]] const std::array<EdgeId, 3>& edges_of(std::uint32_t triangle) const {

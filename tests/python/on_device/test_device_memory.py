@@ -1,7 +1,7 @@
-"""Fields from and to a CUDA device's memory are those of meshes in the host's.
+"""Proves that fields from and to a CUDA device's memory equal those of meshes in the host's memory.
 
-Run by test_package_devices.py with a module whose device is the host (BLUM_CUDA_MODULE), so that NumPy can look into its
-memory.
+test_package_devices.py runs this file with a module whose device is the host (BLUM_CUDA_MODULE), so that NumPy can read
+the device's memory.
 """
 
 import ctypes
@@ -15,7 +15,7 @@ import pytest
 
 
 class OnDevice:
-    """An array as others hold it: by __cuda_array_interface__ alone."""
+    """An array with __cuda_array_interface__ alone."""
 
     def __init__(self, values, stream=None, strides=None, read_only=False):
         self.values = np.array(values, order="C")
@@ -39,7 +39,7 @@ class OnDevice:
 
 
 class ByDlpack:
-    """An array by DLPack alone, as PyTorch's tensors; it notes the streams that it was asked for."""
+    """An array with DLPack alone, like PyTorch's tensors; it records the streams of requests."""
 
     def __init__(self, values, index=0):
         self.values = np.array(values, order="C")
@@ -58,7 +58,7 @@ class ByDlpack:
 
 
 def on_host(array):
-    """What a DeviceArray of the emulated device holds."""
+    """The content of a DeviceArray of the emulated device."""
     interface = array.__cuda_array_interface__
     count = int(np.prod(interface["shape"]))
     kind = np.dtype(interface["typestr"])
@@ -154,7 +154,7 @@ def test_out_is_written_to(mesh, grid):
         assert np.array_equal(out[1].values.view(np.int32), expected.site)
 
 
-def test_streams_are_handed_on(mesh, grid):
+def test_streams_reach_the_arrays(mesh, grid):
     solver = blum.DeviceFieldSolver(grid)
 
     class OfTorch:
@@ -177,7 +177,7 @@ def test_streams_are_handed_on(mesh, grid):
             solver.compute(OnDevice(mesh.vertices), stream=wrong)
 
 
-def test_fields_go_out_by_dlpack(mesh, grid):
+def test_fields_are_exported_by_dlpack(mesh, grid):
     field = blum.DeviceFieldSolver(grid).compute(OnDevice(mesh.vertices), OnDevice(mesh.triangles))
     expected = blum.distance_field(mesh, grid=grid, device="cuda")
     distance = field.distance
@@ -189,7 +189,7 @@ def test_fields_go_out_by_dlpack(mesh, grid):
         distance.__dlpack__(copy=True)
     with pytest.raises(BufferError):
         distance.__dlpack__(dl_device=(1, 0))
-    # What shares the memory keeps it.
+    # An array that shares the memory keeps the memory.
     address = distance.address
     del field, distance
     gc.collect()
@@ -198,7 +198,7 @@ def test_fields_go_out_by_dlpack(mesh, grid):
     assert shared.address == address
 
 
-def test_what_the_device_may_still_read_is_kept(mesh, grid):
+def test_arrays_that_the_device_may_still_read_are_kept(mesh, grid):
     class Vertices(OnDevice):
         pass
 
@@ -208,11 +208,11 @@ def test_what_the_device_may_still_read_is_kept(mesh, grid):
     distance = field.distance
     del vertices, field
     gc.collect()
-    assert gone() is not None  # by the solver, which the array keeps
+    assert gone() is not None  # the array keeps the solver, which keeps the vertices
     del distance
     gc.collect()
     assert gone() is None
-    # A call that fails may have queued work, too.
+    # A failed call may have queued work, too.
     solver = blum.DeviceFieldSolver(grid)
     vertices = Vertices(mesh.vertices)
     gone = weakref.ref(vertices)
@@ -226,7 +226,7 @@ def test_what_the_device_may_still_read_is_kept(mesh, grid):
     assert gone() is None
 
 
-def test_arrays_that_lie_are_told_of(mesh, grid):
+def test_arrays_with_wrong_interfaces_are_rejected(mesh, grid):
     solver = blum.DeviceFieldSolver(grid)
     triangles = OnDevice(mesh.triangles)
 
@@ -255,7 +255,7 @@ def test_arrays_that_lie_are_told_of(mesh, grid):
         (Lying(mesh.vertices, typestr="nonsense"), TypeError, "vertices cannot be used"),
         (Lying(mesh.vertices, shape=("a", 3)), TypeError, "vertices cannot be used"),
         (Lying(mesh.vertices, data=None), TypeError, "vertices cannot be used"),
-        (OfTheHost(mesh.vertices), TypeError, "another kind of device"),
+        (OfTheHost(mesh.vertices), TypeError, "not for a CUDA device"),
         (Failing(mesh.vertices), TypeError, "no more"),
     ):
         with pytest.raises(error, match=text):
@@ -273,7 +273,7 @@ def test_threads_share_a_solver(mesh, grid):
         check(field, expected)
 
 
-def test_wrong_arrays_are_told_of(mesh, grid):
+def test_wrong_arrays_are_rejected(mesh, grid):
     solver = blum.DeviceFieldSolver(grid)
     vertices, triangles = OnDevice(mesh.vertices), OnDevice(mesh.triangles)
     for wrong, error, text in (
@@ -312,7 +312,7 @@ def test_wrong_arrays_are_told_of(mesh, grid):
     check(solver.compute(vertices, triangles), blum.distance_field(mesh, grid=grid, device="cuda"))
 
 
-def test_vertices_that_are_no_numbers_give_no_field(mesh, grid):
+def test_vertices_of_nan_give_a_field_of_nan(mesh, grid):
     vertices = mesh.vertices.copy()
     vertices[3] = np.nan
     field = blum.DeviceFieldSolver(grid).compute(OnDevice(vertices), OnDevice(mesh.triangles))
@@ -343,7 +343,7 @@ def test_images_without_selected_voxels_are_infinitely_far():
         assert (on_host(field.site) == -1).all()
 
 
-def test_wrong_images_are_told_of():
+def test_wrong_images_are_rejected():
     grid = blum.Grid((0, 0, 0), 1, (5, 6, 7))
     transform = blum.DeviceDistanceTransform(grid)
     for wrong, error, text in (

@@ -342,7 +342,7 @@ TEST(AxisGraph, LowValuesAndMediansAreWeighted) {
   EXPECT_NEAR(without.low, 1, 1e-12);
   EXPECT_NEAR(without.median, 2, 1e-12);
   const AxisSpread crumb = spread_of({constant(1, 0.01), constant(4, 0.98), constant(5, 0.01)});
-  EXPECT_NEAR(crumb.low, 4, 1e-12) << "one small triangle is no wall";
+  EXPECT_NEAR(crumb.low, 4, 1e-12) << "one small triangle is not a wall";
 }
 
 TEST(AxisGraph, LowValuesAndMediansAreThoseOfLinearFunctions) {

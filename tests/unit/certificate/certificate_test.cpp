@@ -118,12 +118,13 @@ TEST(Certificate, SeveralBodiesAndVoids) {
   Certificate c = certify(axis, mesh, unlabelled);
   EXPECT_EQ(c.solid, (BettiNumbers{3, 0, 1}));
   EXPECT_TRUE(c.geometry.holds);
-  EXPECT_EQ(complaints(c), "body 2 of 3 (around 2.5 1.5 1.5) has 1 void, the axis in it 0\n");
+  EXPECT_EQ(complaints(c), "body 2 of 3 (around 2.5 1.5 1.5) has 1 void, the axis in it has 0\n");
   // The total is the same, but not the number in each body.
   axis.vertices[2] = axis.vertices[0];
   EXPECT_TRUE(
       complaints(certify(axis, mesh, unlabelled))
-          .starts_with("body 1 of 3 (around 0.5 0.5 0.5) has 1 component, the axis in it 2\nbody 2 of 3 (around 2.5"))
+          .starts_with(
+              "body 1 of 3 (around 0.5 0.5 0.5) has 1 component, the axis in it has 2\nbody 2 of 3 (around 2.5"))
       << complaints(certify(axis, mesh, unlabelled));
   // A point in the void lies outside.
   axis.vertices[2] = vertex_at(bvh, {1.15, 1.5, 1.5});
@@ -183,7 +184,7 @@ TEST(Certificate, ResolvesMeshesThatCrossThemselves) {
   TriangleMesh mesh = make_sphere({});
   append(mesh, make_sphere({}), {1, 0.1, 0.05});
   EXPECT_EQ(solid_rule(mesh).rule, SolidRule::polyhedron);
-  EXPECT_EQ(solid_rule(mesh).reason, "the mesh is closed, and manifold once its crossings are resolved");
+  EXPECT_EQ(solid_rule(mesh).reason, "the mesh is closed, and manifold after its crossings are resolved");
   const Certificate united = certify(ball_axis(mesh, {}), mesh, {.radii = false, .labels = false});
   EXPECT_EQ(united.solid, (BettiNumbers{1, 0, 0}));
   EXPECT_TRUE(united.holds()) << complaints(united);
@@ -206,7 +207,8 @@ TEST(Certificate, ResolvesMeshesThatCrossThemselves) {
   mesh.vertices[0].x = 1e-200;
   EXPECT_EQ(solid_rule(mesh).rule, SolidRule::winding);
   EXPECT_EQ(solid_rule(mesh).reason,
-            "the mesh crosses itself, which is not resolved: coordinates are too many orders of magnitude apart");
+            "the mesh crosses itself, and the crossings cannot be resolved: coordinates are too many orders of "
+            "magnitude apart");
 }
 
 TEST(Certificate, PositionsAreCheckedWithoutRadii) {
@@ -247,23 +249,23 @@ class FalsifiedAxis : public testing::Test {
 
 TEST_F(FalsifiedAxis, MissingEdge) {
   axis.edges.pop_back();
-  expect({"the solid has 1 tunnel, the axis 0"});
+  expect({"the solid has 1 tunnel, the axis has 0"});
 }
 
 TEST_F(FalsifiedAxis, ExtraVertex) {
   axis.vertices.push_back(axis.vertices.front());
-  expect({"the solid has 1 component, the axis 2"});
+  expect({"the solid has 1 component, the axis has 2"});
 }
 
 TEST_F(FalsifiedAxis, ExtraLoop) {
   axis.edges.push_back({{0, 5}});
   axis.edges.push_back({{0, 7}});
-  expect({"the solid has 1 tunnel, the axis 3"});
+  expect({"the solid has 1 tunnel, the axis has 3"});
 }
 
 TEST_F(FalsifiedAxis, ExtraSphere) {
   axis.triangles = {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 2, 3}}, {{1, 2, 3}}};
-  expect({"the solid has 0 voids, the axis 1"});
+  expect({"the solid has 0 voids, the axis has 1"});
 }
 
 TEST_F(FalsifiedAxis, WrongRadius) {
@@ -284,7 +286,7 @@ TEST_F(FalsifiedAxis, SmallerBall) {
   // The numbers are consistent, but the footprints lie off the surface.
   for (Vec3d& foot : axis.vertices[40].footprints) foot = (foot + axis.vertices[40].position) * 0.5;
   axis.vertices[40].radius *= 0.5;
-  expect({"a radius differs", "a footprint lies off the surface by", "off the site that it names"});
+  expect({"a radius differs", "a footprint lies off the surface by", "off its site"});
 }
 
 TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
@@ -294,19 +296,19 @@ TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
   Vec3d other = cross(off, vertex.position);
   other = other * (vertex.radius / length(other)) + off * 0.2;
   vertex.footprints[1] = vertex.position + other * (vertex.radius / length(other));
-  expect({"a footprint lies off the surface by", "off the site that it names", "a separation angle differs"});
+  expect({"a footprint lies off the surface by", "off its site", "a separation angle differs"});
 }
 
 TEST_F(FalsifiedAxis, FootprintElsewhereOnTheSurface) {
   axis.vertices[3].footprints[0] = axis.vertices[50].footprints[0];
-  expect({"the distance to a footprint differs", "off the site that it names", "a separation angle differs"});
+  expect({"the distance to a footprint differs", "off its site", "a separation angle differs"});
 }
 
 TEST_F(FalsifiedAxis, OtherSites) {
   axis.vertices[3].sites[1] = axis.vertices[50].sites[0];
-  expect({"a footprint lies off the site that it names by"});
+  expect({"a footprint lies off its site by"});
   axis.vertices[3].sites[1] = SiteId(1U << 30U);
-  expect({"a footprint names a site that the solid does not have"});
+  expect({"a footprint has a site that the solid does not have"});
   axis.vertices[3].sites[1] = SiteId::none();
   EXPECT_TRUE(certify(axis, torus, unlabelled).holds());
 }
@@ -340,7 +342,7 @@ TEST_F(FalsifiedAxis, NonFiniteNumbers) {
 
 TEST_F(FalsifiedAxis, NoAxisAtAll) {
   axis = {};
-  expect({"1 component, the axis 0", "1 tunnel, the axis 0"});
+  expect({"1 component, the axis has 0", "1 tunnel, the axis has 0"});
   EXPECT_NEAR(certify(axis, torus, unlabelled).balls.solid_to_balls, bounds(torus).diagonal(), 1e-12);
 }
 
@@ -350,7 +352,7 @@ TEST_F(FalsifiedAxis, MissingBallsAreMeasured) {
   axis.vertices.resize(48);
   axis.edges.resize(47);
   const Certificate half = certify(axis, torus, unlabelled);
-  EXPECT_EQ(complaints(half), "the solid has 1 tunnel, the axis 0\n");
+  EXPECT_EQ(complaints(half), "the solid has 1 tunnel, the axis has 0\n");
   EXPECT_GT(half.balls.solid_to_balls, 1);
   EXPECT_GT(half.balls.mean_solid_to_balls, 10 * whole.balls.mean_solid_to_balls + 0.1);
 }
@@ -502,8 +504,8 @@ TEST(VoxelCertificate, BodyByBody) {
   add(1);
   add(3);
   EXPECT_EQ(complaints(certify(axis, voxels, grid, nullptr, unlabelled)),
-            "body 1 of 2 (around 2 1 1) has 1 component, the axis in it 2\n"
-            "body 2 of 2 (around 6.5 1 1) has 1 component, the axis in it 0\n");
+            "body 1 of 2 (around 2 1 1) has 1 component, the axis in it has 2\n"
+            "body 2 of 2 (around 6.5 1 1) has 1 component, the axis in it has 0\n");
   axis.vertices.clear();
   add(3);
   add(6);
@@ -540,11 +542,11 @@ TEST(VoxelCertificate, FindsFalseRadiiAndTopology) {
   c = certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled);
   EXPECT_EQ(c.geometry.outside, 1U) << complaints(c);
   EXPECT_NEAR(c.geometry.outside_by, 0.5, 1e-12);
-  EXPECT_NE(complaints(c).find("the solid has 2 tunnels, the axis 1"), std::string::npos) << complaints(c);
+  EXPECT_NE(complaints(c).find("the solid has 2 tunnels, the axis has 1"), std::string::npos) << complaints(c);
   ring = {};
   ring.voxels.erase(8, 8, 2);
   c = certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled);
-  EXPECT_NE(complaints(c).find("the solid has 1 void, the axis 0"), std::string::npos) << complaints(c);
+  EXPECT_NE(complaints(c).find("the solid has 1 void, the axis has 0"), std::string::npos) << complaints(c);
   ring.grid.size[0] = 12;
   EXPECT_THROW((void)certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled), InvalidOption);
 }
@@ -594,7 +596,7 @@ TEST(CertificateSlow, ALargeAxis) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::cout << axis.vertices.size() << " vertices, " << ball.triangles.size() << " triangles: " << seconds.count()
             << " s, step " << c.balls.step << "\n";
-  EXPECT_EQ(complaints(c), "the solid has 0 voids, the axis 1\n");
+  EXPECT_EQ(complaints(c), "the solid has 0 voids, the axis has 1\n");
 }
 
 }  // namespace

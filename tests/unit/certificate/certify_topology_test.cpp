@@ -52,7 +52,7 @@ TEST(CertifyTopology, FindsWrongNumbersAndWrongPlaces) {
   add_ring(disc, 1, true);
   const Certificate filled = certify_topology(disc, make_torus());
   EXPECT_FALSE(filled.topology_holds);
-  EXPECT_TRUE(mentions(filled, "the solid has 1 tunnel, the axis 0"));
+  EXPECT_TRUE(mentions(filled, "the solid has 1 tunnel, the axis has 0"));
   EXPECT_FALSE(filled.geometry.holds) << "the middle lies in the hole of the ring";
 
   Complex beside;
@@ -64,7 +64,7 @@ TEST(CertifyTopology, FindsWrongNumbersAndWrongPlaces) {
   Complex two;
   add_ring(two, 0.9, false);
   add_ring(two, 1.1, false);
-  EXPECT_TRUE(mentions(certify_topology(two, make_torus()), "the solid has 1 component, the axis 2"));
+  EXPECT_TRUE(mentions(certify_topology(two, make_torus()), "the solid has 1 component, the axis has 2"));
 }
 
 TEST(CertifyTopology, OfVoxels) {

@@ -149,7 +149,7 @@ TEST(ColumnLies, FalseRoles) {
 TEST(ColumnLies, UnlistedEdges) {
   True lie = bracket();
   lie.axis.edges.erase(lie.axis.edges.begin());
-  expect_refused(lie, "1 rims and seams are not listed");
+  expect_refused(lie, "1 edges of rims and seams are not listed");
 }
 
 TEST(ColumnLies, EdgesInsideOfSheetsAreListed) {
@@ -164,39 +164,39 @@ TEST(ColumnLies, FalseAnglesOfTriangles) {
   for (const float factor : {0.25F, 0.5F, 0.8F}) {
     True lie = bracket();
     for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle *= factor;
-    expect_refused(lie, "below those of all their corners");
+    expect_refused(lie, "have a smaller separation angle than each of their corners");
   }
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle = 180;
-  expect_refused(lie, "above all angles found around them");
+  expect_refused(lie, "have a larger separation angle than any point examined near them");
   lie = bracket();
   shuffle_angles(lie.axis.triangles);
-  expect_refused(lie, "a separation angle");
+  expect_refused(lie, "separation angle");
 }
 
 TEST(ColumnLies, AllAnglesZero) {
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle = 0;
   for (EdgeRow& edge : lie.axis.edges) edge.separation_angle = 0;
-  expect_refused(lie, "below those of all their corners");
+  expect_refused(lie, "have a smaller separation angle than each of their corners");
 }
 
 TEST(ColumnLies, FalseAnglesOfEdges) {
   True lie = bracket();
   for (EdgeRow& edge : lie.axis.edges) edge.separation_angle = 180;
-  expect_refused(lie, "above those of all their triangles");
+  expect_refused(lie, "have a larger separation angle than each of their triangles");
   lie = bracket();
   for (EdgeRow& edge : lie.axis.edges) edge.separation_angle *= 0.25F;
-  expect_refused(lie, "below that of their triangles");
+  expect_refused(lie, "below the largest of their triangles");
   lie = bracket();
   shuffle_angles(lie.axis.edges);
-  expect_refused(lie, "a separation angle");
+  expect_refused(lie, "separation angle");
 }
 
 TEST(ColumnLies, TheAxisOfASmallerAngle) {
   True lie = bracket();
   lie.claims.metadata.theta = 120;
-  expect_refused(lie, "are rims of sheets without any angle above 120 degrees");
+  expect_refused(lie, "lies on rims of sheets without an angle above 120 degrees");
 }
 
 TEST(ColumnLies, ImpossibleFigures) {

@@ -129,7 +129,7 @@ TEST(Lies, AllVerticesHalfwayToTheWallOfACoarseGrid) {
       lie.claims.metadata.spacing = bounds(lie.mesh).diagonal() / parts;
       expect_refused(lie, "of the sheets and curves that should lie between two walls");
       lie.claims.metadata.deviation = bounds(lie.mesh).diagonal() / 16;
-      expect_refused(lie, "within a quarter of the distance to the walls");
+      expect_refused(lie, "closer to the middle than a quarter of their distance to the walls");
     }
   }
 }
@@ -157,7 +157,7 @@ TEST(Lies, OneVertexMovedWithItsRadiusAndFootprint) {
     const SiteTable sites(lie.mesh);
     const Vec3d towards = deepest.footprints[0] - deepest.position;
     put_honestly(deepest, deepest.position + towards * (voxels * lie.voxel / length(towards)), Bvh(lie.mesh, sites));
-    expect_refused(lie, "off the middle, the first at");
+    expect_refused(lie, "the middle, the first one at");
   }
 }
 
@@ -204,13 +204,13 @@ TEST(Lies, FootprintsOffTheSurface) {
 TEST(Lies, SitesOfOtherFootprints) {
   True lie = bracket();
   for (VertexRow& vertex : lie.axis.vertices) std::swap(vertex.sites[0], vertex.sites[1]);
-  expect_refused(lie, "a footprint lies off the site");
+  expect_refused(lie, "a footprint lies off its site");
 }
 
 TEST(Lies, NonexistentSites) {
   True lie = bracket();
   lie.axis.vertices[3].sites[0] = SiteId(1'000'000);
-  expect_refused(lie, "names a site that the solid does not have");
+  expect_refused(lie, "has a site that the solid does not have");
 }
 
 TEST(Lies, ErasedSites) {
@@ -293,7 +293,7 @@ TEST(Lies, ASmallSheetOffTheMiddle) {
     lie.axis.edges.push_back({ends, 170, MedialRole::rim});
   }
   lie.axis.triangles.push_back({{apex, first, first + 1}, 170, lie.axis.sheet_count++});
-  expect_refused(lie, "are mostly off the middle");
+  expect_refused(lie, "lie mostly off the middle");
 }
 
 TEST(Lies, ATreeInsteadOfTheAxis) {
@@ -415,7 +415,7 @@ TEST(Lies, MissingColumnsThatBlumWrites) {
        {&MedialClaims::has_radii, &MedialClaims::has_footprints, &MedialClaims::has_angles, &MedialClaims::has_sites}) {
     True lie = box();
     lie.claims.*has = false;
-    expect_refused(lie, "holds no");
+    expect_refused(lie, "contains no");
   }
 }
 

@@ -182,7 +182,7 @@ TEST(SolidBetti, RejectsMeshesThatBoundNoSolid) {
       if (pair.vertices[v] == Vec3d{1, 1, 1}) v = static_cast<std::uint32_t>(first);
     }
   }
-  says(pair, "meet in vertex " + std::to_string(first));
+  says(pair, "meet only in vertex " + std::to_string(first));
   TriangleMesh flat;
   flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   flat.triangles = {{0, 1, 2}, {0, 2, 1}};

@@ -120,15 +120,15 @@ TEST_F(TriedAxes, TriesFormsInOrderAndWarnsOfFailures) {
   EXPECT_TRUE(first.axes.front().warnings.empty());
   expect_same(first.axes.front().axis.axis, axis->lean(60, tolerance).axis);
   const CertifiedAxes second = held_from(1);
-  const std::vector<Warning> expected{
-      {WarningCode::form_not_certified,
-       "at theta 60 borders of sheets stay at the cells of the grid, because otherwise something is wrong"}};
+  const std::vector<Warning> expected{{WarningCode::form_not_certified,
+                                       "at theta 60 borders of sheets stay at the cells of the grid; with moved "
+                                       "borders, the axis is not certified: something is wrong"}};
   EXPECT_EQ(second.axes.front().warnings, expected);
   expect_same(second.axes.front().axis.axis, decimate(axis->simplify(60), tolerance).axis);
   const CertifiedAxes third = held_from(2);
   EXPECT_EQ(third.axes.front().warnings.size(), 2U);
   EXPECT_EQ(third.axes.front().warnings.back().text,
-            "at theta 60 the axis keeps all vertices, because with fewer something is wrong");
+            "at theta 60 the axis keeps all vertices; with fewer vertices, it is not certified: something is wrong");
   expect_same(third.axes.front().axis.axis, axis->simplify(60));
   for (const CertifiedAxes* const found : {&first, &second, &third}) {
     EXPECT_TRUE(found->holds());
@@ -205,8 +205,10 @@ TEST_F(TriedAxes, AComplexIsDecimatedIfTheResultIsCertified) {
   expect_same(kept.axis.axis, whole);
   EXPECT_EQ(kept.axis.vertices_before, whole.positions.size());
   EXPECT_FALSE(kept.metadata.deviation.has_value());
-  EXPECT_EQ(texts_of(kept.warnings),
-            std::vector<std::string>{"at theta 60 the axis keeps all vertices, because with fewer something is wrong"});
+  EXPECT_EQ(
+      texts_of(kept.warnings),
+      std::vector<std::string>{
+          "at theta 60 the axis keeps all vertices; with fewer vertices, it is not certified: something is wrong"});
 }
 
 TEST(CertifiedAxes, EqualThoseOfEachAngle) {
@@ -295,7 +297,7 @@ TEST(ModelProblems, NameTheBodyAndTheOption) {
   report.bodies[1].failures = {{.low = {0, 0, 0}, .high = {2, 2, 2}}};
   const std::vector<std::string> problems = model_problems(report, OptionStyle::command_line);
   ASSERT_EQ(problems.size(), 1U);
-  EXPECT_NE(problems.front().find("the model of body 2 at voxels of side 0.5 fails in 1 place, the first one at "
+  EXPECT_NE(problems.front().find("the model of body 2 with voxels of side 0.5 fails in 1 place, the first one at "
                                   "(1, 1, 1)"),
             std::string::npos)
       << problems.front();

@@ -74,13 +74,13 @@ TEST(Complex, ReportsItsProblem) {
   complex.vertex_columns = two_columns();
   EXPECT_EQ(problem_of(complex), "");
   complex.edge_columns = two_columns();
-  EXPECT_NE(problem_of(complex).find("the columns of edges have 3 rows; 1"), std::string::npos);
+  EXPECT_NE(problem_of(complex).find("the columns of edges have 3 rows, but 1"), std::string::npos);
   complex.edge_columns = {};
   complex.triangles.push_back({0, 2, 0});
-  EXPECT_NE(problem_of(complex).find("triangle 1 names vertex 0 twice"), std::string::npos);
+  EXPECT_NE(problem_of(complex).find("triangle 1 uses vertex 0 twice"), std::string::npos);
   complex.triangles.pop_back();
   complex.edges[0][1] = 3;
-  EXPECT_NE(problem_of(complex).find("edge 0 names vertex 3"), std::string::npos);
+  EXPECT_NE(problem_of(complex).find("edge 0 uses vertex 3"), std::string::npos);
   complex.edges.clear();
   complex.positions[2].y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(validate(complex), InvalidMesh);

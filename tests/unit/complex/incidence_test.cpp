@@ -129,8 +129,8 @@ TEST(Incidence, RejectsInvalidComplexes) {
     }
     return std::string();
   };
-  EXPECT_NE(message({3, beyond, {}}).find("edge 1 names vertex 5, but there are 3"), std::string::npos);
-  EXPECT_NE(message({3, {}, twice}).find("triangle 0 names vertex 0 twice"), std::string::npos);
+  EXPECT_NE(message({3, beyond, {}}).find("edge 1 uses vertex 5, but there are only 3"), std::string::npos);
+  EXPECT_NE(message({3, {}, twice}).find("triangle 0 uses vertex 0 twice"), std::string::npos);
   EXPECT_THROW((void)components({3, beyond, {}}), InvalidOption);
   EXPECT_THROW((void)euler_characteristic({3, {}, twice}), InvalidOption);
 }

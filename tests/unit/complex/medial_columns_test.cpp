@@ -101,11 +101,12 @@ TEST(MedialColumns, ReportsTheProblemOfInvalidAxes) {
   expect("a footprint", [&](Complex& a) { a.vertex_columns.edit<double>("footprint_0", 3)[1] = nan; });
   expect("an angle", [&](Complex& a) { a.vertex_columns.edit<double>("separation_angle")[1] = nan; });
   expect("a site", [](Complex& a) { a.vertex_columns.edit<std::int32_t>("site_1")[1] = -2; });
-  expect("a role", [](Complex& a) { a.vertex_columns.edit<std::int32_t>("role")[1] = 5; });
-  expect("edge 0 (counted from 0) is neither", [](Complex& a) { a.edge_columns.edit<std::int32_t>("role")[0] = 0; });
+  expect("an unknown role", [](Complex& a) { a.vertex_columns.edit<std::int32_t>("role")[1] = 5; });
+  expect("edge 0 (counted from 0) has a role other",
+         [](Complex& a) { a.edge_columns.edit<std::int32_t>("role")[0] = 0; });
   expect("1 triangles", [](Complex& a) { a.triangle_columns.edit<std::int32_t>("sheet")[0] = 1; });
-  expect("below 0", [](Complex& a) { a.triangle_columns.edit<std::int32_t>("sheet")[0] = -1; });
-  expect("edge 1 names vertex 9", [](Complex& a) { a.edges[1][0] = 9; });
+  expect("a negative sheet number", [](Complex& a) { a.triangle_columns.edit<std::int32_t>("sheet")[0] = -1; });
+  expect("edge 1 uses vertex 9", [](Complex& a) { a.edges[1][0] = 9; });
 }
 
 TEST(MedialColumns, LevelsMayBeInfiniteButAreNumbers) {

@@ -101,7 +101,7 @@ TEST(FieldWarnings, OfGridsWithoutANodeInside) {
   fold.triangles = {{0, 1, 2}, {1, 2, 3}};
   EXPECT_EQ(text_of(fold, WarningCode::nothing_inside),
             "no node is inside: 1 edge lies between triangles that face different ways, so their winding numbers "
-            "cancel; orient the mesh first");
+            "cancel; orient the mesh first, with oriented_mesh() or `blum clean`");
 }
 
 TEST(FieldWarnings, AreTheSameWithAGivenOrientation) {

@@ -58,16 +58,16 @@ TEST(ImageValues, MessagesAboutMissingLabelsListExistingOnes) {
     return nothing_selected_text(image, selection);
   };
   EXPECT_EQ(told(row_of<std::uint8_t>({0, 2, 1, 2}), LabelSelection::of_label(7)),
-            "no voxel of the image has the label 7: there are 1 and 2");
+            "no voxel of the image has the label 7: its labels are 1 and 2");
   EXPECT_EQ(told(row_of<std::uint8_t>({0, 0}), LabelSelection::of_label(7)),
-            "no voxel of the image has the label 7: there are none but 0");
+            "no voxel of the image has the label 7: its labels are 0 only");
   EXPECT_EQ(told(row_of<float>({0.5F, 2}), LabelSelection::at_least(3)),
             "no voxel of the image reaches the threshold 3: its values are 0.5 to 2");
   EXPECT_EQ(told(row_of<float>({0, 0}), {}), "no voxel of the image is selected: none differs from 0");
   std::vector<std::int64_t> many(30);
   for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<std::int64_t>(i);
   EXPECT_EQ(told(row_of(many), LabelSelection::of_label(99)),
-            "no voxel of the image has the label 99: there are 1, 2, 3, 4, 5, 6, 7, 8, 9, 10 and 19 more");
+            "no voxel of the image has the label 99: its labels are 1, 2, 3, 4, 5, 6, 7, 8, 9, 10 and 19 more");
 }
 
 TEST(ImageValues, LabelAndThresholdExcludeEachOther) {

@@ -142,12 +142,12 @@ TEST_F(CollisionFiles, ForeignCollisionsAreRefused) {
     }
   };
   refused("c.obj", meshes_, "use one of these extensions");
-  refused("c.npz", std::span(meshes_).first(1), "a collision names object 1, but meshes of 1 objects are given");
+  refused("c.npz", std::span(meshes_).first(1), "a collision uses object 1, but meshes of 1 objects are given");
   found_.objects[1].vertex_face[0].face = TriangleId(1);
-  refused("c.csv", meshes_, "a collision names face 1 of object 1, whose mesh has 1");
+  refused("c.csv", meshes_, "a collision uses face 1 of object 1, but that mesh has only 1");
   found_.objects[1].vertex_face[0].face = TriangleId(0);
   found_.objects[1].vertex_face[0].vertex = 4;
-  refused("c.vtp", meshes_, "a collision names vertex 4 of a mesh that has 4");
+  refused("c.vtp", meshes_, "a collision uses vertex 4 of a mesh that has only 4");
   found_.objects[1].vertex_face[0].vertex = 3;
   meshes_[1].end = meshes_[1].end.first(2);
   refused("c.vtp", meshes_, "a mesh has 3 vertices at the start, but 2 at the end");

@@ -408,7 +408,7 @@ TEST(NpzFields, HostileFilesAreRefusedWithAReason) {
       {size, "two sizes"},
       {zip_bytes({{"distance.npy", "rubbish here"}}), "does not begin as a NumPy array"},
       {zip_bytes({{"distance.npy", distances("(1, 2, 4)")}}), "cut short"},
-      {zip_bytes({{"distance.npy", distances("(1, 2, 2)")}}), "8 bytes more"},
+      {zip_bytes({{"distance.npy", distances("(1, 2, 2)")}}), "8 more bytes"},
       {zip_bytes({{"distance.npy", distances("(100000, 100000, 50)"), true}}), "cut short"},
       {zip_bytes({{"distance.npy", distances("(1, 1, 2, 3)")}}), "4 axes"},
       {zip_bytes({{"distance.npy", distances("(1, 2, 3)", "<f2")}}), "'<f2'"},

@@ -159,9 +159,9 @@ TEST_F(ProximityFiles, ForeignPairsAreRefused) {
     }
   };
   refused("p.txt", meshes_, "use one of these extensions");
-  refused("p.npz", std::span(meshes_).first(1), "a pair names object 1, but meshes of 1 objects are given");
+  refused("p.npz", std::span(meshes_).first(1), "a pair uses object 1, but meshes of 1 objects are given");
   pairs_[2].second = 1;
-  refused("p.npz", meshes_, "a pair names primitive 1 of object 1, whose mesh has 1");
+  refused("p.npz", meshes_, "a pair uses primitive 1 of object 1, whose mesh has only 1");
   EXPECT_EQ(folder_.entries(), 0);
 }
 

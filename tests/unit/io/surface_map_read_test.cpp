@@ -206,10 +206,10 @@ TEST_F(SurfaceMapDamage, OfNumbersIsNamed) {
   expect_refused("row 0, column 1: it is a number, but", [](Arrays& a) { a.put("distance", 1, 2.0F); });
   expect_refused("(vector.npy): texel in row 0, column 2", [](Arrays& a) { a.put("vector", 7, HUGE_VALF); });
   expect_refused("(site.npy)", [](Arrays& a) { a.put("site", first_texel, std::int32_t{-2}); });
-  expect_refused("triangle 12 is named, but there are only 12",
+  expect_refused("triangle 12 is used, but there are only 12",
                  [](Arrays& a) { a.put("triangle", first_texel, std::int32_t{12}); });
-  expect_refused("triangle -2 is named", [](Arrays& a) { a.put("triangle", first_texel, std::int32_t{-2}); });
-  expect_refused("the chart of that triangle is elsewhere",
+  expect_refused("triangle -2 is used", [](Arrays& a) { a.put("triangle", first_texel, std::int32_t{-2}); });
+  expect_refused("the chart of that triangle does not contain the texel",
                  [](Arrays& a) { a.put("triangle", first_texel, std::int32_t{11}); });
   expect_refused("the chart of that triangle has no area", [](Arrays& a) {
     for (const std::size_t c : {0U, 1U, 2U, 3U}) a.put("corners", 2 + c, a.get<double>("corners", c % 2));

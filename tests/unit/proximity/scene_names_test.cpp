@@ -60,9 +60,9 @@ TEST(SceneOfNames, UsesNamesOfObjectsInMessages) {
     const ObjectMotion rests{second};
     starts(called + " at the end: a coordinate", [&] { static_cast<void>(scene.continuous({&far, 1})); });
     const std::vector<ObjectMotion> twice{rests, rests};
-    starts(called + " is given two motions", [&] { static_cast<void>(scene.continuous(twice)); });
+    starts(called + " has two motions", [&] { static_cast<void>(scene.continuous(twice)); });
     scene.update(second, heap);
-    starts(called + ": 40000 primitives meet at vertex",
+    starts(called + ": 40000 primitives share vertex",
            [&] { static_cast<void>(scene.separation(second, second, infinite)); });
     scene.update(second, open);
     scene.rename(second, "bowl");

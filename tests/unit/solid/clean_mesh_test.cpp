@@ -369,7 +369,7 @@ TEST(CleanMesh, RejectsMeshesThatBoundNoSolid) {
   EXPECT_NE(message_of(crossing, 0.01).find("closed"), std::string::npos);
   TriangleMesh twice = make_box();
   twice.triangles.push_back({0, 0, 1});
-  EXPECT_NE(message_of(twice, 0.01).find("names a vertex twice"), std::string::npos);
+  EXPECT_NE(message_of(twice, 0.01).find("uses a vertex twice"), std::string::npos);
   TriangleMesh tiny = make_box();
   tiny.vertices[1].x = 1e-60;
   EXPECT_NE(message_of(tiny, 0.01).find("1e-60"), std::string::npos);

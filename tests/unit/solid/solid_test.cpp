@@ -212,12 +212,12 @@ TEST(Solid, UnresolvedCrossingsAreNotAPolyhedron) {
   append(mesh, box_between({1, 1, 1}, {3, 3, 3}));
   const TriangleMesh inwards{mesh.vertices, reversed_triangles(mesh.triangles), {}, {}};
   EXPECT_EQ(obstacle_of(inwards),
-            "it crosses itself (6 pairs of triangles), which is not resolved: no point has a winding number above 0: "
-            "it faces inwards");
+            "it crosses itself (6 pairs of triangles), and the crossings cannot be resolved: no point has a winding "
+            "number above 0: the mesh faces inwards");
   mesh.vertices[0].x = 1e-200;
   EXPECT_EQ(obstacle_of(mesh),
-            "it crosses itself (6 pairs of triangles), which is not resolved: coordinates are too many orders of "
-            "magnitude apart");
+            "it crosses itself (6 pairs of triangles), and the crossings cannot be resolved: coordinates are too many "
+            "orders of magnitude apart");
 }
 
 TEST(Solid, RejectsMeshesWithoutTriangles) {

@@ -26,10 +26,11 @@ TEST(SolidWarnings, ReportReversedShellsAndTriangles) {
   EXPECT_EQ(solid_warnings(Solid::of(mesh)), std::vector{shell});
   std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
   const Warning triangle{WarningCode::reversed_shells,
-                         "1 triangle faces another way than the neighbours, and was reversed"};
+                         "1 triangle faces another way than neighbouring triangles and was reversed"};
   EXPECT_EQ(solid_warnings(Solid::of(mesh)), (std::vector{triangle, shell}));
   EXPECT_EQ(reversal_warnings(0, 2)[0].text, "2 shells face the wrong way and were reversed");
-  EXPECT_EQ(reversal_warnings(3, 0)[0].text, "3 triangles face another way than the neighbours, and were reversed");
+  EXPECT_EQ(reversal_warnings(3, 0)[0].text,
+            "3 triangles face another way than neighbouring triangles and were reversed");
 }
 
 TEST(SolidWarnings, ReportCrossings) {
