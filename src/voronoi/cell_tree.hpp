@@ -130,7 +130,7 @@ struct CellTree {
     visit_leaf_edges(e.children + (is_down ? 1U : 0U), is_down, visit);
     visit_leaf_edges(e.children + (is_down ? 0U : 1U), is_down, visit);
   }
-  /// Calls visit(leaf) for each square without children of which `square` consists.
+  /// Calls visit(leaf) for each leaf below `square`: the squares inside it that have no children, or `square` itself.
   template <class Visit>
   void visit_leaf_squares(CellId square, const Visit& visit) const {
     const GridSquare& s = squares[square];

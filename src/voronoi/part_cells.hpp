@@ -80,8 +80,8 @@ class PartRule {
   [[nodiscard]] bool drops(std::uint32_t first, std::uint32_t second) const;
   /// Returns the passing vertex at which two edges meet; nullopt for other pairs of sites.
   [[nodiscard]] std::optional<std::uint32_t> passing_vertex(std::uint32_t edge, std::uint32_t other) const;
-  /// Returns pairs of the given edge and a thin vertex at one of its ends. Only thin vertices without convex edges are
-  /// included: all walls around them are dropped.
+  /// Returns pairs of the given edge and a thin vertex at one of its ends. Thin vertices with
+  /// convex edges are left out. Only around the others are all walls dropped.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> thin_ends(std::uint32_t edge) const;
   /// Returns the sites of the faces on both sides of an edge.
   [[nodiscard]] std::array<std::uint32_t, 2> faces_of(std::uint32_t edge) const;

@@ -296,7 +296,7 @@ def test_json_goes_to_a_file_beside_the_text(solids, tmp_path):
     out, _ = run(
         "medial", solids / "box.obj", "-o", tmp_path / "b.obj", "--resolution", 12, "--json", tmp_path / "b.json"
     )
-    assert "yes at theta 60: topology of the solid (1 component, 0 tunnels, 0 voids); inside the solid" in out
+    assert "yes at theta 60: the axis has the topology of the solid (1 component, 0 tunnels, 0 voids) and lies inside the solid" in out
     assert json.loads((tmp_path / "b.json").read_text())["outputs"] == [str(tmp_path / "b.obj")]
 
 

@@ -136,4 +136,13 @@ PhaseSummary summarize(const std::vector<PhaseTime>& phases) {
   return out;
 }
 
+std::string point_text(const Vec3d& point, double size) {
+  constexpr double rounding = 1e-14;
+  Vec3d shown;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    shown[axis] = std::abs(point[axis]) <= rounding * size ? 0 : point[axis];
+  }
+  return vector_text(shown);
+}
+
 }  // namespace blum::cli

@@ -37,6 +37,9 @@ class Stopwatch {
 /// Returns a number of bytes as text, for example "1.5 GiB".
 [[nodiscard]] std::string bytes_text(double bytes);
 [[nodiscard]] std::string vector_text(const Vec3d& v);
+/// Returns a point as text. `size` is the size of the scene in mesh units. Coordinates within its rounding error are
+/// printed as 0.
+[[nodiscard]] std::string point_text(const Vec3d& point, double size);
 [[nodiscard]] std::string size_text(const GridSpec& grid);
 /// Returns a text like "1 % below 0.2, 5 % below 0.3".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);

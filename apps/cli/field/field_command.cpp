@@ -197,7 +197,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
                 std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
   if (run.names_device) run.table.add("device", to_string(field.device));
   if (!field.device_reason.empty()) run.table.add("no device", field.device_reason);
-  run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
+  run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) + " at the nodes" +
                                 (field.sign_rule == SignRule::none ? "" : ", negative inside") +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
   run.table.detail("sites", sites_text(field, s));

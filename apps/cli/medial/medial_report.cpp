@@ -82,8 +82,8 @@ std::string labels_text(const Certificate& c) {
 /// empty text if neither was checked.
 std::string medial_share_text(const Certificate& c) {
   if (!c.checked.medial || c.medial.samples == 0) return "";
-  std::string text = "; " + percent(c.medial.medial_share) + " of samples in the middle";
-  if (c.medial.judges_missing) text += ", " + percent(c.medial.missed_share) + " of the axis missing";
+  std::string text = "; " + percent(c.medial.medial_share) + " of its samples are in the middle";
+  if (c.medial.judges_missing) text += ", " + percent(c.medial.missed_share) + " of the axis at this theta is missing";
   return text;
 }
 
@@ -326,9 +326,10 @@ std::string angles_text(double least_theta) {
 
 void add_certificate(TextTable& table, const std::string& of, const Certificate& c, bool has_nested) {
   if (c.holds()) {
-    table.add("certified", "yes" + of + ": topology of " + against_text(c) + " (" + betti_text(c.axis) + ")" +
+    table.add("certified", "yes" + of + ": the axis has the topology of " + against_text(c) + " (" +
+                               betti_text(c.axis) + ")" +
                                (c.bodies.size() > 1 ? ", in each of " + count_text(c.bodies.size()) + " bodies" : "") +
-                               "; inside the solid" + medial_share_text(c));
+                               " and lies inside the solid" + medial_share_text(c));
   } else {
     // If the axis is not certified, the error message gives the reasons.
     table.add("certified", c.topology_holds

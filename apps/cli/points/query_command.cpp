@@ -87,8 +87,9 @@ struct Facts {
     if (rule != SignRule::none) text += ", " + count_text(inside) + " inside";
     return text;
   }
-  [[nodiscard]] std::string distances_text() const {
-    return rounded_text(smallest) + " to " + rounded_text(largest) + "; mean of magnitudes " + rounded_text(mean()) +
+  [[nodiscard]] std::string distances_text(SignRule rule) const {
+    return rounded_text(smallest) + " to " + rounded_text(largest) +
+           (rule == SignRule::none ? "" : ", negative inside") + "; mean without signs " + rounded_text(mean()) +
            ", rms " + rounded_text(rms());
   }
 };
@@ -174,14 +175,14 @@ TextTable table_of(const Arguments& a, const MeshFile& mesh, const ClosestPointQ
                    const std::vector<PointFile>& files, const Facts& all, const PhaseSummary& spent) {
   TextTable table;
   table.add("points", all.counts_text(query.sign_rule()));
-  if (all.found > 0) table.add("distance", all.distances_text());
+  if (all.found > 0) table.add("distance", all.distances_text(query.sign_rule()));
   table.add("sign", std::string(to_string(query.sign_rule())) + ": " + query.sign_reason());
   table.add("mesh", a.mesh + ": " + plural(mesh.mesh.triangles.size(), "triangle", "triangles"));
   for (const PointFile& file : files) {
     std::string text = file.output.string();
     if (files.size() > 1) {
       text += ": " + file.facts.counts_text(query.sign_rule());
-      if (file.facts.found > 0) text += ", " + file.facts.distances_text();
+      if (file.facts.found > 0) text += ", " + file.facts.distances_text(query.sign_rule());
     }
     table.add("wrote", text);
   }

@@ -86,7 +86,7 @@ TextTable table_of(const ProximityArguments& a, const Answer& answer) {
                               plural(found.edge_edge.size(), "of two edges", "of two edges") +
                               (first ? "; the first at time " + rounded_text(*first) : "") +
                               (a.output ? limit_text(count, answer.limit) : ""));
-  table.add("scene", a.scene[0] + " to " + a.scene[1] + ": " + plural(mesh.vertices.size(), "vertex", "vertices") +
+  table.add("input", a.scene[0] + " to " + a.scene[1] + ": " + plural(mesh.vertices.size(), "vertex", "vertices") +
                          ", " + plural(mesh.triangles.size(), "triangle", "triangles"));
   table.detail("tests", count_text(found.exact_tests) + " exact ones, of " + count_text(found.box_pairs) +
                             " pairs whose moving boxes touch");

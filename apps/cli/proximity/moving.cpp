@@ -179,7 +179,7 @@ TextTable table_of(const ProximityArguments& a, const Answer& answer) {
   if (pairs.size() > most_rows) {
     table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " of objects more: --json FILE lists all");
   }
-  table.add("scene", plural(answer.meshes.size(), "object", "objects") + ", of which " +
+  table.add("input", plural(answer.meshes.size(), "object", "objects") + ", of which " +
                          plural(answer.moving(), "moves", "move") + "; " + plural(triangles, "triangle", "triangles"));
   table.detail("tests", count_text(answer.found.exact_tests) + " exact ones, of " + count_text(answer.found.box_pairs) +
                             " pairs whose moving boxes touch");

@@ -105,10 +105,6 @@ void run_frames(const ProximityArguments& a, const SceneQuery& query);
 /// Returns the names of two objects as text. If both are the same object, it is "name, itself".
 [[nodiscard]] std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second);
 
-/// Returns a point as text. `size` is the size of the scene in mesh units. Coordinates within its rounding error are
-/// printed as 0.
-[[nodiscard]] std::string point_text(const Vec3d& point, double size);
-
 /// Largest number of rows in a summary for pairs, parts or steps.
 inline constexpr std::size_t most_rows = 6;
 

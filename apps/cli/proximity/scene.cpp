@@ -150,7 +150,7 @@ std::string distance_text(const PrimitivePair& pair, double size) {
     return rounded_text(between.distance) + ": they overlap, from " + point_text(between.first_point, size) + " to " +
            point_text(between.second_point, size);
   }
-  if (between.distance == 0) return "they meet, near " + point_text(between.first_point, size);
+  if (between.distance == 0) return "distance 0, they meet near " + point_text(between.first_point, size);
   return "distance " + rounded_text(between.distance) + ", from " + point_text(between.first_point, size) + " to " +
          point_text(between.second_point, size);
 }
@@ -158,8 +158,8 @@ std::string distance_text(const PrimitivePair& pair, double size) {
 std::string penetration_text(const Penetration& part, double size) {
   // Error of the direction: it is the difference of two rounded points, divided by their distance.
   const double blur = std::clamp(size / part.depth, 1.0, 1e6);
-  return "depth " + rounded_text(part.depth) + " to " + rounded_text(part.depth_bound) + ", deepest point " +
-         point_text(part.deep_point, size) + ", direction " + point_text(part.direction, blur) + "; volume " +
+  return "depth between " + rounded_text(part.depth) + " and " + rounded_text(part.depth_bound) + " at " +
+         point_text(part.deep_point, size) + ", along " + point_text(part.direction, blur) + "; volume " +
          rounded_text(part.volume);
 }
 
@@ -174,7 +174,7 @@ void add_penetrations(const Answer& answer, TextTable& table) {
     table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k], size));
   }
   if (answer.parts.size() > most_rows) {
-    table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more: --json FILE lists all");
+    table.add("...", plural(answer.parts.size() - most_rows, "region", "regions") + " more: --json FILE lists all");
   }
 }
 
@@ -204,14 +204,17 @@ std::string scene_text(const Answer& answer) {
 std::string found_text(const Answer& answer, bool has_rows) {
   if (answer.kind == "penetration") {
     return answer.parts.empty() ? "none: no two solids overlap"
-                                : plural(answer.parts.size(), "common part", "common parts");
+                                : plural(answer.parts.size(), "common region", "common regions");
   }
   const bool meet = answer.kind == "collision";
   const char* const one = meet ? "pair of primitives that meets" : has_rows ? "pair of objects" : "pair of primitives";
   const char* const many = meet       ? "pairs of primitives that meet"
                            : has_rows ? "pairs of objects"
                                       : "pairs of primitives";
-  return plural(answer.found.pairs.size(), one, many) +
+  const auto meets = [](const PrimitivePair& pair) { return pair.between.distance <= 0; };
+  const auto meeting =
+      static_cast<std::size_t>(std::count_if(answer.found.pairs.begin(), answer.found.pairs.end(), meets));
+  return plural(answer.found.pairs.size(), one, many) + (has_rows ? ", " + count_text(meeting) + " of them meet" : "") +
          (answer.asked.max_distance && !meet ? " within " + rounded_text(*answer.asked.max_distance) : "");
 }
 
@@ -226,7 +229,7 @@ TextTable table_of(const ProximityArguments& a, const SceneQuery& query, const A
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
     table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
   }
-  table.add("scene", scene_text(answer));
+  table.add("input", scene_text(answer));
   if (answer.kind != "penetration")
     table.detail("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
                               count_text(answer.found.report.candidates) + " candidates in " +

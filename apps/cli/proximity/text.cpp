@@ -25,15 +25,6 @@ void cut(std::vector<T>& entries, std::size_t& left) {
 
 }  // namespace
 
-std::string point_text(const Vec3d& point, double size) {
-  constexpr double rounding = 1e-14;
-  Vec3d shown;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    shown[axis] = std::abs(point[axis]) <= rounding * size ? 0 : point[axis];
-  }
-  return vector_text(shown);
-}
-
 std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second) {
   return names[first.value] + ", " + (first == second ? "itself" : names[second.value]);
 }

@@ -11,20 +11,20 @@ namespace blum::cli {
 namespace {
 
 std::string change_text(std::size_t before, std::size_t after) {
-  return count_text(after) + " of " + count_text(before);
+  return count_text(before) + " -> " + count_text(after);
 }
 
 }  // namespace
 
 void add_cleaning(const CleanReport& done, double tolerance, TextTable& table) {
+  table.add("deviation", "at most " + rounded_text(done.deviation) + " in both directions (tolerance " +
+                             rounded_text(tolerance) + ")");
+  table.add("topology", "unchanged: " + betti_text(done.betti) + "; no self-intersections (exact test)");
   table.add("vertices", change_text(done.vertices_before, done.vertices));
   table.add("triangles", change_text(done.triangles_before, done.triangles));
   table.detail("steps", plural(done.collapses, "collapse", "collapses") + ", " + plural(done.flips, "flip", "flips"));
-  table.add("deviation", "at most " + rounded_text(done.deviation) + " in both directions (tolerance " +
-                             rounded_text(tolerance) + ")");
   table.detail("heights", "smallest height of a triangle " + rounded_text(done.smallest_height) + ", before " +
                               rounded_text(done.smallest_height_before));
-  table.add("topology", betti_text(done.betti) + ", unchanged; no crossings (exact test)");
 }
 
 Json cleaning_json(const CleanReport& done, double tolerance) {

@@ -170,7 +170,7 @@ std::string defects_text(const Topology& t, const SelfIntersections& contacts) {
   add(t.duplicate_triangles, "repeated triangle", "repeated triangles");
   add(t.vertices - t.named_vertices, "unused vertex", "unused vertices");
   if (!contacts.pairs.empty()) text += (text.empty() ? "" : ", ") + contacts_text(contacts);
-  return text.empty() ? "none" : text;
+  return text.empty() ? "none: closed, manifold, consistently oriented, without self-intersections" : text;
 }
 
 void add_topology_details(const Topology& t, const SelfIntersections& contacts, TextTable& table) {
@@ -337,7 +337,7 @@ void run_field(const Arguments& a) {
   TextTable table;
   table.add("file", a.input + ": distance field");
   add_grid(table, field.grid);
-  table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
+  table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) + " at the nodes" +
                             (field.sign_rule == SignRule::none ? "" : ", negative inside"));
   if (field.band) table.add("band", "+-" + rounded_text(*field.band));
   table.add("sign",

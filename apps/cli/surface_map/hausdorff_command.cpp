@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <numeric>
@@ -74,10 +76,12 @@ void add_side(TextTable& table, const std::string& label, const Side& side) {
                  "signs by " + std::string(to_string(side.deviation->sign_rule)) + ": " + side.deviation->sign_reason);
   }
   const SurfaceDeviation& by_area = *side.deviation;
-  const auto with_error = [](double value, double error) { return rounded_text(value) + " +- " + rounded_text(error); };
+  const auto with_error = [](double value, double error) {
+    return rounded_text(value) + " (error at most " + rounded_text(error) + ")";
+  };
   table.add("", "mean " + with_error(by_area.mean, by_area.mean_error) + ", rms " +
                     with_error(by_area.rms, by_area.rms_error));
-  table.detail("", "by area " + percentiles_text(SurfaceDeviation::percents, by_area.percentiles) + " (+- " +
+  table.detail("", "by area " + percentiles_text(SurfaceDeviation::percents, by_area.percentiles) + " (error at most " +
                        rounded_text(by_area.percentile_error) + ")");
 }
 
@@ -130,7 +134,8 @@ std::string size_text(const MeshView& mesh) {
 void run(const Arguments& a) {
   const std::array<fs::path, 2> paths{a.a, a.b};
   if (a.only_distance && !a.deviation.given().empty()) {
-    throw UsageError(a.deviation.given().front() + " applies to means by area, which --only-distance omits");
+    throw UsageError(a.deviation.given().front() +
+                     " applies only to means by area, and --only-distance does not compute them");
   }
   const HausdorffOptions options = a.options.read();
   const DeviationOptions deviation = a.deviation.read();
@@ -195,14 +200,18 @@ void run(const Arguments& a) {
   const std::vector<std::string> names = distinct_names({paths[0].string(), paths[1].string()});
   const std::string there = names[0] + " to " + names[1];
   table.add("distance", interval_text(both.lower, both.upper) + (a.one_sided ? ", from " + there : ""));
-  table.add("points", vector_text(both.points[0]) + " of " + names[0] + " and " + vector_text(both.points[1]) + " of " +
-                          names[1]);
+  double size = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    size = std::max({size, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+  }
+  table.add("between", point_text(both.points[0], size) + " of " + names[0] + " and " +
+                           point_text(both.points[1], size) + " of " + names[1]);
   add_side(table, there, sides[0]);
   if (!a.one_sided) add_side(table, names[1] + " to " + names[0], sides[1]);
   for (std::size_t k = 0; k < sides.size() && !a.only_distance; ++k) {
     if (!sides[k].deviation) table.add("", names[k] + " has no area, so means by area are not defined");
   }
-  table.add("inputs", names[0] + ": " + size_text(first) + "; " + names[1] + ": " + size_text(second));
+  table.add("input", names[0] + ": " + size_text(first) + "; " + names[1] + ": " + size_text(second));
   if (a.output) table.add("wrote", *a.output);
   spent.add_to(table);
   report(a.report, json, table);

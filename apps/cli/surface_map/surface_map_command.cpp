@@ -234,21 +234,21 @@ void run(const Arguments& a) {
   for (const fs::path& output : asked.outputs) written.push_back(output.string());
   add_run_facts(json, spent, context, map.warnings, written);
   TextTable table;
-  table.add("map", quantity_text(map.quantity) + ", " + std::to_string(map.atlas->width) + " x " +
-                       std::to_string(map.atlas->height) + " texels, " + count_text(facts.texels) + " of them used");
+  table.add("map", quantity_text(map.quantity) + " at " + count_text(facts.texels) + " texels of " +
+                       std::to_string(map.atlas->width) + " x " + std::to_string(map.atlas->height));
   const std::string unit = a.units.empty() ? "" : " " + a.units;
   if (!map.error.empty()) table.add("error", "at most " + rounded_text(facts.largest_error) + unit + " between texels");
   if (facts.without > 0) table.add("no value", plural(facts.without, "texel", "texels"));
   if (!facts.smallest.is_null()) table.add("smallest", place_text(facts.smallest));
   if (!facts.largest.is_null()) table.add("largest", place_text(facts.largest));
   if (by_area.measured_area > 0) {
-    table.add("mean", rounded_text(by_area.mean) + ", rms " + rounded_text(by_area.rms) + ", by area");
+    table.add("mean", rounded_text(by_area.mean) + ", rms " + rounded_text(by_area.rms) + " (weighted by area)");
     table.detail("percentiles", percentiles_text(SurfaceMapStatistics::percents, by_area.percentiles));
   }
   if (map.sign_rule != SignRule::none) {
     table.add("sign", std::string(to_string(map.sign_rule)) + ": " + map.sign_reason);
   }
-  table.add("target", a.target + ": " + plural(target.mesh.triangles.size(), "triangle", "triangles"));
+  table.add("input", a.target + ": " + plural(target.mesh.triangles.size(), "triangle", "triangles"));
   for (const fs::path& output : asked.outputs) table.add("wrote", output.string());
   spent.add_to(table);
   if (!a.report.quiet) warn(map.warnings);

@@ -149,11 +149,17 @@ struct Counts {
 };
 
 std::string sites_text(const VoronoiReport& report) {
-  std::string text = plural(report.faces, "face", "faces") + ", " +
+  std::string text = plural(report.faces, "flat face", "flat faces") + ", " +
                      plural(report.reflex_edges, "reflex edge", "reflex edges") + ", " +
                      plural(report.reflex_vertices, "reflex vertex", "reflex vertices");
   if (report.thin_vertices > 0) text += " (" + count_text(report.thin_vertices) + " of them thin)";
   return text;
+}
+
+/// Describes the voids of a complex that contains the surface.
+std::string regions_text(const VoronoiReport& report, VoronoiPart part) {
+  const bool is_each = part == VoronoiPart::all && report.certified && report.thin_vertices == 0;
+  return is_each ? ", one in each region" : "";
 }
 
 std::string certificate_text(VoronoiPart part) {
@@ -163,7 +169,7 @@ std::string certificate_text(VoronoiPart part) {
 
 void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, TextTable& table) {
   table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
-  table.add("topology", subject_of(part) + ": " + betti_text(report.found) +
+  table.add("topology", subject_of(part) + ": " + betti_text(report.found) + regions_text(report, part) +
                             (report.found == report.expected ? "" : "; expected " + betti_text(report.expected)));
   table.add("sites", sites_text(report));
   table.detail("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
@@ -174,7 +180,7 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
                             count_text(report.exact_lines) + " of them decided by exact signs");
   table.add("complex", counts.text());
   if (report.certified) {
-    table.add("geometry", "no point is more than " + rounded_text(report.hausdorff_bound) + " from the exact diagram");
+    table.add("error", "Hausdorff distance from the exact diagram at most " + rounded_text(report.hausdorff_bound));
   }
 }
 

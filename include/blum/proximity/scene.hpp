@@ -161,7 +161,7 @@ class ProximityScene {
   /// it is used.
   /// Cost: a fifth of that of add().
   void update(ObjectId object, std::span<const Vec3d> vertices, const Context& context = {});
-  /// Sets the transform of an object, which replaces its present transform.
+  /// Replaces the transform of an object.
   /// @throws InvalidOption if the new transform is not rigid to 1e-9, is a reflection, or moves beyond 1e70.
   void update(ObjectId object, const RigidTransform& place);
   /// Replaces the mesh of an object. Its transform and options stay.

@@ -22,7 +22,7 @@ namespace blum {
 /// @param name  name in errors, for example "object 3".
 /// @throws InvalidMesh if the mesh has no triangles, or if they face inwards as a whole. It is also thrown if the mesh
 /// is not closed, or if its crossings cannot be resolved. Cancelled.
-/// Cost: about 0.3 microseconds per triangle. If the mesh crosses itself, also that of resolve_crossings().
+/// Cost: about 0.3 microseconds per triangle. If the mesh crosses itself, the cost of resolve_crossings() is added.
 [[nodiscard]] SolidSurface winding_surface(TriangleMesh mesh, const std::string& name, const Context& context = {});
 
 /// Checks that a mesh faces outwards.

@@ -53,7 +53,7 @@ struct SurfaceAtlas {
 ///
 /// @param texel  side of a texel on the surface, mesh units, > 0. Along the two shorter edges of each triangle, texels
 ///               are at most this long.
-/// @throws InvalidMesh, also if the mesh has no triangles.
+/// @throws InvalidMesh if validate(mesh) fails, or if the mesh has no triangles.
 /// @throws InvalidOption if a side of the texture would have more than 16384 texels. The message gives approximately
 /// the smallest `texel` that is possible.
 /// @throws Cancelled.

@@ -186,8 +186,8 @@ int projected_winding(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
 }
 
 /// Returns true if a vertical line through a point certainly misses a triangle, even if the point is moved within its
-/// rounding. Seen from above, the point lies beyond an edge. For a triangle parallel to z, it lies beside the line of
-/// its projection.
+/// rounding. Seen from above, the point lies beyond an edge. A triangle parallel to z projects to a segment;
+/// then the point lies beside the line through the segment.
 bool passes_beside(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& a = corners[k];

@@ -85,7 +85,7 @@ Directory find_directory(const ByteSource& source) {
     if (const auto large = find_directory64(source, source.size() - tail_size + at)) return *large;
     return {tail.u32(at + 16), tail.u32(at + 12), tail.u16(at + 10)};
   }
-  throw FormatError(source.name() + ": it is not a zip archive, which .npz files are, or it is cut short");
+  throw FormatError(source.name() + ": it is cut short, or not a zip archive as .npz files must be");
 }
 
 /// Fields of a central header that have their largest value are replaced by their 64-bit values from the extra field.

@@ -100,7 +100,7 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
   const ComplexFormat format = ComplexFormat::of(path, FileAccess::both);
   check_metadata(metadata);
   if (nested != nullptr && !formats::code_of(format).holds_further) {
-    throw InvalidOption("'" + path.string() + "': only .npz files hold axes of all angles");
+    throw InvalidOption("'" + path.string() + "': only .npz files can store the axes of all angles");
   }
   const CompleteAxis all(axis);
   static_cast<void>(MedialView(all.get()));  // throws if a column has another type than MedialView requires

@@ -15,10 +15,11 @@ struct ThinBall {
   double angle = 0;      ///< degrees: angle between both points at the centre
 };
 
-/// Returns a medial ball of a thin part of the solid next to a point outside, `beyond`. First, the deepest point on the
-/// ray from `beyond` through `touched` is found. The ball touches the surface at the closest point to that deepest
-/// point. The largest such ball is found by shrinking (Ma, Bae, Choi, "3D medial axis point approximation using nearest
-/// neighbors and the normal field", 2012). If there are larger balls next to it, the search continues with these.
+/// Returns a medial ball of the thin part of the solid that is next to `beyond`, a point outside the solid. First, the
+/// deepest point on the ray from `beyond` through `touched` is found. The ball touches the surface at the closest point
+/// to that deepest point. The largest such ball is found by shrinking (Ma, Bae, Choi, "3D medial axis point
+/// approximation using nearest neighbors and the normal field", 2012). If there are larger balls next to it, the search
+/// continues with these.
 /// @param touched  closest point of the surface to `beyond`.
 /// @param radius   mesh units. The result is nullopt if the ball would be larger, or if no point of the ray is inside.
 [[nodiscard]] std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched,

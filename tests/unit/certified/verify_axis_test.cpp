@@ -38,8 +38,8 @@ TEST(VerifyMedial, RejectsFalseClaimsOfAnAxisOfAMesh) {
     EXPECT_NE(mismatches.front().find(reason), std::string::npos) << mismatches.front();
   };
   refused([](MedialClaims& c) { c.metadata.solid_rule = "winding"; }, "its solid is 'winding', but it is 'polyhedron'");
-  refused([](MedialClaims& c) { c.has_radii = false; }, "holds no radii");
-  refused([](MedialClaims& c) { c.metadata.site_ids = SiteIds::voxels; }, "holds no sites of this kind of solid");
+  refused([](MedialClaims& c) { c.has_radii = false; }, "contains no radii");
+  refused([](MedialClaims& c) { c.metadata.site_ids = SiteIds::voxels; }, "contains no sites of this kind of solid");
   MedialClaims of_others = claims;
   of_others.metadata.version.clear();
   of_others.has_footprints = of_others.has_sites = false;
