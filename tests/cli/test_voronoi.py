@@ -159,7 +159,7 @@ def test_a_bracket_as_text(parts, tmp_path):
     text, _ = run("voronoi", parts / "bracket.ply", "-o", tmp_path / "b.vtp", "--verbose")
     assert CERTIFIED in text and "144 reflex edges, 4 reflex vertices" in text and f"wrote      {tmp_path}" in text
     rows = dict(re.findall(r"^(\w+)  +(.*)$", text, re.MULTILINE))
-    assert rows["topology"] == "walls and surface: 1 component, 12 tunnels, 291 voids"
+    assert rows["topology"] == "walls and surface: 1 component, 12 tunnels, 291 voids, one in each region"
     assert {"sites", "cubes", "lines", "complex", "certified", "time"} <= set(rows)
 
 
