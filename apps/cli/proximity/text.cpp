@@ -1,8 +1,5 @@
-#include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -13,8 +10,6 @@
 
 namespace blum::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Keeps at most the first `left` entries, and subtracts the number kept from `left`.
 template <class T>
