@@ -477,11 +477,11 @@ std::span<const PairQuery> pair_queries() {
 
 ProximityPairs ask_pairs(const ProximityScene& scene, std::string_view query, const PairQueryOptions& options,
                          const Context& context) {
-  std::string names;
   for (const PairQuery& one : pair_queries()) {
     if (one.name == query) return one.ask(scene, options, context);
-    names += (names.empty() ? "" : ", ") + std::string(one.name);
   }
+  std::string names;
+  for (const PairQuery& one : pair_queries()) names += (names.empty() ? "" : ", ") + std::string(one.name);
   throw InvalidOption("query is '" + std::string(query) + "', but must be one of " + names);
 }
 

@@ -136,6 +136,11 @@ PhaseSummary summarize(const std::vector<PhaseTime>& phases) {
   return out;
 }
 
+std::string node_range_text(double smallest, double largest, bool is_signed) {
+  return rounded_text(smallest) + " to " + rounded_text(largest) + " at the nodes" +
+         (is_signed ? ", negative inside" : "");
+}
+
 std::string point_text(const Vec3d& point, double size) {
   constexpr double rounding = 1e-14;
   Vec3d shown;

@@ -40,6 +40,8 @@ class Stopwatch {
 /// Returns a point as text. `size` is the size of the scene in mesh units. Coordinates within its rounding error are
 /// printed as 0.
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
+/// Returns the range of the distances in a field as text.
+[[nodiscard]] std::string node_range_text(double smallest, double largest, bool is_signed);
 [[nodiscard]] std::string size_text(const GridSpec& grid);
 /// Returns a text like "1 % below 0.2, 5 % below 0.3".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);

@@ -197,8 +197,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
                 std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
   if (run.names_device) run.table.add("device", to_string(field.device));
   if (!field.device_reason.empty()) run.table.add("no device", field.device_reason);
-  run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) + " at the nodes" +
-                                (field.sign_rule == SignRule::none ? "" : ", negative inside") +
+  run.table.add("distance", node_range_text(s.minimum, s.maximum, field.sign_rule != SignRule::none) +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
   run.table.detail("sites", sites_text(field, s));
   if (s.second) run.table.add("second", second_text(field, *s.second));

@@ -97,8 +97,8 @@ class Sequence {
     Stopwatch watch;
     move_to(k);
     out.phases.push_back({"boxes", watch.lap()});
-    if (query_.ask != nullptr) {
-      add_result(query_.ask(scene_, asked_, context_), limit_, out);
+    if (!query_.moves) {
+      add_result(ask(query_, scene_, asked_, context_), limit_, out);
     } else if (k + 1 < arguments_.scene.size()) {
       ask_continuous(k, out);
     }

@@ -24,7 +24,7 @@ void run(const ProximityArguments& a, const SceneQuery& query) {
   }
   if (a.skip_changed && !a.frames) throw UsageError("--skip-changed needs --frames");
   if (a.frames) return run_frames(a, query);
-  if (query.ask == nullptr) return run_continuous_query(a);
+  if (query.moves) return run_continuous_query(a);
   run_scene_query(a, query);
 }
 
@@ -32,17 +32,16 @@ void add_query(const Command& parent, const SceneQuery& query) {
   auto a = std::make_shared<ProximityArguments>();
   a->query = query.name;
   const Command command = parent.add_subcommand(a->query, std::string(query.doc));
-  const bool moves = query.ask == nullptr;
   const std::string files = extensions_help({FileContent::mesh}, FileAccess::read);
   command
       .add_option(
           "SCENE", a->scene,
-          (moves
+          (query.moves
                ? "Two files: one mesh at the start and at the end of its motion. With --to, one file for each object: "
                : "One file for each object: ") +
               files)
       .required();
-  if (moves) {
+  if (query.moves) {
     command
         .add_option("--to", a->ends,
                     "Objects at the end of the motion: one file for each SCENE, in the same order. For an object at "
@@ -56,7 +55,7 @@ void add_query(const Command& parent, const SceneQuery& query) {
         "The files are frames of one moving object; -o PAIRS.json stores the pairs of each frame for `blum "
         "view --frames --pairs`");
   }
-  if (moves) {
+  if (query.moves) {
     command.add_flag("--skip-changed", a->skip_changed,
                      "With --frames: skip and list steps between frames that differ in triangles or numbers of "
                      "vertices (default: report an error)");
@@ -72,7 +71,7 @@ void add_query(const Command& parent, const SceneQuery& query) {
   add_weld_option(command, a->weld);
   if (query.takes_culling) a->culling.add_to(command);
   if (query.takes_depth) a->penetration.add_to(command);
-  if (moves) a->impact.add_to(command);
+  if (query.moves) a->impact.add_to(command);
   add_threads_option(command, a->threads);
   add_report_options(command, a->report);
   command.footer("Examples:\n" + std::string(query.examples) + "\n\nIn C++ and Python: ProximityScene." +

@@ -63,9 +63,15 @@ struct SceneQuery {
   bool takes_depth = false;  ///< true if the query takes the options of penetration
   bool takes_frames = true;
   bool has_rows = false;  ///< True if the summary has a row for each pair.
-  /// Runs the query. nullptr for `continuous`, because its objects move and its results are not pairs.
+  /// True if objects move during the query. Its results are then not pairs at rest.
+  bool moves = false;
+  /// Runs the query. nullptr if `method` is one of pair_queries(), or if objects move.
   SceneFound (*ask)(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) = nullptr;
 };
+
+/// Runs a query whose objects do not move. @throws as the method of ProximityScene.
+[[nodiscard]] SceneFound ask(const SceneQuery& query, const ProximityScene& scene, const SceneQuestion& asked,
+                             const Context& context);
 
 [[nodiscard]] std::span<const SceneQuery> scene_queries();
 

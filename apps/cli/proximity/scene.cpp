@@ -272,7 +272,7 @@ void run_scene_query(const ProximityArguments& a, const SceneQuery& query) {
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
   phases.push_back({"build", watch.lap()});
-  SceneFound found = query.ask(scene, answer.asked, context);
+  SceneFound found = ask(query, scene, answer.asked, context);
   answer.found = std::move(found.pairs);
   answer.parts = std::move(found.parts);
   answer.kind = found.kind;

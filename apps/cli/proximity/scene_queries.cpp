@@ -1,5 +1,4 @@
 #include <array>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -8,22 +7,6 @@
 
 namespace blum::cli {
 namespace {
-
-double most(const SceneQuestion& asked) {
-  return asked.max_distance.value_or(std::numeric_limits<double>::infinity());
-}
-
-SceneFound ask_separation(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
-  return {.pairs = scene.separation(most(asked), context)};
-}
-
-SceneFound ask_signed(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
-  return {.pairs = scene.signed_separations(asked.penetration, context)};
-}
-
-SceneFound ask_closest(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
-  return {.pairs = scene.closest_primitives(most(asked), context)};
-}
 
 SceneFound ask_collide(const ProximityScene& scene, const SceneQuestion& asked, const Context& context) {
   if (asked.max_distance.value_or(0) > 0) return {.pairs = scene.closer_than(*asked.max_distance, context)};
@@ -52,8 +35,7 @@ constexpr std::array queries{
   blum proximity separation *.stl -o pairs.csv)",
                .max_distance = within,
                .takes_culling = true,
-               .has_rows = true,
-               .ask = ask_separation},
+               .has_rows = true},
     SceneQuery{.name = "signed",
                .doc = "Distance for each pair of solids, or minus the depth if they overlap",
                .output = pairs_output,
@@ -62,16 +44,14 @@ constexpr std::array queries{
                .takes_culling = true,
                .takes_depth = true,
                .takes_frames = false,
-               .has_rows = true,
-               .ask = ask_signed},
+               .has_rows = true},
     SceneQuery{.name = "closest",
                .doc = "Closest other primitive of each triangle, segment and point",
                .output = pairs_output,
                .method = "closest_primitives",
                .examples = "  blum proximity closest cloth.ply --self --max-distance 0.01 -o pairs.vtp",
                .max_distance = within,
-               .takes_culling = true,
-               .ask = ask_closest},
+               .takes_culling = true},
     SceneQuery{.name = "collide",
                .doc = "All pairs of primitives that meet, or are close",
                .output = pairs_output,
@@ -98,9 +78,18 @@ constexpr std::array queries{
                .method = "continuous",
                .examples = R"(  blum proximity continuous cloth1.ply cloth2.ply --self -o pairs.npz
   blum proximity continuous ball1.ply plate.ply --to ball2.ply plate.ply
-  blum proximity continuous cloth*.ply --frames --self -o pairs.json)"}};
+  blum proximity continuous cloth*.ply --frames --self -o pairs.json)",
+               .moves = true}};
 
 }  // namespace
+
+SceneFound ask(const SceneQuery& query, const ProximityScene& scene, const SceneQuestion& asked,
+               const Context& context) {
+  if (query.ask != nullptr) return query.ask(scene, asked, context);
+  PairQueryOptions options{.penetration = asked.penetration};
+  if (asked.max_distance) options.max_distance = *asked.max_distance;
+  return {.pairs = ask_pairs(scene, query.method, options, context)};
+}
 
 std::span<const SceneQuery> scene_queries() {
   return queries;

@@ -337,8 +337,7 @@ void run_field(const Arguments& a) {
   TextTable table;
   table.add("file", a.input + ": distance field");
   add_grid(table, field.grid);
-  table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) + " at the nodes" +
-                            (field.sign_rule == SignRule::none ? "" : ", negative inside"));
+  table.add("distance", node_range_text(s.minimum, s.maximum, field.sign_rule != SignRule::none));
   if (field.band) table.add("band", "+-" + rounded_text(*field.band));
   table.add("sign",
             std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
