@@ -12,12 +12,11 @@ import functools
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
-from collections.abc import Iterable
 
 import blum
 import cpp_pages
+from check_links import markdown_files
 
 PROJECT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -46,20 +45,12 @@ SECTIONS = {
 }
 
 LINK = re.compile(r"(\]\(<?|src=\")(?!https?:|mailto:|#)([^)>\s\"]+)")
-
-
 FOLDER_LINK = re.compile(r"(?<!!)\[((?:[^\]\[]|\[[^\]]*\])*)\]\(([^)\s:#]+)\)")
 
 
 def plain_folder(folder: pathlib.Path, link: re.Match[str]) -> str:
     """A link to a folder of the project as plain text, because the site has no page for folders."""
     return link[1] if (folder / link[2]).is_dir() else link[0]
-
-
-def tracked(*patterns: str) -> list[str]:
-    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", *patterns]
-    out = subprocess.run(command, cwd=PROJECT, check=True, capture_output=True, text=True).stdout
-    return sorted(name for name in out.split("\0") if name and (PROJECT / name).is_file())
 
 
 def write(path: pathlib.Path, text: str) -> None:
@@ -69,9 +60,12 @@ def write(path: pathlib.Path, text: str) -> None:
 
 def copy_pages(site: pathlib.Path) -> None:
     """Copies the Markdown pages and the project's files that they link to. README.md becomes index.md."""
-    for name in tracked("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/*.md"):
-        text = (PROJECT / name).read_text(encoding="utf-8")
-        folder = (PROJECT / name).parent
+    for page in markdown_files():
+        name = page.relative_to(PROJECT).as_posix()
+        if "/" in name and not name.startswith("docs/"):
+            continue
+        text = page.read_text(encoding="utf-8")
+        folder = page.parent
         for _, link in LINK.findall(text):
             target = (folder / link.partition("#")[0]).resolve()
             if target.is_file() and target.suffix != ".md" and target.is_relative_to(PROJECT):
@@ -96,29 +90,14 @@ def format_page() -> str:
     return "\n".join(out) + "\n"
 
 
-def listed(patterns: Iterable[str], site: pathlib.Path, taken: set[str]) -> list[str]:
-    pages: list[str] = []
-    for pattern in patterns:
-        for path in sorted(site.glob(pattern)):
-            name = path.relative_to(site).as_posix()
-            if name not in taken and name not in ("cpp", "python"):
-                taken.add(name)
-                pages.append(name)
-    return pages
-
-
 def add_navigation(site: pathlib.Path) -> None:
-    explicit = {page for pages in SECTIONS.values() for page in pages if "*" not in page}
+    placed = {page for pages in SECTIONS.values() for page in pages if "*" not in page}
     trees = []
     for title, patterns in SECTIONS.items():
-        own = {page for page in patterns if "*" not in page}
-        taken: set[str] = explicit - own
         pages: list[str] = []
         for pattern in patterns:
-            if "*" in pattern:
-                pages += listed([pattern], site, taken | own | set(pages))
-            else:
-                pages.append(pattern)
+            found = [path.relative_to(site).as_posix() for path in sorted(site.glob(pattern))]
+            pages += [name for name in found if name == pattern or name not in placed]
         lines = "\n".join("/" + page.removesuffix(".rst") for page in pages)
         trees.append(f"```{{toctree}}\n:hidden:\n:caption: {title}\n:maxdepth: 1\n\n{lines}\n```\n")
     index = site / "index.md"
