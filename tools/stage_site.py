@@ -79,7 +79,13 @@ def copy_pages(site: pathlib.Path) -> None:
 
 def format_page() -> str:
     """The page of file formats, from the library's table."""
-    out = ["# File formats\n"]
+    out = [
+        "# File formats\n\n"
+        "MeshLab uses only the property `quality` of `.ply` files for colours. Blum writes it only for radii. "
+        "[How to colour points](points.md#distances-of-points).\n\n"
+        "Blum does not read the names of units in images, and converts no units. "
+        "[How to find the unit](files.md#images-that-blum-reads).\n"
+    ]
     for content in dict.fromkeys(row.content for row in blum.file_formats()):
         out.append(
             f"\n## {content.capitalize()}\n\n| format | read | written | holds | opens in |\n|---|---|---|---|---|"

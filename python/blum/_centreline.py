@@ -40,8 +40,10 @@ class CentrelineBranch:
 
     nodes: tuple[int, int]  #: Its first and last node. -1 for closed curves.
     length: float  #: Length of its polyline, world units.
-    mean_radius: float  #: Mean radius along its length, outside the balls of its junctions.
-    min_radius: float  #: Smallest radius, likewise.
+    #: Mean radius along the part at least 1.5 voxels away from the balls of its junctions. If there is none, along the
+    #: whole branch.
+    mean_radius: float
+    min_radius: float  #: Smallest radius on the same part.
     #: Points from node to node: (n, 3), world units. Closed curves repeat the first at the end.
     points: FloatArray = field(repr=False)
     #: Radius at each point, of the circle with the area of the section there: (n,).

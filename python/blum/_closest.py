@@ -34,7 +34,7 @@ class ClosestPoints:
     closest: FloatArray  #: Closest point on the mesh: (..., 3). The query itself if nothing lies within max_distance.
     distance: FloatArray  #: Mesh units, negative inside when signed. Infinite if nothing lies within max_distance.
     site: IntArray  #: Site of the mesh, see :class:`Sites`. -1 if none.
-    triangle: IntArray  #: Smallest triangle that contains the site. -1 if none.
+    triangle: IntArray  #: Smallest index of a triangle that contains the site. -1 if none.
 
 
 @dataclass(frozen=True, eq=False)

@@ -43,7 +43,7 @@ class SignedDistances:
     gradient: FloatArray
     closest: FloatArray  #: Closest point of the mesh: (..., 3).
     site: IntArray  #: Site of the mesh, see :class:`Sites`. -1 if none.
-    triangle: IntArray  #: Smallest triangle that contains the site. -1 if none.
+    triangle: IntArray  #: Smallest index of a triangle that contains the site. -1 if none.
     _mesh: Mesh = field(repr=False)
 
     @cached_property
@@ -119,7 +119,7 @@ class SurfaceSamples:
     """
 
     points: FloatArray  #: Positions: (n, 3), mesh units.
-    normals: FloatArray  #: Unit normals of the triangles: (n, 3).
+    normals: FloatArray  #: Unit normals of the triangles: (n, 3). Files call this column `normal`.
     triangle: IntArray  #: Triangles that contain the points: (n,).
 
     def __repr__(self) -> str:
@@ -164,6 +164,8 @@ def sample_surface(
 class NearSamples:
     """Result of :func:`sample_near`. Row k of each array belongs to point k.
 
+    Files of ``blum sample --near`` also contain gradients. In Python, :func:`signed_distance` computes them.
+
     Examples
     --------
     >>> import blum
@@ -175,8 +177,8 @@ class NearSamples:
     points: FloatArray  #: Positions: (n, 3), mesh units.
     distance: FloatArray  #: Exact distances, negative inside: (n,), mesh units.
     closest: FloatArray  #: Closest points of the mesh: (n, 3).
-    site: IntArray  #: Sites that contain them: (n,), see :class:`Sites`.
-    triangle: IntArray  #: Smallest triangles that contain the sites: (n,). -1 if none.
+    site: IntArray  #: Sites that contain the closest points: (n,), see :class:`Sites`.
+    triangle: IntArray  #: Smallest index of a triangle that contains the site: (n,). -1 if none.
 
     def __repr__(self) -> str:
         return f"NearSamples({len(self.points):,} points)"
@@ -194,7 +196,8 @@ def sample_near(
 ) -> NearSamples:
     """Returns random points near a surface with their exact signed distances, for example to train networks.
 
-    The points near the surface come first, then the points that are uniform in the box (`in_box`).
+    The points near the surface come first, then the points that are uniform in a box (`in_box`). This box is the mesh's
+    box, with sides multiplied by 1.1 about its centre.
 
     Parameters
     ----------

@@ -330,7 +330,8 @@ void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& sear
     ClosedShell& own = shells.shells[s];
     const Stretch stretch = prober.probe(s, lists[s]);
     if (!(stretch.length > 1e-13 * search.bounds().diagonal())) {
-      throw NoPolyhedron("the shell of triangle " + std::to_string(lists[s].front()) + " encloses nothing");
+      throw NoPolyhedron("the shell that contains triangle " + std::to_string(lists[s].front()) +
+                         " encloses no volume");
     }
     own.depth = 0;
     for (const std::uint32_t other : stretch.around) {

@@ -47,7 +47,7 @@ class NoPolyhedron : public InvalidMesh {
 
 /// Computes depths and bodies from lines through each shell. Shells may touch, but not cross.
 /// @param search  the triangles, with their shells as groups.
-/// @throws NoPolyhedron if a shell encloses nothing, or exactly what another shell encloses; Cancelled.
+/// @throws NoPolyhedron if a shell encloses no volume, or exactly the volume of another shell; Cancelled.
 void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& search, const Context& context);
 
 /// Returns the Betti numbers of each body of the solid that nested shells bound.

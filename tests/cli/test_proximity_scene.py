@@ -162,7 +162,7 @@ def test_separation_is_reported_as_text_and_json(objects):
     out = run("proximity", "separation", *objects)[0]
     scene = scene_of(objects, False)
     assert "3 objects, 1,160 triangles, 2 segments and points" in out and "found                 3 pairs of objects" in out
-    assert "torus.ply, moved.ply  distance 0, they meet near (" in out
+    assert "torus.ply, moved.ply  distance 0: they touch or overlap near (" in out
     assert f"torus.ply, soup.obj   distance {scene.separation(0, 2).distance:.6g}, from (" in out
     answer = run_json("proximity", "separation", *objects, "--max-distance", "0")
     assert answer["query"] == "separation" and answer["max_distance"] == 0 and answer["self"] is False
@@ -178,7 +178,7 @@ def test_separation_is_reported_as_text_and_json(objects):
 
 def test_text_lists_only_the_first_pairs(objects):
     out = run("proximity", "separation", *objects[:1] * 8)[0]
-    assert out.count("they meet") == 6 and "22 pairs more: -o PAIRS lists all" in out
+    assert out.count("they touch or overlap") == 6 and "22 pairs more: -o PAIRS lists all" in out
 
 
 def test_files_do_not_depend_on_threads(objects, tmp_path):

@@ -127,7 +127,7 @@ def test_to_without_files_is_rejected(folder, tmp_path):
 
 def test_objects_of_one_file_name_get_distinct_names(folder, tmp_path):
     two = [folder / "first" / "part.obj", folder / "second" / "part.obj"]
-    assert "first/part.obj, second/part.obj  distance 0, they meet" in run("proximity", "separation", *two, "-o", tmp_path / "p.json")[0]
+    assert "first/part.obj, second/part.obj  distance 0: they touch or overlap" in run("proximity", "separation", *two, "-o", tmp_path / "p.json")[0]
     metadata = json.loads((tmp_path / "p.json").read_text())["metadata"]
     assert [metadata["object_0"], metadata["object_1"]] == ["first/part.obj", "second/part.obj"]
     out = run("proximity", "separation", *two, folder / "box.obj", two[0])[0]

@@ -141,6 +141,26 @@ std::string node_range_text(double smallest, double largest, bool is_signed) {
          (is_signed ? ", negative inside" : "");
 }
 
+std::string sign_text(SignRule rule, const std::string& reason) {
+  const auto with_reason = [&](const char* name, const char* link) {
+    return reason.empty() ? std::string(name) : name + (link + reason);
+  };
+  switch (rule) {
+    case SignRule::none:
+      return with_reason("none", ", because ");
+    case SignRule::normals:
+      return with_reason("by normals", ", because ");
+    case SignRule::winding:
+      return with_reason("by winding numbers", ", because ");
+    // For these rules, the reason is a definition of the inside.
+    case SignRule::label:
+      return with_reason("by voxel values", ": ");
+    case SignRule::balls:
+      return with_reason("by balls", ": ");
+  }
+  return reason;
+}
+
 std::string point_text(const Vec3d& point, double size) {
   constexpr double rounding = 1e-14;
   Vec3d shown;

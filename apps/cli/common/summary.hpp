@@ -42,6 +42,8 @@ class Stopwatch {
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
 /// Returns the range of the distances in a field as text.
 [[nodiscard]] std::string node_range_text(double smallest, double largest, bool is_signed);
+/// Returns a text like "by normals, because the mesh is closed". `reason` may be empty.
+[[nodiscard]] std::string sign_text(SignRule rule, const std::string& reason);
 [[nodiscard]] std::string size_text(const GridSpec& grid);
 /// Returns a text like "1 % below 0.2, 5 % below 0.3".
 [[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);

@@ -110,6 +110,12 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
                r.input, "an image", "meshes");
 }
 
+/// Written file.
+struct Output {
+  fs::path path;
+  std::string content;  ///< content of a file beside the field file; empty for the field file
+};
+
 /// Facts about a run, for its summary.
 struct Run {
   Json input;
@@ -117,7 +123,7 @@ struct Run {
   Json fields = Json::array();
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
-  std::vector<fs::path> outputs;
+  std::vector<Output> outputs;
   std::optional<fs::path> removed;       ///< sites file of the replaced field, if the new field has none
   std::vector<fs::path> removed_second;  ///< second-order files of the replaced field, if the new field has order 1
   std::vector<Warning> warnings;
@@ -172,7 +178,16 @@ std::string second_text(const Field& field, const SecondStatistics& s) {
   return text;
 }
 
-/// `label` may be null.
+/// Returns the content of a file beside a .nrrd field file. Returns an empty text for the field file.
+std::string content_of(const fs::path& file) {
+  const std::string name = file.filename().string();
+  if (name.ends_with(".site.nrrd")) return "closest site of each node";
+  if (name.ends_with(".site2.nrrd")) return "second site of each node";
+  if (name.ends_with(".distance2.nrrd")) return "distance of each node to its second site";
+  return {};
+}
+
+/// @param files  the field file first. @param label  may be null.
 void add_field(Run& run, const Field& field, const FieldStatistics& s, const std::vector<fs::path>& files,
                const std::int64_t* label) {
   Json json;
@@ -180,7 +195,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   Json names = Json::array();
   for (const fs::path& file : files) {
     names.push_back(file.string());
-    run.outputs.push_back(file);
+    run.outputs.push_back({file, file == files.front() ? "" : content_of(file)});
   }
   json["files"] = names;
   json["sign"] = {{"rule", to_string(field.sign_rule)}, {"reason", field.sign_reason}};
@@ -193,8 +208,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   run.fields.push_back(json);
 
   if (label) run.table.add("label", std::to_string(*label));
-  run.table.add("sign",
-                std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
+  run.table.add("sign", sign_text(field.sign_rule, field.sign_reason));
   if (run.names_device) run.table.add("device", to_string(field.device));
   if (!field.device_reason.empty()) run.table.add("no device", field.device_reason);
   run.table.add("distance", node_range_text(s.minimum, s.maximum, field.sign_rule != SignRule::none) +
@@ -217,7 +231,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
   const double nodes = static_cast<double>(grid.node_count()) * static_cast<double>(run.fields.size());
   const double rate = nodes / std::max(run.field_seconds, 1e-9);
   Json outputs = Json::array();
-  for (const fs::path& file : run.outputs) outputs.push_back(file.string());
+  for (const Output& file : run.outputs) outputs.push_back(file.path.string());
   Json removed_second = Json::array();
   for (const fs::path& file : run.removed_second) removed_second.push_back(file.string());
   const Json json = answer_json("field", {{"input", run.input},
@@ -239,7 +253,9 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
   spent.add_to(run.table);
   run.table.detail("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
                                 plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads"));
-  for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
+  for (const auto& [file, content] : run.outputs) {
+    run.table.add("wrote", file.string() + (content.empty() ? "" : " (" + content + ")"));
+  }
   if (run.removed) run.table.add("removed", run.removed->string() + ": sites of the replaced field");
   for (const fs::path& file : run.removed_second) {
     run.table.add("removed", file.string() + ": second order of the replaced field");

@@ -122,7 +122,7 @@ void add_lines(TextTable& table, const Centrelines& lines) {
     const Centreline& line = lines.labels[l];
     table.add(line.label ? "label " + std::to_string(*line.label) : "selected",
               plural(line.branches.size(), "branch", "branches") + ", " + plural(line.nodes.size(), "node", "nodes") +
-                  ", length " + rounded_text(length_of(line)) + "; topology " +
+                  ", total length " + rounded_text(length_of(line)) + " in the image's units; topology " +
                   (line.homotopy_kept ? "kept" : "changed"));
   }
   if (lines.labels.size() > most_shown) {

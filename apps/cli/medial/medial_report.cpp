@@ -78,13 +78,14 @@ std::string labels_text(const Certificate& c) {
          percent(c.angles.above_share) + " a larger one than their surroundings";
 }
 
-/// Describes the share of the axis that lies in the middle of the solid, and the share that is missing. Returns an
-/// empty text if neither was checked.
+/// Describes the share of the axis that lies midway between two walls, and the share of the exact axis that is missing.
+/// Returns an empty text if neither was checked.
 std::string medial_share_text(const Certificate& c) {
   if (!c.checked.medial || c.medial.samples == 0) return "";
-  std::string text = "; " + percent(c.medial.medial_share) + " of its samples are in the middle";
-  if (c.medial.judges_missing) text += ", " + percent(c.medial.missed_share) + " of the axis at this theta is missing";
-  return text;
+  std::string text = "; " + percent(c.medial.medial_share) + " of the axis's samples are midway between two walls";
+  if (!c.medial.judges_missing) return text;
+  return text + ", " + percent(c.medial.missed_share) + " of the exact axis above " +
+         rounded_text(c.medial.sought_angle) + " degrees is missing";
 }
 
 }  // namespace
@@ -240,9 +241,9 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 }  // namespace
 
 std::string balls_text(const BallUnionCheck& balls) {
-  return "the solid's surface is at most " + rounded_text(balls.solid_to_balls) +
-         " from the union of the balls (mean " + rounded_text(balls.mean_solid_to_balls) +
-         "); the surface of the union is at most " + rounded_text(balls.balls_to_surface) + " from the solid's";
+  return "from the solid's surface to the union of the balls: at most " + rounded_text(balls.solid_to_balls) +
+         " (mean " + rounded_text(balls.mean_solid_to_balls) +
+         "); from the surface of the union to the solid's surface: at most " + rounded_text(balls.balls_to_surface);
 }
 
 void add_decimated(TextTable& table, const CertifiedAxis& made) {
@@ -306,11 +307,11 @@ std::string counts_text(const MedialCounts& counts, bool has_labels) {
   const std::string cells =
       plural(counts.vertices, "vertex", "vertices") + ", " + plural(counts.triangles, "triangle", "triangles");
   if (!has_labels) {
-    return cells + ", " + plural(counts.curve_edges, "edge", "edges") + " of curves (no sheets in the file)";
+    return cells + ", " + plural(counts.curve_edges, "segment", "segments") + " of curves (no sheets in the file)";
   }
   return cells + "; " + plural(counts.sheets, "sheet", "sheets") + ", " +
          plural(counts.junctions, "junction", "junctions") +
-         (counts.curve_edges > 0 ? ", " + plural(counts.curve_edges, "edge", "edges") + " of curves" : "");
+         (counts.curve_edges > 0 ? ", " + plural(counts.curve_edges, "segment", "segments") + " of curves" : "");
 }
 
 void add_axis_counts(TextTable& table, const std::string& before, const MedialCounts& counts, bool has_labels) {

@@ -81,7 +81,8 @@ class Verifier {
     }
     warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
     const MedialCounts counts = count(file.complex);
-    add_certificate(table_, "", certificate, file.nested.has_value());
+    const std::optional<double>& theta = file.metadata.theta;
+    add_certificate(table_, theta ? " at theta " + rounded_text(*theta) : "", certificate, file.nested.has_value());
     add_axis_counts(table_, axis.string() + ": ", counts, file.has_labels);
     results_.push_back(
         answer_json("verify", {{"input", solid.json},

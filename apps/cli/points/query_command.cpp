@@ -89,7 +89,7 @@ struct Facts {
   }
   [[nodiscard]] std::string distances_text(SignRule rule) const {
     return rounded_text(smallest) + " to " + rounded_text(largest) +
-           (rule == SignRule::none ? "" : ", negative inside") + "; mean without signs " + rounded_text(mean()) +
+           (rule == SignRule::none ? "" : ", negative inside") + "; mean absolute distance " + rounded_text(mean()) +
            ", rms " + rounded_text(rms());
   }
 };
@@ -176,7 +176,7 @@ TextTable table_of(const Arguments& a, const MeshFile& mesh, const ClosestPointQ
   TextTable table;
   table.add("points", all.counts_text(query.sign_rule()));
   if (all.found > 0) table.add("distance", all.distances_text(query.sign_rule()));
-  table.add("sign", std::string(to_string(query.sign_rule())) + ": " + query.sign_reason());
+  table.add("sign", sign_text(query.sign_rule(), query.sign_reason()));
   table.add("mesh", a.mesh + ": " + plural(mesh.mesh.triangles.size(), "triangle", "triangles"));
   for (const PointFile& file : files) {
     std::string text = file.output.string();

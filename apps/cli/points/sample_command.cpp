@@ -151,7 +151,8 @@ void add_sample_command(const CommandLine& line) {
                       "gradient, closest, site and triangle")
       .required()
       .type_name("FILE");
-  command.add_flag("--near", a->near, "Points near the surface, with exact signed distances");
+  command.add_flag("--near", a->near,
+                   "Points near the surface, with exact signed distances; the points of --in-box come last");
   a->options.add_to(command);
   a->near_options.add_to(command, "With --near: ", {"seed"});
   add_weld_option(command, a->weld);

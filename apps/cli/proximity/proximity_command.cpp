@@ -48,7 +48,9 @@ void add_query(const Command& parent, const SceneQuery& query) {
                     "rest, repeat its file")
         .type_name("END");
   }
-  command.add_flag("--self", a->self, "Also compare each object with itself: primitives without a common vertex");
+  command.add_flag("--self", a->self,
+                   "Also compare each object with itself, except primitives with a common vertex. Without "
+                   "--max-distance, collide also returns those that cross or are folded onto each other");
   if (query.takes_frames) {
     command.add_flag(
         "--frames", a->frames,
@@ -66,8 +68,9 @@ void add_query(const Command& parent, const SceneQuery& query) {
   add_text_option(command, "-o,--output", a->output, "FILE",
                   std::string(query.output) + ". Default: print counts only");
   add_text_option(command, "--limit", a->limit, "N",
-                  query.takes_frames ? "Write at most N pairs (per frame); counts include all pairs (default: all)"
-                                     : "Write at most N pairs; counts include all pairs (default: all)");
+                  std::string("Write at most N pairs") + (query.takes_frames ? " (per frame)" : "") +
+                      ", the first by index, not by distance or time (penetration: the deepest first); counts include "
+                      "all pairs (default: all)");
   add_weld_option(command, a->weld);
   if (query.takes_culling) a->culling.add_to(command);
   if (query.takes_depth) a->penetration.add_to(command);

@@ -150,17 +150,18 @@ std::string distance_text(const PrimitivePair& pair, double size) {
     return rounded_text(between.distance) + ": they overlap, from " + point_text(between.first_point, size) + " to " +
            point_text(between.second_point, size);
   }
-  if (between.distance == 0) return "distance 0, they meet near " + point_text(between.first_point, size);
+  if (between.distance == 0) return "distance 0: they touch or overlap near " + point_text(between.first_point, size);
   return "distance " + rounded_text(between.distance) + ", from " + point_text(between.first_point, size) + " to " +
          point_text(between.second_point, size);
 }
 
-std::string penetration_text(const Penetration& part, double size) {
+std::string penetration_text(const Penetration& part, const std::vector<std::string>& names, double size) {
   // Error of the direction: it is the difference of two rounded points, divided by their distance.
   const double blur = std::clamp(size / part.depth, 1.0, 1e6);
-  return "depth between " + rounded_text(part.depth) + " and " + rounded_text(part.depth_bound) + " at " +
-         point_text(part.deep_point, size) + ", along " + point_text(part.direction, blur) + "; volume " +
-         rounded_text(part.volume);
+  const std::string moved = part.first_object == part.second_object ? "its shell" : names[part.first_object.value];
+  return "depth " + rounded_text(part.depth) + " to " + rounded_text(part.depth_bound) + " at " +
+         point_text(part.deep_point, size) + "; if " + moved + " moves along " + point_text(part.direction, blur) +
+         " by the depth, this point lies on both surfaces; volume of the region " + rounded_text(part.volume);
 }
 
 std::string object_text(const Answer& answer, const PrimitivePair& pair) {
@@ -171,7 +172,7 @@ std::string object_text(const Answer& answer, const PrimitivePair& pair) {
 void add_penetrations(const Answer& answer, TextTable& table) {
   const double size = largest(answer.meshes);
   for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {
-    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k], size));
+    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k], answer.names, size));
   }
   if (answer.parts.size() > most_rows) {
     table.add("...", plural(answer.parts.size() - most_rows, "region", "regions") + " more: --json FILE lists all");
@@ -214,8 +215,9 @@ std::string found_text(const Answer& answer, bool has_rows) {
   const auto meets = [](const PrimitivePair& pair) { return pair.between.distance <= 0; };
   const auto meeting =
       static_cast<std::size_t>(std::count_if(answer.found.pairs.begin(), answer.found.pairs.end(), meets));
-  return plural(answer.found.pairs.size(), one, many) + (has_rows ? ", " + count_text(meeting) + " of them meet" : "") +
-         (answer.asked.max_distance && !meet ? " within " + rounded_text(*answer.asked.max_distance) : "");
+  return plural(answer.found.pairs.size(), one, many) +
+         (answer.asked.max_distance && !meet ? " within " + rounded_text(*answer.asked.max_distance) : "") +
+         (has_rows ? "; " + plural(meeting, "pair meets", "pairs meet") : "");
 }
 
 TextTable table_of(const ProximityArguments& a, const SceneQuery& query, const Answer& answer) {

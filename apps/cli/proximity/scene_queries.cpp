@@ -23,7 +23,8 @@ SceneFound ask_penetration(const ProximityScene& scene, const SceneQuestion& ask
 }
 
 constexpr std::string_view pairs_output =
-    "Pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between closest points)";
+    "Pairs: .npz (object, primitive, distance, point, feature, metadata), .csv, .json, .vtp (lines between closest "
+    "points)";
 constexpr std::string_view within = "Only pairs at most D apart, in mesh units (default: all)";
 
 constexpr std::array queries{
@@ -72,9 +73,10 @@ constexpr std::array queries{
                .ask = ask_penetration},
     SceneQuery{.name = "continuous",
                .doc = "Collisions of moving meshes between two frames",
-               .output = "Collisions: .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
-                         "vertex_face_object, edge_edge_object), .csv, .json, .vtp (vertices, edges and faces at the "
-                         "time of impact)",
+               .output = "Collisions: .npz, .csv, .json, .vtp (vertices, edges and faces at the time of impact). "
+                         "Arrays of .npz: vertex_face, vertex_face_time, face, edge_edge, edge_edge_time, metadata; "
+                         "with --to also vertex_face_object, edge_edge_object. Columns of .vtp: pair, time, vertex, "
+                         "face; with --to also object",
                .method = "continuous",
                .examples = R"(  blum proximity continuous cloth1.ply cloth2.ply --self -o pairs.npz
   blum proximity continuous ball1.ply plate.ply --to ball2.ply plate.ply

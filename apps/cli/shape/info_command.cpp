@@ -339,8 +339,7 @@ void run_field(const Arguments& a) {
   add_grid(table, field.grid);
   table.add("distance", node_range_text(s.minimum, s.maximum, field.sign_rule != SignRule::none));
   if (field.band) table.add("band", "+-" + rounded_text(*field.band));
-  table.add("sign",
-            std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
+  table.add("sign", sign_text(field.sign_rule, field.sign_reason));
   table.add("inside", plural(s.inside_nodes, "node", "nodes"));
   table.add("sites", has_sites ? count_text(s.all.sites) + " distinct (" + std::string(to_string(field.site_ids)) +
                                      "), " + plural(s.siteless_nodes, "node", "nodes") + " without"

@@ -72,8 +72,7 @@ void add_side(TextTable& table, const std::string& label, const Side& side) {
   table.add(label, "largest distance " + interval_text(side.distance.lower, side.distance.upper));
   if (!side.deviation) return;
   if (side.deviation->sign_rule != SignRule::none) {
-    table.detail("",
-                 "signs by " + std::string(to_string(side.deviation->sign_rule)) + ": " + side.deviation->sign_reason);
+    table.detail("", "signs " + sign_text(side.deviation->sign_rule, side.deviation->sign_reason));
   }
   const SurfaceDeviation& by_area = *side.deviation;
   const auto with_error = [](double value, double error) {
@@ -204,8 +203,9 @@ void run(const Arguments& a) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     size = std::max({size, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
   }
-  table.add("between", point_text(both.points[0], size) + " of " + names[0] + " and " +
-                           point_text(both.points[1], size) + " of " + names[1]);
+  const auto point_of = [&](std::size_t which) { return point_text(both.points[which], size) + " of " + names[which]; };
+  const std::size_t from = a.one_sided || both.forward.lower >= both.backward.lower ? 0 : 1;
+  table.add("reached at", point_of(from) + ", closest point " + point_of(1 - from));
   add_side(table, there, sides[0]);
   if (!a.one_sided) add_side(table, names[1] + " to " + names[0], sides[1]);
   for (std::size_t k = 0; k < sides.size() && !a.only_distance; ++k) {
@@ -224,14 +224,16 @@ void add_hausdorff_command(const CommandLine& line) {
   const Command command = line.app.add_subcommand(
       "hausdorff", "Guaranteed interval of the Hausdorff distance of two meshes, and means weighted by area");
   const std::string help = extensions_help({FileContent::mesh}, FileAccess::read) + ", or points (" +
-                           join_words(cloud_extensions(), "or") + ")";
+                           join_words(cloud_extensions(), "or") +
+                           "). From points, no means and percentiles are computed, so --sign is ignored";
   command.add_option("A", a->a, help).required();
   command.add_option("B", a->b, help).required();
   add_text_option(command, "-o,--output", a->output, "FILE",
                   "Write the witnesses: for each direction a segment from a point that is furthest away to its closest "
                   "point (.vtp, .ply, ...)");
   command.add_flag("--one-sided", a->one_sided, "Only the directed distance from A to B");
-  command.add_flag("--only-distance", a->only_distance, "Omit means and percentiles by area");
+  command.add_flag("--only-distance", a->only_distance,
+                   "Compute only the distance, without the means and percentiles, which are weighted by area");
   a->options.add_to(command);
   a->deviation.add_to(command, "By area: ");
   add_weld_option(command, a->weld);

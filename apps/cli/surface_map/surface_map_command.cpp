@@ -234,7 +234,7 @@ void run(const Arguments& a) {
   for (const fs::path& output : asked.outputs) written.push_back(output.string());
   add_run_facts(json, spent, context, map.warnings, written);
   TextTable table;
-  table.add("map", quantity_text(map.quantity) + " at " + count_text(facts.texels) + " texels of " +
+  table.add("map", quantity_text(map.quantity) + "; " + count_text(facts.texels) + " texels used in a texture of " +
                        std::to_string(map.atlas->width) + " x " + std::to_string(map.atlas->height));
   const std::string unit = a.units.empty() ? "" : " " + a.units;
   if (!map.error.empty()) table.add("error", "at most " + rounded_text(facts.largest_error) + unit + " between texels");
@@ -245,9 +245,7 @@ void run(const Arguments& a) {
     table.add("mean", rounded_text(by_area.mean) + ", rms " + rounded_text(by_area.rms) + " (weighted by area)");
     table.detail("percentiles", percentiles_text(SurfaceMapStatistics::percents, by_area.percentiles));
   }
-  if (map.sign_rule != SignRule::none) {
-    table.add("sign", std::string(to_string(map.sign_rule)) + ": " + map.sign_reason);
-  }
+  if (map.sign_rule != SignRule::none) table.add("sign", sign_text(map.sign_rule, map.sign_reason));
   table.add("input", a.target + ": " + plural(target.mesh.triangles.size(), "triangle", "triangles"));
   for (const fs::path& output : asked.outputs) table.add("wrote", output.string());
   spent.add_to(table);

@@ -297,8 +297,9 @@ struct Description<AxisGraph> {
 /// @param axis  axis with radii and sheets, for example from MedialAxis::simplify(), prune_sheets() or a file. Missing
 /// angles count as 0.
 /// @return      the same bytes for equal arguments. Sums are computed in double, in the order of triangles and edges.
-/// @throws InvalidOption if an angle of the options is out of range, or if radii or sheets are missing. Also if
-/// problem_of_medial() reports a problem in the columns that exist. Cancelled.
+/// @throws InvalidOption if an angle of the options is out of range, or if radii or sheets are missing. The function
+/// also throws InvalidOption if problem_of_medial() reports a problem in the columns that the axis has.
+/// @throws Cancelled.
 /// Cost: linear except for sorting; about 0.5 s for a million triangles, and 200 bytes per triangle.
 [[nodiscard]] AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options = {},
                                    const Context& context = {});

@@ -129,7 +129,8 @@ struct ExtendedAxis {
 /// @param solid  solid of a mesh; the axis must be an axis of this solid.
 /// @return       the same bytes for any number of threads.
 /// @throws InvalidOption if an option is out of range, radii or sheets are missing, or the solid is that of an image.
-/// Also if problem_of_medial() reports a problem in the columns that exist. Cancelled.
+/// The function also throws InvalidOption if problem_of_medial() reports a problem in the columns that the axis has.
+/// @throws Cancelled.
 /// Cost: about 0.1 ms per rim vertex, for Solid::inside() and a few ray casts. In large bodies without thin walls, a
 /// few ms per rim vertex.
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const Solid& solid, const ExtendOptions& options = {},

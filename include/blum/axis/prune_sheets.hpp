@@ -18,8 +18,9 @@ namespace blum {
 /// @return       remaining part of the axis, with its columns; edges have only the columns of medial_columns. Roles and
 ///               sheets are labelled anew, and sheets keep their order. The result for a larger theta is part of the
 ///               result for a smaller one.
-/// @throws InvalidOption if theta is out of range, or sheets or the angles of edges and triangles are missing. Also if
-/// problem_of_medial() reports a problem in the columns that exist. Cancelled.
+/// @throws InvalidOption if theta is out of range, or sheets or the angles of edges and triangles are missing. The
+/// function also throws InvalidOption if problem_of_medial() reports a problem in the columns that the axis has.
+/// @throws Cancelled.
 /// Cost: O(n log n) for n triangles, more if many sheets are tried in vain. Method: Sud 2006, 5.6.
 [[nodiscard]] Complex prune_sheets(const Complex& axis, double theta, const Context& context = {});
 

@@ -94,9 +94,9 @@ class WindingNumber {
   [[nodiscard]] Estimate value(const Vec3d& query, double max_error) const;
 
   /// Returns nullopt if |w - 1/2| may be at most `change`. Otherwise, returns true if w > 1/2, and false if w < 1/2. If
-  /// the result is set, all points at which w differs by at most `change` from w at the query are on the same side. A
-  /// bound on the gradient of w can supply `change`. With change = 0 the result is that of is_inside(), except for
-  /// nullopt if w is 1/2 up to rounding.
+  /// a side is returned, every point whose w is within `change` of w at the query has the same side. A bound on the
+  /// gradient of w can supply `change`. With change = 0 the result is that of is_inside(), except for nullopt if w is
+  /// 1/2 up to rounding.
   [[nodiscard]] std::optional<bool> side(const Vec3d& query, double change) const;
 
   /// Returns the side of a whole box: true if w > 1/2 at all of its points, false if w > 1/2 at none of its points.

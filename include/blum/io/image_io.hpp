@@ -14,8 +14,8 @@
 namespace blum {
 
 /// Reads a 3D image of scalars. Values keep the type that they have in the file, with the exceptions below. Spacing,
-/// origin and direction are those of the file, in the world axes and units of the file. A 2D image becomes an image
-/// with one layer.
+/// origin and direction are those of the file, in the world axes and units of the file. The name of the unit is not
+/// read (xyzt_units in NIfTI, "units" and "space units" in NRRD). A 2D image becomes an image with one layer.
 ///
 ///   `.nrrd`, `.nhdr`  NRRD 1 to 5 in either byte order, with raw, gzip or text data. The data are in the same file or
 ///                     in one other file, also with line skip and byte skip. The geometry is given by "space

@@ -27,10 +27,10 @@ struct CentrelineOptions {
   /// Selected voxels. By default (`nonzero`), each value other than 0 is a label of its own, and all values must be
   /// whole numbers.
   LabelSelection selection = {};
-  /// Limit for the removal of branches with a free end (spurs). A spur is removed if no point of it is further than
-  /// spur * radius + 1.5 voxels from its other end. Here, `radius` is the radius of the ball at that other end. If spur
-  /// is 1, removed branches leave the ball by at most 1.5 voxels. If spur is 0, only branches of at most 1.5 voxels are
-  /// removed.
+  /// Limit for the removal of branches with a free end (spurs). A spur is removed if it stays within
+  /// spur * radius + 1.5 voxels of its junction. Here, `radius` is the radius of the ball at this junction. If spur is
+  /// 1, removed branches leave the ball by at most 1.5 voxels. If spur is 0, only branches that stay within 1.5 voxels
+  /// are removed.
   double spur = 1;
 };
 
@@ -40,9 +40,8 @@ struct Description<CentrelineOptions> {
   static constexpr std::string_view doc = "Options of centrelines";
   static constexpr std::tuple members{
       Member{"selection", &CentrelineOptions::selection, "", "selected voxels"},
-      Member{"spur", &CentrelineOptions::spur, "radii at the branch's root",
-             "limit for branches with a free end: if they are shorter than this limit plus 1.5 voxels, they are "
-             "removed",
+      Member{"spur", &CentrelineOptions::spur, "radii r of the junction's ball",
+             "limit N: branches with a free end are removed if they stay within N r + 1.5 voxels of their junction",
              Range::between(0, 100)},
   };
 };
@@ -82,8 +81,10 @@ struct Description<CentrelineNode> {
 struct CentrelineBranch {
   std::array<std::int32_t, 2> nodes{-1, -1};  ///< Indices of its first and last node; -1 for closed curves.
   double length = 0;                          ///< Length of the polyline `points`, world units.
-  double mean_radius = 0;  ///< Mean of `radii` along the branch, without points in the balls of its junctions.
-  double min_radius = 0;   ///< Least of `radii`, also without these points.
+  /// Mean of `radii` along the part of the branch that is at least 1.5 voxels away from the balls of its junctions. A
+  /// branch without such a part counts as a whole.
+  double mean_radius = 0;
+  double min_radius = 0;  ///< Least of `radii` on the same part.
   /// Polyline from the first to the last node. A closed curve ends with its first point.
   std::vector<Vec3d> points = {};
   /// For each point: radius of the circle that has the area of the cross-section there.
@@ -97,9 +98,9 @@ struct Description<CentrelineBranch> {
       Member{"nodes", &CentrelineBranch::nodes, "", "first and last node; -1 for closed curves"},
       Member{"length", &CentrelineBranch::length, "world units", "length of its polyline"},
       Member{"mean_radius", &CentrelineBranch::mean_radius, "world units",
-             "mean radius along its length, outside the balls of its junctions"},
-      Member{"min_radius", &CentrelineBranch::min_radius, "world units",
-             "smallest radius along its length, outside the balls of its junctions"},
+             "mean radius along the part at least 1.5 voxels away from its junctions' balls; if there is none, along "
+             "the whole branch"},
+      Member{"min_radius", &CentrelineBranch::min_radius, "world units", "smallest radius on the same part"},
       Member{"points", &CentrelineBranch::points, "world units",
              "polyline from node to node; for closed curves the first point is also the last"},
       Member{"radii", &CentrelineBranch::radii, "world units",

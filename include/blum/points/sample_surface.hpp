@@ -59,7 +59,7 @@ struct NearSampleOptions {
   /// diagonal of the mesh's bounds.
   std::optional<double> sigma = {};
   /// Fraction of the points that are uniformly distributed in a box instead of near the surface, 0 to 1. The box is the
-  /// mesh's bounds, with all sides a tenth longer.
+  /// mesh's bounds, with all sides multiplied by 1.1 about its centre.
   double in_box = 0;
   std::uint64_t seed = 0;
   /// Method that finds the signs, as for closest_points().
@@ -71,12 +71,11 @@ struct Description<NearSampleOptions> {
   static constexpr std::string_view name = "NearSampleOptions";
   static constexpr std::string_view doc = "Options of random points near a surface";
   static constexpr std::tuple members{
-      Member{"sigma", &NearSampleOptions::sigma, "mesh units",
-             "standard deviation of the offset from the surface along each axis; by default 1/100 of the diagonal",
-             Range::positive()},
+      Member{"sigma", &NearSampleOptions::sigma, "mesh units; default: 1/100 of the diagonal of the mesh's box",
+             "standard deviation of the offset from the surface along each axis", Range::positive()},
       Member{"in_box", &NearSampleOptions::in_box, "",
-             "fraction of the points that are uniform in the bounding box, enlarged by a tenth, instead of near the "
-             "surface",
+             "fraction of the points that are not near the surface but uniform in the mesh's box, with sides "
+             "multiplied by 1.1; they come last",
              Range::between(0, 1)},
       Member{"seed", &NearSampleOptions::seed, "", "seed of the random numbers", Range::between(0, 0x1p62)},
       Member{"sign", &NearSampleOptions::sign, "", "rule for signs, as for closest points"},

@@ -31,9 +31,9 @@ struct Description<HausdorffOptions> {
   static constexpr std::string_view name = "HausdorffOptions";
   static constexpr std::string_view doc = "Precision of a Hausdorff distance";
   static constexpr std::tuple members{
-      Member{"tolerance", &HausdorffOptions::tolerance, "mesh units",
-             "largest width of the interval; by default 1/10,000 of the diagonal of the box around both meshes",
-             Range::positive()},
+      Member{"tolerance", &HausdorffOptions::tolerance,
+             "mesh units; default: 1/10,000 of the diagonal of the box around both meshes",
+             "largest width of the interval", Range::positive()},
       Member{"max_points", &HausdorffOptions::max_points, "",
              "largest number of examined points per mesh; when it is reached, the search stops with a wider interval",
              Range::between(1, 1e15)},

@@ -31,7 +31,8 @@ struct Description<DeviationOptions> {
       Member{"pieces", &DeviationOptions::pieces, "",
              "approximate number of pieces into which the surface is divided; smaller pieces give smaller errors",
              Range::between(1, 1e9)},
-      Member{"sign", &DeviationOptions::sign, "", "rule for signs: negative inside the other mesh"},
+      Member{"sign", &DeviationOptions::sign, "",
+             "rule for the signs of means and percentiles: negative inside the other mesh"},
   };
 };
 

@@ -29,6 +29,10 @@ bool faces_inwards(const MeshView& mesh) {
   return orientation(view, SiteTable(view)).outward;
 }
 
+constexpr const char* rule_requested = "this rule was requested";
+constexpr const char* unsigned_requested = "unsigned distances were requested";
+constexpr const char* no_triangles = "the mesh has no triangles and therefore no inside";
+
 Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
   const Orientation facts = orientation(mesh, sites);
   if (!facts.closed || !facts.oriented) {
@@ -39,10 +43,11 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
     throw InvalidMesh(
         "signs by normals need triangles only; the mesh has free segments or points, which have no sides: use winding");
   }
-  if (facts.outward) return {SignRule::normals, "orientation, as requested", Method::crossings};
+  if (facts.outward) return {SignRule::normals, rule_requested, Method::crossings};
   Plan plan{SignRule::normals,
-            "orientation, as requested; shells of the mesh cross or do not all face away from the solid: flip the mesh "
-            "if signs look inverted",
+            std::string(rule_requested) +
+                "; shells of the mesh cross or do not all face away from the solid: flip the mesh if signs look "
+                "inverted",
             Method::pseudonormals};
   // An inside-out mesh has winding number -1 in the solid and 0 around it. For such a mesh, the chosen signs make the
   // surrounding space the inside.
@@ -66,9 +71,6 @@ bool is_balanced(const MeshView& mesh, const SiteTable& sites) {
   return std::all_of(forward.begin(), forward.end(), [](std::int32_t count) { return count == 0; });
 }
 
-constexpr const char* no_triangles = "unsigned: there are no triangles, so there is no inside";
-constexpr const char* as_asked_for = "winding number above 1/2, as requested";
-
 void throw_without_triangles() {
   throw InvalidOption("a sign was requested, but the mesh has no triangles, so it has no inside: request none");
 }
@@ -87,34 +89,33 @@ bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
 }
 
 Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
-  const std::string winding = "winding number above 1/2: the mesh ";
   const Orientation facts = orientation(mesh, sites);
   if (!mesh.segments.empty() || !mesh.points.empty()) {
-    return by_winding(winding + "has free segments or points, which have no sides");
+    return by_winding("the mesh has free segments or points, which have no sides");
   }
-  if (!facts.closed || !facts.oriented) return by_winding(winding + "has " + mesh_problem::of_edges(facts));
+  if (!facts.closed || !facts.oriented) return by_winding("the mesh has " + mesh_problem::of_edges(facts));
   if (!facts.outward && facts.signed_volume < 0) {
     return by_winding(
-        winding + "is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");
+        "the mesh is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");
   }
-  if (has_flat_triangles(mesh)) return by_winding(winding + "is closed, but has triangles too flat for a normal");
+  if (has_flat_triangles(mesh)) return by_winding("the mesh is closed, but has triangles too flat for a normal");
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
   if (search_.finds_any(mesh, quiet)) {
-    return by_winding(winding + "is closed and oriented, but it crosses or touches itself");
+    return by_winding("the mesh is closed and oriented, but it crosses or touches itself");
   }
-  if (!facts.outward) return by_winding(winding + "is closed, but its shells do not all face away from the solid");
+  if (!facts.outward) return by_winding("the mesh is closed, but its shells do not all face away from the solid");
   return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", Method::crossings, 0,
           true};
 }
 
 Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
-  if (mode == SignMode::none) return unsigned_plan("unsigned, as requested");
+  if (mode == SignMode::none) return unsigned_plan(unsigned_requested);
   if (mesh.triangles.empty()) {
     if (mode == SignMode::automatic) return unsigned_plan(no_triangles);
     throw_without_triangles();
   }
   if (mode == SignMode::normals) return plan_normals(mesh, sites);
-  Plan plan = mode == SignMode::winding ? by_winding(as_asked_for) : plan_automatically(mesh, sites, context);
+  Plan plan = mode == SignMode::winding ? by_winding(rule_requested) : plan_automatically(mesh, sites, context);
   if (plan.method == Method::sums && is_balanced(mesh, sites)) plan.method = Method::crossings;
   return plan;
 }
@@ -125,14 +126,16 @@ Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {
         "signs by normals need a mesh in host memory: use automatic, which gives the same signs for closed meshes that "
         "face outwards");
   }
-  if (mode == SignMode::none) return unsigned_plan("unsigned, as requested");
-  if (triangles > 0) return by_winding(as_asked_for);
+  if (mode == SignMode::none) return unsigned_plan(unsigned_requested);
+  if (triangles > 0) {
+    return by_winding(mode == SignMode::winding ? rule_requested : "meshes in device memory are not examined");
+  }
   if (mode == SignMode::winding) throw_without_triangles();
   return unsigned_plan(no_triangles);
 }
 
 Plan plan_image_signs(bool is_signed, const std::string& selection) {
-  if (!is_signed) return unsigned_plan("unsigned, as requested");
+  if (!is_signed) return unsigned_plan(unsigned_requested);
   return {SignRule::label, "a voxel is inside if its value " + selection};
 }
 

@@ -20,25 +20,25 @@
 namespace blum {
 namespace {
 
+/// @throws InvalidOption with the metadata's value of `name`, and the reason.
+[[noreturn]] void refuse(const char* name, const std::string& value, const std::string& reason) {
+  throw InvalidOption("the metadata say `" + std::string(name) + "` = " + value + ", but it must " + reason);
+}
+
 void check_metadata(const MedialMetadata& metadata) {
   for (const auto& [name, value] : {std::pair{"theta", metadata.theta}, std::pair{"lambda", metadata.lambda},
                                     std::pair{"spacing", metadata.spacing}, std::pair{"threshold", metadata.threshold},
                                     std::pair{"weld", metadata.weld}, std::pair{"deviation", metadata.deviation}}) {
-    if (value && !std::isfinite(*value)) {
-      throw InvalidOption(std::string(name) + " of the metadata is not finite: " + exact_text(*value));
-    }
+    if (value && !std::isfinite(*value)) refuse(name, exact_text(*value), "be finite");
   }
   for (const auto& [name, value] : {std::pair{"weld", metadata.weld}, std::pair{"deviation", metadata.deviation}}) {
-    if (value && *value < 0) {
-      throw InvalidOption(std::string(name) + " of the metadata is negative: " + exact_text(*value));
-    }
+    if (value && *value < 0) refuse(name, exact_text(*value), "not be negative");
   }
   if (metadata.label && metadata.threshold) {
     throw InvalidOption("the metadata have a label and a threshold; a solid is selected by one of them");
   }
   if (metadata.smooth && (*metadata.smooth < 0 || *metadata.smooth > medial_files::most_smoothing)) {
-    throw InvalidOption("smooth of the metadata is " + std::to_string(*metadata.smooth) + ", but must be 0 to " +
-                        std::to_string(medial_files::most_smoothing));
+    refuse("smooth", std::to_string(*metadata.smooth), "be 0 to " + std::to_string(medial_files::most_smoothing));
   }
   if (metadata.grid) validate(*metadata.grid);
 }

@@ -84,10 +84,10 @@ class MeshBuilder {
 bool cut_polygon(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners, std::span<Triangle> triangles,
                  std::int64_t& work_left);
 
-/// Largest number of steps for cutting polygons. This many are allowed for each corner; further ones are allowed for
-/// the whole file, which take about a second. A step examines one corner or one group of corners. Usual polygons of any
-/// size need a few dozen steps per corner.
+/// Number of steps that each corner of a non-convex polygon adds to the limit for cutting polygons. A step examines one
+/// corner or one group of corners. Usual polygons of any size need a few dozen steps per corner.
 inline constexpr std::int64_t polygon_work_per_corner = 500;
+/// Number of further steps that each file may take. These steps take about a second.
 inline constexpr std::int64_t polygon_work = 200'000'000;
 
 /// @throws FileError whose message states that files of this format cannot contain `what`.

@@ -186,7 +186,7 @@ TEST(SolidBetti, RejectsMeshesThatBoundNoSolid) {
   TriangleMesh flat;
   flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   flat.triangles = {{0, 1, 2}, {0, 2, 1}};
-  says(flat, "encloses nothing");
+  says(flat, "the shell that contains triangle 0 encloses no volume");
   TriangleMesh twice = make_box({});
   append(twice, make_box({}));
   says(twice, "same volume at the same place");
