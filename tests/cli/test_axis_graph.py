@@ -54,7 +54,7 @@ def test_info_writes_the_graph_of_a_file(axes, tmp_path):
         graph = json.loads((tmp_path / "g.json").read_text())
         assert facts["graph"]["sheets"] == len(graph["sheets"]) == facts["counts"]["sheets"]
         assert np.allclose([sheet["area"] for sheet in graph["sheets"]], areas(axes / "box.npz"), rtol=1e-9)
-        assert graph["patches"] == [] and "thinnest wall" not in run("info", axes / f"box.{end}")[0]
+        assert graph["patches"] == [] and "thinnest large wall" not in run("info", axes / f"box.{end}")[0]
     assert run_json("info", axes / "box.npz")["graph"] is None
 
 

@@ -39,8 +39,8 @@ std::string graph_text(const AxisGraph& graph) {
       plural(graph.sheets.size(), "sheet", "sheets") + ", " + plural(graph.seams.size(), "seam", "seams") + ", " +
       plural(graph.curves.size(), "curve", "curves") + ", " + plural(graph.junctions.size(), "junction", "junctions");
   if (const AxisSheet* const wall = thinnest_wall(graph)) {
-    text += "; thinnest wall: sheet " + std::to_string(wall->sheet) + ", " + rounded_text(wall->wall_thickness.low) +
-            " thick";
+    text += "; thinnest large wall: sheet " + std::to_string(wall->sheet) + ", " +
+            rounded_text(wall->wall_thickness.low) + " thick (at least 1 % of the area)";
   }
   return text;
 }
