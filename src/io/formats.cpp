@@ -166,15 +166,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t head_size = 8192;
 
 std::string read_head(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw FileError("'" + path.string() + "' is a folder, not a file");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError("'" + path.string() + "' cannot be opened: " + std::strerror(errno));
-  std::string head(head_size, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-  return head;
+  return read_file_head(path, head_size);
 }
 
 /// Returns true if a NRRD header declares floating-point values.

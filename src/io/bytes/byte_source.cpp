@@ -9,6 +9,9 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -30,6 +33,9 @@ FileSource::FileSource(const std::filesystem::path& path) : ByteSource(path.stri
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
     throw FileError("cannot read '" + name() + "': " + (error ? error.message() : "there is no such file"));
+  }
+  if (std::filesystem::is_fifo(status)) {
+    throw FileError("cannot read '" + name() + "': it is a pipe, and this format is read in parts; write it to a file");
   }
   if (!std::filesystem::is_regular_file(status)) throw FileError("cannot read '" + name() + "': it is not a file");
   size_ = std::filesystem::file_size(path, error);
@@ -99,6 +105,8 @@ namespace {
 /// Descriptor that is closed by the destructor.
 struct Descriptor {
   int number;
+  explicit Descriptor(int descriptor) : number(descriptor) {}
+  Descriptor(Descriptor&& other) noexcept : number(std::exchange(other.number, -1)) {}
   ~Descriptor() {
     if (number >= 0) ::close(number);
   }
@@ -127,18 +135,19 @@ Buffer<std::byte> first_bytes(const Buffer<std::byte>& bytes, std::size_t size, 
   return result;
 }
 
-}  // namespace
-
-FileBytes read_whole_file(const std::filesystem::path& path) {
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+/// Opens a file or a pipe for reading.
+Descriptor opened(const std::filesystem::path& path, struct stat& info) {
+  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
   if (file.number < 0) fail(path, errno);
-  struct stat info{};
   if (::fstat(file.number, &info) != 0) fail(path, errno);
   if (S_ISDIR(info.st_mode)) fail(path, EISDIR);
   if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) {  // reading a device may never end
     throw FileError("cannot read '" + path.string() + "': it is a device, not a file");
   }
+  return file;
+}
 
+FileBytes read_to_end(const Descriptor& file, const struct stat& info, const std::filesystem::path& path) {
   // The first read requests one byte more than the file size, to detect the end of the file. Pipes, and files that grow
   // meanwhile, are longer; for them the buffer is doubled repeatedly.
   Buffer<std::byte> bytes(std::max<std::size_t>(static_cast<std::size_t>(info.st_size) + 1, 4096));
@@ -148,6 +157,78 @@ FileBytes read_whole_file(const std::filesystem::path& path) {
     size += read_up_to(file.number, bytes.data() + size, bytes.size() - size, path);
   }
   return {std::move(bytes), size};
+}
+
+/// Content of pipes whose first bytes were requested, until all of their bytes are.
+class KeptPipes {
+ public:
+  using Key = std::pair<dev_t, ino_t>;
+
+  /// Calls use(bytes) for the content of a pipe. It is read now if it is not kept yet.
+  template <class Use>
+  void with(const struct stat& named, const std::filesystem::path& path, const Use& use) {
+    const std::scoped_lock lock(mutex_);
+    const Key key{named.st_dev, named.st_ino};
+    auto at = pipes_.find(key);
+    if (at == pipes_.end()) {
+      struct stat info{};
+      const Descriptor file = opened(path, info);
+      at = pipes_.emplace(key, read_to_end(file, info, path)).first;
+    }
+    use(at->second.span());
+  }
+  [[nodiscard]] std::optional<FileBytes> take(const struct stat& info) {
+    const std::scoped_lock lock(mutex_);
+    const auto at = pipes_.find({info.st_dev, info.st_ino});
+    if (at == pipes_.end()) return std::nullopt;
+    FileBytes bytes = std::move(at->second);
+    pipes_.erase(at);
+    return bytes;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<Key, FileBytes> pipes_;
+};
+
+KeptPipes& kept_pipes() {
+  static KeptPipes pipes;
+  return pipes;
+}
+
+/// Takes the kept content of a path that names a pipe. A pipe without a writer must not be opened, because that would
+/// wait for one.
+std::optional<FileBytes> take_kept(const std::filesystem::path& path) {
+  struct stat info{};
+  if (::stat(path.c_str(), &info) != 0 || !S_ISFIFO(info.st_mode)) return std::nullopt;
+  return kept_pipes().take(info);
+}
+
+}  // namespace
+
+FileBytes read_whole_file(const std::filesystem::path& path) {
+  if (std::optional<FileBytes> kept = take_kept(path)) return std::move(*kept);
+  struct stat info{};
+  const Descriptor file = opened(path, info);
+  return read_to_end(file, info, path);
+}
+
+std::string read_file_head(const std::filesystem::path& path, std::size_t size) {
+  std::string head;
+  const auto copy = [&](std::span<const std::byte> bytes) {
+    head.assign(reinterpret_cast<const char*>(bytes.data()), std::min(size, bytes.size()));
+  };
+  struct stat named{};
+  const bool is_pipe = ::stat(path.c_str(), &named) == 0 && S_ISFIFO(named.st_mode);
+  if (is_pipe) {
+    kept_pipes().with(named, path, copy);
+    return head;
+  }
+  struct stat info{};
+  const Descriptor file = opened(path, info);
+  head.resize(size);
+  head.resize(read_up_to(file.number, reinterpret_cast<std::byte*>(head.data()), size, path));
+  return head;
 }
 
 }  // namespace blum

@@ -134,8 +134,14 @@ struct FileBytes {
   [[nodiscard]] std::span<const std::byte> span() const { return storage.span().first(size); }
 };
 
-/// Returns all bytes of a file, or of a pipe up to its end.
+/// Returns all bytes of a file, or of a pipe up to its end. If read_file_head() was called for the pipe before, the
+/// bytes that it read are part of the result.
 /// @throws FileError if it cannot be read, or is a directory or a device; OutOfMemory.
 [[nodiscard]] FileBytes read_whole_file(const std::filesystem::path& path);
+
+/// Returns the first bytes of a file, at most `size`. A pipe can be read only once, so all its bytes are kept in memory
+/// until the next call of read_whole_file() for the same pipe. Any thread may call this function.
+/// @throws as read_whole_file().
+[[nodiscard]] std::string read_file_head(const std::filesystem::path& path, std::size_t size);
 
 }  // namespace blum
