@@ -143,7 +143,8 @@ void bind_closest_points(nb::module_& m) {
           },
           nb::arg("vertices").noconvert(), nb::arg("threads"), nb::arg("progress").none())
       .def_prop_ro("sign_rule", [](const ClosestPointQuery& self) { return std::string(to_string(self.sign_rule())); })
-      .def_prop_ro("sign_reason", [](const ClosestPointQuery& self) { return self.sign_reason(); });
+      .def_prop_ro("sign_reason", [](const ClosestPointQuery& self) { return self.sign_reason(); })
+      .def_prop_ro("warnings", [](const ClosestPointQuery& self) { return result_of(self.warnings()); });
 }
 
 }  // namespace blum::python

@@ -12,7 +12,6 @@
 #include "blum/core/device.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/field/field.hpp"
-#include "blum/field/field_warnings.hpp"
 #include "blum/field/interpolate.hpp"
 #include "blum/field/zero_surface.hpp"
 #include "call.hpp"
@@ -100,6 +99,7 @@ void bind_field_class(nb::module_& m) {
       .def_ro("band", &Field::band)
       .def_prop_ro("sign_rule", [](const Field& field) { return std::string(to_string(field.sign_rule)); })
       .def_ro("sign_reason", &Field::sign_reason)
+      .def_prop_ro("warnings", [](const Field& self) { return result_of(self.warnings); })
       .def_prop_ro("device", [](const Field& field) { return to_string(field.device); })
       .def_ro("device_reason", &Field::device_reason)
       .def_prop_ro("seconds", [](const Field& field) { return seconds_of(field.phases); })
@@ -182,23 +182,6 @@ void bind_field(nb::module_& m) {
       },
       nb::arg("mesh"), nb::arg("grid"), nb::arg("objects").none(), nb::arg("options"), nb::arg("threads"),
       nb::arg("device"), nb::arg("progress").none());
-  m.def(
-      "field_warnings",
-      [](const Field& field, const MeshArrays& mesh, int threads) {
-        const MeshView view = mesh.view();
-        return result_of(
-            run({threads, nb::none()}, [&](const Context& context) { return field_warnings(field, view, context); }));
-      },
-      nb::arg("field"), nb::arg("mesh"), nb::arg("threads"));
-  m.def(
-      "sign_warnings",
-      [](const MeshArrays& mesh, const ClosestPointQuery& query, int threads) {
-        const MeshView view = mesh.view();
-        const SignRule rule = query.sign_rule();
-        return result_of(
-            run({threads, nb::none()}, [&](const Context& context) { return sign_warnings(view, rule, context); }));
-      },
-      nb::arg("mesh"), nb::arg("query"), nb::arg("threads"));
 }
 
 }  // namespace blum::python

@@ -20,12 +20,14 @@ nb::tuple columns_of(SurfaceSamples found) {
                         handed_over<std::int32_t>(std::move(found.triangles)));
 }
 
-/// Returns (points, closest points, distances, sites, triangles). All but the first are views of one block of memory.
+/// Returns (points, closest points, distances, sites, triangles, sign rule, sign reason, warnings). The second to fifth
+/// are views of one block of memory.
 nb::tuple columns_of(NearSamples found) {
   const Held<ClosestPoint> kept = held(std::move(found.closest));
   const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };
   return nb::make_tuple(handed_over<double>(std::move(found.points), 3), shown(&ClosestPoint::point),
-                        shown(&ClosestPoint::distance), shown(&ClosestPoint::site), shown(&ClosestPoint::triangle));
+                        shown(&ClosestPoint::distance), shown(&ClosestPoint::site), shown(&ClosestPoint::triangle),
+                        std::string(to_string(found.sign_rule)), found.sign_reason, to_python(found.warnings));
 }
 
 }  // namespace

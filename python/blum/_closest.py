@@ -15,6 +15,7 @@ from ._mesh import MeshLike, MeshOrVertices, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions
+from ._warn import warn_all
 
 __all__ = ["ClosestPointQuery", "ClosestPoints", "NearPrimitives", "closest_points", "winding_number"]
 
@@ -99,6 +100,7 @@ class ClosestPointQuery:
                 integer(threads, "threads"),
                 report,
             )
+        warn_all(self._query.warnings)
 
     def __repr__(self) -> str:
         return f"ClosestPointQuery({self._mesh!r}, sign_rule={self.sign_rule!r})"
@@ -214,6 +216,7 @@ class ClosestPointQuery:
         rows = float_rows(vertices, "vertices")
         with reporting(progress) as report:
             self._query.refit(rows, integer(threads, "threads"), report)
+        warn_all(self._query.warnings)
 
 
 @takes("ClosestPointOptions")

@@ -263,6 +263,10 @@ class Field:
     def to_pyvista(self) -> Any:
         """Returns a pyvista.ImageData with the point data `distance` and `site`; without PyVista, a dict of arrays.
 
+        If the grid has another direction than the axes, the result is a pyvista.StructuredGrid, which needs 24 more
+        bytes per node. The reason is that several filters ignore the direction of ImageData, for example VTK's
+        vtkContourFilter and PyVista's `contour`.
+
         A field of order 2 also has `distance2` and `site2`. The point data are copies, because VTK would hold the
         library's memory beyond the end of Python, and a leak would be reported.
 
@@ -285,10 +289,7 @@ class Field:
                 "spacing": self.spacing,
                 "direction": self.grid.direction,
             }
-        grid = self.grid
-        out = pyvista.ImageData(
-            dimensions=grid.size, spacing=grid.spacing, origin=grid.origin, direction_matrix=grid.direction
-        )
+        out = _pyvista_nodes(pyvista, self.grid)
         out.point_data["distance"] = np.array(self.distance).ravel()
         if self.site is not None:
             out.point_data["site"] = np.array(self.site).ravel()
@@ -319,6 +320,16 @@ def _restored(
 ) -> Field:
     core = _core.Field(distance, grid._spec, site, distance2, site2, second, site_ids, band, sign_rule, sign_reason)
     return Field._of(core, mesh, source, space)
+
+
+def _pyvista_nodes(pyvista: Any, grid: Grid) -> Any:
+    """Returns the nodes of a grid without data. They are points of space if the grid is not aligned with the axes."""
+    if np.array_equal(grid.direction, np.eye(3)):
+        return pyvista.ImageData(dimensions=grid.size, spacing=grid.spacing, origin=grid.origin)
+    out = pyvista.StructuredGrid()
+    out.dimensions = grid.size
+    out.points = grid.positions().reshape(-1, 3)
+    return out
 
 
 def _objects_array(objects: Any) -> npt.NDArray[np.uint32] | None:
@@ -410,7 +421,7 @@ def distance_field(
             device_name(device),
             report,
         )
-    warn_all(_core.field_warnings(core, shape._arrays, integer(threads, "threads")))
+    warn_all(core.warnings)
     return Field._of(core, shape, shape.source)
 
 
@@ -499,9 +510,12 @@ class FieldSolver:
             self._owner = threading.get_ident()
             try:
                 self._solver.set_objects(labels)
-                return Field._of(compute(shape._arrays, count, report), shape, shape.source)
+                core = compute(shape._arrays, count, report)
             finally:
                 self._owner = None
+            found = Field._of(core, shape, shape.source)
+        warn_all(core.warnings)
+        return found
 
 
 def selected_voxels(

@@ -93,7 +93,6 @@ def signed_distance(
     rows, shape = points_and_shape(points, "points")
     query = ClosestPointQuery(of, threads=threads, progress=progress, **options)
     found = query(rows, threads=threads, progress=progress)
-    warn_all(_core.sign_warnings(of._arrays, query._query, integer(threads, "threads")))
     closest, distance = np.ascontiguousarray(found.closest), np.ascontiguousarray(found.distance)
     gradient: FloatArray = _core.gradients(rows, closest, distance)
     return SignedDistances(
@@ -179,6 +178,8 @@ class NearSamples:
     closest: FloatArray  #: Closest points of the mesh: (n, 3).
     site: IntArray  #: Sites that contain the closest points: (n,), see :class:`Sites`.
     triangle: IntArray  #: Smallest index of a triangle that contains the site: (n,). -1 if none.
+    sign_rule: str  #: Rule for signs: "normals", "winding" or "none".
+    sign_reason: str  #: Reason for this rule, one sentence.
 
     def __repr__(self) -> str:
         return f"NearSamples({len(self.points):,} points)"
@@ -217,10 +218,11 @@ def sample_near(
     of = as_mesh(mesh, weld=weld)
     number = _count(count)
     with reporting(progress) as report:
-        points, closest, distance, site, triangle = _core.sample_near(
+        points, closest, distance, site, triangle, rule, reason, warnings = _core.sample_near(
             of._arrays, number, dict(options), integer(threads, "threads"), report
         )
-    return NearSamples(points, distance, closest, site, triangle)
+    warn_all(warnings)
+    return NearSamples(points, distance, closest, site, triangle, rule, reason)
 
 
 def _count(value: Integer) -> int:

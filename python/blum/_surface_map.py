@@ -592,6 +592,7 @@ def surface_deviation(
     """
     meshes = as_mesh(mesh, name="mesh", weld=weld), as_mesh(other, name="other", weld=weld)
     found: SurfaceDeviation = _compared(_core.surface_deviation, meshes, dict(options), threads, progress)
+    warn_all(found.warnings)
     return found
 
 

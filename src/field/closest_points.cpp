@@ -131,6 +131,7 @@ struct ClosestPointQuery::Data {
         sides(plan, mesh, sites, bvh, context),
         max_distance(checked_limit(options)) {
     measure();
+    use_planned_triangles(context);
   }
 
   void refit(std::span<const Vec3d> vertices, const Context& context) {
@@ -145,11 +146,27 @@ struct ClosestPointQuery::Data {
     search_.reset();
     is_prepared_ = false;
     std::copy(vertices.begin(), vertices.end(), mesh.vertices.begin());
+    // The plan depends on the triangles as they were given.
+    if (!given_triangles_.empty()) use_triangles(std::exchange(given_triangles_, {}), context);
     bvh.refit(mesh.vertices, context);
     measure();
     if (mode == SignMode::none) return;
     plan = planner.plan(mode, mesh, sites, context);
     sides = sign::Sides(plan, mesh, sites, bvh, context);
+    use_planned_triangles(context);
+  }
+
+  /// If the plan has other triangles than the mesh, puts them in their place.
+  void use_planned_triangles(const Context& context) {
+    if (plan.triangles.empty()) return;
+    given_triangles_ = mesh.triangles;
+    use_triangles(std::exchange(plan.triangles, {}), context);
+    sides = sign::Sides(plan, mesh, sites, bvh, context);
+  }
+  void use_triangles(std::vector<Triangle> triangles, const Context& context) {
+    mesh.triangles = std::move(triangles);
+    sites = SiteTable(mesh, context);
+    bvh = Bvh(mesh, sites, context);
   }
 
   void measure() {
@@ -248,6 +265,7 @@ struct ClosestPointQuery::Data {
   }
 
  private:
+  std::vector<Triangle> given_triangles_;  ///< triangles of the given mesh; empty if `mesh` has the same
   mutable std::mutex search_mutex_;
   mutable std::unique_ptr<const PointSearch> search_;
   /// If true, search_for() uses `search_` for all calls with at least PointSearch::fewest queries.
@@ -269,6 +287,10 @@ SignRule ClosestPointQuery::sign_rule() const {
 }
 bool ClosestPointQuery::sign_may_jump() const {
   return data_->plan.method == sign::Method::sums || data_->plan.method == sign::Method::pseudonormals;
+}
+
+const std::vector<Warning>& ClosestPointQuery::warnings() const {
+  return data_->plan.warnings;
 }
 
 const std::string& ClosestPointQuery::sign_reason() const {

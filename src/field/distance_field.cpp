@@ -272,6 +272,18 @@ void check_object_count(const std::vector<std::uint32_t>& objects, const MeshVie
 
 }  // namespace
 
+/// Returns the warnings about the signs of a computed field.
+std::vector<Warning> sign_warnings(const sign::Plan& plan, std::span<const float> distance) {
+  if (plan.rule == SignRule::none || std::any_of(distance.begin(), distance.end(), [](float d) { return d < 0; })) {
+    return plan.warnings;
+  }
+  if (!plan.warnings.empty() && plan.triangles.empty()) {
+    return {{WarningCode::nothing_inside, "no node is inside: " + plan.warnings.front().text}};
+  }
+  return {{WarningCode::nothing_inside,
+           "no node is inside: the shape encloses nothing, lies outside the grid, or is too thin for its spacing"}};
+}
+
 struct FieldSolver::State {
   FieldOptions options;
   Context context;
@@ -321,7 +333,8 @@ void FieldSolver::State::compute_second(const MeshView& mesh, const Context& fra
   timer.lap("second order");
 }
 
-void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_context) {
+void FieldSolver::State::compute(const MeshView& given, const Context& frame_context) {
+  MeshView mesh = given;
   validate(mesh);
   check_site_ids(options, !mesh.segments.empty() || !mesh.points.empty());
   check_object_count(objects, mesh);
@@ -334,8 +347,12 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
 
   PhaseTimer connectivity_timer(field.phases);
   engine->set_mesh(mesh, frame_context);
+  const sign::Plan plan = planner.plan(options.sign, mesh, engine->sites(), frame_context);
+  if (!plan.triangles.empty()) {
+    mesh.triangles = plan.triangles;
+    engine->set_mesh(mesh, frame_context);
+  }
   const SiteTable& sites = engine->sites();
-  const sign::Plan plan = planner.plan(options.sign, mesh, sites, frame_context);
   connectivity_timer.lap("connectivity");
   FieldRequest request = make_field_request(field.grid, options, plan);
   allocate(options.sites || options.order == 2 || engine->needs_sites_for(plan.method), request);
@@ -348,6 +365,7 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
     sign::apply_winding(plan, mesh, sites, frame_context, field);
   field.sign_rule = plan.rule;
   field.sign_reason = plan.reason;
+  field.warnings = sign_warnings(plan, field.distance.span());
   sign_timer.lap("sign");
   if (options.order == 2) compute_second(mesh, frame_context);
   if (!options.sites) {

@@ -306,7 +306,11 @@ NearSamples sample_near(const MeshView& mesh, std::size_t count, const NearSampl
     const Vec3d at = random.in_cube();
     out.points.push_back(lower + Vec3d{at.x * size.x, at.y * size.y, at.z * size.z});
   }
-  out.closest = closest_points(mesh, out.points, {.sign = options.sign}, context);
+  const ClosestPointQuery query(mesh, {.sign = options.sign}, context);
+  out.closest = query.nearest(out.points, context);
+  out.sign_rule = query.sign_rule();
+  out.sign_reason = query.sign_reason();
+  out.warnings = query.warnings();
   return out;
 }
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/geometry/facing.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
-#include "solid/facing.hpp"
 #include "solid/polyhedron.hpp"
 
 namespace blum {

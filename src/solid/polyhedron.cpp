@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "blum/core/sort_unique.hpp"
+#include "blum/geometry/facing.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
-#include "solid/facing.hpp"
 
 namespace blum {
 namespace detail {

@@ -13,6 +13,7 @@
 
 #include "blum/core/random.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/facing.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/orient3d.hpp"
 #include "blum/geometry/sites.hpp"
@@ -21,7 +22,6 @@
 #include "blum/grid/image_values.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
-#include "solid/facing.hpp"
 #include "solid/polyhedron.hpp"
 
 namespace blum::detail {

@@ -6,13 +6,13 @@
 #include <map>
 #include <utility>
 
+#include "blum/geometry/facing.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/geometry/weld.hpp"
-#include "solid/facing.hpp"
 
 namespace blum {
 namespace {

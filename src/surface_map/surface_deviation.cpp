@@ -193,6 +193,7 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   out.pieces = found.size();
   out.sign_rule = query.sign_rule();
   out.sign_reason = query.sign_reason();
+  out.warnings = query.warnings();
   return out;
 }
 

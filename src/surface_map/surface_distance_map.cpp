@@ -178,6 +178,7 @@ SurfaceMap SurfaceMapper::map(const Context& context) const {
   timer.lap("errors");
   out.sign_rule = data_->query->sign_rule();
   out.sign_reason = data_->query->sign_reason();
+  out.warnings = data_->query->warnings();
   surface::warn_of_nothing(out, surface::nothing_lies_within);
   return out;
 }

@@ -11,7 +11,7 @@ def test_warnings_go_to_stderr(tmp_path):
     inverted, sheet = tmp_path / "inverted.obj", tmp_path / "sheet.obj"
     inverted.write_text(corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n")
     sheet.write_text(corners + "f 1 2 3\n")
-    for mesh, words, code in [(inverted, "inside out", "facing"), (sheet, "no node is inside", "nothing-inside")]:
+    for mesh, words, code in [(inverted, "1 shell was reversed", "facing"), (sheet, "no node is inside", "nothing-inside")]:
         command = ["field", mesh, "-o", tmp_path / "out.nrrd", "--resolution", 8]
         out, err = run(*command, warns=True)
         assert words in err and "blum: warning" not in out

@@ -251,7 +251,7 @@ def test_suspicious_input_causes_warnings(box):
         return told[0].message.code
 
     inwards, opened = (box.vertices, box.triangles[:, ::-1]), (box.vertices, box.triangles[1:])
-    assert code_of(blum.distance_field, *inwards, resolution=8, match="inside out") == "facing"
+    assert code_of(blum.distance_field, *inwards, resolution=8, match="1 shell was reversed") == "facing"
     elsewhere = blum.Grid((9, 9, 9), 1, (2, 2, 2))
     assert code_of(blum.distance_field, box, grid=elsewhere, match="no node is inside") == "nothing-inside"
     assert code_of(blum.medial_axis, *opened, resolution=16, match="open.*as voxels") == "solid-of-voxels"

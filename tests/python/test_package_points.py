@@ -160,6 +160,21 @@ def test_bad_input_is_refused():
 def test_distances_of_a_reversed_mesh_cause_a_warning():
     ball = blum.generate("sphere", frequency=4)
     inside_out = blum.Mesh(ball.vertices, ball.triangles[:, ::-1])
-    with pytest.warns(blum.InputWarning, match="inside out") as told:
-        assert blum.signed_distance(inside_out, [[0, 0, 0]]).distance[0] > 0
-    assert [warning.message.code for warning in told] == ["facing"]
+    calls = {
+        "signed_distance": lambda: blum.signed_distance(inside_out, [[0, 0, 0]]).distance,
+        "closest_points": lambda: blum.closest_points(inside_out, [[0, 0, 0]]).distance,
+        "query": lambda: blum.ClosestPointQuery(inside_out)([[0, 0, 0]]).distance,
+        "sample_near": lambda: blum.sample_near(inside_out, 50, in_box=1).distance,
+        "field": lambda: blum.distance_field(inside_out, resolution=8).distance,
+        "solver": lambda: blum.FieldSolver(blum.Grid((-1, -1, -1), 0.5, (5, 5, 5))).compute(inside_out).distance,
+        "map": lambda: blum.surface_distance_map(blum.generate("box"), inside_out, texel=0.2, sign="auto").distance,
+        "deviation": lambda: [blum.surface_deviation(blum.generate("box"), inside_out, sign="auto").smallest],
+    }
+    for name, call in calls.items():
+        with pytest.warns(blum.InputWarning, match="1 shell was reversed") as issued:
+            assert np.nanmin(call()) < 0, name
+        assert [warning.message.code for warning in issued] == ["facing"], name
+    near = blum.sample_near(ball, 10)
+    assert near.sign_rule == "normals" and "faces outwards" in near.sign_reason
+    with pytest.warns(blum.InputWarning, match="inside out"):
+        assert blum.signed_distance(inside_out, [[0, 0, 0]], sign="winding").distance[0] > 0

@@ -11,7 +11,6 @@
 #include "blum/core/parallel.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/field/field.hpp"
-#include "blum/field/field_warnings.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
@@ -329,7 +328,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("write", watch.lap());
   progress.clear();
   add_field(run, field, statistics, files_of_field(r.output, r.options.sites, r.options.order), nullptr);
-  run.warnings = field_warnings(field, mesh, facts, context);
+  run.warnings = field.warnings;
   if (is_welded_away(file)) run.warnings.emplace_back(WarningCode::other_vertices, welded_away_text(file));
   finish(r, run, grid, context);
 }

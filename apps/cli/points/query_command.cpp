@@ -11,7 +11,6 @@
 #include "blum/core/error.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/field/closest_points.hpp"
-#include "blum/field/field_warnings.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/io/point_io.hpp"
 #include "commands.hpp"
@@ -207,7 +206,7 @@ void run(const Arguments& a) {
   }
   spent.read += watch.lap();
   const ClosestPointQuery query(mesh.mesh, options, context);
-  const std::vector<Warning> warnings = sign_warnings(mesh.mesh, query.sign_rule(), context);
+  const std::vector<Warning>& warnings = query.warnings();
   spent.query += watch.lap();
   Facts all;
   Json of_files = Json::array();

@@ -85,13 +85,29 @@ Request read(const Arguments& a) {
   return out;
 }
 
-Complex points_for(const Arguments& a, const Request& asked, const MeshView& mesh, const Context& context) {
+/// Sampled points. The facts about signs are only for points near the surface.
+struct Samples {
+  Complex points;
+  std::size_t inside = 0;
+  SignRule sign_rule = SignRule::none;
+  std::string sign_reason;
+  std::vector<Warning> warnings;
+};
+
+Samples samples_of(const Arguments& a, const Request& asked, const MeshView& mesh, const Context& context) {
+  Samples out;
   if (!a.near) {
     const bool is_ply = file_extension(a.output) == ".ply";
-    return points_of_surface(sample_surface(mesh, asked.count, asked.options, context), is_ply);
+    out.points = points_of_surface(sample_surface(mesh, asked.count, asked.options, context), is_ply);
+    return out;
   }
-  const NearSamples samples = sample_near(mesh, asked.count, asked.near, context);
-  return points_with_distances(samples.points, samples.closest);
+  NearSamples near = sample_near(mesh, asked.count, asked.near, context);
+  out.points = points_with_distances(near.points, near.closest);
+  for (const ClosestPoint& found : near.closest) out.inside += found.distance < 0 ? 1 : 0;
+  out.sign_rule = near.sign_rule;
+  out.sign_reason = std::move(near.sign_reason);
+  out.warnings = std::move(near.warnings);
+  return out;
 }
 
 void run(const Arguments& a) {
@@ -115,7 +131,8 @@ void run(const Arguments& a) {
     file = read_mesh_of_any_name(input, {weld});
   }
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  const Complex points = points_for(a, asked, file.mesh, context);
+  const Samples samples = samples_of(a, asked, file.mesh, context);
+  const Complex& points = samples.points;
   phases.push_back({"sample", watch.lap()});
   write_points(output, points, {{"tool", "blum sample"}, {"source", input.filename().string()}}, context);
   phases.push_back({"write", watch.lap()});
@@ -126,14 +143,22 @@ void run(const Arguments& a) {
                                      {"points", points.positions.size()},
                                      {"near", a.near},
                                      {"seed", asked.options.seed}});
-  add_run_facts(json, spent, context, {}, Json::array({output.string()}));
+  if (a.near) {
+    json["inside"] = samples.inside;
+    json["sign_rule"] = to_string(samples.sign_rule);
+    json["sign_reason"] = samples.sign_reason;
+  }
+  add_run_facts(json, spent, context, samples.warnings, Json::array({output.string()}));
   TextTable table;
   table.add("points",
-            plural(points.positions.size(), "point", "points") + (a.near ? " near the surface" : " on the surface"));
+            plural(points.positions.size(), "point", "points") +
+                (a.near ? " near the surface, " + count_text(samples.inside) + " inside" : " on the surface"));
+  if (a.near) table.add("sign", sign_text(samples.sign_rule, samples.sign_reason));
   table.add("mesh", input.string() + ": " + plural(file.mesh.triangles.size(), "triangle", "triangles"));
   table.add("wrote", output.string());
   spent.add_to(table);
   report(a.report, json, table);
+  if (!a.report.quiet) warn(samples.warnings);
 }
 
 }  // namespace

@@ -61,6 +61,18 @@ struct Side {
   }
 };
 
+/// Returns the warnings about the signs of both directions, each once.
+std::vector<Warning> warnings_of(const std::vector<Side>& sides) {
+  std::vector<Warning> out;
+  for (const Side& side : sides) {
+    if (!side.deviation) continue;
+    for (const Warning& warning : side.deviation->warnings) {
+      if (std::find(out.begin(), out.end(), warning) == out.end()) out.push_back(warning);
+    }
+  }
+  return out;
+}
+
 std::string interval_text(double lower, double upper) {
   if (rounded_text(lower) == rounded_text(upper)) {
     return rounded_text(upper) + " (interval " + rounded_text(upper - lower) + " wide)";
@@ -194,7 +206,8 @@ void run(const Arguments& a) {
                                         {"points", to_json(both.points)},
                                         {"forward", sides[0].json()}});
   if (!a.one_sided) json["backward"] = sides[1].json();
-  add_run_facts(json, spent, context, {}, a.output ? Json::array({*a.output}) : Json::array());
+  const std::vector<Warning> warnings = warnings_of(sides);
+  add_run_facts(json, spent, context, warnings, a.output ? Json::array({*a.output}) : Json::array());
   TextTable table;
   const std::vector<std::string> names = distinct_names({paths[0].string(), paths[1].string()});
   const std::string there = names[0] + " to " + names[1];
@@ -215,6 +228,7 @@ void run(const Arguments& a) {
   if (a.output) table.add("wrote", *a.output);
   spent.add_to(table);
   report(a.report, json, table);
+  if (!a.report.quiet) warn(warnings);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "blum/core/function_ref.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -157,6 +158,9 @@ class ClosestPointQuery {
   /// Return the rule that decides signs, and the reason for this rule (one sentence).
   [[nodiscard]] SignRule sign_rule() const;
   [[nodiscard]] const std::string& sign_reason() const;
+  /// Returns at most one warning about the signs. WarningCode::facing: parts of the mesh face the wrong way. The list
+  /// is empty if distances are unsigned.
+  [[nodiscard]] const std::vector<Warning>& warnings() const;
   /// Returns true if the sign may change at points that are not on the surface. This happens with winding numbers if
   /// the mesh has a boundary, and with normals if shells cross each other.
   [[nodiscard]] bool sign_may_jump() const;

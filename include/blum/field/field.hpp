@@ -18,6 +18,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
 
@@ -28,14 +29,16 @@ enum class SignMode : std::uint8_t {
   automatic,  ///< `none` is chosen if the mesh has no triangles. `normals` is chosen if the mesh is closed,
               ///< consistently oriented and faces outwards, and no triangles cross or touch beyond shared corners and
               ///< edges. The mesh must also have no free segments or points, and no triangle that is too flat to have a
-              ///< normal. Otherwise `winding` is chosen. The choice depends on the mesh, not on the grid.
-  normals,    ///< The orientation of the mesh decides which side is inside. The mesh must be closed and consistently
-              ///< oriented. Signs are exact, because crossings with the mesh are counted along the rows of the grid. If
-              ///< shells cross or face different ways, angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide
-              ///< instead.
-  winding,    ///< A node is inside if its generalized winding number (Jacobson 2013) is above 1/2. This rule works for
-              ///< any soup of triangles.
-  none        ///< Distances are unsigned.
+              ///< normal. Otherwise `winding` is chosen. The choice depends on the mesh, not on the grid. If the mesh
+              ///< is closed, triangles and shells that face the wrong way are first reversed, for the signs only, with
+              ///< a warning. So a closed mesh has the same inside however its triangles face.
+  normals,  ///< The orientation of the mesh decides which side is inside. The mesh must be closed and consistently
+            ///< oriented. Signs are exact, because crossings with the mesh are counted along the rows of the grid. If
+            ///< shells cross or face different ways, angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide
+            ///< instead.
+  winding,  ///< A node is inside if its generalized winding number (Jacobson 2013) is above 1/2. This rule works for
+            ///< any soup of triangles.
+  none      ///< Distances are unsigned.
 };
 
 /// Rule that decided the signs of a field.
@@ -148,7 +151,10 @@ struct Field {
   SiteIds site_ids = SiteIds::features;
   std::optional<double> band = {};  ///< half-width of the band, mesh units; unset without a band
   SignRule sign_rule = SignRule::none;
-  std::string sign_reason;         ///< reason for sign_rule, one sentence
+  std::string sign_reason;  ///< reason for sign_rule, one sentence
+  /// Warnings about the signs. WarningCode::facing: parts of the mesh face the wrong way. WarningCode::nothing_inside:
+  /// no node is inside the mesh. At most one. Empty for fields of images and of balls, and for fields from files.
+  std::vector<Warning> warnings = {};
   Device device;                   ///< device that computed the field; never `automatic`
   std::string device_reason = {};  ///< reason in one sentence if `automatic` was requested and the CPU was chosen; else
                                    ///< empty

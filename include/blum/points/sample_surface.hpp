@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "blum/core/describe.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
@@ -87,6 +89,9 @@ struct Description<NearSampleOptions> {
 struct NearSamples {
   std::vector<Vec3d> points;          ///< mesh units
   std::vector<ClosestPoint> closest;  ///< for each point: the closest point of the surface, with the signed distance
+  SignRule sign_rule = SignRule::none;
+  std::string sign_reason;        ///< reason for this rule, one sentence
+  std::vector<Warning> warnings;  ///< as ClosestPointQuery::warnings()
 };
 
 /// Returns points of a surface, moved by normally distributed offsets, with their exact signed distances.

@@ -6,10 +6,12 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
@@ -55,6 +57,7 @@ struct SurfaceDeviation {
   std::size_t pieces = 0;
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;
+  std::vector<Warning> warnings = {};  ///< As ClosestPointQuery::warnings().
 };
 
 template <>
@@ -76,6 +79,7 @@ struct Description<SurfaceDeviation> {
       Member{"pieces", &SurfaceDeviation::pieces, "", "number of pieces into which the surface was divided"},
       Member{"sign_rule", &SurfaceDeviation::sign_rule, "", "rule that found the signs"},
       Member{"sign_reason", &SurfaceDeviation::sign_reason, "", "reason for this rule"},
+      Member{"warnings", &SurfaceDeviation::warnings, "", "warnings about the signs"},
   };
 };
 

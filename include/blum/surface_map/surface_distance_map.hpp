@@ -103,8 +103,8 @@ struct SurfaceMap {
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;        ///< Reason for this rule, one sentence.
   std::vector<PhaseTime> phases;  ///< Time of each phase.
-  /// A warning if no texel has a value (WarningCode::nothing_found). For thickness, thickness_warnings() come before
-  /// it. Empty for maps that were read from files.
+  /// Warnings about the signs (ClosestPointQuery::warnings()), or, for thickness, thickness_warnings(). Then a warning
+  /// if no texel has a value (WarningCode::nothing_found). Empty for maps that were read from files.
   std::vector<Warning> warnings;
 
   /// Returns the index of a texel with the smallest distance; nullopt if no texel has a distance.

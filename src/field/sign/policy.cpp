@@ -1,11 +1,14 @@
 #include "field/sign/policy.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/core/plural.hpp"
+#include "blum/geometry/facing.hpp"
 #include "blum/geometry/mesh_problems.hpp"
 #include "blum/geometry/topology.hpp"
 
@@ -18,7 +21,40 @@ bool has_flat_triangles(const MeshView& mesh) {
 }
 
 Plan by_winding(std::string reason) {
-  return {SignRule::winding, std::move(reason), Method::sums};
+  return {.rule = SignRule::winding, .reason = std::move(reason), .method = Method::sums};
+}
+
+/// Returns the warning about a mesh whose parts face the wrong way, or an empty list.
+/// @param crosses  true if two triangles of the mesh cross or touch. The nesting depth of shells that cross is
+///                 undefined, and so is the direction in which they must face. Winding numbers form their union.
+std::vector<Warning> facing_warnings(const Orientation& facts, bool crosses) {
+  const auto warn = [](std::string text) { return std::vector<Warning>{{WarningCode::facing, std::move(text)}}; };
+  if (facts.inconsistent_edges > 0) {
+    return warn(plural(facts.inconsistent_edges, "edge lies", "edges lie") +
+                " between triangles that face different ways, so signs near them may not be those of a solid; orient "
+                "the mesh first, with oriented_mesh() or `blum clean`");
+  }
+  if (!facts.closed || !facts.oriented || facts.outward) return {};
+  if (facts.signed_volume < 0) {
+    return warn(
+        "the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its "
+        "triangles");
+  }
+  if (crosses) return {};
+  return warn(
+      "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; "
+      "topology() lists the shells");
+}
+
+/// Returns a text like "3 triangles and 1 shell were reversed".
+std::string repair_text(const detail::RepairedFacing& repaired) {
+  std::string text;
+  if (repaired.reversed_triangles > 0) text = plural(repaired.reversed_triangles, "triangle", "triangles");
+  if (repaired.reversed_shells > 0) {
+    text += (text.empty() ? "" : " and ") + plural(repaired.reversed_shells, "shell", "shells");
+  }
+  const bool is_one = repaired.reversed_triangles + repaired.reversed_shells == 1;
+  return text + (is_one ? " was reversed" : " were reversed");
 }
 
 /// Returns true if the mesh becomes outward-facing when all its triangles are reversed.
@@ -43,12 +79,15 @@ Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
     throw InvalidMesh(
         "signs by normals need triangles only; the mesh has free segments or points, which have no sides: use winding");
   }
-  if (facts.outward) return {SignRule::normals, rule_requested, Method::crossings};
-  Plan plan{SignRule::normals,
-            std::string(rule_requested) +
-                "; shells of the mesh cross or do not all face away from the solid: flip the mesh if signs look "
-                "inverted",
-            Method::pseudonormals};
+  if (facts.outward) {
+    return {.rule = SignRule::normals, .reason = rule_requested, .method = Method::crossings};
+  }
+  Plan plan{.rule = SignRule::normals,
+            .reason = std::string(rule_requested) +
+                      "; shells of the mesh cross or do not all face away from the solid: flip the mesh if signs look "
+                      "inverted",
+            .warnings = facing_warnings(facts, false),
+            .method = Method::pseudonormals};
   // An inside-out mesh has winding number -1 in the solid and 0 around it. For such a mesh, the chosen signs make the
   // surrounding space the inside.
   if (faces_inwards(mesh)) {
@@ -76,7 +115,7 @@ void throw_without_triangles() {
 }
 
 Plan unsigned_plan(std::string reason) {
-  return {SignRule::none, std::move(reason)};
+  return {.rule = SignRule::none, .reason = std::move(reason)};
 }
 
 }  // namespace
@@ -88,24 +127,50 @@ bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
   return !(squared_length(cross(u, v)) > 1e-24 * longest * longest);
 }
 
-Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
-  const Orientation facts = orientation(mesh, sites);
+Plan Planner::plan_repaired(const MeshView& mesh, const Orientation& facts, const Context& context) {
   if (!mesh.segments.empty() || !mesh.points.empty()) {
     return by_winding("the mesh has free segments or points, which have no sides");
   }
   if (!facts.closed || !facts.oriented) return by_winding("the mesh has " + mesh_problem::of_edges(facts));
-  if (!facts.outward && facts.signed_volume < 0) {
-    return by_winding(
-        "the mesh is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");
-  }
   if (has_flat_triangles(mesh)) return by_winding("the mesh is closed, but has triangles too flat for a normal");
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
   if (search_.finds_any(mesh, quiet)) {
     return by_winding("the mesh is closed and oriented, but it crosses or touches itself");
   }
   if (!facts.outward) return by_winding("the mesh is closed, but its shells do not all face away from the solid");
-  return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", Method::crossings, 0,
-          true};
+  return {.rule = SignRule::normals,
+          .reason = "the mesh is closed, consistently oriented and faces outwards",
+          .method = Method::crossings,
+          .is_simple = true};
+}
+
+Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  const Orientation facts = orientation(mesh, sites);
+  std::optional<detail::RepairedFacing> repaired = detail::repaired_facing(mesh, sites, facts, context);
+  if (!repaired) {
+    Plan plan = plan_repaired(mesh, facts, context);
+    if (plan.rule == SignRule::winding) plan.warnings = winding_warnings(mesh, facts, context);
+    if (plan.method == Method::sums && is_balanced(mesh, sites)) plan.method = Method::crossings;
+    return plan;
+  }
+  MeshView own = mesh;
+  own.triangles = repaired->triangles;
+  const SiteTable own_sites(own, context);
+  Plan plan = plan_repaired(own, orientation(own, own_sites), context);
+  if (plan.method == Method::sums && is_balanced(own, own_sites)) plan.method = Method::crossings;
+  plan.reason += ", after " + repair_text(*repaired);
+  plan.warnings = {
+      {WarningCode::facing, "parts of the mesh face the wrong way, and for the signs, " + repair_text(*repaired)}};
+  plan.triangles = std::move(repaired->triangles);
+  return plan;
+}
+
+/// Returns the warning about signs by winding numbers, or an empty list.
+std::vector<Warning> Planner::winding_warnings(const MeshView& mesh, const Orientation& facts, const Context& context) {
+  std::vector<Warning> found = facing_warnings(facts, false);
+  if (found.empty() || facts.inconsistent_edges > 0 || facts.signed_volume < 0) return found;
+  const Context quiet{.threads = context.threads, .cancel = context.cancel};
+  return facing_warnings(facts, search_.finds_any(mesh, quiet));
 }
 
 Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
@@ -115,8 +180,10 @@ Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, 
     throw_without_triangles();
   }
   if (mode == SignMode::normals) return plan_normals(mesh, sites);
-  Plan plan = mode == SignMode::winding ? by_winding(rule_requested) : plan_automatically(mesh, sites, context);
-  if (plan.method == Method::sums && is_balanced(mesh, sites)) plan.method = Method::crossings;
+  if (mode == SignMode::automatic) return plan_automatically(mesh, sites, context);
+  Plan plan = by_winding(rule_requested);
+  plan.warnings = winding_warnings(mesh, orientation(mesh, sites), context);
+  if (is_balanced(mesh, sites)) plan.method = Method::crossings;
   return plan;
 }
 
@@ -136,7 +203,7 @@ Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {
 
 Plan plan_image_signs(bool is_signed, const std::string& selection) {
   if (!is_signed) return unsigned_plan(unsigned_requested);
-  return {SignRule::label, "a voxel is inside if its value " + selection};
+  return {.rule = SignRule::label, .reason = "a voxel is inside if its value " + selection};
 }
 
 }  // namespace blum::sign

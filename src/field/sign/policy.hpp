@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/sign/method.hpp"
 
@@ -20,6 +23,10 @@ namespace blum::sign {
 struct Plan {
   SignRule rule = SignRule::none;
   std::string reason;  ///< one sentence
+  std::vector<Warning> warnings = {};
+  /// Triangles to be used instead of those of the mesh: some of these face the wrong way. Empty if all are used as they
+  /// are.
+  std::vector<Triangle> triangles = {};
   Method method = Method::none;
   /// With `crossings`, points with a winding number above this level are inside. The level is 0. For an inside-out mesh
   /// whose orientation is to be followed, it is -1. With `sums`, points with a winding number above level + 1/2 are
@@ -45,8 +52,9 @@ class Planner {
   ///   of its triangles touch or cross, except neighbours (find_self_intersections, which is exact).
   /// - `winding` otherwise. The plan's reason states which condition failed first, in this order.
   ///
-  /// A closed, inside-out mesh has a winding number of -1 inside, so `winding` finds no inside. The plan's reason says
-  /// so.
+  /// If a mesh is closed but parts of it face the wrong way, `automatic` first reverses these parts
+  /// (repaired_facing()), with a warning. The other modes use the mesh as it is. With `winding`, an inside-out mesh
+  /// then has no inside, because its winding numbers are negative.
   ///
   /// @throws InvalidMesh if normals are requested, but the mesh is not closed and consistently oriented, or has free
   /// segments or points.
@@ -58,6 +66,11 @@ class Planner {
 
  private:
   [[nodiscard]] Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context);
+  /// Returns the automatic plan for a mesh whose orientations are repaired, as far as possible.
+  [[nodiscard]] Plan plan_repaired(const MeshView& mesh, const Orientation& facts, const Context& context);
+
+  [[nodiscard]] std::vector<Warning> winding_warnings(const MeshView& mesh, const Orientation& facts,
+                                                      const Context& context);
 
   SelfIntersectionSearch search_;
 };

@@ -164,7 +164,7 @@ TEST_P(DistanceField, AutomaticSignSaysWhichRuleAndWhy) {
   EXPECT_EQ(rule_of(make_sphere({})), SignRule::normals);
   EXPECT_EQ(rule_of(make_void_cube({})), SignRule::normals);
   EXPECT_EQ(rule_of(open_bowl()), SignRule::winding);
-  EXPECT_EQ(rule_of(inverted(make_sphere({}))), SignRule::winding);
+  EXPECT_EQ(rule_of(inverted(make_sphere({}))), SignRule::normals);
   EXPECT_EQ(rule_of(make_points({})), SignRule::none);
 }
 

@@ -1,9 +1,12 @@
-#include "solid/facing.hpp"
+#include "blum/geometry/facing.hpp"
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "blum/core/union_find.hpp"
+#include "geometry/topology/shells.hpp"
 
 namespace blum::detail {
 namespace {
@@ -89,6 +92,20 @@ class Reverser {
   std::size_t count_ = 0;  ///< number of reversed triangles
 };
 
+/// Returns for each shell whether its outermost shell has a negative volume.
+std::vector<bool> are_inside_out(std::span<const Shell> shells) {
+  std::vector<bool> out(shells.size());
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    std::size_t outermost = s;
+    // Shells that coincide may be each other's parents.
+    for (std::size_t n = 0; n < shells.size() && shells[outermost].parent >= 0; ++n) {
+      outermost = static_cast<std::size_t>(shells[outermost].parent);
+    }
+    out[s] = shells[outermost].signed_volume < 0;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites) {
@@ -114,6 +131,30 @@ std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTa
 std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
                                                         std::size_t& count) {
   return Reverser(mesh, sites).agreeing(count);
+}
+
+std::optional<RepairedFacing> repaired_facing(const MeshView& mesh, const SiteTable& sites, const Orientation& given,
+                                              const Context& context) {
+  if (!given.closed || (given.oriented && given.outward)) return std::nullopt;
+  RepairedFacing out;
+  if (given.oriented) {
+    out.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+  } else {
+    std::optional<std::vector<Triangle>> agreeing = agreeing_triangles(mesh, sites, out.reversed_triangles);
+    if (!agreeing) return std::nullopt;
+    out.triangles = std::move(*agreeing);
+  }
+  const MeshView agreeing{mesh.vertices, out.triangles, mesh.segments, mesh.points};
+  const SiteTable own(agreeing, context);
+  const SurfaceComponents components = find_components(agreeing, own, tally_edges(agreeing, own));
+  const auto [shells, of_triangle] = find_shells(agreeing, components, context);
+  const std::vector<bool> is_reversed = are_inside_out(shells);
+  for (std::size_t t = 0; t < of_triangle.size(); ++t) {
+    if (of_triangle[t] != no_component && is_reversed[of_triangle[t]])
+      std::swap(out.triangles[t][1], out.triangles[t][2]);
+  }
+  out.reversed_shells = static_cast<std::size_t>(std::count(is_reversed.begin(), is_reversed.end(), true));
+  return out.reversed_triangles + out.reversed_shells > 0 ? std::optional(std::move(out)) : std::nullopt;
 }
 
 double volume_around_middle(const MeshView& mesh) {

@@ -1,0 +1,166 @@
+// Proves that signed results warn of meshes that face the wrong way and of grids without a node inside, and that closed
+// meshes get their inside however their triangles face. Each warning is tested with its smallest case. Valid input
+// causes no warning.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/random.hpp"
+#include "blum/core/warning.hpp"
+#include "blum/field/closest_points.hpp"
+#include "blum/field/field.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/shapes/generators.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+using test::box_between;
+
+TriangleMesh reversed(TriangleMesh mesh) {
+  mesh.triangles = reversed_triangles(mesh.triangles);
+  return mesh;
+}
+
+TriangleMesh both(TriangleMesh mesh, const TriangleMesh& other) {
+  append(mesh, other);
+  return mesh;
+}
+
+const GridSpec& grid() {
+  static const GridSpec spec = grid_in({{-1, -1, -1}, {3, 3, 3}}, 12);
+  return spec;
+}
+
+std::vector<Warning> warnings_of(const MeshView& mesh, const FieldOptions& options = {}) {
+  return distance_field(mesh, grid(), options).warnings;
+}
+
+/// Returns the text of the only warning.
+std::string text_of(const MeshView& mesh, WarningCode code, const FieldOptions& options = {}) {
+  const std::vector<Warning> found = warnings_of(mesh, options);
+  EXPECT_EQ(found.size(), 1U);
+  if (found.size() != 1) return {};
+  EXPECT_EQ(found[0].code, code);
+  return found[0].text;
+}
+
+/// The remaining triangles still put nodes inside, but signs near the reversed triangle are wrong.
+TEST(FieldWarnings, ReportTrianglesThatFaceDifferentWaysEvenIfNodesAreInside) {
+  TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  std::swap(box.triangles[0][0], box.triangles[0][1]);
+  const Field field = distance_field(box, grid(), {.sign = SignMode::winding});
+  ASSERT_TRUE(std::any_of(field.distance.begin(), field.distance.end(), [](float d) { return d < 0; }));
+  const std::string text = text_of(box, WarningCode::facing, {.sign = SignMode::winding});
+  EXPECT_EQ(text.rfind("3 edges lie between triangles that face different ways, so signs near them", 0), 0U) << text;
+}
+
+TEST(SignWarnings, NeedNoGrid) {
+  const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  EXPECT_TRUE(ClosestPointQuery(box).warnings().empty());
+  EXPECT_TRUE(ClosestPointQuery(reversed(box), {.sign = SignMode::none}).warnings().empty());
+  const ClosestPointQuery query(reversed(box), {.sign = SignMode::winding});
+  ASSERT_EQ(query.warnings().size(), 1U);
+  EXPECT_EQ(query.warnings()[0].code, WarningCode::facing);
+  EXPECT_TRUE(query.warnings()[0].text.starts_with("the mesh is inside out"));
+}
+
+/// A closed mesh, and the same mesh with some of its triangles reversed.
+struct Turned {
+  std::string name;
+  TriangleMesh right, wrong;
+  std::string repair;
+};
+
+std::vector<Turned> turned_meshes() {
+  const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  const TriangleMesh other = box_between({2.2, 0, 0}, {2.9, 1, 1});
+  const TriangleMesh hollow = both(box, reversed(box_between({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5})));
+  TriangleMesh torn = both(box, other);
+  for (const std::size_t t : {1, 4, 7, 13}) std::swap(torn.triangles[t][1], torn.triangles[t][2]);
+  TriangleMesh torn_inwards = reversed(box);
+  std::swap(torn_inwards.triangles[0][1], torn_inwards.triangles[0][2]);
+  return {{"InsideOut", box, reversed(box), "1 shell was reversed"},
+          {"InsideOutWithVoid", hollow, reversed(hollow), "2 shells were reversed"},
+          {"OneOfTwoBodies", both(box, other), both(box, reversed(other)), "1 shell was reversed"},
+          {"SomeTrianglesOfEach", both(box, other), torn, "4 triangles were reversed"},
+          {"OneTriangleAndTheShell", box, torn_inwards, "1 triangle and 1 shell were reversed"}};
+}
+
+TEST(SignWarnings, ClosedMeshesGetTheirInsideHoweverTrianglesFace) {
+  Random random(46);
+  std::vector<Vec3d> queries(500);
+  for (Vec3d& q : queries) q = Vec3d{1, 1, 1} + random.in_cube() * 4.0 - Vec3d{2, 2, 2};
+  for (const Turned& turned : turned_meshes()) {
+    SCOPED_TRACE(turned.name);
+    const Field right = distance_field(turned.right, grid());
+    const Field wrong = distance_field(turned.wrong, grid());
+    EXPECT_TRUE(right.warnings.empty());
+    ASSERT_EQ(wrong.warnings.size(), 1U);
+    EXPECT_EQ(wrong.warnings[0].text, "parts of the mesh face the wrong way, and for the signs, " + turned.repair);
+    EXPECT_EQ(wrong.sign_rule, SignRule::normals);
+    EXPECT_TRUE(wrong.sign_reason.ends_with(", after " + turned.repair)) << wrong.sign_reason;
+    for (std::size_t n = 0; n < right.distance.size(); ++n) {
+      ASSERT_NEAR(wrong.distance[n], right.distance[n], 1e-6);
+      ASSERT_EQ(std::signbit(wrong.distance[n]), std::signbit(right.distance[n]));
+    }
+    const ClosestPointQuery of_right(turned.right);
+    ClosestPointQuery of_wrong(turned.wrong);
+    EXPECT_EQ(of_wrong.warnings(), wrong.warnings);
+    for (const Vec3d& q : queries) {
+      ASSERT_NEAR(of_wrong.nearest(q).distance, of_right.nearest(q).distance, 1e-12);
+      ASSERT_EQ(of_wrong.nearest(q).site, of_right.nearest(q).site);
+    }
+    // Moved vertices change nothing about the repair: it starts from the given triangles again.
+    of_wrong.refit(turned.wrong.vertices);
+    EXPECT_EQ(of_wrong.warnings(), wrong.warnings);
+    for (const Vec3d& q : queries) ASSERT_NEAR(of_wrong.nearest(q).distance, of_right.nearest(q).distance, 1e-12);
+  }
+}
+
+TEST(FieldWarnings, AreEmptyForABox) {
+  const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  for (const SignMode sign : {SignMode::automatic, SignMode::normals, SignMode::winding, SignMode::none}) {
+    EXPECT_TRUE(warnings_of(box, {.sign = sign}).empty());
+  }
+  EXPECT_TRUE(warnings_of(reversed(box), {.sign = SignMode::none}).empty()) << "nothing is asked about the inside";
+  TriangleMesh open = box;
+  open.triangles.pop_back();
+  EXPECT_TRUE(warnings_of(open).empty()) << "winding numbers know its inside";
+}
+
+TEST(FieldWarnings, OfABoxInsideOutThatIsUsedAsItIs) {
+  const TriangleMesh inwards = reversed(box_between({0, 0, 0}, {2, 2, 2}));
+  EXPECT_TRUE(text_of(inwards, WarningCode::facing, {.sign = SignMode::normals}).starts_with("the mesh is inside out"));
+  EXPECT_TRUE(text_of(inwards, WarningCode::nothing_inside, {.sign = SignMode::winding})
+                  .starts_with("no node is inside: the mesh is inside out"));
+}
+
+TEST(FieldWarnings, OfAVoidThatFacesAsItsSolidUnlessShellsCross) {
+  const TriangleMesh box = box_between({0, 0, 0}, {2, 2, 2});
+  const TriangleMesh nested = both(box, box_between({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
+  EXPECT_TRUE(text_of(nested, WarningCode::facing).starts_with("parts of the mesh face the wrong way"));
+  const TriangleMesh crossing = both(box, box_between({1, 1, 1}, {2.5, 2.5, 2.5}));
+  EXPECT_TRUE(warnings_of(crossing).empty());
+}
+
+TEST(FieldWarnings, OfGridsWithoutANodeInside) {
+  EXPECT_EQ(text_of(box_between({7, 7, 7}, {8, 8, 8}), WarningCode::nothing_inside),
+            "no node is inside: the shape encloses nothing, lies outside the grid, or is too thin for its spacing");
+  TriangleMesh fold;
+  fold.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  fold.triangles = {{0, 1, 2}, {1, 2, 3}};
+  EXPECT_EQ(text_of(fold, WarningCode::nothing_inside),
+            "no node is inside: 1 edge lies between triangles that face different ways, so signs near them may not be "
+            "those of a solid; orient the mesh first, with oriented_mesh() or `blum clean`");
+}
+
+}  // namespace
+}  // namespace blum
