@@ -93,9 +93,9 @@ class MedialAxis:
     ) -> MedialComplex:
         """Returns the axis at theta with a certificate that holds, as `blum medial` writes it.
 
-        Up to three forms are tried. The first has fitted borders and few vertices. The second has borders at the cells
-        of the grid. The third has all vertices. If no form is certified, all three are tried again on a grid that is
-        shifted by part of a voxel. A warning names the checks that failed. The mesh or image must not have changed
+        Up to four forms are tried. The first has fitted borders and few vertices. The second has all vertices. The third
+        has few vertices, with borders at the cells of the grid. The fourth has all vertices of these cells. If no form
+        is certified, all are tried again on a grid that is shifted by part of a voxel. A warning names the checks that failed. The mesh or image must not have changed
         since the call of :func:`medial_axis`. With another `least_theta`, the ends of sheets may differ by up to a
         voxel.
 

@@ -122,6 +122,9 @@ constexpr std::size_t most_in_batch = 256;
 /// where the radius is 0.
 constexpr double part_of_radius = 0.5;
 constexpr double nothing = 1e-6;
+/// The total move of a cell is limited by this fraction of the largest radius around it, too. A tolerance above the
+/// radius of a thin part would move its axis to its surface.
+constexpr double part_of_largest_radius = 0.15;
 /// Rims, seams and curves may move by this fraction of the limit for sheets. It is small because a coarse border is
 /// more visible than a coarse sheet.
 constexpr double part_of_borders = 0.4;
@@ -319,12 +322,17 @@ std::optional<SheetDecimator::Candidate> SheetDecimator::moved_to(std::uint32_t 
                                                                   Look& look) const {
   double along = 0;
   double least_radius = std::min(point(v).radius, point(to).radius);
+  double largest_radius = std::max(point(v).radius, point(to).radius);
   for (const auto& [edge, other] : look.chain) along = std::max(along, of_edge_[edge]);
   double before = along;
   for (std::size_t f = 0; f < look.fan_count; ++f) {
     for (const std::uint32_t t : look.fans[f].triangles) before = std::max(before, of_triangle_[t]);
-    for (const std::uint32_t r : look.fans[f].ring) least_radius = std::min(least_radius, point(r).radius);
+    for (const std::uint32_t r : look.fans[f].ring) {
+      least_radius = std::min(least_radius, point(r).radius);
+      largest_radius = std::max(largest_radius, point(r).radius);
+    }
   }
+  limit = std::min(limit, std::max(part_of_largest_radius * largest_radius, nothing * tolerance_));
   if (before > limit) return std::nullopt;
   const double most_beyond = std::max(part_of_radius * least_radius, nothing * tolerance_);
   double by = 0;

@@ -17,9 +17,14 @@ namespace {
 
 /// A way to derive the axis of one angle theta from the axes of all angles.
 struct AxisForm {
-  bool is_fitted = false;           ///< true: by MedialAxis::lean(); false: by simplify()
-  std::optional<double> tolerance;  ///< largest deviation when vertices are removed; unset: no vertex is removed
-  std::string_view without;         ///< start of the warning if this form is not certified
+  bool is_fitted = false;  ///< true: by MedialAxis::lean(); false: by simplify()
+  double tolerance = 0;    ///< largest deviation when vertices are removed; 0: no vertex is removed
+};
+
+/// A form that is not certified.
+struct FailedForm {
+  AxisForm form;
+  std::string mismatch;
 };
 
 constexpr std::string_view without_borders =
@@ -39,19 +44,34 @@ double checked_tolerance(double tolerance) {
 std::vector<AxisForm> forms_of(const MedialAxisReport& report, std::optional<double> tolerance, bool is_given) {
   const double most = checked_tolerance(tolerance.value_or(0.25 * least_spacing(report)));
   std::vector<AxisForm> forms;
-  if (most > 0 && report.rule == SolidRule::polyhedron && !is_given) forms.push_back({true, most, without_borders});
-  if (most > 0) forms.push_back({false, most, without_few_vertices});
-  forms.emplace_back();
+  if (most > 0 && report.rule == SolidRule::polyhedron && !is_given) {
+    forms.push_back({true, most});
+    forms.push_back({true, 0});
+  }
+  if (most > 0) forms.push_back({false, most});
+  forms.push_back({false, 0});
   return forms;
 }
 
+/// Returns one warning for each property that the certified form lacks, and a form that was not certified has.
+std::vector<Warning> warnings_of(const std::vector<FailedForm>& failed, const AxisForm& kept, const std::string& of) {
+  std::vector<Warning> out;
+  const auto add = [&](std::string_view without, const auto& has) {
+    const auto last = std::find_if(failed.rbegin(), failed.rend(), [&](const FailedForm& f) { return has(f.form); });
+    if (last == failed.rend()) return;
+    out.push_back({WarningCode::form_not_certified, of + " " + std::string(without) + last->mismatch});
+  };
+  if (!kept.is_fitted) add(without_borders, [](const AxisForm& form) { return form.is_fitted; });
+  if (kept.tolerance == 0) add(without_few_vertices, [](const AxisForm& form) { return form.tolerance > 0; });
+  return out;
+}
+
 DecimatedAxis in_form(const Complex& whole, const AxisForm& form, const Context& context) {
-  if (form.tolerance) return decimate(whole, *form.tolerance, context);
-  return {whole, 0, whole.positions.size()};
+  return decimate(whole, form.tolerance, context);
 }
 
 DecimatedAxis in_form(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {
-  if (form.is_fitted) return axis.lean(theta, *form.tolerance, context);
+  if (form.is_fitted) return axis.lean(theta, form.tolerance, context);
   return in_form(axis.simplify(theta, context), form, context);
 }
 
@@ -71,6 +91,7 @@ struct Certifying {
 CertifiedAxis first_certified(const std::vector<AxisForm>& forms, const MedialMetadata& metadata,
                               FunctionRef<DecimatedAxis(const AxisForm&)> make, const Certifying& by) {
   CertifiedAxis out;
+  std::vector<FailedForm> failed;
   for (const AxisForm& form : forms) {
     PhaseTimer timer(by.phases);
     out.axis = make(form);
@@ -78,11 +99,12 @@ CertifiedAxis first_certified(const std::vector<AxisForm>& forms, const MedialMe
     if (out.axis.axis.positions.size() < out.axis.vertices_before) out.metadata.deviation = out.axis.deviation;
     timer.lap("simplify");
     out.certificate = by.certify({out.axis, out.metadata, by.whole, by.grid_shift, by.phases});
-    if (out.certificate.holds()) return out;
-    out.warnings.push_back({WarningCode::form_not_certified, theta_text(metadata) + " " + std::string(form.without) +
-                                                                 out.certificate.mismatches.front()});
+    if (out.certificate.holds()) {
+      out.warnings = warnings_of(failed, form, theta_text(metadata));
+      return out;
+    }
+    failed.push_back({form, out.certificate.mismatches.front()});
   }
-  out.warnings.clear();
   return out;
 }
 
@@ -265,11 +287,11 @@ CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, doubl
 CertifiedAxis certified_axis(Complex whole, const MedialMetadata& metadata, double tolerance, CertifyAxis certify,
                              std::vector<PhaseTime>& phases, const Context& context) {
   std::vector<AxisForm> forms;
-  if (checked_tolerance(tolerance) > 0) forms.push_back({false, tolerance, without_few_vertices});
+  if (checked_tolerance(tolerance) > 0) forms.push_back({false, tolerance});
   forms.emplace_back();
   const std::size_t vertices = whole.positions.size();
   const auto make = [&](const AxisForm& form) {
-    return form.tolerance ? in_form(whole, form, context) : DecimatedAxis{std::exchange(whole, {}), 0, vertices};
+    return form.tolerance > 0 ? in_form(whole, form, context) : DecimatedAxis{std::exchange(whole, {}), 0, vertices};
   };
   return first_certified(forms, metadata, make, {certify, nullptr, 0, phases});
 }

@@ -30,6 +30,9 @@ struct DecimatedAxis {
 /// become one. The homotopy type is preserved: vertices are removed by edge contractions under the link condition (see
 /// docs/theory/medial-axis.md).
 ///
+/// In thin parts, the tolerance may exceed the radius. So the total move of a sheet, seam,
+/// rim or curve is also limited to 0.15 times the largest radius around it.
+///
 /// In each step, a sheet moves beyond its former shape by at most half of the smallest radius nearby. Moves of up to a
 /// millionth of the tolerance are always allowed. So the sheet stays in the solid, unless the solid between vertices is
 /// thinner than the radii of the vertices indicate. The function certify() checks whether the axis stays in the solid.

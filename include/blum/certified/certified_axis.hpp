@@ -81,10 +81,11 @@ struct AxisGrids {
 
 /// Returns the axes of a solid as `blum medial` writes them.
 ///
-/// Each axis is made in up to three forms, until one form is certified. The first form has few vertices, and borders of
-/// sheets fitted to the surface. The second form has few vertices, and borders that follow the cells of the grid. The
-/// third form has all vertices that these cells yield. If walls are thin, a form may fail although the next form is
-/// certified. The third form has the full detail of the grid's cells. The other forms are easier to view.
+/// Each axis is made in up to four forms, until one form is certified. The first form has few vertices, and borders of
+/// sheets fitted to the surface. The second form has all vertices and fitted borders. The third form has few vertices,
+/// and borders that follow the cells of the grid. The fourth form has all vertices that these cells yield. If walls are
+/// thin, a form may fail although the next form is certified. The fourth form has the full detail of the grid's cells.
+/// The other forms are easier to view.
 ///
 /// Walls much thinner than a voxel may be represented badly on one grid and well on another. So the grid is moved by a
 /// fraction of a voxel if some axis is not certified in any form, although model_problems() reports no problem. At most

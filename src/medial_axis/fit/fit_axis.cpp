@@ -25,6 +25,7 @@
 #include "medial_axis/shape/axis_lists.hpp"
 #include "medial_axis/shape/place_vertices.hpp"
 #include "medial_axis/surface/governors.hpp"
+#include "medial_axis/surface/thin_ball.hpp"
 
 namespace blum::detail {
 namespace {
@@ -194,9 +195,10 @@ class Fitter {
   /// that point with the same accuracy.
   static constexpr double settled = 0.001;
   /// Voxels: the point opposite of a footprint is the closest point to a query this far from the vertex, on the other
-  /// side. It may be further from the vertex than the footprint by `facets` voxels.
+  /// side. It may be further from the vertex than the footprint by `facets` voxels, and `facets_share` of the radius.
   static constexpr double opposite_step = 0.3;
   static constexpr double facets = 0.02;
+  static constexpr double facets_share = 0.05;
 
  public:
   /// Results that are kept for the next Fitter.
@@ -225,7 +227,8 @@ class Fitter {
   /// trim() would remove them.
   double find_centres() {
     return move([&](std::uint32_t v) -> Moved {
-      if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
+      if (is_shown(lists_.vertices[v], 3)) return std::nullopt;
+      if (kinds_[v].rims + kinds_[v].curves == 0) return centred_in_thin(v);
       const Moved found = between(v, 3);
       if (!found || !is_shown(*found, 3)) return centred(v);
       // A vertex of a rim that has only one footprint is often next to a point between two walls.
@@ -287,10 +290,20 @@ class Fitter {
   /// @return  true if any was inserted. The lists then have other cells, and this object must not be used any more.
   bool bend_curves() {
     return split_curves(
-        lists_, incidence_, surface_, voxel_, [&](const Vec3d& at) { return centred_at(at); }, context_);
+        lists_, incidence_, surface_, voxel_,
+        [&](const Vec3d& at) {
+          Moved found = centred_at(at);
+          const NearestPoint nearest = surface_.nearest(at, {});
+          return found || !surface_.is_inside(at, nearest) ? found : centred_in_thin(at, nearest);
+        },
+        context_);
   }
   double cut_rims() {
     return move_unsettled(known_.rims, [&](std::uint32_t v) { return cut(v); });
+  }
+  /// Does the same as cut_rims() for ends of curves only.
+  double cut_ends() {
+    return move([&](std::uint32_t v) { return kinds_[v].is_curve_end() ? cut(v) : std::nullopt; });
   }
   /// Moves vertices of rims that stayed far from the surface, because otherwise edges of the rim would have cut off
   /// corners of holes. They move to a radius of 1/5, then 1/10, then 1/20 of a voxel, as far as their edges allow.
@@ -359,8 +372,20 @@ class Fitter {
     const Vec3d& at = lists_.vertices[v].position;
     if (known_.not_round.contains({at.x, at.y, at.z})) return std::nullopt;
     Moved found = centred_at(at);
+    if (!found) found = centred_in_thin(v);
     is_not_round_[v] = found ? 0 : 1;
     return found;
+  }
+  /// Returns the middle of a thin round part around a point that may be close to its surface, if the middle is shown.
+  /// @param nearest  closest point of the surface to `at`.
+  [[nodiscard]] Moved centred_in_thin(const Vec3d& at, const NearestPoint& nearest) const {
+    if (!(nearest.distance > 0) || nearest.distance > voxel_) return std::nullopt;
+    const std::optional<ThinBall> ball = ball_around(surface_, nearest, at, voxel_);
+    return ball ? centred_at(ball->centre) : std::nullopt;
+  }
+  [[nodiscard]] Moved centred_in_thin(std::uint32_t v) const {
+    const AxisVertex& vertex = lists_.vertices[v];
+    return centred_in_thin(vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], vertex.elements[0]});
   }
   [[nodiscard]] Moved centred_at(const Vec3d& start) const {
     const std::optional<RoundCentre> centre =
@@ -471,13 +496,14 @@ class Fitter {
   }
 
   /// Returns the largest angle between footprints of a vertex, degrees. The point opposite of the first footprint
-  /// counts as a footprint if it is at most `facets` voxels further away. Exactly equal distances are rare in round
+  /// counts as a footprint if it is only a little further away (`facets`). Exactly equal distances are rare in round
   /// parts, because these consist of facets.
   [[nodiscard]] double angle_seen(const AxisVertex& vertex) const {
     const double own = vertex.separation_angle;
     if (own > target_.theta || !(vertex.radius > 0)) return own;
     const Vec3d opposite = opposite_of(vertex).point;
-    if (length(opposite - vertex.position) > vertex.radius + facets * voxel_) return own;
+    const double most_further = std::min(facets * voxel_, facets_share * vertex.radius);
+    if (length(opposite - vertex.position) > vertex.radius + most_further) return own;
     return std::max(own, angle_at(vertex.position, vertex.footprints[0], opposite));
   }
 
@@ -552,7 +578,7 @@ class Fitter {
       // Beyond the rim of a lens-shaped part, only one wall is near.
       return is_beyond || start.separation_angle < target_.theta + nearly_theta ? Moved(start) : std::nullopt;
     }
-    return way.is_round ? Moved(start) : std::nullopt;
+    return way.is_curve ? Moved(start) : std::nullopt;
   }
   [[nodiscard]] Moved slide_inwards(Way& way) const {
     const auto at = [&](double t) { return on(way, t); };
@@ -779,11 +805,12 @@ class Fitting {
     const CrumbLimits limits{crumb * voxel * voxel, on_others * voxel};
     if (take_crumbs(lists_, fitter().incidence(), limits, context_)) fitter_.reset();
   }
-
- private:
+  /// Merges curves that run side by side.
   void merge() {
     if (merge_curves(lists_, target_.surface, beside * target_.voxel, context_)) fitter_.reset();
   }
+
+ private:
   Fitter& fitter() {
     if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, known_, context_);
     return *fitter_;
@@ -831,6 +858,12 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
     if (!is_changed && furthest_cut < far) break;
     furthest_cut = fitting.take(&Fitter::cut_rims, with_rims);
     is_changed = false;
+  }
+  // Strips of sheets around a curve may have become the curve only now, shorter than the curve should be.
+  constexpr int most_cuts = 8;
+  for (int n = 0; n < most_cuts; ++n) {
+    fitting.merge();
+    if (fitting.take(&Fitter::cut_ends) < far) break;
   }
   fitting.take(&Fitter::cut_rims_short);
   fitting.take(&Fitter::place_curves);

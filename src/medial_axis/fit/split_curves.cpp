@@ -125,7 +125,7 @@ class CurveMerger {
 constexpr std::size_t edges_per_range = 16;
 constexpr int most_halvings = 5;
 /// An edge is split if it is at least `least_length` voxels long and at least `least_bend` voxels away from the part's
-/// middle.
+/// middle. In thin parts, these are multiples of the radius.
 constexpr double least_length = 1;
 constexpr double least_bend = 0.02;
 /// The vertex that splits an edge must be at least this share of the edge's length away from both ends, along the edge.
@@ -137,12 +137,13 @@ std::optional<AxisVertex> split_of(const AxisVertex& a, const AxisVertex& b, con
                                    const std::function<std::optional<AxisVertex>(const Vec3d&)>& middle) {
   const Vec3d way = b.position - a.position;
   const double size = length(way);
-  if (size < least_length * voxel) return std::nullopt;
+  const double unit = std::min(voxel, std::max(a.radius, b.radius));
+  if (size < least_length * unit) return std::nullopt;
   std::optional<AxisVertex> found = middle(0.5 * (a.position + b.position));
   if (!found) return std::nullopt;
   const Vec3d from_a = found->position - a.position;
   const double along = dot(from_a, way) / (size * size);
-  const bool bends = length(cross(from_a, way)) >= least_bend * voxel * size;
+  const bool bends = length(cross(from_a, way)) >= least_bend * unit * size;
   if (!bends || along < least_share || along > 1 - least_share) return std::nullopt;
   const Stop first = stop_of(a);
   const Stop last = stop_of(b);

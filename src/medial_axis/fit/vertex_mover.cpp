@@ -18,9 +18,10 @@ namespace {
 /// distance is at most `most_of_depth` times the depth of the point.
 constexpr std::array beside{4.0, 2.0, 1.0, 0.5, 0.3};
 constexpr double most_of_depth = 0.4;
-/// Voxels: footprints do not belong to a round part if their distance exceeds that of the closest one by more than
-/// this.
+/// Limits for the distances of the footprints of a round part. Each may exceed the smallest distance by this many
+/// voxels, and by this share of the smallest distance.
 constexpr double equally_far = 0.02;
+constexpr double equally_far_share = 0.05;
 /// A round part must have footprints in at least this number of directions from its middle. The angle between any two
 /// of these must be at least `share_of_theta` times theta, clamped to `least_apart` and `most_apart` degrees.
 constexpr std::size_t least_directions = 5;
@@ -75,24 +76,26 @@ std::array<Vec3d, 2> directions_across(const Vec3d& direction) {
   return {u / length(u), v / length(v)};
 }
 
-/// Returns true if the surface may surround a point near the middle on all sides. This quick test saves most of the
-/// work if the part is not round.
-bool may_be_round(const Surface& surface, const Vec3d& start, const NearestPoint& nearest, const RoundLimits& limits,
-                  double same_direction) {
+/// Returns a point near the middle of a round part, or nullopt if the surface does not surround such a point on all
+/// sides. This quick test saves most of the work if the part is not round.
+std::optional<Vec3d> near_middle(const Surface& surface, const Vec3d& start, const NearestPoint& nearest,
+                                 const RoundLimits& limits, double same_direction) {
   constexpr double most_of_way = 0.9;   // of the depth: the far side of a round part is further away
+  constexpr double rounding = 1e-9;     // of the depth
   constexpr double to_the_side = 0.05;  // of the radius: a step so small that directions to walls hardly change
-  if (!(nearest.distance > 0)) return false;
+  if (!(nearest.distance > 0)) return std::nullopt;
   const Vec3d inwards = (start - nearest.point) / nearest.distance;
   const Vec3d beyond = start + inwards * std::min(1.25 * limits.reach, most_of_way * nearest.distance);
   Vec3d other = surface.nearest(beyond, {}).point;
-  if (!(angle_at(start, nearest.point, start + (other - beyond)) > limits.theta)) return false;
+  if (!(angle_at(start, nearest.point, start + (other - beyond)) > limits.theta)) return std::nullopt;
   // The point inwards that is equally far from both sides. In a round part this is the middle.
   Vec3d middle = start;
   for (int n = 0; n < 2; ++n) {
     const Vec3d from_other = start - other;
     const double slope = nearest.distance - dot(inwards, from_other);
     const double way = 0.5 * (squared_length(from_other) - nearest.distance * nearest.distance) / slope;
-    if (!(way >= 0) || way > limits.reach) return false;
+    // At the middle itself, rounding errors may give either sign.
+    if (!(way >= -rounding * nearest.distance) || way > limits.reach) return std::nullopt;
     middle = start + inwards * way;
     other = surface.nearest(middle + inwards * (to_the_side * nearest.distance), {}).point;
   }
@@ -102,7 +105,8 @@ bool may_be_round(const Surface& surface, const Vec3d& start, const NearestPoint
   for (const Vec3d& way : {inwards, -inwards, u, -u, v, -v}) {
     feet.push_back({surface.nearest(middle + way * (to_the_side * radius), {}).point, 0, 7});
   }
-  return all_around(middle, feet, HUGE_VAL, same_direction).size() >= 4;
+  if (all_around(middle, feet, HUGE_VAL, same_direction).size() < 4) return std::nullopt;
+  return middle;
 }
 
 }  // namespace
@@ -114,8 +118,14 @@ std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& sta
   Vec3d x = start;
   std::vector<Footprint> feet;
   const NearestPoint nearest = surface.nearest(x, {});
-  if (!may_be_round(surface, x, nearest, limits, same_direction)) return std::nullopt;
+  const std::optional<Vec3d> inner = near_middle(surface, x, nearest, limits, same_direction);
+  if (!inner) return std::nullopt;
   double depth = nearest.distance;
+  // A start close to the surface of a thin part may be further from the middle than the steps below reach.
+  if (const double deeper = surface.nearest(*inner, {}).distance; deeper > depth) {
+    x = *inner;
+    depth = deeper;
+  }
   for (const double voxels : beside) {
     const double step = std::min(voxels * voxel, most_of_depth * depth);
     if (!(step > 0)) return std::nullopt;
@@ -131,7 +141,8 @@ std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& sta
     depth = surface.nearest(x, {}).distance;
   }
   const double step = std::min(beside.back() * voxel, most_of_depth * depth);
-  feet = all_around(x, feet_beside(surface, x, step), std::hypot(depth + equally_far * voxel, step), same_direction);
+  const double furthest = depth + std::min(equally_far * voxel, equally_far_share * depth);
+  feet = all_around(x, feet_beside(surface, x, step), std::hypot(furthest, step), same_direction);
   if (feet.size() < least_directions) return std::nullopt;
   return RoundCentre{x, std::move(feet)};
 }

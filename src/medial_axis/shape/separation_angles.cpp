@@ -52,7 +52,9 @@ constexpr double fitted_reach = 0.5;
 /// The same limit for wires that pass between all voxels, because balls in wires are found less reliably.
 constexpr double wire_reach = 0.7;
 constexpr int bisector_steps = 4;
-constexpr double opposite_step = 0.3;    ///< voxels
+constexpr double opposite_step = 0.3;  ///< voxels
+/// Degrees: at this angle between two footprints, there may be others on the opposite side.
+constexpr double wide_angle = 100;
 constexpr double opposite_enough = 175;  ///< degrees: if an angle exceeds this, no larger angle is searched for
 
 /// Voxels in thick parts of the solid. In these, two footprints that are close together never count as two.
@@ -218,7 +220,8 @@ class Measure {
   /// Returns 0 if both voxels have the same wall.
   [[nodiscard]] double between(const Governor& a, const Governor& b) const {
     if (a.foot.element == b.foot.element) return 0;
-    // A thin part of the solid may pass between two voxels outside of it.
+    // Two outside voxels have an angle only if a thin part lies between them. Their directions then differ by at least
+    // 90 degrees.
     if (!a.is_inside && !b.is_inside && dot(a.direction, b.direction) > 0) return 0;
     double low = 0;  // position between a and b at which a's wall is closer
     double high = 1;
@@ -243,23 +246,21 @@ class Measure {
   }
 
   /// Returns the angle of an extra polygon, in degrees. It is that at the point of its interval that is equally far
-  /// from the walls at both ends.
+  /// from the walls at both ends. In a thin round part, both ends may be on one wall. The angle is then that of the
+  /// medial ball around the middle of the interval.
   [[nodiscard]] double between(const ExtraCell& polygon) const {
     std::array<Governor, 2> ends;
     for (std::size_t k = 0; k < 2; ++k) {
       const ExtraCell::End& end = polygon.ends[k];
       ends[k] = end.triangle ? governor_at(end) : governor_inside(end.point);
     }
-    return between(ends[0], ends[1]);
+    const double angle = between(ends[0], ends[1]);
+    if (angle > wide_angle) return angle;
+    return std::max(angle, in_wire(0.5 * (ends[0].centre + ends[1].centre), wire_reach));
   }
   /// Returns the angle in the middle of a part of the solid that is so thin that no line between nodes meets it,
   /// degrees.
-  [[nodiscard]] double in_wire(const ExtraCell& cell) const {
-    const NearestPoint nearest = surface_.nearest(cell.witness, {});
-    if (!surface_.is_inside(cell.witness, nearest)) return 0;
-    const std::optional<ThinBall> ball = ball_around(surface_, nearest, cell.witness, step_);
-    return ball ? above_floor(ball->centre, ball->nearest.point, ball->other.point) : 0;
-  }
+  [[nodiscard]] double in_wire(const ExtraCell& cell) const { return in_wire(cell.witness, HUGE_VAL); }
 
   /// Returns the largest angle between the directions from any two voxels around a cell to their footprints, degrees.
   [[nodiscard]] static double coarse(const Around& around, CellAxes axes) {
@@ -288,27 +289,51 @@ class Measure {
       feet[count++] = around[v].foot.point;
       middle += around[v].centre;
     }
-    // If some voxels are inside and others outside, the angles of squares suffice. If all are outside, a wire may pass
-    // between them.
-    if (inside != 0 && inside != count) return 0;
     middle *= 1.0 / static_cast<double>(count);
+    const bool is_wire = inside == 0;
+    // Voxels of a rod of about their own thickness determine its middle badly, so the ball there is looked for.
+    if (!is_wire && inside != count) return in_rod(around[axes == 0 ? 7 : axes], middle);
     const EquidistantPoints points({feet.data(), count}, middle);
     double largest = 0;
     for (const int rank : {3, 2}) {
       const std::optional<Vec3d> x = points.of_rank(rank);
-      if (!x || !is_near(*x, middle, inside == 0 ? wire_reach : fitted_reach)) continue;
+      if (!x || !is_near(*x, middle, is_wire ? wire_reach : fitted_reach)) continue;
       largest = std::max(largest, angle_of({governors.data(), count}, *x));
     }
-    if (largest > 0 || inside != 0) return largest;
+    if (largest > 0 || !is_wire) return largest;
     // A wire may be so thin that the footprints do not determine its middle.
     const NearestPoint nearest = surface_.nearest(middle, governors[0]->foot);
     if (nearest.distance > step_ || surface_.is_inside(middle, nearest)) return 0;
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, nearest, middle, step_);
-    if (!ball || !is_near(ball->centre, middle, wire_reach)) return 0;
-    return above_floor(ball->centre, ball->nearest.point, ball->other.point);
+    return ball && is_near(ball->centre, middle, wire_reach) ? angle_of(*ball) : 0;
   }
 
  private:
+  /// Returns the angle of the medial ball next to the middle of a cell whose voxels are inside and outside, degrees. It
+  /// is 0 if another cell is closer to the ball's centre.
+  [[nodiscard]] double in_rod(const Governor& near, const Vec3d& middle) const {
+    const NearestPoint nearest = surface_.nearest(middle, near.foot);
+    if (nearest.distance > step_) return 0;
+    const std::optional<ThinBall> ball = surface_.is_inside(middle, nearest)
+                                             ? ball_around(surface_, nearest, middle, step_)
+                                             : thin_ball_behind(surface_, nearest, middle, step_);
+    return ball && is_nearest_cell_of(ball->centre, middle) ? angle_of(*ball) : 0;
+  }
+  /// Returns the angle of the medial ball around a point of a thin part, degrees. It is 0 if the ball's centre is
+  /// further than `reach` voxels away along an axis of the grid.
+  [[nodiscard]] double in_wire(const Vec3d& inside, double reach) const {
+    const NearestPoint nearest = surface_.nearest(inside, {});
+    if (!surface_.is_inside(inside, nearest)) return 0;
+    const std::optional<ThinBall> ball = ball_around(surface_, nearest, inside, step_);
+    if (!ball || !is_near(ball->centre, inside, reach)) return 0;
+    return angle_of(*ball);
+  }
+  [[nodiscard]] double angle_of(const ThinBall& ball) const {
+    const double radius = ball.nearest.distance;
+    const double between = 2 * radius * std::sin(0.5 * ball.angle_across / degrees_per_radian);
+    return above_floor(ball.centre, ball.angle_across, between);
+  }
+
   [[nodiscard]] bool is_uneven(const Around& around) const {
     Vec3d sum;
     bool is_same = true;
@@ -363,9 +388,12 @@ class Measure {
   }
 
   [[nodiscard]] double above_floor(const Vec3d& x, const Vec3d& p, const Vec3d& q) const {
-    const double angle = angle_at(x, p, q);
+    return above_floor(x, angle_at(x, p, q), length(p - q));
+  }
+  /// Returns an angle between two footprints of x, or 0 if it is below the noise floor.
+  /// @param apart  distance between the footprints.
+  [[nodiscard]] double above_floor(const Vec3d& x, double angle, double apart) const {
     if (angle < floor_.angle) return 0;
-    const double apart = length(p - q);
     if (apart < floor_.lambda) return 0;
     if (apart >= floor_.voxels * step_) return angle;
     return angle < floor_.clear_angle || !is_thin_around(x) ? 0 : angle;
@@ -387,6 +415,20 @@ class Measure {
     const Vec3d moved = grid.direction.transposed_times(x - middle);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (std::abs(moved[axis]) > reach * grid.spacing[axis]) return false;
+    }
+    return true;
+  }
+
+  /// Returns true if a cell with the given middle is the closest of its kind to x. If the axis of a rod runs through
+  /// centres of voxels, four edges of each voxel are equally close to it. The middles are shifted a little, so that
+  /// exactly one of these edges is chosen.
+  [[nodiscard]] bool is_nearest_cell_of(const Vec3d& x, const Vec3d& middle) const {
+    constexpr std::array shift{0.0137, 0.0173, 0.0191};  // voxels
+    constexpr double rounding = 1e-6;                    // voxels
+    const GridSpec& grid = governors_.solid().grid;
+    const Vec3d moved = grid.direction.transposed_times(x - middle);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (std::abs(moved[axis] / grid.spacing[axis] - shift[axis]) > 0.5 + rounding) return false;
     }
     return true;
   }
@@ -549,8 +591,6 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
   found.push_back(angles_of_extra(measure, complex.structure(), context));
   const Importance squares(complex.structure(), joined(found));
   constexpr double nearly_opposite = 170;  // degrees; larger angles occur on axes of round parts
-  // Degrees: at this angle between a cell's footprints, there may be others on the opposite side.
-  constexpr double wide = 100;
   for_each_layer("separation angles of edges", [&](std::size_t k) {
     for (const std::uint32_t node : uneven[k]) {
       const double known = largest_around(squares, lattice, node);
@@ -558,7 +598,8 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
       if (known >= least) continue;
       const GovernorsAround around = governors.around(lattice.place(node));
       for (const CellAxes axes : {0U, 1U, 2U, 4U}) {
-        if (!complex.contains(cell_at(node, axes)) || Measure::coarse(around, axes) < std::min(least, wide)) continue;
+        if (!complex.contains(cell_at(node, axes)) || Measure::coarse(around, axes) < std::min(least, wide_angle))
+          continue;
         const double angle = measure.fitted(around, axes);
         if (angle >= least) found[k].push_back({cell_at(node, axes), static_cast<float>(angle)});
       }

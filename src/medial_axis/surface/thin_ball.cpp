@@ -10,16 +10,36 @@ namespace {
 constexpr int most_steps = 24;
 /// Degrees: two footprints of a ball count as one if the angle between them at the ball's centre is smaller.
 constexpr double least_angle = 1;
+/// The point opposite of a footprint is the closest point to a query beyond the centre of the ball. These are the
+/// distance of the query from the centre, and the largest excess of the point's distance, as shares of the radius.
+constexpr double opposite_step = 0.3;
+constexpr double facets = 0.05;
+constexpr double rounding = 1e-9;
 /// Number of points tried on a ray behind the surface. Each is 3/4 as deep as the one before, down to 1/2400 of the
 /// first depth.
 constexpr int most_depths = 28;
 constexpr int most_climbs = 3;
-/// Least length of the sum of the unit directions from both walls to the centre. If it is shorter, the angle between
-/// the footprints is above 150 degrees: the walls are opposite.
-constexpr double least_slope = 0.5;
+/// Degrees: if the angle between two footprints exceeds this, the walls are opposite, and no ball next to it is larger.
+constexpr double opposite = 150;
 
 Footprint footprint_of(const NearestPoint& at) {
   return {at.point, at.element, 7};
+}
+
+/// Compares a ball with the point of the surface opposite of its footprint. In a round part of many facets, the
+/// footprints found on the way to the ball may all be on one side.
+void look_opposite(const Surface& surface, ThinBall& ball) {
+  const double radius = ball.nearest.distance;
+  const Vec3d beyond = ball.centre + (ball.centre - ball.nearest.point) * opposite_step;
+  NearestPoint opposite = surface.nearest(beyond, footprint_of(ball.other));
+  const Footprint foot = surface.follow(footprint_of(opposite), ball.centre, radius);
+  opposite = {foot.point, length(foot.point - ball.centre), surface.site_of(foot), foot.element};
+  if (opposite.distance > radius * (1 + facets)) return;
+  const double angle = angle_at(ball.centre, ball.nearest.point, opposite.point);
+  ball.angle_across = std::max(ball.angle_across, angle);
+  if (opposite.distance > radius * (1 + rounding) || angle <= ball.angle) return;
+  ball.other = opposite;
+  ball.angle = angle;
 }
 
 /// Returns the largest inner ball that touches the surface at `touched`, the closest point to the point `inside`.
@@ -39,6 +59,8 @@ std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint
         ball.other = wall;
         ball.angle = angle;
       }
+      ball.angle_across = ball.angle;
+      look_opposite(surface, ball);
       return ball;
     }
     const Vec3d across = nearest.point - touched.point;
@@ -68,21 +90,39 @@ Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& di
   return best;
 }
 
-/// Returns a larger ball next to a ball in a corner of a part of the solid. The centre moves away from both walls.
+/// Returns a larger ball next to a ball in a corner of a part of the solid. The centre moves away from both walls. The
+/// balls around both centres overlap, so both are in one component of the solid.
 std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, double radius) {
+  if (ball.angle_across > opposite) return std::nullopt;
   const double own = ball.nearest.distance;
   const Vec3d away = (ball.centre - ball.nearest.point) / own + (ball.centre - ball.other.point) / own;
   const double size = length(away);
-  if (!(size > least_slope)) return std::nullopt;
+  if (!(size > 0)) return std::nullopt;
   const Deepest deepest = deepest_along(surface, ball.centre, away / size, radius, ball.nearest);
-  if (deepest.nearest.distance < 1.01 * own) return std::nullopt;
+  const double reach = deepest.nearest.distance;
+  if (reach < 1.01 * own || length(deepest.point - ball.centre) > own + reach) return std::nullopt;
   return touching_ball(surface, deepest.nearest, deepest.point, radius);
+}
+
+/// Follows larger balls, starting from a ball.
+std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinBall> ball, double radius) {
+  for (int n = 0; ball && n < most_climbs; ++n) {
+    const std::optional<ThinBall> larger = climb(surface, *ball, radius);
+    if (!larger || larger->nearest.distance <= ball->nearest.distance) break;
+    ball = larger;
+  }
+  return ball;
 }
 
 }  // namespace
 
 std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
                                     double radius) {
+  return largest_from(surface, touching_ball(surface, nearest, inside, radius), radius);
+}
+
+std::optional<ThinBall> ball_touching(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
+                                      double radius) {
   return touching_ball(surface, nearest, inside, radius);
 }
 
@@ -92,13 +132,7 @@ std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPo
   const Vec3d inwards = (touched.point - beyond) / touched.distance;
   const Deepest deepest = deepest_along(surface, touched.point, inwards, radius, touched);
   if (deepest.nearest.distance == 0) return std::nullopt;
-  std::optional<ThinBall> ball = touching_ball(surface, deepest.nearest, deepest.point, radius);
-  for (int n = 0; ball && n < most_climbs; ++n) {
-    const std::optional<ThinBall> larger = climb(surface, *ball, radius);
-    if (!larger || larger->nearest.distance <= ball->nearest.distance) break;
-    ball = larger;
-  }
-  return ball;
+  return largest_from(surface, touching_ball(surface, deepest.nearest, deepest.point, radius), radius);
 }
 
 }  // namespace blum::detail

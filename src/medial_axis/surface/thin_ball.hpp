@@ -13,6 +13,9 @@ struct ThinBall {
   NearestPoint nearest;  ///< closest point of the surface to the centre
   NearestPoint other;    ///< equally close point on another wall; equals `nearest` if none was found
   double angle = 0;      ///< degrees: angle between both points at the centre
+  /// Degrees: at least `angle`. Points of the surface at most 5 % further away than `nearest` also count, because the
+  /// facets of a round part are only about equally close.
+  double angle_across = 0;
 };
 
 /// Returns a medial ball of the thin part of the solid that is next to `beyond`, a point outside the solid. First, the
@@ -25,11 +28,16 @@ struct ThinBall {
 [[nodiscard]] std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched,
                                                        const Vec3d& beyond, double radius);
 
-/// Returns the largest ball in the solid that touches the surface at the closest point to a point of the solid. The
-/// ball contains this point.
+/// Returns a medial ball of the part of the solid around a point. First, the largest ball in the solid that touches the
+/// surface at the closest point to the given point is found. It contains the given point. If there are larger balls
+/// next to it, the search continues with these.
 /// @param nearest  closest point of the surface to `inside`.
 /// @param radius  mesh units. The result is nullopt if the ball would be larger.
 [[nodiscard]] std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest,
                                                   const Vec3d& inside, double radius);
+
+/// Returns the first ball of ball_around(), without a search for larger ones.
+[[nodiscard]] std::optional<ThinBall> ball_touching(const Surface& surface, const NearestPoint& nearest,
+                                                    const Vec3d& inside, double radius);
 
 }  // namespace blum::detail
