@@ -207,6 +207,22 @@ ChartPart clipped(const ChartPart& in, const Coordinate& coordinate, double limi
   return std::abs(twice) / 2;
 }
 
+/// Returns the centroid of a part of a chart. The part must have an area.
+[[nodiscard]] inline TexturePlace centroid_of(const ChartPart& part) {
+  const TexturePlace& first = part.data()[0];
+  TexturePlace sum{};
+  double twice = 0;
+  for (std::size_t k = 2; k < part.size(); ++k) {
+    const TexturePlace& a = part.data()[k - 1];
+    const TexturePlace& b = part.data()[k];
+    const double own = twice_area({first, a, b});
+    twice += own;
+    sum.x += own * ((a.x - first.x) + (b.x - first.x));
+    sum.y += own * ((a.y - first.y) + (b.y - first.y));
+  }
+  return {first.x + sum.x / (3 * twice), first.y + sum.y / (3 * twice)};
+}
+
 /// @throws InvalidMesh if the mesh is not valid, or if its number of triangles differs from that of the atlas.
 inline void check_fits(const MeshView& mesh, const SurfaceAtlas& atlas) {
   validate(mesh);

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
-#include "blum/core/scale.hpp"
+#include "blum/core/vec3.hpp"
 #include "surface_map/chart.hpp"
 #include "surface_map/weighted_statistics.hpp"
 
@@ -32,70 +35,185 @@ void check(const MeshView& mesh, const SurfaceMap& map) {
   }
 }
 
-/// Returns the area of the surface that each texel represents, for the mesh multiplied by a scale. The area of a
-/// triangle is divided among its texels in proportion to the part of each texel that its chart covers. If the chart
-/// covers none of them, the area is divided evenly.
-std::vector<double> texel_areas(const MeshView& mesh, const SurfaceAtlas& atlas, double scale) {
-  std::vector<double> out(atlas.size());
-  std::vector<double> sums(mesh.triangles.size());
-  std::vector<std::uint32_t> counts(mesh.triangles.size());
-  for (std::size_t k = 0; k < atlas.size(); ++k) {
-    const TriangleId triangle = atlas.triangle[k];
-    if (!triangle.has_value()) continue;
-    const TexturePlace middle = surface::middle_of(k % atlas.width, k / atlas.width);
-    out[k] = surface::area_of(surface::part_around(atlas.corners[triangle.value], middle, 0.5));
-    sums[triangle.value] += out[k];
-    ++counts[triangle.value];
+/// Values of small parts of the surface, and the areas of these parts, for the mesh multiplied by a scale.
+struct PartValues {
+  std::vector<surface::SpreadValue> values;
+  void add(double value, double spread, double area) { values.push_back({value, spread, area}); }
+};
+
+/// Divides triangles into the squares of texels, and finds a value for each part.
+///
+/// A part at the border of a triangle is smaller than its square, and its texel may belong to a neighbouring triangle.
+/// So the value at the centroid of the part is extrapolated from the texel's point, along the gradient of the distance.
+/// The gradient is the unit vector away from the closest point. Its component along the triangle also gives the spread
+/// of the values in the part. Thickness has no such gradient, and may jump between triangles. So parts of thickness
+/// maps use only texels of their own triangle, without extrapolation.
+class SurfaceDivider {
+ public:
+  SurfaceDivider(const MeshView& mesh, const SurfaceMap& map)
+      : map_(map),
+        atlas_(*map.atlas),
+        charts_{mesh, *map.atlas},
+        is_smooth_(map.quantity == SurfaceQuantity::distance && map.vector.size() == map.distance.size()),
+        own_texels_(mesh.triangles.size(), 0) {
+    for (const TriangleId triangle : atlas_.triangle) {
+      if (triangle.has_value()) ++own_texels_[triangle.value];
+    }
   }
-  std::vector<double> areas(mesh.triangles.size());
-  for (std::size_t t = 0; t < areas.size(); ++t) {
-    const auto [a, b, c] = triangle_corners(mesh, t);
-    areas[t] = length(cross((b - a) * scale, (c - a) * scale)) / 2;
+
+  [[nodiscard]] double scale() const { return charts_.scale; }
+
+  [[nodiscard]] PartValues divide() {
+    PartValues out;
+    out.values.reserve(atlas_.size());
+    std::vector<std::uint32_t> undivided;
+    for (std::uint32_t t = 0; t < own_texels_.size(); ++t) {
+      if (own_texels_[t] > 0 && !divide(t, out)) undivided.push_back(t);
+    }
+    if (!undivided.empty()) share_evenly(undivided, out);
+    return out;
   }
-  for (std::size_t k = 0; k < atlas.size(); ++k) {
-    const TriangleId triangle = atlas.triangle[k];
-    if (!triangle.has_value()) continue;
-    const std::size_t t = triangle.value;
-    out[k] = areas[t] * (sums[t] > 0 ? out[k] / sums[t] : 1.0 / counts[t]);
+
+ private:
+  struct Part {
+    std::size_t texel = 0;
+    TexturePlace centroid;
+    double area = 0;  ///< square texels
+  };
+
+  /// @return  false if the chart of a triangle has no area that texels cover.
+  bool divide(std::uint32_t t, PartValues& out) {
+    const surface::ChartCorners& places = atlas_.corners[t];
+    if (!surface::has_area(places)) return false;
+    parts_.clear();
+    double covered = 0;
+    surface::for_each_texel(places, atlas_.width, atlas_.height, [&](std::size_t x, std::size_t y, double) {
+      const std::size_t texel = y * atlas_.width + x;
+      const TriangleId owner = atlas_.triangle[texel];
+      if (!owner.has_value() || (!is_smooth_ && owner.value != t)) return;
+      const surface::ChartPart part = surface::part_around(places, surface::middle_of(x, y), 0.5);
+      const double area = surface::area_of(part);
+      if (!(area > 0)) return;
+      parts_.push_back({texel, surface::centroid_of(part), area});
+      covered += area;
+    });
+    if (!(covered > 0)) return false;
+    const surface::Chart chart = charts_[t];
+    const Vec3d normal = normal_of(t);
+    const double whole = 0.5 * length(normal);
+    for (const Part& part : parts_) add_part(part, t, chart, normal, whole * (part.area / covered), out);
+    return true;
   }
-  return out;
+
+  /// Adds a part with the value at its centroid.
+  /// @param normal  normal_of() the triangle.
+  /// @param area    area of the part, for the scaled mesh.
+  void add_part(const Part& part, std::uint32_t t, const surface::Chart& chart, const Vec3d& normal, double area,
+                PartValues& out) const {
+    const double value = map_.distance[part.texel];
+    const Vec3f& v = map_.vector.empty() ? Vec3f{} : map_.vector[part.texel];
+    const Vec3d to_closest{v.x, v.y, v.z};
+    const double size = length(to_closest);
+    if (!is_smooth_ || !std::isfinite(value) || !(size > 0)) {
+      out.add(value, 0, area);
+      return;
+    }
+    const double change = -dot(to_closest, way_to_centroid(part, t, chart)) / size;
+    const double along = length(cross(to_closest, normal)) / (size * length(normal));
+    out.add(value + (value < 0 ? -change : change), 0.5 * along * std::sqrt(area) / charts_.scale, area);
+  }
+
+  /// Returns the way from the point of a part's texel to the centroid of the part, mesh units.
+  [[nodiscard]] Vec3d way_to_centroid(const Part& part, std::uint32_t t, const surface::Chart& chart) const {
+    const TexturePlace middle = surface::middle_of(part.texel % atlas_.width, part.texel / atlas_.width);
+    const std::uint32_t owner = atlas_.triangle[part.texel].value;
+    const bool is_own = owner == t;
+    if (is_own && part.area == 1) return {};  // the centroid is the texel's point
+    const Vec3d from = is_own ? chart.on_triangle(middle) : charts_[owner].on_triangle(middle);
+    return (chart.in_plane(part.centroid) - from) / charts_.scale;
+  }
+
+  /// Returns a vector at right angles to a triangle, twice as long as its area, for the scaled mesh.
+  [[nodiscard]] Vec3d normal_of(std::uint32_t t) const {
+    const auto [a, b, c] = triangle_corners(charts_.mesh, t);
+    return cross((b - a) * charts_.scale, (c - a) * charts_.scale);
+  }
+
+  /// Divides triangles evenly among their texels.
+  void share_evenly(const std::vector<std::uint32_t>& triangles, PartValues& out) const {
+    std::vector<bool> is_shared(own_texels_.size(), false);
+    for (const std::uint32_t t : triangles) is_shared[t] = true;
+    for (std::size_t k = 0; k < atlas_.size(); ++k) {
+      const TriangleId triangle = atlas_.triangle[k];
+      if (!triangle.has_value() || !is_shared[triangle.value]) continue;
+      out.add(map_.distance[k], 0, 0.5 * length(normal_of(triangle.value)) / own_texels_[triangle.value]);
+    }
+  }
+
+  const SurfaceMap& map_;
+  const SurfaceAtlas& atlas_;
+  surface::ScaledCharts charts_;
+  bool is_smooth_;
+  std::vector<std::uint32_t> own_texels_;  ///< number of texels of each triangle
+  std::vector<Part> parts_;                ///< parts of one triangle
+};
+
+/// Returns the root mean square of values of parts.
+/// @param largest  largest magnitude of the values.
+/// @param sum      sum of the weights.
+double root_mean_square(const std::vector<surface::SpreadValue>& parts, double largest, double sum) {
+  std::vector<double> values;
+  std::vector<double> weights;
+  for (const surface::SpreadValue& part : parts) {
+    values.push_back(part.middle);
+    weights.push_back(part.weight);
+  }
+  return surface::root_mean_square(values, weights, largest, sum);
+}
+
+/// Returns the smallest and the largest value of a texel.
+std::pair<double, double> extremes(const SurfaceMap& map) {
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -smallest;
+  for (std::size_t k = 0; k < map.distance.size(); ++k) {
+    const double value = map.distance[k];
+    if (!map.atlas->triangle[k].has_value() || !std::isfinite(value)) continue;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+  }
+  return {smallest, largest};
 }
 
 }  // namespace
 
 SurfaceMapStatistics surface_map_statistics(const MeshView& mesh, const SurfaceMap& map) {
   check(mesh, map);
-  const double scale = scale_to_one(bounds(mesh).largest_coordinate());
-  const SurfaceAtlas& atlas = *map.atlas;
-  const std::vector<double> areas = texel_areas(mesh, atlas, scale);
-  std::vector<double> values;
-  std::vector<double> weights;
+  SurfaceDivider divider(mesh, map);
+  const double scale = divider.scale();
+  const PartValues parts = divider.divide();
+  std::vector<surface::SpreadValue> values;
   LongSum area;
   LongSum measured;
   LongSum sum;
-  for (std::size_t k = 0; k < atlas.size(); ++k) {
-    const TriangleId triangle = atlas.triangle[k];
-    if (!triangle.has_value() || !(areas[k] > 0)) continue;
-    const double weight = areas[k];
-    area.add(weight);
-    const double value = map.distance[k];
-    if (!std::isfinite(value)) continue;
-    measured.add(weight);
-    sum.add(weight * value);
-    values.push_back(value);
-    weights.push_back(weight);
+  double magnitude = 0;
+  for (const surface::SpreadValue& part : parts.values) {
+    if (!(part.weight > 0)) continue;
+    area.add(part.weight);
+    if (!std::isfinite(part.middle)) continue;
+    measured.add(part.weight);
+    sum.add(part.weight * part.middle);
+    magnitude = std::max(magnitude, std::abs(part.middle));
+    values.push_back(part);
   }
   SurfaceMapStatistics out;
   out.area = area.value() / scale / scale;
   if (values.empty()) return out;
-  const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
-  const double magnitude = std::max(std::abs(*smallest), std::abs(*largest));
   out.measured_area = measured.value() / scale / scale;
   out.mean = sum.value() / measured.value();
-  out.rms = surface::root_mean_square(values, weights, magnitude, measured.value());
-  out.smallest = *smallest;
-  out.largest = *largest;
-  out.percentiles = surface::percentiles(values, weights, measured.value(), SurfaceMapStatistics::percents);
+  out.rms = root_mean_square(values, magnitude, measured.value());
+  std::tie(out.smallest, out.largest) = extremes(map);
+  out.percentiles = surface::percentiles(values, SurfaceMapStatistics::percents);
+  for (double& p : out.percentiles) p = std::clamp(p, out.smallest, out.largest);
   return out;
 }
 

@@ -18,6 +18,62 @@ double root_mean_square(std::span<const double> values, std::span<const double> 
   return largest * std::sqrt(square.value() / sum);
 }
 
+namespace {
+
+/// Place at which the weight below a value begins to grow faster or more slowly, or jumps.
+struct Event {
+  double at = 0;
+  double slope = 0;  ///< change of the slope
+  double jump = 0;
+};
+
+std::vector<Event> events_of(std::span<const SpreadValue> values) {
+  // Narrower values would have slopes that overflow.
+  constexpr double least_spread = 1e-12;  // of the largest magnitude
+  double largest = 0;
+  for (const SpreadValue& v : values) largest = std::max(largest, std::abs(v.middle));
+  std::vector<Event> events;
+  events.reserve(2 * values.size());
+  for (const SpreadValue& v : values) {
+    if (!(v.spread > least_spread * largest)) {
+      events.push_back({v.middle, 0, v.weight});
+      continue;
+    }
+    const double slope = v.weight / (2 * v.spread);
+    events.push_back({v.middle - v.spread, slope, 0});
+    events.push_back({v.middle + v.spread, -slope, 0});
+  }
+  std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.at < b.at; });
+  return events;
+}
+
+}  // namespace
+
+std::array<double, 7> percentiles(std::span<const SpreadValue> values, const std::array<double, 7>& percents) {
+  const std::vector<Event> events = events_of(values);
+  LongSum all;
+  for (const SpreadValue& v : values) all.add(v.weight);
+  std::array<double, 7> out{};
+  out.fill(events.back().at);
+  std::size_t next = 0;
+  LongSum below;
+  LongSum slope;
+  double at = events.front().at;
+  for (const Event& event : events) {
+    const double before = below.value();
+    const double rise = std::max(slope.value(), 0.0);
+    below.add(rise * (event.at - at));
+    for (; next < out.size() && below.value() >= all.value() * percents[next] / 100; ++next) {
+      out[next] = rise > 0 ? std::min(at + (all.value() * percents[next] / 100 - before) / rise, event.at) : event.at;
+    }
+    below.add(event.jump);
+    slope.add(event.slope);
+    at = event.at;
+    for (; next < out.size() && below.value() >= all.value() * percents[next] / 100; ++next) out[next] = at;
+  }
+  return out;
+}
+
 std::array<double, 7> percentiles(std::span<const double> values, std::span<const double> weights, double sum,
                                   const std::array<double, 7>& percents) {
   std::vector<std::uint32_t> order(values.size());

@@ -30,6 +30,20 @@ class LongSum {
 [[nodiscard]] double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest,
                                       double sum);
 
+/// Values that vary within their part of the area: uniformly, from `middle - spread` to `middle + spread`.
+struct SpreadValue {
+  double middle = 0;
+  double spread = 0;  ///< at least 0
+  double weight = 0;  ///< above 0
+};
+
+/// Returns, for each percentage, the value below which that percentage of the total weight lies.
+/// @param values    at least one.
+/// @param percents  in rising order, above 0 and below 100.
+/// Cost: O(values log values).
+[[nodiscard]] std::array<double, 7> percentiles(std::span<const SpreadValue> values,
+                                                const std::array<double, 7>& percents);
+
 /// Returns, for each percentage, the smallest value such that values up to it have at least that percentage of the
 /// total weight.
 /// @param values    at least one, fewer than 2^32.

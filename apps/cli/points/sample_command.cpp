@@ -134,7 +134,9 @@ void run(const Arguments& a) {
   const Samples samples = samples_of(a, asked, file.mesh, context);
   const Complex& points = samples.points;
   phases.push_back({"sample", watch.lap()});
-  write_points(output, points, {{"tool", "blum sample"}, {"source", input.filename().string()}}, context);
+  FileMetadata metadata{{"tool", "blum sample"}, {"source", input.filename().string()}};
+  if (a.near) metadata.emplace_back("sign_rule", to_string(samples.sign_rule));
+  write_points(output, points, metadata, context);
   phases.push_back({"write", watch.lap()});
   progress.clear();
   const PhaseSummary spent = summarize(phases);

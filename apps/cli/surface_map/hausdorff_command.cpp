@@ -87,13 +87,22 @@ void add_side(TextTable& table, const std::string& label, const Side& side) {
     table.detail("", "signs " + sign_text(side.deviation->sign_rule, side.deviation->sign_reason));
   }
   const SurfaceDeviation& by_area = *side.deviation;
-  const auto with_error = [](double value, double error) {
-    return rounded_text(value) + " (error at most " + rounded_text(error) + ")";
+  const double most = side.distance.upper;
+  // A value smaller than its error is only an estimate. The largest distance is then a better bound.
+  const auto with_error = [&](double value, double error) {
+    if (error < std::abs(value)) return rounded_text(value) + " (error at most " + rounded_text(error) + ")";
+    const double lower = by_area.sign_rule != SignRule::none ? std::max(value - error, -most) : 0;
+    return "about " + rounded_text(value) + " (between " + rounded_text(lower) + " and " +
+           rounded_text(std::min(value + error, most)) + ")";
   };
   table.add("", "mean " + with_error(by_area.mean, by_area.mean_error) + ", rms " +
                     with_error(by_area.rms, by_area.rms_error));
-  table.detail("", "by area " + percentiles_text(SurfaceDeviation::percents, by_area.percentiles) + " (error at most " +
-                       rounded_text(by_area.percentile_error) + ")");
+  const bool is_resolved = by_area.percentile_error < std::max(std::abs(by_area.smallest), std::abs(by_area.largest));
+  table.detail("", "by area " +
+                       (is_resolved ? percentiles_text(SurfaceDeviation::percents, by_area.percentiles)
+                                    : "no percentiles, because they are smaller than their error") +
+                       " (error at most " + rounded_text(by_area.percentile_error) +
+                       (is_resolved ? ")" : "); more --pieces reduce it"));
 }
 
 /// Returns the witnesses of the distances: one segment for each direction.

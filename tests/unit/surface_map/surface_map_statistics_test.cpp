@@ -4,12 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/field/closest_points.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/surface_map/thickness.hpp"
 
@@ -31,6 +35,69 @@ TEST(SurfaceMapStatistics, OfASlope) {
   for (std::size_t k = 0; k < found.percentiles.size(); ++k) {
     EXPECT_NEAR(found.percentiles[k], SurfaceMapStatistics::percents[k] / 100, 0.005);
   }
+}
+
+/// Linear values are spread exactly, however large texels are. Percentiles are never beyond the values of texels, so 1
+/// % and 99 % are not compared.
+TEST(SurfaceMapStatistics, OfASlopeDoNotDependOnTheTexel) {
+  TriangleMesh above = slope;
+  for (Vec3d& v : above.vertices) v.z += 1;
+  for (const double texel : {0.3, 0.11, 0.03}) {
+    const SurfaceMapStatistics found =
+        surface_map_statistics(above, surface_distance_map(above, plane, {.texel = texel}));
+    EXPECT_NEAR(found.mean, 1.5, 1e-6);
+    for (std::size_t k = 1; k + 1 < found.percentiles.size(); ++k) {
+      EXPECT_NEAR(found.percentiles[k], 1 + SurfaceMapStatistics::percents[k] / 100, 0.03 * texel) << texel;
+    }
+  }
+}
+
+/// Exact distances of a coarse sphere's points from a fine sphere, at the centroids of equal parts of each triangle.
+std::vector<std::pair<double, double>> distances_by_area(const TriangleMesh& mesh, const TriangleMesh& other) {
+  constexpr int parts = 40;
+  std::vector<Vec3d> points;
+  std::vector<double> areas;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = triangle_corners(mesh, t);
+    const double area = length(cross(b - a, c - a)) / 2 / (parts * parts);
+    for (int i = 0; i < parts; ++i) {
+      for (int j = 0; j < 2 * (parts - i) - 1; ++j) {
+        const double third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+        const double u = (i + third) / parts;
+        const double v = (j / 2 + third) / parts;
+        points.push_back(a + (b - a) * u + (c - a) * v);
+        areas.push_back(area);
+      }
+    }
+  }
+  const std::vector<ClosestPoint> found = closest_points(other, points);
+  std::vector<std::pair<double, double>> out;
+  for (std::size_t k = 0; k < points.size(); ++k) out.emplace_back(found[k].distance, areas[k]);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// All triangles of the coarse sphere are nearly alike, so an error at their borders would not average out.
+TEST(SurfaceMapStatistics, PercentilesOfDistancesAreThoseOfTheWholeArea) {
+  const TriangleMesh coarse = make_sphere({.frequency = 5});
+  const TriangleMesh fine = make_sphere({.frequency = 40});
+  const auto exact = distances_by_area(coarse, fine);
+  double all = 0;
+  for (const auto& [distance, area] : exact) all += area;
+  const SurfaceMapStatistics found =
+      surface_map_statistics(coarse, surface_distance_map(coarse, fine, {.sign = SignMode::automatic}));
+  EXPECT_NEAR(found.area, all, 1e-9);
+  std::size_t k = 0;
+  double below = 0;
+  for (const auto& [distance, area] : exact) {
+    below += area;
+    while (k < found.percentiles.size() && below >= all * SurfaceMapStatistics::percents[k] / 100) {
+      EXPECT_NEAR(found.percentiles[k], distance, 0.008 * std::abs(exact.front().first))
+          << SurfaceMapStatistics::percents[k] << " %";
+      ++k;
+    }
+  }
+  EXPECT_EQ(k, found.percentiles.size());
 }
 
 /// A box of 1 x 1 x 1/4 has thickness 1/4 on two thirds of its area and 1 on the rest, for any triangulation.
