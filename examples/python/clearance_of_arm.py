@@ -81,8 +81,8 @@ def main() -> None:
         found = scene.separation()
         near = found.object[:, 0] == 0  # the obstacle is the first object, before the links
         outside, own = found.distance[near].min(), found.distance[~near].min()
-        closest = found[int(np.flatnonzero(near)[found.distance[near].argmin()])]
-        rows.append([part, outside, own, closest.object[1], *closest.point[1]])
+        pair = found[int(np.flatnonzero(near)[found.distance[near].argmin()])]
+        rows.append([part, outside, own, pair.object[1], *pair.closest[1]])
 
     table = np.array(rows)
     worst = table[table[:, 1].argmin()]

@@ -122,6 +122,13 @@ void bind_field_class(nb::module_& m) {
           },
           nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
       .def(
+          "level_warnings",
+          [](const Field& field, double level, int threads) {
+            return result_of(run({threads, nb::none()},
+                                 [&](const Context& context) { return level_warnings(field, level, context); }));
+          },
+          nb::arg("level"), nb::arg("threads"))
+      .def(
           "zero_surface",
           [](const Field& field, double level, int threads, nb::object progress) {
             return arrays_of(run({threads, std::move(progress)},

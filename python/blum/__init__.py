@@ -30,6 +30,7 @@ from . import (
     _medial_columns,
     _medial_complex,
     _mesh,
+    _methods,
     _points,
     _proximity,
     _proximity_results,
@@ -79,6 +80,8 @@ from ._transform import *
 from ._verifier import *
 from ._view import *
 from ._voronoi import *
+
+_methods.shorten(_structs)
 
 __all__ = ["__version__", "reference", "thread_count"]
 __all__ += _axis_graph.__all__

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from ._errors import InvalidMesh, InvalidOption
 
 FloatArray = npt.NDArray[np.float64]
@@ -72,11 +73,17 @@ def as_array(value: Any, name: str) -> npt.NDArray[Any]:
     return array
 
 
+def _check_real(array: npt.NDArray[Any], value: Any, name: str) -> None:
+    """Raises TypeError unless an array holds real numbers. The message names the type of other objects."""
+    if array.dtype.kind not in "fiu":
+        is_object = array.dtype == object and array.ndim == 0
+        raise TypeError(f"{name} must hold real numbers, not {type(value).__name__ if is_object else array.dtype}")
+
+
 def float_rows(value: Any, name: str, width: int = 3) -> FloatArray:
     """Returns an (n, width) array of float64. A C-contiguous float64 array is not copied; others are copied once."""
     array = as_array(value, name)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
+    _check_real(array, value, name)
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, width)
     if array.ndim != 2 or array.shape[1] != width:
@@ -87,8 +94,7 @@ def float_rows(value: Any, name: str, width: int = 3) -> FloatArray:
 def points_and_shape(value: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:
     """Returns points of shape (..., 3) as rows, and their shape without the last axis."""
     array = as_array(value, name)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
+    _check_real(array, value, name)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"{name} has the shape {array.shape}, but must have (..., 3)")
     return np.ascontiguousarray(array.reshape(-1, 3), dtype=np.float64), array.shape[:-1]
@@ -105,8 +111,7 @@ def check_finite(rows: FloatArray, shape: tuple[int, ...], name: str) -> None:
 def float_list(value: Any, name: str) -> FloatArray:
     """Returns an (n,) array of float64. A C-contiguous float64 array is not copied."""
     array = as_array(value, name)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
+    _check_real(array, value, name)
     if array.ndim != 1:
         raise ValueError(f"{name} has the shape {array.shape}, but must have (n,)")
     return np.ascontiguousarray(array, dtype=np.float64)
@@ -185,6 +190,13 @@ def integer(value: Any, name: str, bits: int = 32) -> int:
     if not -(2 ** (bits - 1)) <= int(value) < 2 ** (bits - 1):
         raise InvalidOption(f"{name} is {int(value)}, but must be -2^{bits - 1} to 2^{bits - 1} - 1")
     return int(value)
+
+
+def thread_number(value: Any) -> int:
+    """Returns a number of threads, for the functions of the library that do not check it themselves."""
+    count = integer(value, "threads")
+    _core.thread_count(count)
+    return count
 
 
 def natural(value: Any, name: str, bits: int = 32) -> int:

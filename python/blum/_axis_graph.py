@@ -106,22 +106,18 @@ def mesh_of(axis: Complex, mesh: MeshOrVertices | None, triangles: npt.ArrayLike
 
 def to_networkx(graph: AxisGraph) -> Any:
     """Returns the graph as a networkx.MultiGraph; see AxisGraph.to_networkx."""
-    try:
-        import networkx
-    except ImportError as error:
-        raise ImportError("AxisGraph.to_networkx() needs networkx: pip install networkx") from error
-    out = networkx.MultiGraph(**_attributes(graph))
+    out = multigraph("AxisGraph", **attributes_of(graph))
     for sheet in graph.sheets:
-        out.add_node(f"sheet{sheet.sheet}", element="sheet", **_attributes(sheet))
+        out.add_node(f"sheet{sheet.sheet}", element="sheet", **attributes_of(sheet))
     for element, parts in (("seam", graph.seams), ("junction", graph.junctions), ("patch", graph.patches)):
         for number, part in enumerate(parts):
-            out.add_node(f"{element}{number}", element=element, **_attributes(part))
+            out.add_node(f"{element}{number}", element=element, **attributes_of(part))
     for number, curve in enumerate(graph.curves):
         if curve.junctions is None:
-            out.add_node(f"curve{number}", element="curve", **_attributes(curve))
+            out.add_node(f"curve{number}", element="curve", **attributes_of(curve))
         else:
             first, last = curve.junctions
-            stated = {"element": "curve", "curve": number, **_attributes(curve)}
+            stated = {"element": "curve", "curve": number, **attributes_of(curve)}
             out.add_edge(f"junction{first}", f"junction{last}", **stated)
     for sheet in graph.sheets:
         out.add_edges_from(((f"sheet{sheet.sheet}", f"seam{seam}") for seam in sheet.seams), element="incidence")
@@ -138,13 +134,22 @@ def to_networkx(graph: AxisGraph) -> Any:
     return out
 
 
-def _attributes(part: Any, prefix: str = "") -> dict[str, Any]:
+def multigraph(caller: str, **attributes: Any) -> Any:
+    """Returns an empty networkx.MultiGraph. `caller` is the class whose to_networkx() needs it."""
+    try:
+        import networkx
+    except ImportError as error:
+        raise ImportError(f"{caller}.to_networkx() needs networkx: pip install networkx") from error
+    return networkx.MultiGraph(**attributes)
+
+
+def attributes_of(part: Any, prefix: str = "") -> dict[str, Any]:
     """Returns the members that are values, by name. Names of nested members follow those of their parents."""
     out: dict[str, Any] = {}
     for field in dataclasses.fields(part):
         value, name = getattr(part, field.name), prefix + field.name
         if dataclasses.is_dataclass(value):
-            out |= _attributes(value, f"{name}_")
+            out |= attributes_of(value, f"{name}_")
         elif isinstance(value, (bool, int, float, str)):
             out[name] = value
         elif field.type == "tuple[float, float, float]":

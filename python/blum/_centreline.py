@@ -13,10 +13,12 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import FloatArray, Integer, integer, label_of
+from ._axis_graph import multigraph
 from ._complex import Complex
 from ._errors import InvalidOption
 from ._image import as_image
 from ._mesh import Betti, betti_of
+from ._methods import Shown
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import CentrelineNodeKind, CentrelineOptions
@@ -25,8 +27,8 @@ from ._warn import warn_all
 __all__ = ["Centreline", "CentrelineBranch", "Centrelines", "centreline"]
 
 
-@dataclass(frozen=True, eq=False)
-class CentrelineBranch:
+@dataclass(frozen=True, eq=False, repr=False)
+class CentrelineBranch(Shown):
     """Curve between two nodes, or a closed curve without nodes.
 
     Examples
@@ -55,8 +57,8 @@ class CentrelineBranch:
         return self.nodes[0] < 0
 
 
-@dataclass(frozen=True, eq=False)
-class Centreline:
+@dataclass(frozen=True, eq=False, repr=False)
+class Centreline(Shown):
     """Centreline of the voxels of one label: a graph of curves.
 
     Examples
@@ -93,9 +95,7 @@ class Centreline:
         >>> graph.number_of_nodes() == len(line.kinds), graph.number_of_edges() == len(line.branches)
         (True, True)
         """
-        import networkx as nx
-
-        graph = nx.MultiGraph()
+        graph = multigraph("Centreline")
         for node, kind in enumerate(self.kinds):
             graph.add_node(node, kind=kind, position=self.positions[node], radius=float(self.radii[node]))
         for branch in self.branches:
@@ -179,7 +179,7 @@ def centreline(
 
     Parameters
     ----------
-    image : (z, y, x) array, Image, or path
+    image : (z, y, x) array, Image, path, or image of SimpleITK
     labels : integers, optional
         Only these labels, in this order. Excludes `label` and `threshold`.
     spacing, origin, direction

@@ -64,6 +64,9 @@ class ShapeVerifier:
         self._mesh: _core.MeshAxisVerifier | None = None
         self._merged: Real | None = None  # Tolerance with which the vertices of _mesh were merged.
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_image": None, "_mesh": None}
+
     @property
     def kind(self) -> str:
         """Kind of the shape: "image" or "mesh"."""

@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Real, integer, number
+from ._arguments import Real, integer, number, thread_number
 from ._mesh import Mesh, MeshLike, as_mesh, mesh_of_arrays
+from ._methods import Shown
 from ._progress import Progress, reporting
 from ._solid import Solid
 from ._structs import CleanReport
@@ -21,8 +22,8 @@ from ._warn import warn_all
 __all__ = ["CleanedMesh", "OrientedMesh", "clean_mesh", "oriented_mesh"]
 
 
-@dataclass(frozen=True, eq=False)
-class CleanedMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class CleanedMesh(Shown):
     """Result of :func:`clean_mesh`.
 
     Examples
@@ -86,8 +87,8 @@ def clean_mesh(
     return CleanedMesh(mesh_of_arrays(arrays), vertex_of, done)
 
 
-@dataclass(frozen=True, eq=False)
-class OrientedMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class OrientedMesh(Shown):
     """Result of :func:`oriented_mesh`.
 
     Examples
@@ -132,5 +133,5 @@ def oriented_mesh(
     """
     given = as_mesh(mesh, weld=weld)
     with reporting(progress) as report:
-        arrays, triangles, shells = _core.oriented_mesh(given._arrays, integer(threads, "threads"), report)
+        arrays, triangles, shells = _core.oriented_mesh(given._arrays, thread_number(threads), report)
     return OrientedMesh(mesh_of_arrays(arrays), triangles, shells)

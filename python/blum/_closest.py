@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Unpack
 
 import numpy as np
@@ -11,17 +12,18 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, IntArray, Integer, Real, float_rows, integer, number, points_and_shape
 from ._errors import InvalidOption
-from ._mesh import MeshLike, MeshOrVertices, as_mesh
+from ._mesh import MeshLike, MeshOrVertices, as_mesh, moved_mesh
+from ._methods import Rebuilt, Shown
 from ._options import takes
-from ._progress import Progress, reporting
+from ._progress import Progress, ProgressCallback, reporting
 from ._structs import ClosestPointOptions
 from ._warn import warn_all
 
 __all__ = ["ClosestPointQuery", "ClosestPoints", "NearPrimitives", "closest_points", "winding_number"]
 
 
-@dataclass(frozen=True, eq=False)
-class ClosestPoints:
+@dataclass(frozen=True, eq=False, repr=False)
+class ClosestPoints(Shown):
     """Result of :func:`closest_points`. All arrays have the shape of the queries without the last axis.
 
     Examples
@@ -65,8 +67,11 @@ class NearPrimitives:
 
 
 @takes("ClosestPointOptions")
-class ClosestPointQuery:
+class ClosestPointQuery(Rebuilt):
     """Exact closest-point queries on one mesh. Queries may run on many threads at once, but not during :meth:`refit`.
+
+    A pickle or copy holds the mesh and the options. It builds its search structure again at its first use, from the
+    arrays of the mesh, which must not have changed in place.
 
     Parameters
     ----------
@@ -82,6 +87,8 @@ class ClosestPointQuery:
     [[0.0, 0.0, 0.5]]
     """
 
+    _built = "_query"
+
     def __init__(
         self,
         mesh: MeshOrVertices,
@@ -93,14 +100,17 @@ class ClosestPointQuery:
         **options: Unpack[ClosestPointOptions],
     ) -> None:
         self._mesh = as_mesh(mesh, triangles, weld=weld)
+        self._options = dict(options)
         with reporting(progress) as report:
-            self._query = _core.ClosestPointQuery(
-                self._mesh._arrays,
-                dict(options),
-                integer(threads, "threads"),
-                report,
-            )
+            self._query = self._make(integer(threads, "threads"), report)
         warn_all(self._query.warnings)
+
+    def _make(self, threads: int, report: ProgressCallback | None) -> _core.ClosestPointQuery:
+        return _core.ClosestPointQuery(self._mesh._arrays, self._options, threads, report)
+
+    @cached_property
+    def _query(self) -> _core.ClosestPointQuery:
+        return self._make(0, None)
 
     def __repr__(self) -> str:
         return f"ClosestPointQuery({self._mesh!r}, sign_rule={self.sign_rule!r})"
@@ -194,6 +204,8 @@ class ClosestPointQuery:
     def refit(self, vertices: Any, *, threads: int = 0, progress: Progress = False) -> None:
         """Moves the vertices of the mesh. Later results equal those of a new query object, which takes longer to make.
 
+        The vertices are copied.
+
         This method must not run at the same time as queries. Without signs, it takes about 2 ms for 100,000 triangles
         on two cores. The sign rule is chosen again, as in a new query object.
 
@@ -216,6 +228,7 @@ class ClosestPointQuery:
         rows = float_rows(vertices, "vertices")
         with reporting(progress) as report:
             self._query.refit(rows, integer(threads, "threads"), report)
+        self._mesh = moved_mesh(self._mesh, rows)
         warn_all(self._query.warnings)
 
 

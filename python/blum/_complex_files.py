@@ -12,12 +12,13 @@ from typing import Any
 from . import _core
 from ._arguments import PathLike, existing_file, text
 from ._complex import Complex
+from ._methods import Shown
 
 __all__ = ["ComplexFile", "read_complex", "write_complex"]
 
 
-@dataclass(frozen=True, eq=False)
-class ComplexFile:
+@dataclass(frozen=True, eq=False, repr=False)
+class ComplexFile(Shown):
     """Result of :func:`read_complex`: the content of a file.
 
     Examples

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, Unpack, cast, overload
 
@@ -30,6 +31,7 @@ from ._arguments import (
 from ._grid import Grid, grid_for, mask_array
 from ._image import as_image
 from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
+from ._methods import Rebuilt
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import FieldOptions, VoxelTopology
@@ -96,7 +98,8 @@ class Field:
     def __reduce__(self) -> tuple[Any, ...]:
         stated = (self.site_ids, self.band, self.sign_rule, self.sign_reason)
         arrays = (self.distance, self.grid, self.site, self.distance2, self.site2, self.second)
-        return _restored, (*arrays, *stated, self.mesh, self.source, self._space)
+        known = {"_seconds": self._seconds, "_device": self._device, "_device_reason": self._device_reason}
+        return _restored, (*arrays, *stated, self.mesh, self.source, self._space), known
 
     @property
     def distance(self) -> npt.NDArray[np.float32]:
@@ -224,6 +227,9 @@ class Field:
     def zero_surface(self, level: Real = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
         """Returns the surface at which the distance equals a level. Its triangles face larger values.
 
+        In edges and corners of the surface, vertices are off by up to half a cell's diagonal. An `InputWarning` is
+        issued if the surface leaves the grid, or if the shape is only one node thick.
+
         Parameters
         ----------
         level : float
@@ -238,8 +244,11 @@ class Field:
         >>> blum.topology(field.zero_surface()).betti
         (1, 1, 0)
         """
+        at, count = number(level, "level"), integer(threads, "threads")
         with reporting(progress) as report:
-            return mesh_of_arrays(self._core.zero_surface(number(level, "level"), integer(threads, "threads"), report))
+            found = mesh_of_arrays(self._core.zero_surface(at, count, report))
+        warn_all(self._core.level_warnings(at, count))
+        return found
 
     def write(self, path: PathLike, *, progress: Progress = False) -> None:
         """Writes .nrrd (with separate files for sites and for order 2), .npz or .vti.
@@ -347,7 +356,7 @@ def distance_field(
     mesh: MeshOrVertices,
     triangles: npt.ArrayLike | None = None,
     *,
-    resolution: Integer = 256,
+    resolution: Integer | None = None,
     spacing: Real | None = None,
     padding: Real = 0.1,
     bounds: Any = None,
@@ -366,16 +375,16 @@ def distance_field(
     mesh, triangles
         Vertices (n, 3) and triangles (m, 3). Or one argument: a :class:`Mesh`, a path, a pair (vertices, triangles), or
         an object of trimesh, Open3D, meshio or PyVista. Any soup is valid.
-    resolution : int
-        Number of nodes along the longest side of the padded box around the mesh.
+    resolution : int, optional
+        Number of nodes along the longest side of the padded box around the mesh, 2 to 65536. Default: 256.
     spacing : float, optional
-        Distance between neighbouring nodes, mesh units. Replaces `resolution`.
+        Distance between neighbouring nodes, mesh units. Excludes `resolution`.
     padding : float
         Padding of the box on each side, as a fraction of its longest side.
     bounds : ((x0, y0, z0), (x1, y1, z1)), optional
         Box that the grid covers, without padding; see :meth:`Grid.within`.
     grid : Grid, optional
-        The grid itself. Excludes `bounds` and `spacing`.
+        The grid itself. Excludes `bounds`, `spacing` and `resolution`.
     weld : float, optional
         First merges vertices at most this far apart, mesh units. 0 merges equal vertices. Default: as for
         :func:`read_mesh`.
@@ -426,8 +435,10 @@ def distance_field(
 
 
 @takes("FieldOptions")
-class FieldSolver:
+class FieldSolver(Rebuilt):
     """Fields of a deforming mesh on one grid, frame after frame.
+
+    A pickle or copy holds the grid and the options.
 
     Parameters
     ----------
@@ -449,6 +460,8 @@ class FieldSolver:
     True
     """
 
+    _built = "_solver"
+
     def __init__(
         self,
         grid: Grid,
@@ -459,15 +472,26 @@ class FieldSolver:
     ) -> None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-        self._solver = _core.FieldSolver(
-            grid._spec,
-            dict(options),
-            device_name(device),
-        )
+        self._options = dict(options)
+        self._device = device_name(device)
         self._grid = grid
         self._reuse = bool(reuse)
+        self._solver = self._made()
         self._busy = threading.Lock()
         self._owner: int | None = None  # Thread that computes.
+
+    def _made(self) -> _core.FieldSolver:
+        return _core.FieldSolver(self._grid._spec, self._options, self._device)
+
+    @cached_property
+    def _solver(self) -> _core.FieldSolver:
+        return self._made()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**super().__getstate__(), "_busy": None, "_owner": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, _busy=threading.Lock())
 
     def __repr__(self) -> str:
         return f"FieldSolver({self._grid!r}{', reuse=True' if self._reuse else ''})"
@@ -530,7 +554,7 @@ def selected_voxels(
 
     Parameters
     ----------
-    image : (z, y, x) array, Image, or path
+    image : (z, y, x) array, Image, path, or image of SimpleITK
     label : int, optional
         Selects the voxels of this value.
     threshold : float, optional

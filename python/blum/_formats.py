@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import _core
+from ._methods import ShortList
 from ._structs import FileFormat
 
 __all__ = ["file_formats"]
@@ -23,7 +24,7 @@ def file_formats(content: str | None = None) -> list[FileFormat]:
     ['OBJ', 'OFF']
     """
     rows: tuple[FileFormat, ...] = _core.file_formats()
-    return [row for row in rows if content is None or row.content == content]
+    return ShortList(row for row in rows if content is None or row.content == content)
 
 
 def extensions(content: str) -> tuple[str, ...]:

@@ -15,6 +15,8 @@ from ._structs import Bounds
 
 __all__ = ["Grid"]
 
+_RESOLUTION = 256  # Nodes along the longest side by default.
+
 
 class Grid:
     """Regular grid of nodes. Node (i, j, k) lies at ``origin + direction @ ((i, j, k) * spacing)``.
@@ -52,7 +54,12 @@ class Grid:
 
     @classmethod
     def around(
-        cls, shape: MeshLike | Bounds, *, resolution: Integer = 256, spacing: Real | None = None, padding: Real = 0.1
+        cls,
+        shape: MeshLike | Bounds,
+        *,
+        resolution: Integer | None = None,
+        spacing: Real | None = None,
+        padding: Real = 0.1,
     ) -> Grid:
         """Returns the default grid around a mesh or a box.
 
@@ -60,10 +67,10 @@ class Grid:
         ----------
         shape : mesh, or ((x0, y0, z0), (x1, y1, z1))
             Mesh as for :func:`distance_field`, or the corners of a box.
-        resolution : int
-            Nodes along the longest padded side, 2 to 65536.
+        resolution : int, optional
+            Nodes along the longest padded side, 2 to 65536. Default: 256.
         spacing : float, optional
-            Distance between nodes, mesh units. Replaces `resolution`.
+            Distance between nodes, mesh units. Excludes `resolution`.
         padding : float
             Padding on each side, as a fraction of the longest side.
 
@@ -73,14 +80,15 @@ class Grid:
         >>> blum.Grid.around(((0, 0, 0), (1, 1, 2)), resolution=9, padding=0.5).size
         (7, 7, 9)
         """
+        nodes = _nodes(resolution, spacing)
         lower, upper = bounds_of(shape)
         margin = number(padding, "padding")
         if spacing is None:
-            return cls._of(_core.grid_around(lower, upper, integer(resolution, "resolution"), margin))
+            return cls._of(_core.grid_around(lower, upper, nodes, margin))
         return cls._of(_core.grid_around_with_spacing(lower, upper, number(spacing, "spacing"), margin))
 
     @classmethod
-    def within(cls, bounds: Any, *, resolution: Integer = 256, spacing: Real | None = None) -> Grid:
+    def within(cls, bounds: Any, *, resolution: Integer | None = None, spacing: Real | None = None) -> Grid:
         """Returns a grid over a box, without padding.
 
         If a side of the box is not a whole multiple of the spacing, the grid is longer than that side. It extends
@@ -89,10 +97,10 @@ class Grid:
         Parameters
         ----------
         bounds : ((x0, y0, z0), (x1, y1, z1))
-        resolution : int
-            Nodes along the longest side, 2 to 65536.
+        resolution : int, optional
+            Nodes along the longest side, 2 to 65536. Default: 256.
         spacing : float, optional
-            Distance between nodes, mesh units. Replaces `resolution`.
+            Distance between nodes, mesh units. Excludes `resolution`.
 
         Examples
         --------
@@ -100,9 +108,10 @@ class Grid:
         >>> blum.Grid.within(((0, 0, 0), (1, 1, 2)), spacing=0.5)
         Grid(origin=(0, 0, 0), spacing=(0.5, 0.5, 0.5), size=(3, 3, 5))
         """
+        nodes = _nodes(resolution, spacing)
         lower, upper = box(bounds, "bounds")
         if spacing is None:
-            return cls._of(_core.grid_in(lower, upper, integer(resolution, "resolution")))
+            return cls._of(_core.grid_in(lower, upper, nodes))
         return cls._of(_core.grid_in_with_spacing(lower, upper, number(spacing, "spacing")))
 
     @classmethod
@@ -196,6 +205,18 @@ def _short(values: tuple[float, float, float]) -> str:
     return f"({', '.join(f'{value:.6g}' for value in values)})"
 
 
+def check_one(resolution: Any, spacing: Any, what: str) -> None:
+    """Raises InvalidOption if both are given."""
+    if resolution is not None and spacing is not None:
+        raise InvalidOption(f"resolution and spacing exclude each other: each sets the {what}")
+
+
+def _nodes(resolution: Integer | None, spacing: Real | None) -> int:
+    """Returns the number of nodes along the longest side, which is not used with a spacing."""
+    check_one(resolution, spacing, "spacing")
+    return _RESOLUTION if resolution is None else integer(resolution, "resolution")
+
+
 def bounds_of(shape: MeshLike | Bounds) -> Bounds:
     """Returns the box of a mesh, or the given box."""
     if isinstance(shape, (tuple, list)) and len(shape) == 2 and np.asarray(shape[0], dtype=object).ndim == 1:
@@ -207,7 +228,7 @@ def grid_for(
     shape: MeshLike | Bounds | None,
     grid: Grid | None,
     bounds: Any,
-    resolution: Integer,
+    resolution: Integer | None,
     spacing: Real | None,
     padding: Real,
 ) -> Grid:
@@ -215,8 +236,8 @@ def grid_for(
     if grid is not None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-        if bounds is not None or spacing is not None:
-            raise InvalidOption("grid excludes bounds and spacing: it defines all nodes")
+        if bounds is not None or spacing is not None or resolution is not None:
+            raise InvalidOption("grid excludes bounds, spacing and resolution: it defines all nodes")
         return grid
     if bounds is not None:
         return Grid.within(bounds, resolution=resolution, spacing=spacing)

@@ -11,13 +11,13 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import PathLike, as_array, existing_file, integer, source_name
-from ._errors import InvalidOption
+from ._errors import InvalidImage, InvalidOption
 from ._formats import extensions
 from ._grid import Grid, image_grid
 from ._progress import Progress, reporting
 from ._structs import ImageValues
 
-__all__ = ["Image", "read_image"]
+__all__ = ["Image", "as_image", "read_image"]
 
 _EXTENSIONS = extensions("image")
 
@@ -47,9 +47,12 @@ class Image:
     def __init__(
         self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, direction: Any = None, *, space: str = ""
     ) -> None:
+        if _is_simpleitk(values):
+            raise TypeError("image is a SimpleITK image: pass it to functions as it is, or use blum.as_image(image)")
         array = as_array(values, "image")
         if array.dtype.kind == "O":
-            raise TypeError(f"image is a {type(values).__name__}, but must be an array of numbers or booleans")
+            advice = ": blum.read_image(path) reads its file" if hasattr(values, "dataobj") else ""  # nibabel
+            raise TypeError(f"image is a {type(values).__name__}, but must be an array of numbers or booleans{advice}")
         if array.dtype.kind not in "biuf" or array.dtype == np.float16:
             if array.dtype != np.float16:
                 raise TypeError(f"image must hold numbers or booleans, not {array.dtype}")
@@ -180,11 +183,52 @@ def is_image_path(value: Any) -> bool:
 
 def is_image(value: Any) -> bool:
     """Returns True for an image, a path of one, or an array with three axes; False for a mesh."""
-    return isinstance(value, Image) or is_image_path(value) or (hasattr(value, "ndim") and value.ndim == 3)
+    if isinstance(value, Image) or is_image_path(value) or _is_simpleitk(value):
+        return True
+    return hasattr(value, "ndim") and value.ndim == 3
+
+
+def _is_simpleitk(value: Any) -> bool:
+    """Returns True for a SimpleITK.Image."""
+    return all(hasattr(value, word) for word in ("GetSpacing", "GetDirection", "GetPixelIDTypeAsString"))
+
+
+def _of_simpleitk(image: Any) -> Image:
+    """Returns a SimpleITK.Image as an Image. Its voxels are copied, and their world axes are those of ITK."""
+    import SimpleITK
+
+    if image.GetDimension() != 3 or image.GetNumberOfComponentsPerPixel() != 1:
+        raise InvalidImage(
+            f"image has {image.GetDimension()} axes and {image.GetNumberOfComponentsPerPixel()} numbers per voxel, but "
+            "must have 3 axes and 1 number: see SimpleITK.JoinSeries and SimpleITK.VectorIndexSelectionCast"
+        )
+    values = SimpleITK.GetArrayFromImage(image)
+    direction = np.reshape(image.GetDirection(), (3, 3))
+    return Image(values, image.GetSpacing(), image.GetOrigin(), direction, space="left-posterior-superior")
 
 
 def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any = None) -> Image:
-    """Returns an Image, a path of one or an array [z, y, x] as an Image."""
+    """Returns an array [z, y, x], a path, an Image or an image of SimpleITK as an Image.
+
+    All functions of images call this. Voxels of SimpleITK are copied; C-contiguous arrays are not. The coordinates are
+    those of SimpleITK, and :attr:`Image.space` is "left-posterior-superior".
+
+    Parameters
+    ----------
+    image : (z, y, x) array, Image, path, or image of SimpleITK
+    spacing, origin, direction
+        Arrays only: as for :class:`Image`, in x, y, z order.
+
+    Raises
+    ------
+    InvalidImage, InvalidOption (both ValueError), TypeError, FileNotFoundError, FileError, FormatError
+
+    Examples
+    --------
+    >>> import blum, numpy as np
+    >>> blum.as_image(np.ones((2, 3, 4)), spacing=0.5).grid.size
+    (4, 3, 2)
+    """
     stated = [
         name
         for name, value in (("spacing", spacing), ("origin", origin), ("direction", direction))
@@ -192,6 +236,8 @@ def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any
     ]
     if isinstance(image, (str, os.PathLike)):
         image = read_image(image)
+    if _is_simpleitk(image):
+        image = _of_simpleitk(image)
     if isinstance(image, Image):
         if stated:
             raise InvalidOption(f"{stated[0]} is given, but the image has its own: leave it out, or pass an array")

@@ -12,10 +12,12 @@ from . import _core
 from ._arguments import PathLike, Real, integer, number, optional_number
 from ._certificate import ShapeVerifier
 from ._errors import NotCertified
+from ._grid import check_one
 from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
 from ._mesh import MeshOrVertices, as_mesh
+from ._methods import Rebuilt
 from ._options import default_of, takes
 from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
@@ -23,9 +25,16 @@ from ._warn import warn, warn_all
 
 __all__ = ["MedialAxis", "medial_axis"]
 
+# A class that has a member `_core` cannot name the module in its annotations.
+_CoreAxis = _core.MedialAxis
 
-class MedialAxis:
+
+class MedialAxis(Rebuilt):
     """Medial axis of a solid for all thresholds theta of the separation angle; the result of :func:`medial_axis`.
+
+    A pickle or copy holds the shape, the options and the report. It computes the axis again at its first use, in the
+    same time as :func:`medial_axis`. The arrays of the shape must not have changed in place. :meth:`simplify` returns
+    an axis at one angle, whose pickles hold all its parts.
 
     Examples
     --------
@@ -35,14 +44,25 @@ class MedialAxis:
     True
     """
 
-    def __init__(self, core: _core.MedialAxis, origin: Origin, options: dict[str, Any] | None = None) -> None:
+    def __init__(self, core: _CoreAxis, origin: Origin, options: dict[str, Any]) -> None:
         self._core = core
         self._origin = origin
-        self._options = {} if options is None else options  # For another grid of the same mesh.
+        self._options = options  # For another grid of the same mesh, and for pickles.
         #: Smallest valid theta, degrees.
         self.least_theta: float = core.least_theta
         #: Largest valid theta, degrees.
         self.greatest_theta: float = core.greatest_theta
+
+    @cached_property
+    def _core(self) -> _CoreAxis:
+        shape = self._origin.shape
+        assert shape is not None  # Set by medial_axis().
+        make: Any = _core.medial_axis_of_image if isinstance(shape, Image) else _core.medial_axis_of_mesh
+        made: _CoreAxis = make(shape._arrays, self._options, 0, None)
+        return made
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**super().__getstate__(), "report": self.report}
 
     @cached_property
     def report(self) -> MedialAxisReport:
@@ -93,11 +113,11 @@ class MedialAxis:
     ) -> MedialComplex:
         """Returns the axis at theta with a certificate that holds, as `blum medial` writes it.
 
-        Up to four forms are tried. The first has fitted borders and few vertices. The second has all vertices. The third
-        has few vertices, with borders at the cells of the grid. The fourth has all vertices of these cells. If no form
-        is certified, all are tried again on a grid that is shifted by part of a voxel. A warning names the checks that failed. The mesh or image must not have changed
-        since the call of :func:`medial_axis`. With another `least_theta`, the ends of sheets may differ by up to a
-        voxel.
+        Up to four forms are tried. The first has fitted borders and few vertices. The second has all vertices. The
+        third has few vertices, with borders at the cells of the grid. The fourth has all vertices of these cells. If no
+        form is certified, all are tried again on a grid that is shifted by part of a voxel. A warning names the checks
+        that failed. The mesh or image must not have changed since the call of :func:`medial_axis`. With another
+        `least_theta`, the ends of sheets may differ by up to a voxel.
 
         Parameters
         ----------
@@ -233,9 +253,9 @@ def medial_axis(
     Parameters
     ----------
     shape, triangles
-        A mesh, as for :func:`distance_field`, or an image: an array [z, y, x], an :class:`Image` or a path.
+        A mesh, as for :func:`distance_field`, or an image, as for :func:`distance_transform`.
     spacing : float; images: three numbers, optional
-        Meshes: side of a voxel, mesh units; replaces `resolution`. Images: size of a voxel in x, y, z order.
+        Meshes: side of a voxel, mesh units; excludes `resolution`. Images: size of a voxel in x, y, z order.
     weld : float, optional
         Meshes: as for :func:`distance_field`.
     threads, progress
@@ -268,8 +288,9 @@ def medial_axis(
             core = _core.medial_axis_of_image(image._arrays, dict(options), count, report)
         chosen = None if label is None else int(label)
         origin = Origin(image, chosen, optional_number(threshold, "threshold"), lambda_=smallest, source=image.source)
-        return MedialAxis(core, origin)
+        return MedialAxis(core, origin, dict(options))
     refuse_selection(label, threshold)
+    check_one(options.get("resolution"), spacing, "size of a voxel")
     mesh = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=weld)
     given = {**options, "spacing": spacing}
 

@@ -17,6 +17,7 @@ from ._arguments import FloatArray, IntArray, PathLike, Real, number
 from ._axis_graph import axis_graph, write_graph
 from ._complex import Complex, core_arguments
 from ._errors import InvalidOption
+from ._methods import Shown
 from ._options import takes
 from ._progress import Progress
 from ._structs import AxisGraph, AxisGraphOptions
@@ -175,8 +176,8 @@ class MedialColumns(Complex):
         return int(_core.sheet_count(self._core))
 
 
-@dataclass(frozen=True, eq=False)
-class Present:
+@dataclass(frozen=True, eq=False, repr=False)
+class Present(Shown):
     """Masks of the vertices, edges and triangles of a :class:`NestedComplex`: True if the element exists at one theta.
 
     Examples

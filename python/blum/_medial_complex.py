@@ -313,7 +313,7 @@ class MedialComplex(MedialColumns):
     def reconstruct(
         self,
         *,
-        resolution: Integer = 256,
+        resolution: Integer | None = None,
         spacing: Real | None = None,
         padding: Real = 0.1,
         bounds: Any = None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import cached_property
 from pathlib import Path
 from typing import Any, cast
 
@@ -28,9 +28,11 @@ from ._arguments import (
     optional_number,
     points_and_shape,
     source_name,
+    thread_number,
 )
 from ._errors import InvalidMesh
 from ._mesh_like import MeshioLike, Open3DLike, Open3DTensorLike, PyVistaLike, TrimeshLike
+from ._methods import Rebuilt, Shown
 from ._progress import Progress, reporting
 from ._structs import Bounds, Topology
 from ._warn import warn
@@ -41,6 +43,7 @@ __all__ = [
     "SelfIntersections",
     "Sites",
     "WindingNumber",
+    "as_mesh",
     "pseudonormals",
     "read_mesh",
     "self_intersections",
@@ -208,6 +211,13 @@ def mesh_of_arrays(arrays: tuple[Any, Any, Any, Any]) -> Mesh:
     return Mesh(vertices, triangles, segments, points)
 
 
+def moved_mesh(mesh: Mesh, vertices: FloatArray) -> Mesh:
+    """Returns a mesh with the same parts and copied vertices."""
+    moved = Mesh(vertices.copy(), mesh.triangles, mesh.segments, mesh.points)
+    moved.source, moved._weld = mesh.source, mesh._weld
+    return moved
+
+
 #: Mesh argument of functions: a Mesh, a path, a pair (vertices, triangles), or a mesh of another package. These are
 #: trimesh, Open3D (legacy or tensors), meshio and PyVista.
 MeshLike = (
@@ -232,10 +242,33 @@ def as_mesh(
     *,
     weld: Real | None = None,
 ) -> Mesh:
-    """Returns any mesh-like object as a Mesh. With `weld`, its vertices are merged.
+    """Returns any object that functions accept as a mesh as a :class:`Mesh`.
 
-    All functions and methods that take a mesh call this. From meshio, triangles, quads, lines and vertices are used;
-    from PyVista's datasets, the surface.
+    All functions and methods that take a mesh call this. Use it to convert a mesh once for many calls. A :class:`Mesh`
+    is returned as it is. From meshio, triangles, quads, lines and vertices are used; from PyVista's datasets, the
+    surface, the lines and the vertex cells.
+
+    Parameters
+    ----------
+    mesh, triangles
+        As for :func:`distance_field`. The type hint of `mesh` without `triangles` is ``blum.MeshLike``.
+    name : str
+        Name of the argument in error messages.
+    weld : float, optional
+        As for :func:`distance_field`.
+
+    Raises
+    ------
+    InvalidMesh (a ValueError), TypeError, FileNotFoundError, FileError, FormatError
+
+    Examples
+    --------
+    >>> import blum
+    >>> def centroid(part: blum.MeshLike) -> list[float]:
+    ...     mesh: blum.Mesh = blum.as_mesh(part)
+    ...     return mesh.vertices.mean(axis=0).tolist()
+    >>> centroid(([[0, 0, 0], [3, 0, 0], [0, 3, 0]], [[0, 1, 2]]))
+    [1.0, 1.0, 0.0]
     """
     if weld is None:
         own = _converted(mesh, triangles, name)
@@ -285,6 +318,7 @@ def _warn_of_seams(mesh: Mesh, name: str) -> None:
 def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:
     """Returns any mesh-like object as a Mesh, without welding, except that of its file format."""
     if triangles is not None:
+        _check_two(mesh, triangles, name)
         return Mesh(mesh, triangles)
     if isinstance(mesh, Mesh):
         return mesh
@@ -301,17 +335,40 @@ def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:
     if hasattr(mesh, "extract_surface") and hasattr(mesh, "points"):
         return _of_pyvista(mesh)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
-        return _of_meshio(mesh)
+        return _of_meshio(mesh, name)
     raise TypeError(
         f"{name} is a {type(mesh).__name__}, but must be a blum.Mesh, a path, a pair (vertices, triangles), or an "
         f"object of trimesh, Open3D, meshio or PyVista{_advice(mesh)}"
     )
 
 
+def _check_two(mesh: Any, triangles: Any, name: str) -> None:
+    """Raises TypeError if the arguments for vertices and triangles are other objects."""
+    if hasattr(triangles, "positions_of"):
+        raise TypeError("triangles is a blum.Grid, but must be an array (m, 3): pass a grid by its name, grid=...")
+    words = ("vertices", "vertex", "extract_surface", "cells_dict")
+    if isinstance(mesh, (str, os.PathLike)) or any(hasattr(mesh, word) for word in words):
+        raise TypeError(
+            f"{name} is a {type(mesh).__name__}, which has triangles of its own: leave out triangles, or pass arrays"
+        )
+
+
 def _advice(given: Any) -> str:
     """Returns advice on how to make a mesh from an object, or an empty string."""
+    if getattr(given, "ndim", None) == 3 or hasattr(given, "GetPixelIDTypeAsString") or hasattr(given, "_arrays"):
+        return ": smooth_surface(image) makes one of an image"
     if hasattr(given, "geometry") and hasattr(given, "to_mesh"):  # A trimesh.Scene.
-        return ": its method to_mesh() makes one"
+        return ": its method to_mesh() makes one (older versions of trimesh: dump(concatenate=True))"
+    if hasattr(given, "geometry") and hasattr(given, "dump"):  # A Scene of an older trimesh.
+        return ": its method dump(concatenate=True) makes one"
+    if hasattr(given, "combine") and hasattr(given, "extract_surface"):  # A pyvista.MultiBlock.
+        return ": its method combine() makes one"
+    if hasattr(given, "GetDataObjectType"):  # An object of VTK itself.
+        return ": pyvista.wrap() makes one of an object of VTK"
+    if hasattr(given, "vertices") and hasattr(given, "vertex_nodes"):  # A trimesh.path.Path3D.
+        return ": blum.Mesh(path.vertices, segments=path.vertex_nodes) makes one of segments"
+    if hasattr(given, "vertices"):  # A trimesh.PointCloud.
+        return ": blum.Mesh(cloud.vertices) makes one of points alone"
     if hasattr(given, "points") or (isinstance(given, np.ndarray) and given.ndim == 2 and given.shape[1] == 3):
         return ": blum.Mesh(points) makes one of points alone"
     return ""
@@ -330,9 +387,24 @@ def _of_open3d_tensors(mesh: Any, name: str) -> Mesh:
     return Mesh(array(positions), array(corners))
 
 
-def _of_meshio(mesh: Any) -> Mesh:
-    """Returns a meshio.Mesh as a Mesh. Quads become two triangles, and missing z coordinates 0."""
+#: Cells of meshio that become triangles, segments and points.
+_FLAT_CELLS = ("triangle", "quad", "line", "vertex")
+_VOLUME_CELLS = ("tetra", "hexa", "wedge", "pyramid", "polyhedron", "penta")
+
+
+def _of_meshio(mesh: Any, name: str) -> Mesh:
+    """Returns a meshio.Mesh as a Mesh. Quads become two triangles, and missing z coordinates 0.
+
+    Cells of volumes are left out if there are triangles or quads, which are then their surface.
+    """
     cells: Mapping[str, Any] = mesh.cells_dict
+    has_faces = "triangle" in cells or "quad" in cells
+    wrong = [kind for kind in cells if kind not in _FLAT_CELLS and not (has_faces and kind.startswith(_VOLUME_CELLS))]
+    if wrong:
+        raise InvalidMesh(
+            f"{name} has cells of the kind {wrong[0]!r}, but must have triangle, quad, line or vertex: "
+            "pyvista.from_meshio(mesh) makes a grid, whose surface is accepted"
+        )
     triangles = [np.asarray(cells["triangle"])] if "triangle" in cells else []
     if "quad" in cells:
         quads = np.asarray(cells["quad"])
@@ -350,25 +422,51 @@ def _of_meshio(mesh: Any) -> Mesh:
 
 
 def _of_pyvista(mesh: Any) -> Mesh:
-    """Returns the surface of a PyVista dataset as a Mesh."""
+    """Returns the surface, the lines and the vertex cells of a PyVista dataset as a Mesh.
+
+    A dataset without cells has the points of a cloud.
+    """
+    if getattr(mesh, "n_cells", None) == 0:
+        return Mesh(np.asarray(mesh.points))
     surface = mesh
     if not hasattr(mesh, "is_all_triangles"):
         try:
             surface = mesh.extract_surface(algorithm=None)
         except TypeError:  # PyVista before 0.47.
             surface = mesh.extract_surface()
-    if not surface.is_all_triangles:
-        surface = surface.triangulate()
-    lines = np.asarray(surface.lines).ravel()
-    segments: list[tuple[int, int]] = []
-    at = 0
-    while at < len(lines):  # Each line is its number of points, then the points.
-        line = lines[at + 1 : at + 1 + lines[at]]
-        segments += [(int(a), int(b)) for a, b in pairwise(line)]
-        at += 1 + int(lines[at])
-    faces = np.asarray(surface.faces).reshape(-1, 4)[:, 1:]
-    is_cloud = len(faces) == 0 and len(segments) == 0
-    return Mesh(np.asarray(surface.points), None if is_cloud else faces, None if is_cloud else np.array(segments))
+    lines = [np.stack([line[:, :-1], line[:, 1:]], axis=-1).reshape(-1, 2) for line in _cells_of(surface.lines)]
+    points = [cell.ravel() for cell in _cells_of(surface.verts)]
+    return Mesh(
+        np.asarray(surface.points),
+        _triangles_of(surface),
+        np.vstack(lines) if lines else (),
+        np.concatenate(points) if points else (),
+    )
+
+
+def _triangles_of(surface: Any) -> npt.NDArray[Any]:
+    """Returns the faces and strips of a pyvista.PolyData as triangles (m, 3)."""
+    faces = np.asarray(surface.faces)
+    if surface.n_strips or len(faces) % 4 or not (faces[::4] == 3).all():
+        bare = surface.copy(deep=False)
+        bare.clear_data()  # PyVista warns about columns of lines, which triangulate() drops.
+        faces = np.asarray(bare.triangulate().faces)
+    return faces.reshape(-1, 4)[:, 1:]
+
+
+def _cells_of(padded: Any) -> list[npt.NDArray[Any]]:
+    """Returns VTK's cells, each of which is preceded by its number of corners, as arrays (n, corners)."""
+    cells = np.asarray(padded).ravel()
+    if len(cells) == 0:
+        return []
+    width = int(cells[0]) + 1
+    if len(cells) % width == 0 and (cells[::width] == cells[0]).all():
+        return [cells.reshape(-1, width)[:, 1:]]
+    found, at = [], 0
+    while at < len(cells):
+        found.append(cells[at + 1 : at + 1 + cells[at]].reshape(1, -1))
+        at += 1 + int(cells[at])
+    return found
 
 
 def read_mesh(path: PathLike, *, weld: Real | None = None) -> Mesh:
@@ -461,14 +559,12 @@ def topology(
     (1, 1, 0)
     """
     with reporting(progress) as report:
-        found: Topology = _core.topology(
-            as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report
-        )
+        found: Topology = _core.topology(as_mesh(mesh, triangles, weld=weld)._arrays, thread_number(threads), report)
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class SelfIntersections:
+@dataclass(frozen=True, eq=False, repr=False)
+class SelfIntersections(Shown):
     """Pairs of triangles that share more than a corner or an edge; the result of :func:`self_intersections`.
 
     Examples
@@ -521,7 +617,7 @@ def self_intersections(
     return SelfIntersections(pairs, crosses.view(np.bool_), complete)
 
 
-class Sites:
+class Sites(Rebuilt):
     """Vertices, open edges and open faces of a mesh, numbered as the sites of its fields.
 
     With V vertices, E distinct edges and F triangles, ids [0, V) are the vertices. Ids [V, V + E) are the edges of
@@ -542,6 +638,8 @@ class Sites:
     [[0, 2, -1]]
     """
 
+    _built = "_table"
+
     def __init__(
         self,
         mesh: MeshOrVertices,
@@ -551,10 +649,13 @@ class Sites:
         threads: int = 0,
         progress: Progress = False,
     ) -> None:
+        self._mesh = as_mesh(mesh, triangles, weld=weld)
         with reporting(progress) as report:
-            self._table = _core.SiteTable(
-                as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report
-            )
+            self._table = _core.SiteTable(self._mesh._arrays, thread_number(threads), report)
+
+    @cached_property
+    def _table(self) -> _core.SiteTable:
+        return _core.SiteTable(self._mesh._arrays, 0, None)
 
     def __repr__(self) -> str:
         faces = len(self) - self.vertex_count - len(self.edges)
@@ -664,8 +765,10 @@ def pseudonormals(
     return found
 
 
-class WindingNumber:
+class WindingNumber(Rebuilt):
     """Generalized winding number of the triangles of a mesh: 1 inside a closed surface that faces outwards, 0 outside.
+
+    A pickle or copy holds the mesh, and builds its search structure again at its first use.
 
     Parameters
     ----------
@@ -680,6 +783,8 @@ class WindingNumber:
     [1.0, 0.0]
     """
 
+    _built = "_winding"
+
     def __init__(
         self,
         mesh: MeshOrVertices,
@@ -692,6 +797,10 @@ class WindingNumber:
         self._mesh = as_mesh(mesh, triangles, weld=weld)
         with reporting(progress) as report:
             self._winding = _core.WindingNumber(self._mesh._arrays, integer(threads, "threads"), report)
+
+    @cached_property
+    def _winding(self) -> _core.WindingNumber:
+        return _core.WindingNumber(self._mesh._arrays, 0, None)
 
     def __repr__(self) -> str:
         return f"WindingNumber({self._mesh!r})"

@@ -45,7 +45,7 @@ class MeshioLike(Protocol):
 
 
 class PyVistaLike(Protocol):
-    """A pyvista.PolyData, or another dataset of PyVista, of which the surface is used."""
+    """A dataset of PyVista, of which the surface, lines and vertex cells are used."""
 
     @property
     def points(self) -> Any: ...

@@ -16,6 +16,7 @@ from ._arguments import FloatArray, IntArray, Integer, Real, integer, points_and
 from ._closest import ClosestPointQuery
 from ._errors import InvalidOption
 from ._mesh import Mesh, MeshLike, as_mesh
+from ._methods import Shown
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions, NearSampleOptions, SampleOptions
@@ -24,8 +25,8 @@ from ._warn import warn_all
 __all__ = ["NearSamples", "SignedDistances", "SurfaceSamples", "sample_near", "sample_surface", "signed_distance"]
 
 
-@dataclass(frozen=True, eq=False)
-class SignedDistances:
+@dataclass(frozen=True, eq=False, repr=False)
+class SignedDistances(Shown):
     """Result of :func:`signed_distance`. All arrays have the shape of the queries without the last axis.
 
     Examples

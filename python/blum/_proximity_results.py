@@ -9,6 +9,7 @@ from typing import overload
 import numpy as np
 
 from ._arguments import FloatArray, IntArray, Integer, integer
+from ._methods import Shown
 
 __all__ = ["Penetration", "PrimitivePair", "ProximityPairs", "SceneCollisions"]
 
@@ -19,8 +20,8 @@ def earliest_of(*times: FloatArray) -> float | None:
     return float(every.min()) if len(every) else None
 
 
-@dataclass(frozen=True, eq=False)
-class PrimitivePair:
+@dataclass(frozen=True, eq=False, repr=False)
+class PrimitivePair(Shown):
     """Two primitives and their closest points.
 
     Primitives of a mesh are its triangles, then its segments, then its points.
@@ -37,7 +38,7 @@ class PrimitivePair:
     object: tuple[int, int]  #: Objects of the scene.
     primitive: tuple[int, int]  #: Primitive of each object.
     distance: float  #: Mesh units. 0 if and only if they meet.
-    point: FloatArray  #: Closest point of each primitive: (2, 3). If they meet, a point near both.
+    closest: FloatArray  #: Closest point of each primitive: (2, 3). If they meet, a point near both.
     #: The one, two or three vertices of the feature that contains each point: (2, 3), padded with -1.
     feature: IntArray
 
@@ -59,7 +60,8 @@ class ProximityPairs:
     object: IntArray  #: Objects: (n, 2).
     primitive: IntArray  #: Primitives: (n, 2). Triangles are numbered first, then segments, then points.
     distance: FloatArray  #: Distances: (n,), mesh units. 0 if and only if they meet; negative in signed separations.
-    point: FloatArray  #: Closest points: (n, 2, 3). If they meet, a point near both.
+    #: Closest points: (n, 2, 3). If they meet, a point near both. Files call this column `point`.
+    closest: FloatArray
     #: The one, two or three vertices of the feature that contains each point: (n, 2, 3), padded with -1.
     feature: IntArray
     culling: str  #: Method that excluded pairs: "bvh" or "voronoi".
@@ -78,7 +80,7 @@ class ProximityPairs:
     def __getitem__(self, index: slice) -> ProximityPairs: ...
     def __getitem__(self, index: Integer | slice) -> PrimitivePair | ProximityPairs:
         if isinstance(index, slice):
-            columns = ("object", "primitive", "distance", "point", "feature")
+            columns = ("object", "primitive", "distance", "closest", "feature")
             return replace(self, **{name: getattr(self, name)[index] for name in columns})
         number = integer(index, "the number of a pair")
         if not -len(self) <= number < len(self):
@@ -86,14 +88,14 @@ class ProximityPairs:
         k = number % len(self)
         (first_object, second_object), (first, second) = self.object[k].tolist(), self.primitive[k].tolist()
         return PrimitivePair(
-            (first_object, second_object), (first, second), float(self.distance[k]), self.point[k], self.feature[k]
+            (first_object, second_object), (first, second), float(self.distance[k]), self.closest[k], self.feature[k]
         )
 
     def __iter__(self) -> Iterator[PrimitivePair]:
         return (self[k] for k in range(len(self)))
 
     @property
-    def closest(self) -> PrimitivePair | None:
+    def closest_pair(self) -> PrimitivePair | None:
         """Pair with the smallest distance; the first one if several are equally close. None without pairs."""
         return self[int(np.argmin(self.distance))] if len(self) else None
 

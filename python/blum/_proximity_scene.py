@@ -9,7 +9,7 @@ import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, TypeGuard, Unpack, cast, overload
+from typing import Any, NoReturn, TypeGuard, Unpack, cast, overload
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from ._arguments import (
 )
 from ._errors import InvalidMesh, InvalidOption
 from ._mesh import MeshLike, as_mesh, end_vertices
+from ._methods import ShortList, Shown
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
 from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
@@ -67,7 +68,7 @@ class ProximityScene:
     >>> table, ball = scene.add(blum.generate("box")), scene.add(blum.generate("sphere"))
     >>> scene.update(ball, transform=([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 3]))
     >>> found = scene.separation(table, ball)
-    >>> round(found.distance, 6), found.point.round(6).tolist()
+    >>> round(found.distance, 6), found.closest.round(6).tolist()
     (1.5, [[0.0, 0.0, 0.5], [0.0, 0.0, 2.0]])
     >>> len(scene.collisions())
     0
@@ -78,6 +79,9 @@ class ProximityScene:
         self._count = 0
         self._busy = threading.Lock()
         self._owner: int | None = None  # Thread that uses the scene.
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a ProximityScene cannot be pickled or copied: add its meshes to a new scene")
 
     def __repr__(self) -> str:
         return f"ProximityScene({self._count} {'object' if self._count == 1 else 'objects'})"
@@ -289,7 +293,7 @@ class ProximityScene:
                 return ProximityPairs(*self._scene.pairs("separation", most, {}, count, report))
         first, second = _object(a, "a"), _object(b, "b")
         with self._alone(progress) as report:
-            return ProximityPairs(*self._scene.separation(first, second, most, count, report)).closest
+            return ProximityPairs(*self._scene.separation(first, second, most, count, report)).closest_pair
 
     def closest_primitives(
         self, max_distance: Real = np.inf, *, threads: int = 0, progress: Progress = False
@@ -392,7 +396,7 @@ class ProximityScene:
         first, second, count = _object(a, "a"), _object(b, "b"), integer(threads, "threads")
         with self._alone(progress) as report:
             found = self._scene.penetration(first, second, dict(options), count, report)
-        return [_penetration(*part) for part in found]
+        return ShortList(_penetration(*part) for part in found)
 
     @takes("PenetrationOptions")
     def signed_separation(
@@ -459,7 +463,7 @@ class ProximityScene:
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             found = self._scene.penetrations(dict(options), count, report)
-        return [_penetration(*part) for part in found]
+        return ShortList(_penetration(*part) for part in found)
 
     @takes("PenetrationOptions")
     def signed_separations(
@@ -469,7 +473,7 @@ class ProximityScene:
 
         The results are the pairs of :meth:`separation`. For solids that overlap, the pair has a negative distance. The
         points of this pair are the deepest point of the deepest part and the closest point of the other surface.
-        `closest` is then the deepest pair.
+        `closest_pair` is then the deepest pair.
 
         Parameters
         ----------
@@ -482,7 +486,7 @@ class ProximityScene:
         >>> import blum
         >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> a, b = scene.add(box), scene.add((box.vertices + [0.75, 0, 0], box.triangles))
-        >>> scene.signed_separations().closest.distance
+        >>> scene.signed_separations().closest_pair.distance
         -0.25
         """
         count = integer(threads, "threads")
@@ -561,7 +565,7 @@ def separation(
     >>> import blum
     >>> box = blum.generate("box")
     >>> found = blum.separation(box, (box.vertices + [3, 0, 0], box.triangles))
-    >>> found.distance, found.point[:, 0].tolist()
+    >>> found.distance, found.closest[:, 0].tolist()
     (2.0, [0.5, 2.5])
     """
     scene = ProximityScene()
@@ -646,8 +650,8 @@ def collisions(
     return scene.closer_than(distance, threads=threads, progress=progress)
 
 
-@dataclass(frozen=True, eq=False)
-class TriangleDistances:
+@dataclass(frozen=True, eq=False, repr=False)
+class TriangleDistances(Shown):
     """Distances of pairs of triangles; the result of :func:`triangle_distances`.
 
     Examples
@@ -655,12 +659,12 @@ class TriangleDistances:
     >>> import blum
     >>> triangle = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     >>> found = blum.triangle_distances([triangle], [triangle])
-    >>> found.distance.tolist(), found.point.shape, found.feature.shape
+    >>> found.distance.tolist(), found.closest.shape, found.feature.shape
     ([0.0], (1, 2, 3), (1, 2, 3))
     """
 
     distance: FloatArray  #: Distances: (n,). 0 if and only if the triangles have a point in common.
-    point: FloatArray  #: Closest points of both: (n, 2, 3). If they meet, a point near both.
+    closest: FloatArray  #: Closest points of both: (n, 2, 3). If they meet, a point near both.
     #: The one, two or three corners (0 to 2) of the feature that contains each: (n, 2, 3), padded with -1.
     feature: IntArray
 
@@ -680,7 +684,7 @@ def triangle_distances(a: Any, b: Any, *, threads: int = 0, progress: Progress =
     >>> import blum
     >>> floor, above = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 2], [9, 0, 3], [0, 9, 3]]
     >>> found = blum.triangle_distances([floor], [above])
-    >>> found.distance.tolist(), found.point.round(9).tolist()
+    >>> found.distance.tolist(), found.closest.round(9).tolist()
     ([2.0], [[[1.0, 1.0, 0.0], [1.0, 1.0, 2.0]]])
     >>> found.feature.tolist()
     [[[0, 1, 2], [0, -1, -1]]]

@@ -10,14 +10,15 @@ from ._arguments import Integer, Real, float_rows, integer, number
 from ._errors import InvalidOption
 from ._image import Image, image_of_parts
 from ._mesh import Betti, Mesh, MeshLike, as_mesh, mesh_of_arrays
+from ._methods import ShortDict, Shown
 
 __all__ = ["ShapeInfo", "ShapeParameter", "extrusion", "generate", "known_betti", "noisy", "shapes", "subdivided"]
 
 _ImageName = Literal["ball_image", "balls_image", "noise_image", "tube_image"]
 
 
-@dataclass(frozen=True)
-class ShapeParameter:
+@dataclass(frozen=True, repr=False)
+class ShapeParameter(Shown):
     """Parameter of a shape.
 
     Examples
@@ -36,8 +37,8 @@ class ShapeParameter:
     integer: bool  #: True if only integers are valid.
 
 
-@dataclass(frozen=True)
-class ShapeInfo:
+@dataclass(frozen=True, repr=False)
+class ShapeInfo(Shown):
     """Shape that :func:`generate` makes.
 
     Examples
@@ -62,15 +63,18 @@ def shapes() -> dict[str, ShapeInfo]:
     >>> [parameter.name for parameter in blum.shapes()["torus"].parameters]
     ['ring_radius', 'tube_radius', 'ring_segments', 'tube_segments']
     """
-    return {
-        entry["name"]: ShapeInfo(
+    return ShortDict(
+        (
             entry["name"],
-            entry["description"],
-            entry["kind"],
-            tuple(ShapeParameter(*parameter) for parameter in entry["parameters"]),
+            ShapeInfo(
+                entry["name"],
+                entry["description"],
+                entry["kind"],
+                tuple(ShapeParameter(*parameter) for parameter in entry["parameters"]),
+            ),
         )
         for entry in _core.catalogue()
-    }
+    )
 
 
 def _arguments(name: str, parameters: dict[str, Any]) -> tuple[ShapeInfo, dict[str, float]]:

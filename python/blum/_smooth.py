@@ -37,7 +37,7 @@ def smooth_surface(
 
     Parameters
     ----------
-    image : (z, y, x) array, Image, or path
+    image : (z, y, x) array, Image, path, or image of SimpleITK
     label : int, optional
         Selects the voxels of this value. Default without a threshold: the nonzero voxels.
     threshold : float, optional

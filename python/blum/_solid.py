@@ -3,25 +3,41 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Integer, Real, check_finite, integer, label_of, optional_number, points_and_shape
+from ._arguments import (
+    Integer,
+    Real,
+    check_finite,
+    integer,
+    label_of,
+    optional_number,
+    points_and_shape,
+    thread_number,
+)
 from ._complex import Complex
+from ._grid import check_one
 from ._image import Image, as_image, is_image, refuse_selection
 from ._mesh import Betti, Mesh, MeshOrVertices, as_mesh, betti_of, mesh_of_arrays
+from ._methods import Rebuilt, Shown
 from ._options import takes
-from ._progress import Progress, reporting
+from ._progress import Progress, ProgressCallback, reporting
 from ._structs import Bounds, CellularModelOptions, CellularModelReport, CrossingCounts, SolidShell
 
 __all__ = ["CellularModel", "Solid", "SolidBody"]
 
+# A class that has a member `_core` cannot name the module in its annotations.
+_CoreModel = _core.CellularModel
+_CoreSolid = _core.Solid
 
-@dataclass(frozen=True)
-class SolidBody:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolidBody(Shown):
     """Connected part of a solid, or the whole of it, with the triangles of the input around it.
 
     Examples
@@ -40,8 +56,10 @@ class SolidBody:
     shells: tuple[int, ...]  #: Polyhedra: the outer shell, then its voids.
 
 
-class CellularModel:
+class CellularModel(Rebuilt):
     """Cell complex with the homotopy type of a polyhedron; the result of :meth:`Solid.model`.
+
+    A pickle or copy holds the solid and the options, and computes the model again at its first use.
 
     Examples
     --------
@@ -50,8 +68,14 @@ class CellularModel:
     True
     """
 
-    def __init__(self, core: Any) -> None:
+    def __init__(self, core: Any, solid: Solid, options: dict[str, Any]) -> None:
         self._core = core
+        self._solid = solid
+        self._options = options
+
+    @cached_property
+    def _core(self) -> _CoreModel:
+        return self._solid._core.model(self._options, 0, None)
 
     @property
     def report(self) -> CellularModelReport:
@@ -74,7 +98,7 @@ class CellularModel:
         Complex(1 vertices, 0 edges, 0 triangles)
         """
         with reporting(progress) as report:
-            return Complex._from_core(self._core.complex(integer(threads, "threads"), report))
+            return Complex._from_core(self._core.complex(thread_number(threads), report))
 
     def betti(self, *, threads: int = 0, progress: Progress = False) -> Betti:
         """Returns components, tunnels and voids, by the homology of :meth:`complex`.
@@ -93,7 +117,7 @@ class CellularModel:
         return f"CellularModel(passes={self.passes}, cells={self.report.cells})"
 
 
-class Solid:
+class Solid(Rebuilt):
     """Solid of a mesh or an image: its rule, its bodies and their topology.
 
     Closed meshes that do not cross themselves bound polyhedra. Shells and triangles that face the wrong way are
@@ -101,10 +125,13 @@ class Solid:
     number is 1 or more. For other meshes, the solid is where the winding number is above 1/2. For images, the solid is
     the union of the selected voxels; voxels that touch in a corner are connected.
 
+    A pickle or copy holds the mesh or the image. It computes the solid again at its first use, from the arrays of the
+    shape, which must not have changed in place.
+
     Parameters
     ----------
     shape, triangles
-        A mesh, as for :func:`distance_field`, or an image: an array [z, y, x], an :class:`Image` or a path.
+        A mesh, as for :func:`distance_field`, or an image, as for :func:`distance_transform`.
     label, threshold
         Images: `label` selects voxels of this value, `threshold` voxels of at least this value. Default: the nonzero
         voxels.
@@ -137,17 +164,25 @@ class Solid:
         progress: Progress = False,
     ) -> None:
         count = integer(threads, "threads")
+        self._label = None if label is None else label_of(label, "label")
+        self._threshold = optional_number(threshold, "threshold")
+        self._shape: Mesh | Image
         if triangles is None and is_image(shape):
-            image = as_image(shape)
-            chosen = None if label is None else label_of(label, "label")
-            least = optional_number(threshold, "threshold")
-            with reporting(progress) as report:
-                self._core = _core.solid_of_image(image._arrays, chosen, least, count, report)
-            return
-        refuse_selection(label, threshold)
-        mesh = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=weld)
+            self._shape = as_image(shape)
+        else:
+            refuse_selection(label, threshold)
+            self._shape = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=weld)
         with reporting(progress) as report:
-            self._core = _core.solid_of_mesh(mesh._arrays, count, report)
+            self._core = self._made(count, report)
+
+    def _made(self, threads: int, report: ProgressCallback | None) -> _CoreSolid:
+        if isinstance(self._shape, Image):
+            return _core.solid_of_image(self._shape._arrays, self._label, self._threshold, threads, report)
+        return _core.solid_of_mesh(self._shape._arrays, threads, report)
+
+    @cached_property
+    def _core(self) -> _CoreSolid:
+        return self._made(0, None)
 
     @property
     def rule(self) -> str:
@@ -266,9 +301,10 @@ class Solid:
         >>> model.passes, model.betti()
         (True, (1, 1, 0))
         """
+        check_one(options.get("resolution"), options.get("spacing"), "sides of the cubes")
         count = integer(threads, "threads")
         with reporting(progress) as report:
-            return CellularModel(self._core.model(dict(options), count, report))
+            return CellularModel(self._core.model(dict(options), count, report), self, dict(options))
 
     def __repr__(self) -> str:
         return f"Solid(rule={self.rule!r}, betti={self.betti}, bodies={len(self._core.bodies)})"

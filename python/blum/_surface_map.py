@@ -6,6 +6,7 @@ The module computes maps as textures, thickness, Hausdorff distances and deviati
 from __future__ import annotations
 
 import os
+import tempfile
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -28,9 +29,10 @@ from ._arguments import (
     number,
     points_and_shape,
 )
-from ._mesh import Mesh, MeshLike, Sites, as_mesh, mesh_of_arrays
+from ._mesh import Mesh, MeshLike, Sites, as_mesh, mesh_of_arrays, moved_mesh
+from ._methods import Rebuilt
 from ._options import takes
-from ._progress import Progress, reporting
+from ._progress import Progress, ProgressCallback, reporting
 from ._structs import (
     DeviationOptions,
     DirectedHausdorff,
@@ -63,7 +65,8 @@ class SurfaceMap:
     """Distance vector field over the surface of a mesh, as a texture.
 
     Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture; row 0 is at the top. Its value is that of
-    one point of one triangle. Between texels, lookups use the nearest texel or are bilinear.
+    one point of one triangle. Between texels, lookups use the nearest texel or are bilinear. Pickles and copies hold
+    the .npz file of :meth:`write`, which is written to a temporary folder on the way.
 
     Examples
     --------
@@ -97,6 +100,13 @@ class SurfaceMap:
     def __repr__(self) -> str:
         height, width = self.distance.shape
         return f"SurfaceMap({self.quantity}, {width} x {height} texels, {len(self.corners):,} triangles)"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        with tempfile.TemporaryDirectory(prefix="blum-") as folder:
+            path = Path(folder, "map.npz")
+            self.write(path)
+            file = path.read_bytes()
+        return _restored, (file, self.mesh, self._others, self.sign_reason, self.seconds)
 
     @property
     def texture_coordinates(self) -> FloatArray:
@@ -166,6 +176,17 @@ class SurfaceMap:
         return out
 
 
+def _restored(
+    file: bytes, mesh: Mesh, others: tuple[Mesh, ...] | None, sign_reason: str, seconds: dict[str, float]
+) -> SurfaceMap:
+    with tempfile.TemporaryDirectory(prefix="blum-") as folder:
+        path = Path(folder, "map.npz")
+        path.write_bytes(file)
+        _, found = _core.read_surface_map(path)
+    del found["warnings"]
+    return SurfaceMap(**{**found, "sign_reason": sign_reason, "seconds": seconds}, mesh=mesh, _others=others)
+
+
 def read_surface_map(path: PathLike) -> SurfaceMap:
     """Reads a map and its mesh from an .npz file of :meth:`SurfaceMap.write` or ``blum surface-map``.
 
@@ -229,8 +250,11 @@ def surface_distance_map(
 
 
 @takes("SurfaceMapOptions")
-class SurfaceMapper:
+class SurfaceMapper(Rebuilt):
     """Maps of surfaces that move. The layout of the texture stays.
+
+    A pickle or copy holds the meshes and the options, and builds its structures again at its first use. Moved vertices
+    are copied.
 
     Parameters
     ----------
@@ -256,6 +280,8 @@ class SurfaceMapper:
     True
     """
 
+    _built = "_mapper"
+
     def __init__(
         self,
         target: MeshLike,
@@ -268,21 +294,29 @@ class SurfaceMapper:
         progress: Progress = False,
         **options: Unpack[SurfaceMapOptions],
     ) -> None:
-        self._target = as_mesh(target, name="target", weld=weld)
-        facing = as_mesh(other, name="other", weld=weld)
+        self._target = self._first = as_mesh(target, name="target", weld=weld)
+        self._other = as_mesh(other, name="other", weld=weld)
+        self._options = dict(options)
         width, height = (integer(side, "texture_size") for side in texture_size)
-        places = None if texture_coordinates is None else _places(texture_coordinates, width, height)
+        self._size = width, height
+        self._places = None if texture_coordinates is None else _places(texture_coordinates, width, height)
         with reporting(progress) as report:
-            self._mapper = _core.SurfaceMapper(
-                self._target._arrays,
-                facing._arrays,
-                dict(options),
-                places,
-                width,
-                height,
-                integer(threads, "threads"),
-                report,
-            )
+            self._mapper = self._made(integer(threads, "threads"), report)
+
+    def _made(self, threads: int, report: ProgressCallback | None) -> _core.SurfaceMapper:
+        """Returns the mapper of the first target, whose texture all later ones have."""
+        arrays = self._first._arrays, self._other._arrays
+        return _core.SurfaceMapper(*arrays, self._options, self._places, *self._size, threads, report)
+
+    @cached_property
+    def _mapper(self) -> _core.SurfaceMapper:
+        mapper = self._made(0, None)
+        if self._target is not self._first:
+            mapper.move_target(self._target.vertices)
+        return mapper
+
+    def __repr__(self) -> str:
+        return f"SurfaceMapper({self._target!r})"
 
     def move_target(self, vertices: Any) -> None:
         """Sets new positions of all vertices of the target.
@@ -298,8 +332,7 @@ class SurfaceMapper:
         """
         moved = float_rows(vertices, "vertices")
         self._mapper.move_target(moved)
-        mesh = self._target
-        self._target = Mesh(moved.copy(), mesh.triangles, mesh.segments, mesh.points)
+        self._target = moved_mesh(self._target, moved)
 
     def move_other(self, vertices: Any, *, threads: int = 0) -> None:
         """Sets new positions of all vertices of the other mesh.
@@ -313,7 +346,9 @@ class SurfaceMapper:
         >>> float(mapper.map().faces[:, 0].min())
         2.0
         """
-        self._mapper.move_other(float_rows(vertices, "vertices"), integer(threads, "threads"))
+        moved = float_rows(vertices, "vertices")
+        self._mapper.move_other(moved, integer(threads, "threads"))
+        self._other = moved_mesh(self._other, moved)
 
     def replace_other(self, other: MeshLike, *, weld: Real | None = None, threads: int = 0) -> None:
         """Replaces the other mesh.
@@ -329,6 +364,7 @@ class SurfaceMapper:
         """
         mesh = as_mesh(other, name="other", weld=weld)
         self._mapper.replace_other(mesh._arrays, integer(threads, "threads"))
+        self._other = mesh
 
     def map(self, *, threads: int = 0, progress: Progress = False) -> SurfaceMap:
         """Returns the map of the meshes as they are now.

@@ -13,6 +13,7 @@ from ._arguments import Integer, device_name, integer, label_of
 from ._errors import InvalidOption
 from ._field import Field
 from ._image import Image, as_image
+from ._methods import ShortList
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import DistanceTransformOptions
@@ -36,7 +37,7 @@ def distance_transform(
 
     Parameters
     ----------
-    image : (z, y, x) array, Image, or path
+    image : (z, y, x) array, Image, path, or image of SimpleITK
         Booleans or numbers. The nonzero voxels are selected, unless `label` or `threshold` selects others.
     spacing, origin, direction
         As for :class:`Image`, in x, y, z order: the reverse of the array's axes.
@@ -114,4 +115,4 @@ def _transforms(
         fields = _core.distance_transforms(
             image._arrays, labels, dict(options), integer(threads, "threads"), device_name(device), report
         )
-    return [Field._of(field, None, image.source, image.space) for field in fields]
+    return ShortList(Field._of(field, None, image.source, image.space) for field in fields)

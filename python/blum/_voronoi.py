@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -11,10 +12,12 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import FloatArray, IntArray, PathLike, Real, integer, number
+from ._axis_graph import attributes_of, multigraph
 from ._complex import Complex, core_arguments
 from ._errors import InvalidOption
 from ._medial_complex import EVERYTHING, MedialComplex, Origin
 from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
+from ._methods import ShortList
 from ._options import takes
 from ._progress import Progress, reporting
 from ._solid import Solid
@@ -90,8 +93,7 @@ class VoronoiComplex(Complex):
         >>> len(found), found[0].kind, len(found[0].triangles)
         (6, 'face', 2)
         """
-        found: list[VoronoiSite] = _core.voronoi_sites(self._mesh._arrays)
-        return found
+        return ShortList(_core.voronoi_sites(self._mesh._arrays))
 
     def regions(self) -> list[VoronoiRegion]:
         """Returns the regions by ascending site, each with `volume`, `surface_area` and `neighbours` (`site`, `area`).
@@ -107,11 +109,12 @@ class VoronoiComplex(Complex):
         """
         if self.part != "all":
             raise InvalidOption(f'regions need walls and surface: part="all", not "{self.part}"')
-        found: list[VoronoiRegion] = _core.voronoi_regions(self._core)
-        return found
+        return ShortList(_core.voronoi_regions(self._core))
 
     def graph(self) -> VoronoiGraph:
         """Returns the regions (for `part="all"`), walls, seams and junctions, and their connections.
+
+        `.to_networkx(sites)` converts the graph.
 
         Examples
         --------
@@ -228,6 +231,35 @@ class VoronoiComplex(Complex):
 
 def _restored(arguments: tuple[Any, ...], report: VoronoiReport, part: str, mesh: Mesh) -> VoronoiComplex:
     return VoronoiComplex._of(_core.Complex(*arguments), report, part, mesh)
+
+
+def to_networkx(graph: VoronoiGraph, sites: Sequence[VoronoiSite] = ()) -> Any:
+    """Returns the graph as a networkx.MultiGraph; see VoronoiGraph.to_networkx."""
+    out = multigraph("VoronoiGraph")
+    for index, site in enumerate(sites):
+        out.add_node(f"region{index}", element="region", kind=site.kind)
+    for region in graph.regions:
+        out.add_node(f"region{region.site}", element="region", **attributes_of(region))
+    for wall in graph.walls:
+        out.add_nodes_from((f"region{wall.site_a}", f"region{wall.site_b}"), element="region")
+    for element, parts in (("wall", graph.walls), ("seam", graph.seams), ("junction", graph.junctions)):
+        for index, part in enumerate(parts):
+            out.add_node(f"{element}{index}", element=element, **attributes_of(part))
+    out.add_edges_from(_incidences(graph), element="incidence")
+    for region in graph.regions:
+        for other in region.neighbours:
+            if other.site >= region.site:
+                out.add_edge(f"region{region.site}", f"region{other.site}", element="neighbours", area=other.area)
+    return out
+
+
+def _incidences(graph: VoronoiGraph) -> Iterator[tuple[str, str]]:
+    """Returns the names of elements that meet."""
+    for index, wall in enumerate(graph.walls):
+        yield from ((f"region{site}", f"wall{index}") for site in (wall.site_a, wall.site_b))
+        yield from ((f"wall{index}", f"seam{seam}") for seam in wall.seams)
+    for index, seam in enumerate(graph.seams):
+        yield from ((f"seam{index}", f"junction{junction}") for junction in seam.junctions)
 
 
 @takes("VoronoiOptions")

@@ -119,13 +119,13 @@ def test_distances_of_triangles_equal_those_of_edges_and_faces():
 def test_closest_points_of_triangles_lie_on_their_features():
     a, b = corners(soup(200, 3)), corners(soup(200, 4))
     found = blum.triangle_distances(a, b)
-    assert found.point.shape == (200, 2, 3) == found.feature.shape and found.feature.dtype == np.int32
-    assert np.allclose(np.linalg.norm(found.point[:, 0] - found.point[:, 1], axis=1), found.distance, atol=1e-12)
+    assert found.closest.shape == (200, 2, 3) == found.feature.shape and found.feature.dtype == np.int32
+    assert np.allclose(np.linalg.norm(found.closest[:, 0] - found.closest[:, 1], axis=1), found.distance, atol=1e-12)
     for k in range(200):
         for side, triangle in enumerate((a[k], b[k])):
-            assert found.distance[k] == 0 or on_feature(found.point[k, side], triangle, found.feature[k, side])
+            assert found.distance[k] == 0 or on_feature(found.closest[k, side], triangle, found.feature[k, side])
     same = blum.triangle_distances(a.tolist(), np.asfortranarray(b), threads=2)
-    assert np.array_equal(same.point, found.point)
+    assert np.array_equal(same.closest, found.closest)
     small = a.astype(np.float32)
     found = blum.triangle_distances(small, b).distance
     assert np.array_equal(found, blum.triangle_distances(small.astype(np.float64), b).distance)
@@ -144,9 +144,9 @@ def check_scene(scene, meshes, places, numbers):
         assert pair.distance == pytest.approx(table.min(), abs=1e-12)
         one = scene.separation(*pair.object)
         assert (one.object, one.primitive, one.distance) == (pair.object, pair.primitive, pair.distance)
-        assert np.array_equal(one.point, pair.point) and np.array_equal(one.feature, pair.feature)
+        assert np.array_equal(one.closest, pair.closest) and np.array_equal(one.feature, pair.feature)
         back = scene.separation(*pair.object[::-1])
-        assert back.distance == pair.distance and np.array_equal(back.point, pair.point[::-1])
+        assert back.distance == pair.distance and np.array_equal(back.closest, pair.closest[::-1])
     nearest = scene.closest_primitives()
     for i in numbers:
         tables = [every[i, j] if i < j else every[j, i].T for j in numbers if i != j]
@@ -199,7 +199,7 @@ def test_culling_changes_no_answer():
     assert any(one.culling == "voronoi" and one.cells > 0 for one in found)
     assert all(one.culling == "bvh" and one.cells == 0 for one in wanted)
     for one, other in zip(found, wanted, strict=True):
-        for name in ("object", "primitive", "distance", "point", "feature"):
+        for name in ("object", "primitive", "distance", "closest", "feature"):
             assert np.array_equal(getattr(one, name), getattr(other, name))
 
 
@@ -252,7 +252,7 @@ def test_verbs_in_one_call_are_those_of_scenes():
         (blum.collisions([a, b], max_distance=np.float32(0.25)), scene.closer_than(0.25)),
     ]:
         assert 0 < len(found) == len(wanted)
-        for name in ("object", "primitive", "distance", "point", "feature"):
+        for name in ("object", "primitive", "distance", "closest", "feature"):
             assert np.array_equal(getattr(found, name), getattr(wanted, name))
     assert len(blum.closest_primitives([a, b], compare_self=True)) == 40
     assert len(blum.closest_primitives([a])) == 20 and len(blum.closest_primitives(a, compare_self=False)) == 0
@@ -290,20 +290,21 @@ def test_results_outlive_the_scene():
     scene = blum.ProximityScene()
     scene.add(soup(20, 41)), scene.add(soup(20, 42))
     found = scene.closest_primitives()
-    kept = found.point.copy(), found.feature.copy()
-    point, feature = found.point, found.feature
+    kept = found.closest.copy(), found.feature.copy()
+    closest, feature = found.closest, found.feature
     del found, scene
-    assert np.array_equal(point, kept[0]) and np.array_equal(feature, kept[1])
+    assert np.array_equal(closest, kept[0]) and np.array_equal(feature, kept[1])
 
 
 def test_pairs_are_a_sequence():
     found = blum.closest_primitives([soup(5, 51), soup(5, 52)])
     assert repr(found) == "ProximityPairs(10 pairs)" and len(list(found)) == 10
     assert found[-1].primitive == tuple(found.primitive[-1]) and found[np.int64(3)].distance == found.distance[3]
-    assert found.closest.distance == found.distance.min()
+    assert found.closest_pair.distance == found.distance.min()
     with pytest.raises(IndexError):
         found[10]
-    assert not blum.collisions(blum.generate("sphere")) and blum.collisions(blum.generate("sphere")).closest is None
+    none = blum.collisions(blum.generate("sphere"))
+    assert not none and none.closest_pair is None
 
 
 def test_refused_changes_leave_the_scene_as_it_was():
@@ -495,13 +496,13 @@ def test_penetrations_of_all_solids_equal_those_of_each_pair():
     apart = scene.separation()
     for k, pair in enumerate(signed):
         if pair.distance >= 0:
-            assert pair.primitive == apart[k].primitive and np.array_equal(pair.point, apart[k].point)
+            assert pair.primitive == apart[k].primitive and np.array_equal(pair.closest, apart[k].closest)
             continue
         part = next(part for part in wanted if part.object == pair.object)
         points = [part.deep_point, part.surface_point]
-        assert np.array_equal(pair.point, points if part.is_first_deep else points[::-1])
+        assert np.array_equal(pair.closest, points if part.is_first_deep else points[::-1])
         assert (pair.feature >= 0).all()  # both features are triangles
-    assert signed.closest.distance == -max(part.depth for part in found)
+    assert signed.closest_pair.distance == -max(part.depth for part in found)
 
 
 def test_penetrations_of_all_solids_take_the_options_of_pairs():

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import sys
 
 import numpy as np
 import pytest
@@ -170,6 +171,52 @@ def test_networkx_reads_graphs_of_diagrams(box, tmp_path):
     assert json.loads((tmp_path / "walls.json").read_text())["regions"] == []
     with pytest.raises(blum.InvalidOption, match=r"\.json, \.graphml"):
         found.write_graph(tmp_path / "g.gml")
+
+
+@pytest.mark.parametrize("part", ["all", "walls"])
+def test_networkx_reads_the_same_graph_from_files(tmp_path, part):
+    networkx = pytest.importorskip("networkx")
+    found = blum.voronoi_complex(blum.generate("bracket"), part=part)
+    found.write_graph(tmp_path / "g.graphml")
+    read = networkx.read_graphml(tmp_path / "g.graphml", force_multigraph=True)
+    made = found.graph().to_networkx(found.sites())
+    assert dict(read.nodes(data=True)) == dict(made.nodes(data=True))
+
+    def edges(graph):
+        return sorted((sorted((a, b)), sorted(data.items())) for a, b, data in graph.edges(data=True))
+
+    assert edges(read) == edges(made)
+
+
+def test_the_graph_of_a_box_has_the_expected_nodes():
+    networkx = pytest.importorskip("networkx")
+    box = blum.Mesh(blum.generate("box").vertices * np.array([1, 2, 3]), blum.generate("box").triangles)
+    graph = blum.voronoi_complex(box).graph().to_networkx()
+    count = dict.fromkeys(("region", "wall", "seam", "junction"), 0)
+    for _, kind in graph.nodes(data="element"):
+        count[kind] += 1
+    assert count == {"region": 6, "wall": 13, "seam": 12, "junction": 12} and networkx.is_connected(graph)
+    # The two faces 2 x 3 are 1 apart: their common wall is the rectangle 1 x 2 in the middle.
+    largest = max(graph.nodes[f"wall{k}"]["area"] for k in range(13))
+    neighbours = [data["area"] for _, _, data in graph.edges(data=True) if data["element"] == "neighbours"]
+    assert len(neighbours) == 13 and max(neighbours) == pytest.approx(largest)
+    assert any(area == pytest.approx(2.0, abs=1e-9) for area in neighbours)
+    # A junction is one of the 8 corners of the box, or, within a cube, one of the 4 ends of that rectangle.
+    junctions = [data for _, data in graph.nodes(data=True) if data["element"] == "junction"]
+    places = np.array([[data[f"position_{axis}"] for axis in "xyz"] for data in junctions])
+    corners = np.vstack([box.vertices, [[0, y, z] for y in (-0.5, 0.5) for z in (-1.0, 1.0)]])
+    away = np.linalg.norm(places[:, None] - corners[None], axis=-1)
+    assert away.min(axis=1).max() < 0.2 and sorted(away.argmin(axis=1)) == list(range(12))
+
+
+def test_missing_networkx_is_reported(box, monkeypatch):
+    graph = blum.voronoi_complex(box).graph()
+    monkeypatch.setitem(sys.modules, "networkx", None)
+    with pytest.raises(ImportError, match=r"VoronoiGraph\.to_networkx\(\) needs networkx: pip install networkx"):
+        graph.to_networkx()
+    (line,) = blum.centreline(blum.generate("tube_image", nodes=2, pitch=30))
+    with pytest.raises(ImportError, match=r"Centreline\.to_networkx\(\) needs networkx: pip install networkx"):
+        line.to_networkx()
 
 
 def test_the_diagram_of_a_mesh_that_crosses_itself_is_that_of_its_solid():
