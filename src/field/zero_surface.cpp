@@ -13,6 +13,7 @@
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/core/plural.hpp"
 
 namespace blum {
 namespace {
@@ -406,11 +407,73 @@ class Marching {
   std::vector<SliceCounts> counts_;
 };
 
+/// Counts of the nodes inside a level surface.
+struct InsideNodes {
+  std::size_t count = 0;
+  std::size_t thin = 0;       ///< with both neighbours along some axis outside
+  std::size_t at_border = 0;  ///< in the outermost layer of the grid
+
+  InsideNodes& operator+=(const InsideNodes& other) {
+    count += other.count;
+    thin += other.thin;
+    at_border += other.at_border;
+    return *this;
+  }
+};
+
+InsideNodes inside_nodes_of_slice(const Field& field, double level, std::int64_t k) {
+  const auto& size = field.grid.size;
+  const std::array<std::int64_t, 3> stride{1, size[0], size[0] * size[1]};
+  InsideNodes out;
+  for (std::int64_t j = 0; j < size[1]; ++j) {
+    for (std::int64_t i = 0; i < size[0]; ++i) {
+      const auto node = static_cast<std::int64_t>(field.grid.index(i, j, k));
+      const auto is_inside = [&](std::int64_t n) { return field.distance[static_cast<std::size_t>(n)] < level; };
+      if (!is_inside(node)) continue;
+      const std::array<std::int64_t, 3> at{i, j, k};
+      bool is_thin = false;
+      bool is_border = false;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool is_end = at[axis] == 0 || at[axis] + 1 == size[axis];
+        is_border = is_border || is_end;
+        is_thin = is_thin || (!is_end && !is_inside(node - stride[axis]) && !is_inside(node + stride[axis]));
+      }
+      out += {1, is_thin ? 1U : 0U, is_border ? 1U : 0U};
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 TriangleMesh zero_surface(const Field& field, double level, const Context& context) {
   check(field, level);
   return Marching(field, level, context).run();
+}
+
+std::vector<Warning> level_warnings(const Field& field, double level, const Context& context) {
+  check(field, level);
+  std::vector<InsideNodes> slices(static_cast<std::size_t>(field.grid.size[2]));
+  parallel_for(context, slices.size(), 1, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      slices[k] = inside_nodes_of_slice(field, level, static_cast<std::int64_t>(k));
+    }
+  });
+  InsideNodes all;
+  for (const InsideNodes& slice : slices) all += slice;
+  std::vector<Warning> out;
+  if (all.at_border > 0) {
+    out.push_back({WarningCode::left_out,
+                   "the surface leaves the grid and is cut off there, because " +
+                       plural(all.at_border, "node", "nodes") +
+                       " of the grid's outermost layer are below the level; compute the field on a larger grid"});
+  }
+  if (2 * all.thin > all.count) {
+    out.push_back({WarningCode::coarse_grid, "the shape is one node thick at " + count_text(all.thin) + " of " +
+                                                 count_text(all.count) +
+                                                 " nodes below the level; compute the field with a smaller spacing"});
+  }
+  return out;
 }
 
 }  // namespace blum

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -178,10 +179,13 @@ std::string second_text(const Field& field, const SecondStatistics& s) {
 }
 
 /// Returns the content of a file beside a .nrrd field file. Returns an empty text for the field file.
-std::string content_of(const fs::path& file) {
+std::string content_of(const fs::path& file, SiteIds ids) {
   const std::string name = file.filename().string();
-  if (name.ends_with(".site.nrrd")) return "closest site of each node";
-  if (name.ends_with(".site2.nrrd")) return "second site of each node";
+  const std::string_view site = ids == SiteIds::voxels      ? "voxel"
+                                : ids == SiteIds::triangles ? "triangle"
+                                                            : "vertex, edge or face";
+  if (name.ends_with(".site.nrrd")) return "index of the closest " + std::string(site) + " for each node";
+  if (name.ends_with(".site2.nrrd")) return "index of the second site for each node";
   if (name.ends_with(".distance2.nrrd")) return "distance of each node to its second site";
   return {};
 }
@@ -194,7 +198,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   Json names = Json::array();
   for (const fs::path& file : files) {
     names.push_back(file.string());
-    run.outputs.push_back({file, file == files.front() ? "" : content_of(file)});
+    run.outputs.push_back({file, file == files.front() ? "" : content_of(file, field.site_ids)});
   }
   json["files"] = names;
   json["sign"] = {{"rule", to_string(field.sign_rule)}, {"reason", field.sign_reason}};

@@ -128,7 +128,7 @@ void run_level(const Arguments& a) {
   write_mesh(output, surface);
   progress.clear();
 
-  std::vector<Warning> warnings;
+  std::vector<Warning> warnings = level_warnings(field, level, context);
   if (!reason.empty()) warnings.emplace_back(WarningCode::nothing_found, reason);
   const double write_seconds = watch.lap();
   const Json json = answer_json(
@@ -145,6 +145,8 @@ void run_level(const Arguments& a) {
   TextTable table;
   table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
                            " triangles at the level " + rounded_text(level));
+  table.add("error", "up to half a cell's diagonal, " + rounded_text(0.5 * length(field.grid.spacing)) +
+                         ", in edges and corners of the surface; much less where it is smooth");
   table.add("field", input.string() + ": " + size_text(field.grid) + " nodes");
   table.add("wrote", output.string());
   report(a.report, json, table);

@@ -31,6 +31,7 @@ enum class WarningCode : std::uint8_t {
   single_layer,        ///< an image has one layer of voxels, which form a plate
   rounded,             ///< a file contains rounded numbers, so guarantees for the exact numbers may not hold
   not_extended,        ///< rims of an axis were not extended
+  coarse_grid,         ///< a grid is too coarse for the shape
 };
 
 template <>
@@ -54,6 +55,7 @@ struct Description<WarningCode> {
       NamedValue{WarningCode::single_layer, "single-layer"},
       NamedValue{WarningCode::rounded, "rounded"},
       NamedValue{WarningCode::not_extended, "not-extended"},
+      NamedValue{WarningCode::coarse_grid, "coarse-grid"},
   };
 };
 

@@ -32,13 +32,13 @@ enum class SignMode : std::uint8_t {
               ///< normal. Otherwise `winding` is chosen. The choice depends on the mesh, not on the grid. If the mesh
               ///< is closed, triangles and shells that face the wrong way are first reversed, for the signs only, with
               ///< a warning. So a closed mesh has the same inside however its triangles face.
-  normals,  ///< The orientation of the mesh decides which side is inside. The mesh must be closed and consistently
-            ///< oriented. Signs are exact, because crossings with the mesh are counted along the rows of the grid. If
-            ///< shells cross or face different ways, angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide
-            ///< instead.
-  winding,  ///< A node is inside if its generalized winding number (Jacobson 2013) is above 1/2. This rule works for
-            ///< any soup of triangles.
-  none      ///< Distances are unsigned.
+  normals,    ///< The orientation of the mesh decides which side is inside. The mesh must be closed and consistently
+              ///< oriented. Signs are exact, because crossings with the mesh are counted along the rows of the grid. If
+              ///< shells cross or face different ways, angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide
+              ///< instead.
+  winding,    ///< A node is inside if its generalized winding number (Jacobson 2013) is above 1/2. This rule works for
+              ///< any soup of triangles.
+  none        ///< Distances are unsigned.
 };
 
 /// Rule that decided the signs of a field.

@@ -288,5 +288,20 @@ TEST(ZeroSurface, CanBeCancelled) {
   EXPECT_THROW((void)zero_surface(field, 0, {.cancel = stop.get_token()}), Cancelled);
 }
 
+TEST(LevelWarnings, OfSurfacesThatLeaveTheGridAndOfShapesOneNodeThick) {
+  const TriangleMesh box = make_box({.size = {1, 1, 1}});
+  const Field field = distance_field(box, grid_in({{-1, -1, -1}, {1, 1, 1}}, 21));
+  EXPECT_TRUE(level_warnings(field).empty());
+  const std::vector<Warning> cut = level_warnings(field, 0.6);
+  ASSERT_EQ(cut.size(), 1U);
+  EXPECT_EQ(cut[0].code, WarningCode::left_out);
+  const Field plate = distance_field(make_box({.size = {1, 1, 0.05}}), grid_in({{-1, -1, -1}, {1, 1, 1}}, 21));
+  const std::vector<Warning> thin = level_warnings(plate);
+  ASSERT_EQ(thin.size(), 1U);
+  EXPECT_EQ(thin[0].code, WarningCode::coarse_grid);
+  EXPECT_TRUE(thin[0].text.starts_with("the shape is one node thick at ")) << thin[0].text;
+  EXPECT_TRUE(level_warnings(plate, 0.3).empty());
+}
+
 }  // namespace
 }  // namespace blum
