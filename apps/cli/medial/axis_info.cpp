@@ -62,7 +62,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
   Progress progress(!options.quiet);
   const Interrupt interrupt;
   const Context context = make_context(0, progress, interrupt);
-  const ShownAxis shown = read_axis_or_walls(path);
+  const ShownAxis shown = read_axis_or_curves(path);
   const MedialFile& file = shown.file;
   if (graph && !shown.is_axis)
     throw FileError("'" + path.string() + "' is a " + shown.content + "; --graph needs a medial axis");
@@ -111,7 +111,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
                      {"bounds", to_json(box)}};
   TextTable table;
   table.add("file", path.string() + ": " + shown.content);
-  table.add(shown.is_axis ? "axis" : "walls", shown.is_axis ? counts_text(counts, file.has_labels) : walls_text(shown));
+  table.add(cells_label(shown), cells_text(shown));
   table.add("topology", betti_text(betti));
   if (!shown.certified.empty()) table.add("certified", shown.certified);
   if (graph) table.add("graph", graph_line);

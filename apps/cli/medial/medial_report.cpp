@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,14 @@ std::string claims_text(const CertificateOptions& said) {
   return text;
 }
 
+/// Returns the angle above which missing parts of the axis are judged, as text.
+std::string sought_text(const Certificate& c) {
+  constexpr double well_above = 30;  // degrees
+  const double sought = c.medial.sought_angle;
+  return rounded_text(sought) + " degrees" +
+         (c.checked.theta && sought == *c.checked.theta + well_above ? " (theta + 30)" : "");
+}
+
 /// Advice for a mesh that does not bound a polyhedron, if the axis's file has no metadata.
 constexpr const char* missing_rule =
     "; its axis belongs to voxels that the file of the axis does not record (.obj and .ma store neither rule nor "
@@ -48,7 +57,8 @@ std::string nothing_seen(const MedialCheck& check) {
          rounded_text(check.sought_angle) + " degrees";
 }
 
-std::string medial_text(const MedialCheck& check) {
+std::string medial_text(const Certificate& c) {
+  const MedialCheck& check = c.medial;
   std::string text;
   if (check.samples == 0) {
     text = "no part of the axis has a separation angle above theta";
@@ -60,8 +70,8 @@ std::string medial_text(const MedialCheck& check) {
   if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of the area exists for homotopy alone";
   if (check.sought_angle == 0) return text + "; missing parts not checked: theta is unknown";
   if (!check.judges_missing) return text + "; missing parts not checked: " + nothing_seen(check);
-  return text + "; " + percent(check.missed_share) + " of the axis above " + rounded_text(check.sought_angle) +
-         " degrees is missing (" + count_text(check.balls) + " random balls), at most " +
+  return text + "; " + percent(check.missed_share) + " of the exact axis with a separation angle above " +
+         sought_text(c) + " is missing (" + count_text(check.balls) + " random balls), at most " +
          percent(check.missed_share_of_body) + " in one body";
 }
 
@@ -84,8 +94,8 @@ std::string medial_share_text(const Certificate& c) {
   if (!c.checked.medial || c.medial.samples == 0) return "";
   std::string text = "; " + percent(c.medial.medial_share) + " of the axis's samples are midway between two walls";
   if (!c.medial.judges_missing) return text;
-  return text + ", " + percent(c.medial.missed_share) + " of the exact axis above " +
-         rounded_text(c.medial.sought_angle) + " degrees is missing";
+  return text + ", " + percent(c.medial.missed_share) + " of the exact axis with a separation angle above " +
+         sought_text(c) + " is missing";
 }
 
 }  // namespace
@@ -119,10 +129,40 @@ void number_walls(Complex& complex) {
 
 }  // namespace
 
-std::string walls_text(const ShownAxis& shown) {
+namespace {
+
+constexpr const char* centrelines = "centreline";
+
+/// Returns true if a complex has the columns of centrelines that are read here.
+bool has_branches(const Complex& complex) {
+  return complex.vertex_columns.find("radius") != nullptr && complex.edge_columns.find("label") != nullptr &&
+         complex.edge_columns.find("branch") != nullptr;
+}
+
+/// Returns the number of branches of centrelines.
+std::size_t branch_count(const Complex& complex) {
+  std::set<std::pair<std::int64_t, std::int64_t>> branches;
+  const auto label = complex.edge_columns.get<std::int64_t>("label");
+  const auto branch = complex.edge_columns.get<std::int32_t>("branch");
+  for (std::size_t e = 0; e < complex.edges.size(); ++e) branches.emplace(label[e], branch[e]);
+  return branches.size();
+}
+
+}  // namespace
+
+const char* cells_label(const ShownAxis& shown) {
+  return shown.is_axis ? "axis" : shown.content == centrelines ? "curves" : "walls";
+}
+
+std::string cells_text(const ShownAxis& shown) {
   const Complex& complex = shown.file.complex;
-  return plural(complex.positions.size(), "vertex", "vertices") + ", " +
-         plural(complex.triangles.size(), "triangle", "triangles") + " between " +
+  if (shown.is_axis) return counts_text(count(complex), shown.file.has_labels);
+  const std::string vertices = plural(complex.positions.size(), "vertex", "vertices") + ", ";
+  if (shown.content == centrelines) {
+    return vertices + plural(complex.edges.size(), "edge", "edges") + "; " +
+           plural(branch_count(complex), "branch", "branches");
+  }
+  return vertices + plural(complex.triangles.size(), "triangle", "triangles") + " between " +
          plural(sheet_count(complex), "pair", "pairs") + " of sites";
 }
 
@@ -142,7 +182,7 @@ void add_certified(const FileMetadata& metadata, ShownAxis& out) {
 
 }  // namespace
 
-ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
+ShownAxis read_axis_or_curves(const std::filesystem::path& path) {
   if (may_hold_columns(path)) {
     ComplexFile file = read_complex(path);
     const std::string content = text_of(file.metadata, "content");
@@ -159,6 +199,17 @@ ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
       out.file.has_sites = out.file.has_angles = true;
       add_missing_medial_columns(out.file.complex);
       number_walls(out.file.complex);
+      return out;
+    }
+    if (content == centrelines && has_branches(file.complex)) {
+      ShownAxis out;
+      out.content = content;
+      out.is_axis = false;
+      out.file.complex = std::move(file.complex);
+      out.file.metadata.source = text_of(file.metadata, "source");
+      out.file.metadata.site_ids = SiteIds::voxels;
+      out.file.has_radii = true;
+      add_missing_medial_columns(out.file.complex);
       return out;
     }
   }
@@ -241,9 +292,10 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 }  // namespace
 
 std::string balls_text(const BallUnionCheck& balls) {
-  return "from the solid's surface to the union of the balls: at most " + rounded_text(balls.solid_to_balls) +
+  return "from the solid's surface to the union of the medial balls: at most " + rounded_text(balls.solid_to_balls) +
          " (mean " + rounded_text(balls.mean_solid_to_balls) +
-         "); from the surface of the union to the solid's surface: at most " + rounded_text(balls.balls_to_surface);
+         "); from the surface of the union back to the solid's surface: at most " +
+         rounded_text(balls.balls_to_surface);
 }
 
 void add_decimated(TextTable& table, const CertifiedAxis& made) {
@@ -306,12 +358,10 @@ std::string betti_text(const BettiNumbers& betti) {
 std::string counts_text(const MedialCounts& counts, bool has_labels) {
   const std::string cells =
       plural(counts.vertices, "vertex", "vertices") + ", " + plural(counts.triangles, "triangle", "triangles");
-  if (!has_labels) {
-    return cells + ", " + plural(counts.curve_edges, "segment", "segments") + " of curves (no sheets in the file)";
-  }
-  return cells + "; " + plural(counts.sheets, "sheet", "sheets") + ", " +
-         plural(counts.junctions, "junction", "junctions") +
-         (counts.curve_edges > 0 ? ", " + plural(counts.curve_edges, "segment", "segments") + " of curves" : "");
+  const std::string on_curves = ", " + plural(counts.curve_edges, "line segment on a curve", "line segments on curves");
+  if (!has_labels) return cells + on_curves + " (no sheets in the file)";
+  return cells + (counts.curve_edges > 0 ? on_curves : "") + "; " + plural(counts.sheets, "sheet", "sheets") + ", " +
+         plural(counts.junctions, "junction point", "junction points");
 }
 
 void add_axis_counts(TextTable& table, const std::string& before, const MedialCounts& counts, bool has_labels) {
@@ -368,9 +418,9 @@ void add_certificate(TextTable& table, const std::string& of, const Certificate&
   std::string said;
   for (const std::string& what : taken_as_said(c)) said += (said.empty() ? "" : ", ") + what;
   table.detail("not verified", said + ": copied from the file");
-  if (c.checked.medial) table.detail("medial", medial_text(c.medial));
+  if (c.checked.medial) table.detail("medial", medial_text(c));
   if (!c.checked.balls) return;
-  table.add("balls", balls_text(c.balls));
+  table.add("balls", "distance " + balls_text(c.balls));
 }
 
 }  // namespace blum::cli

@@ -19,19 +19,21 @@ namespace blum::cli {
 /// and so on).
 [[nodiscard]] MedialFile read_axis(const std::filesystem::path& path);
 
-/// Content of a file with a medial axis, or with walls of a Voronoi diagram.
+/// Content of a file with a medial axis, with walls of a Voronoi diagram, or with centrelines.
 struct ShownAxis {
   MedialFile file;      ///< for diagrams, walls between the same two sites form one sheet
-  std::string content;  ///< name of the content in the metadata: "medial axis" or "Voronoi diagram"
+  std::string content;  ///< name of the content in the metadata: "medial axis", "Voronoi diagram" or "centreline"
   bool is_axis = true;
   std::optional<bool> is_certified;  ///< set only for diagrams whose file records it
   std::string certified;             ///< certificate as text; empty if the file records none
 };
-/// Reads a medial axis as read_axis() does, or walls written by `blum voronoi`.
-[[nodiscard]] ShownAxis read_axis_or_walls(const std::filesystem::path& path);
+/// Reads a medial axis as read_axis() does, walls written by `blum voronoi`, or curves written by `blum centreline`.
+[[nodiscard]] ShownAxis read_axis_or_curves(const std::filesystem::path& path);
 
-/// Returns the counts of the walls as text.
-[[nodiscard]] std::string walls_text(const ShownAxis& shown);
+/// Returns the label of cells_text(): "axis", "walls" or "curves".
+[[nodiscard]] const char* cells_label(const ShownAxis& shown);
+/// Returns the counts of the cells as text.
+[[nodiscard]] std::string cells_text(const ShownAxis& shown);
 
 /// Certifies axes, as their files store them, against one solid. The solid is prepared once.
 class SolidVerifier {

@@ -78,8 +78,7 @@ void add_facts(Json& item, const ShownAxis& shown, const BettiNumbers& betti) {
   Json facts = Json::array();
   const auto add = [&](const char* label, const std::string& text) { facts.push_back(Json::array({label, text})); };
   if (!shown.is_axis) add("content", shown.content);
-  add(shown.is_axis ? "axis" : "walls",
-      shown.is_axis ? counts_text(count(file.complex), file.has_labels) : walls_text(shown));
+  add(cells_label(shown), cells_text(shown));
   add("topology", betti_text(betti));
   if (!shown.certified.empty()) add("certified", shown.certified);
   if (file.has_radii && !file.complex.positions.empty()) {
@@ -98,7 +97,7 @@ void add_facts(Json& item, const ShownAxis& shown, const BettiNumbers& betti) {
 }  // namespace
 
 Json axis_item(SceneBlob& blob, const std::filesystem::path& path, const Context& context) {
-  const ShownAxis read = read_axis_or_walls(path);
+  const ShownAxis read = read_axis_or_curves(path);
   const MedialFile& file = read.file;
   Box3 box;
   for (const Vec3d& position : file.complex.positions) box.extend(position);

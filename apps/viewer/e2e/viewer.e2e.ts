@@ -217,7 +217,7 @@ describe("a page in a file", () => {
       if (roles.values[e] === 3 && place(edges.values[2 * e]) !== place(edges.values[2 * e + 1])) ++curves;
     }
     expect(Number(/^([\d,]+) triangles/.exec(text)![1].replaceAll(",", ""))).toBe(withExtent);
-    expect(Number(/([\d,]+) edges? of curves/.exec(text)![1].replaceAll(",", ""))).toBe(curves);
+    expect(Number(/([\d,]+) line segments? on curves/.exec(text)![1].replaceAll(",", ""))).toBe(curves);
     await page.close();
   });
 

@@ -253,7 +253,7 @@ export class AxisView implements View {
     const told = leastTheta === undefined ? "" : ` (as they are at ${leastTheta}°)`;
     return (
       `${plural(triangles, "triangle")}${triangles > 0 && this.item.hasLabels ? ` in ${plural(sheets, "sheet")}${told}` : ""}, ` +
-      `${plural(curves, "edge")} of curves, ${counted(seams)} of seams, ${plural(junctions, "junction")}`
+      `${plural(curves, "line segment")} on curves, ${counted(seams)} on seams, ${plural(junctions, "junction point")}`
     );
   }
 

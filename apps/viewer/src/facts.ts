@@ -14,7 +14,7 @@ const kinds: Record<Item["kind"], string> = {
 };
 
 export function kindName(item: Item): string {
-  return kinds[item.kind];
+  return item.kind === "axis" ? item.content : kinds[item.kind];
 }
 
 export function factsOf(item: Item): Fact[] {

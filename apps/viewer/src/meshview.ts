@@ -33,6 +33,11 @@ export class MeshView implements View {
     this.#style = isAlone ? "solid" : "translucent";
     this.object.position.set(...this.#offset);
     this.object.add(...this.#parts());
+    // Draws the surface behind items in its plane, for example the surface part of a Voronoi diagram. Otherwise both
+    // would flicker.
+    this.#material.polygonOffset = true;
+    this.#material.polygonOffsetFactor = 1;
+    this.#material.polygonOffsetUnits = 4;
     setStyle(this.#material, this.#style);
     this.controls = element("div", "controls");
     if (item.triangles.length > 0) {

@@ -53,6 +53,7 @@ export type ImageItem = ItemBase & {
 
 export type AxisItem = ItemBase & {
   kind: "axis";
+  content: string; // "medial axis", "Voronoi diagram" or "centreline"
   siteIds: string;
   hasLabels: boolean;
   theta: number | null;
@@ -224,6 +225,7 @@ async function readItem(raw: Raw, roles: Roles, read: (entry: ArrayEntry) => Pro
       return {
         ...base,
         kind: "axis",
+        content: raw.content,
         siteIds: raw.site_ids,
         hasLabels: raw.has_labels,
         theta: raw.theta,

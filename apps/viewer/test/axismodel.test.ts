@@ -10,6 +10,7 @@ const role: Roles = { sheet: 2, rim: 9, seam: 0, curve: 5, junction: 7 };
 // 90, and then a vertex. A third triangle has no area: two of its corners coincide.
 const item: AxisItem = {
   kind: "axis",
+  content: "medial axis",
   name: "axis.npz",
   units: "mesh units",
   facts: [],
