@@ -26,7 +26,7 @@ int main(int argc, char** argv) try {
   for (const double theta : {20.0, 60.0, 120.0}) {
     const blum::MedialCounts counts = count(axis.simplify(theta));
     std::cout << "theta " << theta << ": " << counts.triangles << " triangles in " << counts.sheets << " sheets, "
-              << counts.curve_edges << " segments of curves\n";
+              << counts.curve_edges << " line segments on curves\n";
   }
 
   const blum::Complex complex = axis.simplify(60);

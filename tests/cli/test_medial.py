@@ -13,7 +13,7 @@ from tool import BLUM, FORMATS, names, run, run_json
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
 COARSE = ["--resolution", 8, "--max-resolution", 8, "--decimate", 0]
-WHY_NOT = "loops of the axis run around 0 of the 1 tunnel"  # the reason for the block with a needle
+WHY_NOT = "2 triangles of the axis span a tunnel of the solid"  # the reason for the block with a needle
 
 
 def block_with_needle(folder):
@@ -120,7 +120,7 @@ def test_decimation_removes_vertices_within_its_tolerance(solids, tmp_path):
         assert axis["deviation"] == (facts["deviation"] or 0)
         triangles[tolerance] = axis["counts"]["triangles"]
         assert axis["vertices_before"] >= axis["counts"]["vertices"]
-    assert triangles[0] > 10 * triangles[None] and triangles[None] >= triangles[0.05]
+    assert triangles[0] > 10 * max(triangles[None], triangles[0.05])
     run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--nested", "--decimate", 1, status=2)
     run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--decimate", -1, status=2)
 
@@ -380,7 +380,7 @@ def test_an_uncertified_axis_is_written_on_request(solids, tmp_path):
     assert "NOT certified" in err and "nothing was written" not in err
     summary = json.loads(out)
     assert summary["certified"] is False and summary["outputs"] == [str(tmp_path / "p.npz")]
-    assert len(summary["mismatches"]) == 3
+    assert len(summary["mismatches"]) == 2
     assert any(WHY_NOT in mismatch for mismatch in summary["mismatches"])
     assert names(tmp_path) == ["p.npz"]
     assert WHY_NOT in run("verify", block_with_needle(tmp_path.parent), tmp_path / "p.npz", status=3)[1]

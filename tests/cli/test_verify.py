@@ -323,7 +323,7 @@ def test_the_topology_of_files_without_geometry_is_verified(solids, axes, tmp_pa
 @pytest.mark.parametrize("end", ["obj", "ma"])
 def test_counts_that_a_file_lacks_are_not_reported(solids, axes, end):
     out, _ = run("verify", solids / "box.obj", axes / f"box.{end}")
-    assert "0 segments of curves (no sheets in the file)" in out and "rims" not in out and "1 sheet" not in out
+    assert "0 line segments on curves (no sheets in the file)" in out and "rims" not in out and "1 sheet" not in out
     counts = run_json("verify", solids / "box.obj", axes / f"box.{end}")["axis"]["counts"]
     assert counts["sheets"] is counts["rim_edges"] is counts["seam_edges"] is counts["junctions"] is None
     assert counts["triangles"] == len(np.load(axes / "box.npz")["triangles"]) and counts["curve_edges"] == 0

@@ -159,7 +159,10 @@ def test_a_bracket_as_text(parts, tmp_path):
     text, _ = run("voronoi", parts / "bracket.ply", "-o", tmp_path / "b.vtp", "--verbose")
     assert CERTIFIED in text and "144 reflex edges, 4 reflex vertices" in text and f"wrote      {tmp_path}" in text
     rows = dict(re.findall(r"^(\w+)  +(.*)$", text, re.MULTILINE))
-    assert rows["topology"] == "walls and surface together: 1 component, 12 tunnels, 291 voids (one void in each region)"
+    assert rows["topology"] == (
+        "Voronoi walls and the solid's surface together: 1 component, 12 tunnels, 291 voids (each is the region of one "
+        "site)"
+    )
     assert {"sites", "cubes", "lines", "complex", "certified", "time"} <= set(rows)
 
 
@@ -282,7 +285,7 @@ def test_an_uncertified_diagram_is_not_written(parts, tmp_path):
     out, err = run("voronoi", parts / "gear.ply", "-o", tmp_path / "gear.vtp", *COARSE, "--json", "-", status=3)
     assert "NOT certified" in err and "nothing was written" in err and "--depth" in err
     assert re.search(r"\d+ cubes do not pass the local test, the first one from \(.*\) to \(.*\) \(\w+( \w+)?\)", err)
-    assert "but walls and surface together have 1 component, 18 tunnels, 546 voids" in err
+    assert "but Voronoi walls and the solid's surface together have 1 component, 18 tunnels, 546 voids" in err
     assert (tmp_path / "gear.vtp").read_bytes() == b"old" and names(tmp_path) == ["gear.vtp"]
     found = json.loads(out)
     assert not found["certified"] and found["outputs"] == [] and found["found_betti"] != found["expected_betti"]

@@ -248,8 +248,9 @@ void add_query_command(const CommandLine& line) {
   command
       .add_option("-o,--output", a->output,
                   extension_list(FileContent::points, FileAccess::write) +
-                      ": points with columns distance, gradient, closest, site, triangle; for several POINTS files, "
-                      "the outputs are OUT-NAME, with the NAME of each file")
+                      ": points with columns distance, gradient, closest, site, triangle. For several POINTS files, "
+                      "the outputs are OUT-NAME, with the NAME of each file. Give -o only once; for a second format, "
+                      "run the command again")
       .required()
       .type_name("FILE");
   a->options.add_to(command);

@@ -158,10 +158,19 @@ std::string distance_text(const PrimitivePair& pair, double size) {
 std::string penetration_text(const Penetration& part, const std::vector<std::string>& names, double size) {
   // Error of the direction: it is the difference of two rounded points, divided by their distance.
   const double blur = std::clamp(size / part.depth, 1.0, 1e6);
-  const std::string moved = part.first_object == part.second_object ? "its shell" : names[part.first_object.value];
-  return "depth " + rounded_text(part.depth) + " to " + rounded_text(part.depth_bound) + " at " +
-         point_text(part.deep_point, size) + "; if " + moved + " moves along " + point_text(part.direction, blur) +
-         " by the depth, this point lies on both surfaces; volume of the region " + rounded_text(part.volume);
+  const std::string& first = names[part.first_object.value];
+  const std::string& second = names[part.second_object.value];
+  const std::string depth = rounded_text(part.depth);
+  const std::string bound = rounded_text(part.depth_bound);
+  const std::string deep_point = point_text(part.deep_point, size);
+  const bool is_self = part.first_object == part.second_object;
+  const std::string moved = is_self ? "its surface at " + deep_point : first;
+  const std::string result = is_self              ? "this point onto another part of the surface"
+                             : part.is_first_deep ? "its point " + deep_point + " onto the surface of " + second
+                                                  : "its surface to the point " + deep_point + " of " + second;
+  return "depth " + (depth == bound ? depth : "between " + depth + " and " + bound) + "; moving " + moved + " by " +
+         depth + " along " + point_text(part.direction, blur) + " brings " + result + "; volume of the common region " +
+         rounded_text(part.volume);
 }
 
 std::string object_text(const Answer& answer, const PrimitivePair& pair) {

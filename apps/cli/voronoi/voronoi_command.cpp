@@ -76,7 +76,7 @@ SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
 /// Returns the name of the part's complex, for messages.
 std::string subject_of(VoronoiPart part) {
   if (part == VoronoiPart::medial_axis) return "the medial axis";
-  return part == VoronoiPart::walls ? "walls" : "walls and surface together";
+  return part == VoronoiPart::walls ? "Voronoi walls" : "Voronoi walls and the solid's surface together";
 }
 
 /// Returns advice on options that may increase the number of certified cubes.
@@ -159,7 +159,7 @@ std::string sites_text(const VoronoiReport& report) {
 /// Describes the voids of a complex that contains the surface.
 std::string regions_text(const VoronoiReport& report, VoronoiPart part) {
   const bool is_each = part == VoronoiPart::all && report.certified && report.thin_vertices == 0;
-  return is_each ? " (one void in each region)" : "";
+  return is_each ? " (each is the region of one site)" : "";
 }
 
 std::string certificate_text(VoronoiPart part) {

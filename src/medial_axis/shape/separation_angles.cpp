@@ -256,7 +256,8 @@ class Measure {
     }
     const double angle = between(ends[0], ends[1]);
     if (angle > wide_angle) return angle;
-    return std::max(angle, in_wire(0.5 * (ends[0].centre + ends[1].centre), wire_reach));
+    const double across = in_wire(0.5 * (ends[0].centre + ends[1].centre), wire_reach);
+    return across > wide_angle ? across : angle;
   }
   /// Returns the angle in the middle of a part of the solid that is so thin that no line between nodes meets it,
   /// degrees.
@@ -317,7 +318,9 @@ class Measure {
     const std::optional<ThinBall> ball = surface_.is_inside(middle, nearest)
                                              ? ball_around(surface_, nearest, middle, step_)
                                              : thin_ball_behind(surface_, nearest, middle, step_);
-    return ball && is_nearest_cell_of(ball->centre, middle) ? angle_of(*ball) : 0;
+    // At convex edges, the squares of voxels suffice. Balls there touch walls at a smaller angle.
+    if (!ball || ball->angle_across < wide_angle || !is_nearest_cell_of(ball->centre, middle)) return 0;
+    return angle_of(*ball);
   }
   /// Returns the angle of the medial ball around a point of a thin part, degrees. It is 0 if the ball's centre is
   /// further than `reach` voxels away along an axis of the grid.

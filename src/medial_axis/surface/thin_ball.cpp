@@ -1,6 +1,7 @@
 #include "medial_axis/surface/thin_ball.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "medial_axis/surface/governors.hpp"
 
@@ -78,36 +79,39 @@ struct Deepest {
   NearestPoint nearest;  ///< its distance is 0 if no point is inside
 };
 
+/// @param own  radius of a ball around `from`. Only points count whose largest inner ball overlaps it.
 Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& direction, double furthest,
-                      const NearestPoint& near) {
+                      const NearestPoint& near, double own = HUGE_VAL) {
   Deepest best;
   for (int n = 0; n < most_depths; ++n, furthest *= 0.75) {
     const Vec3d x = from + direction * furthest;
     const NearestPoint nearest = surface.nearest(x, footprint_of(near));
-    if (nearest.distance <= best.nearest.distance || !surface.is_inside(x, nearest)) continue;
+    if (nearest.distance <= best.nearest.distance || furthest > own + nearest.distance) continue;
+    if (!surface.is_inside(x, nearest)) continue;
     best = {x, nearest};
   }
   return best;
 }
 
-/// Returns a larger ball next to a ball in a corner of a part of the solid. The centre moves away from both walls. The
-/// balls around both centres overlap, so both are in one component of the solid.
-std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, double radius) {
+/// Returns a larger ball next to a ball in a corner of a part of the solid. The centre moves away from both walls.
+/// @param overlaps  true: the balls around both centres overlap, so both are in one component of the solid.
+std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, double radius, bool overlaps) {
   if (ball.angle_across > opposite) return std::nullopt;
   const double own = ball.nearest.distance;
   const Vec3d away = (ball.centre - ball.nearest.point) / own + (ball.centre - ball.other.point) / own;
   const double size = length(away);
   if (!(size > 0)) return std::nullopt;
-  const Deepest deepest = deepest_along(surface, ball.centre, away / size, radius, ball.nearest);
-  const double reach = deepest.nearest.distance;
-  if (reach < 1.01 * own || length(deepest.point - ball.centre) > own + reach) return std::nullopt;
+  const Deepest deepest =
+      deepest_along(surface, ball.centre, away / size, radius, ball.nearest, overlaps ? own : HUGE_VAL);
+  if (deepest.nearest.distance < 1.01 * own) return std::nullopt;
   return touching_ball(surface, deepest.nearest, deepest.point, radius);
 }
 
 /// Follows larger balls, starting from a ball.
-std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinBall> ball, double radius) {
+std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinBall> ball, double radius,
+                                     bool overlaps) {
   for (int n = 0; ball && n < most_climbs; ++n) {
-    const std::optional<ThinBall> larger = climb(surface, *ball, radius);
+    const std::optional<ThinBall> larger = climb(surface, *ball, radius, overlaps);
     if (!larger || larger->nearest.distance <= ball->nearest.distance) break;
     ball = larger;
   }
@@ -118,7 +122,7 @@ std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinB
 
 std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
                                     double radius) {
-  return largest_from(surface, touching_ball(surface, nearest, inside, radius), radius);
+  return largest_from(surface, touching_ball(surface, nearest, inside, radius), radius, true);
 }
 
 std::optional<ThinBall> ball_touching(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
@@ -132,7 +136,7 @@ std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPo
   const Vec3d inwards = (touched.point - beyond) / touched.distance;
   const Deepest deepest = deepest_along(surface, touched.point, inwards, radius, touched);
   if (deepest.nearest.distance == 0) return std::nullopt;
-  return largest_from(surface, touching_ball(surface, deepest.nearest, deepest.point, radius), radius);
+  return largest_from(surface, touching_ball(surface, deepest.nearest, deepest.point, radius), radius, false);
 }
 
 }  // namespace blum::detail
