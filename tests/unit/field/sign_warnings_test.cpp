@@ -1,6 +1,6 @@
-// Proves that signed results warn of meshes that face the wrong way and of grids without a node inside, and that closed
-// meshes get their inside however their triangles face. Each warning is tested with its smallest case. Valid input
-// causes no warning.
+// Proves that signed results warn of meshes that face the wrong way, and of grids without a node inside. Closed meshes
+// get their inside however their triangles face. Each warning is tested with its smallest case. Valid input causes no
+// warning.
 #include <gtest/gtest.h>
 
 #include <algorithm>

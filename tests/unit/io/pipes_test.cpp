@@ -1,5 +1,5 @@
-// Proves that readers get every byte of a pipe, although a pipe can be read only once and its format is found from its
-// first bytes. Formats that are read in parts refuse pipes.
+// Proves that readers get every byte of a pipe. A pipe can be read only once, but its format is found from its first
+// bytes. Formats that are read in parts refuse pipes.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
