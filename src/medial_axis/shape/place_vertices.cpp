@@ -64,16 +64,6 @@ struct Placed {
   NearestPoint nearest;  ///< closest point of the surface to x
 };
 
-/// Returns true if a vertex at x may belong to a corner of the lattice.
-bool is_near(const GovernorField& governors, const Vec3d& x, const Vec3d& corner) {
-  const GridSpec& grid = governors.solid().grid;
-  const Vec3d moved = grid.direction.transposed_times(x - corner);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (std::abs(moved[axis]) > most_moved * grid.spacing[axis]) return false;
-  }
-  return true;
-}
-
 class Placer {
  public:
   explicit Placer(const GovernorField& governors) : governors_(governors), surface_(governors.surface()) {}
@@ -99,7 +89,12 @@ class Placer {
 
  private:
   [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& corner) const {
-    return detail::is_near(governors_, x, corner);
+    const GridSpec& grid = governors_.solid().grid;
+    const Vec3d moved = grid.direction.transposed_times(x - corner);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (std::abs(moved[axis]) > most_moved * grid.spacing[axis]) return false;
+    }
+    return true;
   }
 
   /// Returns the vertex at the corner itself if voxels of an image meet only at this corner or at an edge of it. If the
@@ -251,14 +246,7 @@ AxisVertex place_in_component(const Witnesses& witnesses, Cell cell) {
     return vertex_at_corner(governors, structure.lattice().place(node_of(cell)));
   }
   if (!home) return vertex_on_surface(surface.nearest(structure.extra()->cell(cell).witness, {}));
-  const double most_radius = 2 * governors.longest_voxel();
-  auto ball = ball_around(surface, home->nearest, home->at, most_radius);
-  if (ball && !structure.is_extra(cell)) {
-    const Vec3d corner = corner_at(governors.solid().grid, structure.lattice().place(node_of(cell)));
-    if (!is_near(governors, ball->centre, corner)) {
-      ball = ball_touching(surface, home->nearest, home->at, most_radius);
-    }
-  }
+  const auto ball = ball_touching(surface, home->nearest, home->at, 2 * governors.longest_voxel());
   if (!ball) return vertex_of_one_wall(home->at, home->nearest);
   const double reach = most_moved * governors.longest_voxel();
   const double distance = length(ball->centre - home->at);
