@@ -194,6 +194,8 @@ class Fitter {
   /// A border vertex does not move if it is this close to where its border should end, in voxels. The halvings find
   /// that point with the same accuracy.
   static constexpr double settled = 0.001;
+  /// Greatest distance of a point of a curve from the middle of its round part, in voxels.
+  static constexpr double off_centre = 0.1;
   /// Voxels: the point opposite of a footprint is the closest point to a query this far from the vertex, on the other
   /// side. It may be further from the vertex than the footprint by `facets` voxels, and `facets_share` of the radius.
   static constexpr double opposite_step = 0.3;
@@ -578,7 +580,11 @@ class Fitter {
       // Beyond the rim of a lens-shaped part, only one wall is near.
       return is_beyond || start.separation_angle < target_.theta + nearly_theta ? Moved(start) : std::nullopt;
     }
-    return way.is_curve ? Moved(start) : std::nullopt;
+    if (way.is_round) return start;
+    // Far out, three facets may be equally far away although the part is not round there, as in the cap of a capsule.
+    const Moved centre = way.is_curve ? centred_at(start.position) : std::nullopt;
+    const bool is_centre = centre && length(centre->position - start.position) <= off_centre * voxel_;
+    return is_centre ? Moved(start) : std::nullopt;
   }
   [[nodiscard]] Moved slide_inwards(Way& way) const {
     const auto at = [&](double t) { return on(way, t); };

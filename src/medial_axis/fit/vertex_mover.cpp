@@ -122,7 +122,7 @@ std::optional<RoundCentre> round_centre(const Surface& surface, const Vec3d& sta
   if (!inner) return std::nullopt;
   double depth = nearest.distance;
   // A start close to the surface of a thin part may be further from the middle than the steps below reach.
-  if (const double deeper = surface.nearest(*inner, {}).distance; deeper > depth) {
+  if (const double deeper = depth < voxel ? surface.nearest(*inner, {}).distance : 0; deeper > depth) {
     x = *inner;
     depth = deeper;
   }
