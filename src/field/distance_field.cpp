@@ -293,7 +293,7 @@ struct FieldSolver::State {
   std::vector<std::uint32_t> objects;  ///< one per vertex; if empty, the objects are the connected parts of the mesh
   Field field;
 
-  void compute(const MeshView& mesh, const Context& frame_context);
+  void compute(const MeshView& given, const Context& frame_context);
 
  private:
   /// Allocates the memory of field and request. Existing memory of the right size is kept.

@@ -167,15 +167,13 @@ class KeptPipes {
   /// Calls use(bytes) for the content of a pipe. It is read now if it is not kept yet.
   template <class Use>
   void with(const struct stat& named, const std::filesystem::path& path, const Use& use) {
-    const std::scoped_lock lock(mutex_);
     const Key key{named.st_dev, named.st_ino};
-    auto at = pipes_.find(key);
-    if (at == pipes_.end()) {
-      struct stat info{};
-      const Descriptor file = opened(path, info);
-      at = pipes_.emplace(key, read_to_end(file, info, path)).first;
-    }
-    use(at->second.span());
+    if (use_kept(key, use)) return;
+    struct stat info{};
+    const Descriptor file = opened(path, info);
+    FileBytes bytes = read_to_end(file, info, path);
+    const std::scoped_lock lock(mutex_);
+    use(pipes_.emplace(key, std::move(bytes)).first->second.span());
   }
   [[nodiscard]] std::optional<FileBytes> take(const struct stat& info) {
     const std::scoped_lock lock(mutex_);
@@ -187,6 +185,14 @@ class KeptPipes {
   }
 
  private:
+  template <class Use>
+  bool use_kept(const Key& key, const Use& use) {
+    const std::scoped_lock lock(mutex_);
+    const auto at = pipes_.find(key);
+    if (at != pipes_.end()) use(at->second.span());
+    return at != pipes_.end();
+  }
+
   std::mutex mutex_;
   std::map<Key, FileBytes> pipes_;
 };
