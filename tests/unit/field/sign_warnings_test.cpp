@@ -84,7 +84,7 @@ std::vector<Turned> turned_meshes() {
   const TriangleMesh other = box_between({2.2, 0, 0}, {2.9, 1, 1});
   const TriangleMesh hollow = both(box, reversed(box_between({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5})));
   TriangleMesh torn = both(box, other);
-  for (const std::size_t t : {1, 4, 7, 13}) std::swap(torn.triangles[t][1], torn.triangles[t][2]);
+  for (const std::size_t t : {1U, 4U, 7U, 13U}) std::swap(torn.triangles[t][1], torn.triangles[t][2]);
   TriangleMesh torn_inwards = reversed(box);
   std::swap(torn_inwards.triangles[0][1], torn_inwards.triangles[0][2]);
   return {{"InsideOut", box, reversed(box), "1 shell was reversed"},
