@@ -270,8 +270,6 @@ void check_object_count(const std::vector<std::uint32_t>& objects, const MeshVie
                       std::to_string(mesh.vertices.size()) + " vertices; give one entry for each vertex");
 }
 
-}  // namespace
-
 /// Returns the warnings about the signs of a computed field.
 std::vector<Warning> sign_warnings(const sign::Plan& plan, std::span<const float> distance) {
   if (plan.rule == SignRule::none || std::any_of(distance.begin(), distance.end(), [](float d) { return d < 0; })) {
@@ -283,6 +281,8 @@ std::vector<Warning> sign_warnings(const sign::Plan& plan, std::span<const float
   return {{WarningCode::nothing_inside,
            "no node is inside: the shape encloses nothing, lies outside the grid, or is too thin for its spacing"}};
 }
+
+}  // namespace
 
 struct FieldSolver::State {
   FieldOptions options;

@@ -20,8 +20,9 @@ bool has_flat_triangles(const MeshView& mesh) {
                      [&](const Triangle& t) { return is_too_flat(mesh, t); });
 }
 
-Plan by_winding(std::string reason) {
-  return {.rule = SignRule::winding, .reason = std::move(reason), .method = Method::sums};
+/// Returns true if facing_warnings() depends on whether the mesh crosses itself.
+bool facing_depends_on_crossings(const Orientation& facts) {
+  return facts.closed && facts.oriented && !facts.outward && !(facts.signed_volume < 0);
 }
 
 /// Returns the warning about a mesh whose parts face the wrong way, or an empty list.
@@ -118,6 +119,29 @@ Plan unsigned_plan(std::string reason) {
   return {.rule = SignRule::none, .reason = std::move(reason)};
 }
 
+/// Returns the plan of an unexamined mesh.
+Plan plan_by_winding(std::string reason) {
+  return {.rule = SignRule::winding, .reason = std::move(reason), .method = Method::sums};
+}
+
+/// @param crosses  as for facing_warnings().
+Plan plan_by_winding(std::string reason, const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
+                     bool crosses) {
+  Plan plan = plan_by_winding(std::move(reason));
+  plan.warnings = facing_warnings(facts, crosses);
+  if (is_balanced(mesh, sites)) plan.method = Method::crossings;
+  return plan;
+}
+
+/// Returns the first reason against signs by normals that needs no search for crossings, or an empty string.
+std::string reason_for_winding(const MeshView& mesh, const Orientation& facts) {
+  if (!mesh.segments.empty() || !mesh.points.empty())
+    return "the mesh has free segments or points, which have no sides";
+  if (!facts.closed || !facts.oriented) return "the mesh has " + mesh_problem::of_edges(facts);
+  if (has_flat_triangles(mesh)) return "the mesh is closed, but has triangles too flat for a normal";
+  return "";
+}
+
 }  // namespace
 
 bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
@@ -127,17 +151,19 @@ bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
   return !(squared_length(cross(u, v)) > 1e-24 * longest * longest);
 }
 
-Plan Planner::plan_repaired(const MeshView& mesh, const Orientation& facts, const Context& context) {
-  if (!mesh.segments.empty() || !mesh.points.empty()) {
-    return by_winding("the mesh has free segments or points, which have no sides");
+bool Planner::crosses(const MeshView& mesh, const Context& context) {
+  return search_.finds_any(mesh, {.threads = context.threads, .cancel = context.cancel});
+}
+
+Plan Planner::plan_oriented(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
+                            const Context& context) {
+  std::string reason = reason_for_winding(mesh, facts);
+  const bool is_crossing = (reason.empty() || facing_depends_on_crossings(facts)) && crosses(mesh, context);
+  if (reason.empty() && is_crossing) reason = "the mesh is closed and oriented, but it crosses or touches itself";
+  if (reason.empty() && !facts.outward) {
+    reason = "the mesh is closed, but its shells do not all face away from the solid";
   }
-  if (!facts.closed || !facts.oriented) return by_winding("the mesh has " + mesh_problem::of_edges(facts));
-  if (has_flat_triangles(mesh)) return by_winding("the mesh is closed, but has triangles too flat for a normal");
-  const Context quiet{.threads = context.threads, .cancel = context.cancel};
-  if (search_.finds_any(mesh, quiet)) {
-    return by_winding("the mesh is closed and oriented, but it crosses or touches itself");
-  }
-  if (!facts.outward) return by_winding("the mesh is closed, but its shells do not all face away from the solid");
+  if (!reason.empty()) return plan_by_winding(std::move(reason), mesh, sites, facts, is_crossing);
   return {.rule = SignRule::normals,
           .reason = "the mesh is closed, consistently oriented and faces outwards",
           .method = Method::crossings,
@@ -147,30 +173,16 @@ Plan Planner::plan_repaired(const MeshView& mesh, const Orientation& facts, cons
 Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   const Orientation facts = orientation(mesh, sites);
   std::optional<detail::RepairedFacing> repaired = detail::repaired_facing(mesh, sites, facts, context);
-  if (!repaired) {
-    Plan plan = plan_repaired(mesh, facts, context);
-    if (plan.rule == SignRule::winding) plan.warnings = winding_warnings(mesh, facts, context);
-    if (plan.method == Method::sums && is_balanced(mesh, sites)) plan.method = Method::crossings;
-    return plan;
-  }
+  if (!repaired) return plan_oriented(mesh, sites, facts, context);
   MeshView own = mesh;
   own.triangles = repaired->triangles;
   const SiteTable own_sites(own, context);
-  Plan plan = plan_repaired(own, orientation(own, own_sites), context);
-  if (plan.method == Method::sums && is_balanced(own, own_sites)) plan.method = Method::crossings;
+  Plan plan = plan_oriented(own, own_sites, orientation(own, own_sites), context);
   plan.reason += ", after " + repair_text(*repaired);
   plan.warnings = {
       {WarningCode::facing, "parts of the mesh face the wrong way, and for the signs, " + repair_text(*repaired)}};
   plan.triangles = std::move(repaired->triangles);
   return plan;
-}
-
-/// Returns the warning about signs by winding numbers, or an empty list.
-std::vector<Warning> Planner::winding_warnings(const MeshView& mesh, const Orientation& facts, const Context& context) {
-  std::vector<Warning> found = facing_warnings(facts, false);
-  if (found.empty() || facts.inconsistent_edges > 0 || facts.signed_volume < 0) return found;
-  const Context quiet{.threads = context.threads, .cancel = context.cancel};
-  return facing_warnings(facts, search_.finds_any(mesh, quiet));
 }
 
 Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
@@ -181,10 +193,9 @@ Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, 
   }
   if (mode == SignMode::normals) return plan_normals(mesh, sites);
   if (mode == SignMode::automatic) return plan_automatically(mesh, sites, context);
-  Plan plan = by_winding(rule_requested);
-  plan.warnings = winding_warnings(mesh, orientation(mesh, sites), context);
-  if (is_balanced(mesh, sites)) plan.method = Method::crossings;
-  return plan;
+  const Orientation facts = orientation(mesh, sites);
+  const bool is_crossing = facing_depends_on_crossings(facts) && crosses(mesh, context);
+  return plan_by_winding(rule_requested, mesh, sites, facts, is_crossing);
 }
 
 Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {
@@ -195,7 +206,7 @@ Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {
   }
   if (mode == SignMode::none) return unsigned_plan(unsigned_requested);
   if (triangles > 0) {
-    return by_winding(mode == SignMode::winding ? rule_requested : "meshes in device memory are not examined");
+    return plan_by_winding(mode == SignMode::winding ? rule_requested : "meshes in device memory are not examined");
   }
   if (mode == SignMode::winding) throw_without_triangles();
   return unsigned_plan(no_triangles);

@@ -66,11 +66,11 @@ class Planner {
 
  private:
   [[nodiscard]] Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context);
-  /// Returns the automatic plan for a mesh whose orientations are repaired, as far as possible.
-  [[nodiscard]] Plan plan_repaired(const MeshView& mesh, const Orientation& facts, const Context& context);
-
-  [[nodiscard]] std::vector<Warning> winding_warnings(const MeshView& mesh, const Orientation& facts,
-                                                      const Context& context);
+  /// Returns the automatic plan for a mesh that is used as it is.
+  [[nodiscard]] Plan plan_oriented(const MeshView& mesh, const SiteTable& sites, const Orientation& facts,
+                                   const Context& context);
+  /// Returns true if two triangles of a mesh cross or touch, except neighbours.
+  [[nodiscard]] bool crosses(const MeshView& mesh, const Context& context);
 
   SelfIntersectionSearch search_;
 };
