@@ -147,8 +147,11 @@ struct ClosestPointQuery::Data {
     is_prepared_ = false;
     std::copy(vertices.begin(), vertices.end(), mesh.vertices.begin());
     // The plan depends on the triangles as they were given.
-    if (!given_triangles_.empty()) use_triangles(std::exchange(given_triangles_, {}), context);
-    bvh.refit(mesh.vertices, context);
+    if (given_triangles_.empty()) {
+      bvh.refit(mesh.vertices, context);
+    } else {
+      use_triangles(std::exchange(given_triangles_, {}), context);
+    }
     measure();
     if (mode == SignMode::none) return;
     plan = planner.plan(mode, mesh, sites, context);
