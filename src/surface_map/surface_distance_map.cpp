@@ -91,6 +91,19 @@ std::vector<std::uint32_t> SurfaceMap::texels_within(double limit) const {
   return out;
 }
 
+std::optional<std::pair<double, double>> SurfaceMap::finite_range() const {
+  double smallest = HUGE_VAL;
+  double largest = -HUGE_VAL;
+  for (std::size_t k = 0; k < distance.size(); ++k) {
+    const double value = distance[k];
+    if (!atlas->triangle[k].has_value() || !std::isfinite(value)) continue;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+  }
+  if (smallest > largest) return std::nullopt;
+  return std::pair{smallest, largest};
+}
+
 struct SurfaceMapper::Data {
   TriangleMesh target;
   TriangleMesh other;

@@ -4,10 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "blum/core/vec3.hpp"
@@ -35,11 +33,9 @@ void check(const MeshView& mesh, const SurfaceMap& map) {
   }
 }
 
-/// Values of small parts of the surface, and the areas of these parts, for the mesh multiplied by a scale.
-struct PartValues {
-  std::vector<surface::SpreadValue> values;
-  void add(double value, double spread, double area) { values.push_back({value, spread, area}); }
-};
+/// Values of small parts of the surface. Their weights are the areas of these parts, for the mesh multiplied by a
+/// scale.
+using PartValues = std::vector<surface::SpreadValue>;
 
 /// Divides triangles into the squares of texels, and finds a value for each part.
 ///
@@ -65,7 +61,7 @@ class SurfaceDivider {
 
   [[nodiscard]] PartValues divide() {
     PartValues out;
-    out.values.reserve(atlas_.size());
+    out.reserve(atlas_.size());
     std::vector<std::uint32_t> undivided;
     for (std::uint32_t t = 0; t < own_texels_.size(); ++t) {
       if (own_texels_[t] > 0 && !divide(t, out)) undivided.push_back(t);
@@ -111,16 +107,19 @@ class SurfaceDivider {
   void add_part(const Part& part, std::uint32_t t, const surface::Chart& chart, const Vec3d& normal, double area,
                 PartValues& out) const {
     const double value = map_.distance[part.texel];
-    const Vec3f& v = map_.vector.empty() ? Vec3f{} : map_.vector[part.texel];
-    const Vec3d to_closest{v.x, v.y, v.z};
+    Vec3d to_closest;
+    if (is_smooth_) {
+      const Vec3f& v = map_.vector[part.texel];
+      to_closest = {v.x, v.y, v.z};
+    }
     const double size = length(to_closest);
-    if (!is_smooth_ || !std::isfinite(value) || !(size > 0)) {
-      out.add(value, 0, area);
+    if (!std::isfinite(value) || !(size > 0)) {
+      out.push_back({value, 0, area});
       return;
     }
     const double change = -dot(to_closest, way_to_centroid(part, t, chart)) / size;
     const double along = length(cross(to_closest, normal)) / (size * length(normal));
-    out.add(value + (value < 0 ? -change : change), 0.5 * along * std::sqrt(area) / charts_.scale, area);
+    out.push_back({value + (value < 0 ? -change : change), 0.5 * along * std::sqrt(area) / charts_.scale, area});
   }
 
   /// Returns the way from the point of a part's texel to the centroid of the part, mesh units.
@@ -146,7 +145,7 @@ class SurfaceDivider {
     for (std::size_t k = 0; k < atlas_.size(); ++k) {
       const TriangleId triangle = atlas_.triangle[k];
       if (!triangle.has_value() || !is_shared[triangle.value]) continue;
-      out.add(map_.distance[k], 0, 0.5 * length(normal_of(triangle.value)) / own_texels_[triangle.value]);
+      out.push_back({map_.distance[k], 0, 0.5 * length(normal_of(triangle.value)) / own_texels_[triangle.value]});
     }
   }
 
@@ -158,61 +157,33 @@ class SurfaceDivider {
   std::vector<Part> parts_;                ///< parts of one triangle
 };
 
-/// Returns the root mean square of values of parts.
-/// @param largest  largest magnitude of the values.
-/// @param sum      sum of the weights.
-double root_mean_square(const std::vector<surface::SpreadValue>& parts, double largest, double sum) {
-  std::vector<double> values;
-  std::vector<double> weights;
-  for (const surface::SpreadValue& part : parts) {
-    values.push_back(part.middle);
-    weights.push_back(part.weight);
-  }
-  return surface::root_mean_square(values, weights, largest, sum);
-}
-
-/// Returns the smallest and the largest value of a texel.
-std::pair<double, double> extremes(const SurfaceMap& map) {
-  double smallest = std::numeric_limits<double>::infinity();
-  double largest = -smallest;
-  for (std::size_t k = 0; k < map.distance.size(); ++k) {
-    const double value = map.distance[k];
-    if (!map.atlas->triangle[k].has_value() || !std::isfinite(value)) continue;
-    smallest = std::min(smallest, value);
-    largest = std::max(largest, value);
-  }
-  return {smallest, largest};
-}
-
 }  // namespace
 
 SurfaceMapStatistics surface_map_statistics(const MeshView& mesh, const SurfaceMap& map) {
   check(mesh, map);
   SurfaceDivider divider(mesh, map);
   const double scale = divider.scale();
-  const PartValues parts = divider.divide();
-  std::vector<surface::SpreadValue> values;
+  PartValues parts = divider.divide();
+  std::erase_if(parts, [](const surface::SpreadValue& part) { return !(part.weight > 0); });
   LongSum area;
+  for (const surface::SpreadValue& part : parts) area.add(part.weight);
+  std::erase_if(parts, [](const surface::SpreadValue& part) { return !std::isfinite(part.middle); });
   LongSum measured;
   LongSum sum;
   double magnitude = 0;
-  for (const surface::SpreadValue& part : parts.values) {
-    if (!(part.weight > 0)) continue;
-    area.add(part.weight);
-    if (!std::isfinite(part.middle)) continue;
+  for (const surface::SpreadValue& part : parts) {
     measured.add(part.weight);
     sum.add(part.weight * part.middle);
     magnitude = std::max(magnitude, std::abs(part.middle));
-    values.push_back(part);
   }
   SurfaceMapStatistics out;
   out.area = area.value() / scale / scale;
-  if (values.empty()) return out;
+  if (parts.empty()) return out;
   out.measured_area = measured.value() / scale / scale;
   out.mean = sum.value() / measured.value();
-  out.rms = root_mean_square(values, magnitude, measured.value());
-  std::tie(out.smallest, out.largest) = extremes(map);
-  out.percentiles = surface::percentiles(values, SurfaceMapStatistics::percents);
+  out.rms = surface::root_mean_square(parts, magnitude, measured.value());
+  std::tie(out.smallest, out.largest) = map.finite_range().value();
+  out.percentiles = surface::percentiles(parts, SurfaceMapStatistics::percents);
   for (double& p : out.percentiles) p = std::clamp(p, out.smallest, out.largest);
   return out;
 }

@@ -4,21 +4,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace blum::surface {
 
-double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest, double sum) {
+namespace {
+
+/// @param at  callable: returns value k and its weight.
+template <class At>
+double root_mean_square_of(std::size_t count, double largest, double sum, const At& at) {
   if (!(largest > 0)) return 0;
   LongSum square;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double part = values[k] / largest;
-    square.add(weights[k] * part * part);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [value, weight] = at(k);
+    const double part = value / largest;
+    square.add(weight * part * part);
   }
   return largest * std::sqrt(square.value() / sum);
 }
-
-namespace {
 
 /// Place at which the weight below a value begins to grow faster or more slowly, or jumps.
 struct Event {
@@ -49,10 +53,22 @@ std::vector<Event> events_of(std::span<const SpreadValue> values) {
 
 }  // namespace
 
+double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest, double sum) {
+  return root_mean_square_of(values.size(), largest, sum,
+                             [&](std::size_t k) { return std::pair{values[k], weights[k]}; });
+}
+
+double root_mean_square(std::span<const SpreadValue> values, double largest, double sum) {
+  return root_mean_square_of(values.size(), largest, sum,
+                             [&](std::size_t k) { return std::pair{values[k].middle, values[k].weight}; });
+}
+
 std::array<double, 7> percentiles(std::span<const SpreadValue> values, const std::array<double, 7>& percents) {
   const std::vector<Event> events = events_of(values);
   LongSum all;
   for (const SpreadValue& v : values) all.add(v.weight);
+  std::array<double, 7> wanted{};  // weights below the percentiles
+  for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = all.value() * percents[k] / 100;
   std::array<double, 7> out{};
   out.fill(events.back().at);
   std::size_t next = 0;
@@ -63,13 +79,13 @@ std::array<double, 7> percentiles(std::span<const SpreadValue> values, const std
     const double before = below.value();
     const double rise = std::max(slope.value(), 0.0);
     below.add(rise * (event.at - at));
-    for (; next < out.size() && below.value() >= all.value() * percents[next] / 100; ++next) {
-      out[next] = rise > 0 ? std::min(at + (all.value() * percents[next] / 100 - before) / rise, event.at) : event.at;
+    for (; next < out.size() && below.value() >= wanted[next]; ++next) {
+      out[next] = rise > 0 ? std::min(at + (wanted[next] - before) / rise, event.at) : event.at;
     }
     below.add(event.jump);
     slope.add(event.slope);
     at = event.at;
-    for (; next < out.size() && below.value() >= all.value() * percents[next] / 100; ++next) out[next] = at;
+    for (; next < out.size() && below.value() >= wanted[next]; ++next) out[next] = at;
   }
   return out;
 }

@@ -37,6 +37,10 @@ struct SpreadValue {
   double weight = 0;  ///< above 0
 };
 
+/// Returns the weighted root mean square of the middles.
+/// @param largest  as above, of the middles.
+[[nodiscard]] double root_mean_square(std::span<const SpreadValue> values, double largest, double sum);
+
 /// Returns, for each percentage, the value below which that percentage of the total weight lies.
 /// @param values    at least one.
 /// @param percents  in rising order, above 0 and below 100.

@@ -91,8 +91,8 @@ struct SurfaceMapFile {
 /// Returns true if a file is an .npz file with the arrays of a surface map. Returns false if the file cannot be read.
 [[nodiscard]] bool holds_surface_map(const std::filesystem::path& path);
 
-/// Returns the smallest and the largest finite distance of the texels that belong to triangles; nullopt if none is
-/// finite.
+/// Returns SurfaceMap::finite_range().
+/// @throws InvalidMesh if the map lacks the atlas or values of texels.
 [[nodiscard]] std::optional<std::pair<double, double>> finite_range(const SurfaceMap& map);
 
 /// Returns true if some of the distances may be negative.

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "blum/core/buffer.hpp"
@@ -111,6 +112,9 @@ struct SurfaceMap {
   [[nodiscard]] std::optional<std::size_t> closest_texel() const;
   /// Returns the indices of all texels whose distance is at most `limit`, ascending.
   [[nodiscard]] std::vector<std::uint32_t> texels_within(double limit) const;
+  /// Returns the smallest and the largest finite distance of the texels that belong to triangles; nullopt if none is
+  /// finite.
+  [[nodiscard]] std::optional<std::pair<double, double>> finite_range() const;
 };
 
 /// Computes the distance from every point of a surface to another mesh, as a texture (Sud 2006, chapter 3).

@@ -182,16 +182,7 @@ class GutterFill {
 
 std::optional<std::pair<double, double>> finite_range(const SurfaceMap& map) {
   surface_map_files::check(map);
-  double smallest = HUGE_VAL;
-  double largest = -HUGE_VAL;
-  for (std::size_t i = 0; i < map.distance.size(); ++i) {
-    const double value = map.distance[i];
-    if (!map.atlas->triangle[i].has_value() || !std::isfinite(value)) continue;
-    smallest = std::min(smallest, value);
-    largest = std::max(largest, value);
-  }
-  if (smallest > largest) return std::nullopt;
-  return std::pair{smallest, largest};
+  return map.finite_range();
 }
 
 bool is_signed(const SurfaceMap& map) {
