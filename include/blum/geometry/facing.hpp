@@ -17,8 +17,8 @@ namespace blum::detail {
 /// Entry of shell_of_triangles() for triangles that have the same vertex twice.
 constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 
-/// Returns for each triangle the number of its closed shell. Shells are numbered as in Topology::shells, in the order
-/// of their first triangles.
+/// Returns for each triangle of a closed mesh the number of its shell. Shells are numbered as in Topology::shells, in
+/// the order of their first triangles.
 [[nodiscard]] std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites);
 
 /// Returns the triangles of a closed manifold, some of them reversed so that neighbours have consistent orientations.

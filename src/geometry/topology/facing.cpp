@@ -5,17 +5,12 @@
 #include <span>
 #include <utility>
 
-#include "blum/core/union_find.hpp"
 #include "geometry/topology/shells.hpp"
 
 namespace blum::detail {
 namespace {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
-
-bool names_a_vertex_twice(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
 
 /// Walks over the edges of a closed manifold, and reverses triangles so that neighbours have consistent orientations.
 class Reverser {
@@ -27,7 +22,7 @@ class Reverser {
         facing_(mesh.triangles.size(), 0),
         triangles_(mesh.triangles.begin(), mesh.triangles.end()) {
     for (std::uint32_t t = 0; t < facing_.size(); ++t) {
-      if (names_a_vertex_twice(mesh.triangles[t])) continue;
+      if (names_vertex_twice(mesh.triangles[t])) continue;
       for (const EdgeId edge : sites.triangle_edges()[t]) {
         auto& pair = of_edge_[edge.value];
         pair[pair[0] == nobody ? 0 : 1] = t;
@@ -37,7 +32,7 @@ class Reverser {
 
   std::optional<std::vector<Triangle>> agreeing(std::size_t& count) {
     for (std::uint32_t first = 0; first < facing_.size(); ++first) {
-      if (facing_[first] != 0 || names_a_vertex_twice(mesh_.triangles[first])) continue;
+      if (facing_[first] != 0 || names_vertex_twice(mesh_.triangles[first])) continue;
       if (!agree_with(first)) return std::nullopt;
     }
     count = count_;
@@ -109,23 +104,7 @@ std::vector<bool> are_inside_out(std::span<const Shell> shells) {
 }  // namespace
 
 std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites) {
-  UnionFind joined(mesh.triangles.size());
-  std::vector<std::uint32_t> first(sites.edge_count(), nobody);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (names_a_vertex_twice(mesh.triangles[t])) continue;
-    for (const EdgeId edge : sites.triangle_edges()[t]) {
-      if (first[edge.value] == nobody) first[edge.value] = t;
-      joined.join(first[edge.value], t);
-    }
-  }
-  std::vector<std::uint32_t> number(mesh.triangles.size(), no_shell);
-  std::uint32_t count = 0;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (names_a_vertex_twice(mesh.triangles[t])) continue;
-    const std::uint32_t r = joined.find(t);
-    number[t] = r == t ? count++ : number[r];
-  }
-  return number;
+  return find_components(mesh, sites, tally_edges(mesh, sites)).of_triangle;
 }
 
 std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
@@ -145,7 +124,8 @@ std::optional<RepairedFacing> repaired_facing(const MeshView& mesh, const SiteTa
     out.triangles = std::move(*agreeing);
   }
   const MeshView agreeing{mesh.vertices, out.triangles, mesh.segments, mesh.points};
-  const SiteTable own(agreeing, context);
+  std::optional<SiteTable> table;
+  const SiteTable& own = given.oriented ? sites : table.emplace(agreeing, context);
   const SurfaceComponents components = find_components(agreeing, own, tally_edges(agreeing, own));
   const auto [shells, of_triangle] = find_shells(agreeing, components, context);
   const std::vector<bool> is_reversed = are_inside_out(shells);
