@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <sstream>
 #include <string>
-#include <system_error>
 
 #include "blum/core/error.hpp"
 #include "blum/io/file_content.hpp"

@@ -159,25 +159,43 @@ FileBytes read_to_end(const Descriptor& file, const struct stat& info, const std
   return {std::move(bytes), size};
 }
 
+/// Device and inode. They identify a pipe, by whichever path it is named.
+using PipeKey = std::pair<dev_t, ino_t>;
+
+/// Returns the key of the pipe that a path names; nullopt if it names no pipe. The path is not opened: opening a pipe
+/// without a writer would wait for one.
+std::optional<PipeKey> pipe_at(const std::filesystem::path& path) {
+  struct stat info{};
+  if (::stat(path.c_str(), &info) != 0 || !S_ISFIFO(info.st_mode)) return std::nullopt;
+  return PipeKey{info.st_dev, info.st_ino};
+}
+
+FileBytes read_all(const std::filesystem::path& path) {
+  struct stat info{};
+  const Descriptor file = opened(path, info);
+  return read_to_end(file, info, path);
+}
+
+std::string text_head(std::span<const std::byte> bytes, std::size_t size) {
+  return {reinterpret_cast<const char*>(bytes.data()), std::min(size, bytes.size())};
+}
+
 /// Content of pipes whose first bytes were requested, until all of their bytes are.
 class KeptPipes {
  public:
-  using Key = std::pair<dev_t, ino_t>;
-
-  /// Calls use(bytes) for the content of a pipe. It is read now if it is not kept yet.
-  template <class Use>
-  void with(const struct stat& named, const std::filesystem::path& path, const Use& use) {
-    const Key key{named.st_dev, named.st_ino};
-    if (use_kept(key, use)) return;
-    struct stat info{};
-    const Descriptor file = opened(path, info);
-    FileBytes bytes = read_to_end(file, info, path);
+  /// Returns the first bytes of a pipe. The pipe is read now if its content is not kept yet.
+  [[nodiscard]] std::string head(const PipeKey& key, const std::filesystem::path& path, std::size_t size) {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (const auto at = pipes_.find(key); at != pipes_.end()) return text_head(at->second.span(), size);
+    }
+    FileBytes bytes = read_all(path);  // outside the lock, because it may wait for a writer
     const std::scoped_lock lock(mutex_);
-    use(pipes_.emplace(key, std::move(bytes)).first->second.span());
+    return text_head(pipes_.emplace(key, std::move(bytes)).first->second.span(), size);
   }
-  [[nodiscard]] std::optional<FileBytes> take(const struct stat& info) {
+  [[nodiscard]] std::optional<FileBytes> take(const PipeKey& key) {
     const std::scoped_lock lock(mutex_);
-    const auto at = pipes_.find({info.st_dev, info.st_ino});
+    const auto at = pipes_.find(key);
     if (at == pipes_.end()) return std::nullopt;
     FileBytes bytes = std::move(at->second);
     pipes_.erase(at);
@@ -185,16 +203,8 @@ class KeptPipes {
   }
 
  private:
-  template <class Use>
-  bool use_kept(const Key& key, const Use& use) {
-    const std::scoped_lock lock(mutex_);
-    const auto at = pipes_.find(key);
-    if (at != pipes_.end()) use(at->second.span());
-    return at != pipes_.end();
-  }
-
   std::mutex mutex_;
-  std::map<Key, FileBytes> pipes_;
+  std::map<PipeKey, FileBytes> pipes_;
 };
 
 KeptPipes& kept_pipes() {
@@ -202,37 +212,20 @@ KeptPipes& kept_pipes() {
   return pipes;
 }
 
-/// Takes the kept content of a path that names a pipe. A pipe without a writer must not be opened, because that would
-/// wait for one.
-std::optional<FileBytes> take_kept(const std::filesystem::path& path) {
-  struct stat info{};
-  if (::stat(path.c_str(), &info) != 0 || !S_ISFIFO(info.st_mode)) return std::nullopt;
-  return kept_pipes().take(info);
-}
-
 }  // namespace
 
 FileBytes read_whole_file(const std::filesystem::path& path) {
-  if (std::optional<FileBytes> kept = take_kept(path)) return std::move(*kept);
-  struct stat info{};
-  const Descriptor file = opened(path, info);
-  return read_to_end(file, info, path);
+  if (const std::optional<PipeKey> pipe = pipe_at(path)) {
+    if (std::optional<FileBytes> kept = kept_pipes().take(*pipe)) return std::move(*kept);
+  }
+  return read_all(path);
 }
 
 std::string read_file_head(const std::filesystem::path& path, std::size_t size) {
-  std::string head;
-  const auto copy = [&](std::span<const std::byte> bytes) {
-    head.assign(reinterpret_cast<const char*>(bytes.data()), std::min(size, bytes.size()));
-  };
-  struct stat named{};
-  const bool is_pipe = ::stat(path.c_str(), &named) == 0 && S_ISFIFO(named.st_mode);
-  if (is_pipe) {
-    kept_pipes().with(named, path, copy);
-    return head;
-  }
+  if (const std::optional<PipeKey> pipe = pipe_at(path)) return kept_pipes().head(*pipe, path, size);
   struct stat info{};
   const Descriptor file = opened(path, info);
-  head.resize(size);
+  std::string head(size, '\0');
   head.resize(read_up_to(file.number, reinterpret_cast<std::byte*>(head.data()), size, path));
   return head;
 }
