@@ -66,8 +66,13 @@ std::vector<Warning> warnings_of(const std::vector<FailedForm>& failed, const Ax
   return out;
 }
 
+DecimatedAxis with_all_vertices(Complex axis) {
+  const std::size_t vertices = axis.positions.size();
+  return {std::move(axis), 0, vertices};
+}
+
 DecimatedAxis in_form(const Complex& whole, const AxisForm& form, const Context& context) {
-  return decimate(whole, form.tolerance, context);
+  return form.tolerance > 0 ? decimate(whole, form.tolerance, context) : with_all_vertices(whole);
 }
 
 DecimatedAxis in_form(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {
@@ -289,9 +294,9 @@ CertifiedAxis certified_axis(Complex whole, const MedialMetadata& metadata, doub
   std::vector<AxisForm> forms;
   if (checked_tolerance(tolerance) > 0) forms.push_back({false, tolerance});
   forms.emplace_back();
-  const std::size_t vertices = whole.positions.size();
   const auto make = [&](const AxisForm& form) {
-    return form.tolerance > 0 ? in_form(whole, form, context) : DecimatedAxis{std::exchange(whole, {}), 0, vertices};
+    const bool is_last = form.tolerance == 0;
+    return is_last ? with_all_vertices(std::exchange(whole, {})) : in_form(whole, form, context);
   };
   return first_certified(forms, metadata, make, {certify, nullptr, 0, phases});
 }

@@ -294,9 +294,9 @@ class Fitter {
     return split_curves(
         lists_, incidence_, surface_, voxel_,
         [&](const Vec3d& at) {
-          Moved found = centred_at(at);
+          if (const Moved found = centred_at(at)) return found;
           const NearestPoint nearest = surface_.nearest(at, {});
-          return found || !surface_.is_inside(at, nearest) ? found : centred_in_thin(at, nearest);
+          return surface_.is_inside(at, nearest) ? centred_in_thin(at, nearest) : std::nullopt;
         },
         context_);
   }

@@ -32,19 +32,20 @@ Footprint footprint_of(const NearestPoint& at) {
 void look_opposite(const Surface& surface, ThinBall& ball) {
   const double radius = ball.nearest.distance;
   const Vec3d beyond = ball.centre + (ball.centre - ball.nearest.point) * opposite_step;
-  NearestPoint opposite = surface.nearest(beyond, footprint_of(ball.other));
-  const Footprint foot = surface.follow(footprint_of(opposite), ball.centre, radius);
-  opposite = {foot.point, length(foot.point - ball.centre), surface.site_of(foot), foot.element};
-  if (opposite.distance > radius * (1 + facets)) return;
-  const double angle = angle_at(ball.centre, ball.nearest.point, opposite.point);
+  const NearestPoint found = surface.nearest(beyond, footprint_of(ball.other));
+  const Footprint foot = surface.follow(footprint_of(found), ball.centre, radius);
+  const NearestPoint across{foot.point, length(foot.point - ball.centre), surface.site_of(foot), foot.element};
+  if (across.distance > radius * (1 + facets)) return;
+  const double angle = angle_at(ball.centre, ball.nearest.point, across.point);
   ball.angle_across = std::max(ball.angle_across, angle);
-  if (opposite.distance > radius * (1 + rounding) || angle <= ball.angle) return;
-  ball.other = opposite;
+  if (across.distance > radius * (1 + rounding) || angle <= ball.angle) return;
+  ball.other = across;
   ball.angle = angle;
 }
 
-/// Returns the largest inner ball that touches the surface at `touched`, the closest point to the point `inside`.
-std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint& touched, const Vec3d& inside,
+}  // namespace
+
+std::optional<ThinBall> ball_touching(const Surface& surface, const NearestPoint& touched, const Vec3d& inside,
                                       double radius) {
   const Vec3d inwards = (inside - touched.point) / touched.distance;
   NearestPoint other = touched;
@@ -72,6 +73,8 @@ std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint
   }
   return std::nullopt;
 }
+
+namespace {
 
 /// Deepest of some points on a ray into the solid.
 struct Deepest {
@@ -104,7 +107,7 @@ std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, doub
   const Deepest deepest =
       deepest_along(surface, ball.centre, away / size, radius, ball.nearest, overlaps ? own : HUGE_VAL);
   if (deepest.nearest.distance < 1.01 * own) return std::nullopt;
-  return touching_ball(surface, deepest.nearest, deepest.point, radius);
+  return ball_touching(surface, deepest.nearest, deepest.point, radius);
 }
 
 /// Follows larger balls, starting from a ball.
@@ -122,12 +125,7 @@ std::optional<ThinBall> largest_from(const Surface& surface, std::optional<ThinB
 
 std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
                                     double radius) {
-  return largest_from(surface, touching_ball(surface, nearest, inside, radius), radius, true);
-}
-
-std::optional<ThinBall> ball_touching(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
-                                      double radius) {
-  return touching_ball(surface, nearest, inside, radius);
+  return largest_from(surface, ball_touching(surface, nearest, inside, radius), radius, true);
 }
 
 std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched, const Vec3d& beyond,
@@ -136,7 +134,7 @@ std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPo
   const Vec3d inwards = (touched.point - beyond) / touched.distance;
   const Deepest deepest = deepest_along(surface, touched.point, inwards, radius, touched);
   if (deepest.nearest.distance == 0) return std::nullopt;
-  return largest_from(surface, touching_ball(surface, deepest.nearest, deepest.point, radius), radius, false);
+  return largest_from(surface, ball_touching(surface, deepest.nearest, deepest.point, radius), radius, false);
 }
 
 }  // namespace blum::detail

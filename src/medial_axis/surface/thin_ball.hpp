@@ -32,12 +32,13 @@ struct ThinBall {
 /// surface at the closest point to the given point is found. It contains the given point. If there are larger balls
 /// next to it, the search continues with these.
 /// @param nearest  closest point of the surface to `inside`.
-/// @param radius  mesh units. The result is nullopt if the ball would be larger.
+/// @param radius   mesh units. The result is nullopt if the ball would be larger.
 [[nodiscard]] std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest,
                                                   const Vec3d& inside, double radius);
 
 /// Returns the first ball of ball_around(), without a search for larger ones.
-[[nodiscard]] std::optional<ThinBall> ball_touching(const Surface& surface, const NearestPoint& nearest,
+/// @param touched  closest point of the surface to `inside`.
+[[nodiscard]] std::optional<ThinBall> ball_touching(const Surface& surface, const NearestPoint& touched,
                                                     const Vec3d& inside, double radius);
 
 }  // namespace blum::detail
