@@ -133,6 +133,11 @@ namespace {
 
 constexpr const char* centrelines = "centreline";
 
+/// Returns true if a complex has the columns of a Voronoi diagram that are read here.
+bool has_walls(const Complex& complex) {
+  return complex.triangle_columns.find("site_a") != nullptr && complex.triangle_columns.find("site_b") != nullptr;
+}
+
 /// Returns true if a complex has the columns of centrelines that are read here.
 bool has_branches(const Complex& complex) {
   return complex.vertex_columns.find("radius") != nullptr && complex.edge_columns.find("label") != nullptr &&
@@ -186,30 +191,22 @@ ShownAxis read_axis_or_curves(const std::filesystem::path& path) {
   if (may_hold_columns(path)) {
     ComplexFile file = read_complex(path);
     const std::string content = text_of(file.metadata, "content");
-    const bool has_sites = file.complex.triangle_columns.find("site_a") != nullptr &&
-                           file.complex.triangle_columns.find("site_b") != nullptr;
-    if (content.ends_with("Voronoi diagram") && has_sites) {
-      ShownAxis out;
-      out.content = content;
-      out.is_axis = false;
-      add_certified(file.metadata, out);
-      out.file.complex = std::move(file.complex);
-      out.file.metadata.source = text_of(file.metadata, "source");
-      out.file.has_radii = out.file.has_footprints = true;
-      out.file.has_sites = out.file.has_angles = true;
-      add_missing_medial_columns(out.file.complex);
-      number_walls(out.file.complex);
-      return out;
-    }
-    if (content == centrelines && has_branches(file.complex)) {
+    const bool is_diagram = content.ends_with("Voronoi diagram") && has_walls(file.complex);
+    if (is_diagram || (content == centrelines && has_branches(file.complex))) {
       ShownAxis out;
       out.content = content;
       out.is_axis = false;
       out.file.complex = std::move(file.complex);
       out.file.metadata.source = text_of(file.metadata, "source");
-      out.file.metadata.site_ids = SiteIds::voxels;
       out.file.has_radii = true;
+      out.file.has_footprints = out.file.has_sites = out.file.has_angles = is_diagram;
       add_missing_medial_columns(out.file.complex);
+      if (is_diagram) {
+        add_certified(file.metadata, out);
+        number_walls(out.file.complex);
+      } else {
+        out.file.metadata.site_ids = SiteIds::voxels;
+      }
       return out;
     }
   }
