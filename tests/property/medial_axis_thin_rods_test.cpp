@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,12 @@ std::vector<Mat3> directions(Random& random) {
   return out;
 }
 
+std::string direction_text(const Mat3& turn) {
+  std::ostringstream text;
+  text << "z axis to " << turn.columns[2].x << " " << turn.columns[2].y << " " << turn.columns[2].z;
+  return text.str();
+}
+
 void expect_middle(const Rods& rods, double theta) {
   const CertifiedAxes axes = certified_axes(rods.mesh, {.thetas = {theta}});
   ASSERT_TRUE(axes.holds()) << axes.mismatches.front();
@@ -80,9 +87,8 @@ TEST(SlowMedialThinRods, StraightOnesHaveAnAxisFromEndToEnd) {
       for (const std::uint32_t sides : {5U, 48U}) {
         for (const double theta : {120.0, 170.0}) {
           if (sides == 5 && theta > 144) continue;  // the largest separation angle in a pentagon is 144 degrees
-          SCOPED_TRACE(testing::Message()
-                       << "length " << length << ", " << sides << " sides, theta " << theta << ", z axis to "
-                       << turn.columns[2].x << " " << turn.columns[2].y << " " << turn.columns[2].z);
+          SCOPED_TRACE(testing::Message() << "length " << length << ", " << sides << " sides, theta " << theta << ", "
+                                          << direction_text(turn));
           Rods rods;
           rods.add({{0, 0, 0}, {0, 0, length}}, sides);
           rods.turn(turn, random.in_ball());
@@ -97,8 +103,7 @@ TEST(SlowMedialThinRods, TwoParallelOnesHaveTwoAxes) {
   Random random(47);
   for (const double length : {50, 150, 200, 400}) {
     for (const Mat3& turn : directions(random)) {
-      SCOPED_TRACE(testing::Message() << "length " << length << ", z axis to " << turn.columns[2].x << " "
-                                      << turn.columns[2].y << " " << turn.columns[2].z);
+      SCOPED_TRACE(testing::Message() << "length " << length << ", " << direction_text(turn));
       Rods rods;
       rods.add({{0, 0, 0}, {0, 0, length}}, 24);
       rods.add({{1.5, 0, 0}, {1.5, 0, length}}, 24);
@@ -113,8 +118,7 @@ TEST(SlowMedialThinRods, BentOnesKeepTheirBend) {
   for (const auto& [length, bend] : {std::pair{20.0, 1.0}, {60.0, 2.0}, {100.0, 3.0}, {200.0, 3.0}}) {
     for (const Mat3& turn : directions(random)) {
       for (const std::uint32_t sides : {16U, 48U}) {
-        SCOPED_TRACE(testing::Message() << "length " << length << ", " << sides << " sides, z axis to "
-                                        << turn.columns[2].x << " " << turn.columns[2].y << " " << turn.columns[2].z);
+        SCOPED_TRACE(testing::Message() << "length " << length << ", " << sides << " sides, " << direction_text(turn));
         Rods rods;
         rods.add(test::l_shape(length, bend), sides);
         rods.turn(turn, {});
@@ -132,8 +136,7 @@ TEST(SlowMedialThinRods, SpringsAreOneCurve) {
   };
   for (const Spring& spring : {Spring{3, 1.6, 1}, Spring{10, 3, 2}, Spring{100, 15, 3}}) {
     for (const Mat3& turn : directions(random)) {
-      SCOPED_TRACE(testing::Message() << "radius " << spring.radius << ", z axis to " << turn.columns[2].x << " "
-                                      << turn.columns[2].y << " " << turn.columns[2].z);
+      SCOPED_TRACE(testing::Message() << "radius " << spring.radius << ", " << direction_text(turn));
       Rods rods;
       rods.add(test::helix(spring.radius, spring.pitch, spring.turns), 16);
       rods.turn(turn, {});
@@ -147,8 +150,7 @@ TEST(SlowMedialThinRods, NailsHaveTheirWholeShank) {
   Random random(50);
   for (const double length : {30, 100, 200, 300}) {
     for (const Mat3& turn : directions(random)) {
-      SCOPED_TRACE(testing::Message() << "length " << length << ", z axis to " << turn.columns[2].x << " "
-                                      << turn.columns[2].y << " " << turn.columns[2].z);
+      SCOPED_TRACE(testing::Message() << "length " << length << ", " << direction_text(turn));
       const Path shank{{0, 0, 0}, {0, 0, length}};
       Rods nail;
       nail.mesh = test::rod_along({{0, 0, 0}, {0, 0, length}, {0, 0, length + 1e-9}, {0, 0, length + 2}},
