@@ -32,8 +32,8 @@ _CoreComplex = _core.Complex
 class ExtendedAxis(Complex):
     """Medial axis whose sheets reach the surface; the result of :func:`extend_axis`.
 
-    The vertices and triangles of the axis come first, in their order. The new vertices and triangles follow. The edges
-    of the result are the curves of the axis.
+    The vertices of the axis come first, in their order; the new vertices follow. The edges of the result are the curves
+    of the axis. Vertices and curves in gaps between sheets are left out if extensions close the gap (option `join`).
 
     Examples
     --------
@@ -127,8 +127,8 @@ def extend_axis(
     """Returns the sheets of a medial axis, extended from their rims to the surface: a mesh for shell elements.
 
     Use an axis at theta 100 to 120. A smaller angle adds sheets that run into edges; a larger angle leaves gaps where
-    walls meet. If a rim reaches another sheet before the surface, the extension ends at that sheet, but shares no
-    vertices with it. The result has the topology of the axis.
+    walls meet. If a rim reaches another sheet before the surface, the extension ends at that sheet. With `join`, it
+    shares vertices and edges with the sheet, whose triangles are divided. The result has the topology of the axis.
 
     Parameters
     ----------

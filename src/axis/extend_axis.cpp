@@ -12,6 +12,7 @@
 
 #include "axis/rim_reach.hpp"
 #include "axis/rims.hpp"
+#include "axis/shared_sheets.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
@@ -38,11 +39,16 @@ using detail::StripOutline;
 constexpr std::size_t rims_per_range = 64;
 /// New vertices become one if their distance is at most this fraction of the radius at the rim.
 constexpr double one_point = 1e-3;
+/// A rim lies on another sheet if its distance is at most this fraction of the radius, and the sheet is behind it.
+constexpr double beside = 0.05;
+/// A rim leads along a sheet if the cosine of the angle between its direction and the way there is at least this.
+constexpr double least_lead = 0.5;
 
 /// A corner of a rim, and the point to which the rim is extended there.
 struct Continued {
   RimStart start;
   bool stays = false;               ///< not extended: at the border of the solid or on another sheet
+  bool is_beside_sheet = false;     ///< on another sheet: only rims that lead along this sheet are extended
   std::optional<RimTarget> target;  ///< none if the corner stays, or if nothing is within its reach
 };
 
@@ -90,6 +96,7 @@ class AxisExtender {
     if (!rims_.edges.empty()) find_strips();
     std::vector<std::uint32_t> stands_for = number_new_vertices();
     for (std::size_t e = 0; e < strips_.size(); ++e) add_strip(e, stands_for);
+    if (options_.join && !borders_.empty()) join();
     finish();
     return std::move(out_);
   }
@@ -99,21 +106,26 @@ class AxisExtender {
 
   /// Copies from the axis all vertices and triangles, and the edges without triangles.
   void begin_result() {
-    Complex& out = out_.surface;
-    out.positions = axis_.positions;
-    out.triangles = axis_.triangles;
+    sheets_.positions = axis_.positions;
+    sheets_.triangles = axis_.triangles;
     const Incidence incidence(axis_.view(), context_);
     for (std::size_t e = 0; e < axis_.edges.size(); ++e) {
-      if (incidence.triangles_of_edge()[incidence.edge_of_listed()[e]].empty()) out.edges.push_back(axis_.edges[e]);
+      if (incidence.triangles_of_edge()[incidence.edge_of_listed()[e]].empty())
+        sheets_.curves.push_back(axis_.edges[e]);
     }
-    for (const double r : view_.radius) thickness_.push_back(2 * r);
-    sheet_.assign(view_.sheet.begin(), view_.sheet.end());
+    for (const double r : view_.radius) sheets_.thickness.push_back(2 * r);
+    sheets_.is_new_vertex.assign(axis_.positions.size(), 0);
+    sheets_.sheet.assign(view_.sheet.begin(), view_.sheet.end());
+    sheets_.is_new_triangle.assign(axis_.triangles.size(), 0);
   }
 
   // --- Targets of rims.
 
   void find_starts() {
     const std::vector<double> stays_below = radii_at_borders();
+    for (const RimEdge& edge : rims_.edges) {
+      for (const std::uint32_t c : edge.corners) continued_[c].start.sheet = view_.sheet[edge.triangle];
+    }
     for (std::size_t c = 0; c < rims_.corners.size(); ++c) {
       const RimCorner& corner = rims_.corners[c];
       const double own = view_.radius[corner.vertex];
@@ -122,9 +134,45 @@ class AxisExtender {
                              corner.normal,
                              own,
                              options_.max_length * own,
-                             {corner.vertex, corner.vertex}};
+                             {corner.vertex, corner.vertex},
+                             continued_[c].start.sheet};
       continued_[c].stays = corner.is_on_sheet || own <= stays_below[c];
+      if (corner.is_beside_sheet) stay_on_sheet(continued_[c]);
     }
+  }
+
+  static void stay_on_sheet(Continued& corner) {
+    corner.is_beside_sheet = true;
+    corner.start.normal.reset();
+    corner.stays = corner.stays || length(corner.start.outwards) == 0;
+  }
+
+  /// Turns the ways of corners that lie on another sheet, or slightly beyond it, but share no vertex with it.
+  void turn_beside(const SearchMesh& sheets) {
+    for (std::size_t c = 0; c < continued_.size(); ++c) {
+      Continued& corner = continued_[c];
+      if (corner.stays || !corner.start.normal) continue;
+      const double slack = beside * corner.start.radius;
+      std::optional<Vec3d> turned;
+      sheets.bvh().for_each_within(corner.start.at, slack, [&](const NearestPrimitive& near) {
+        const bool is_other = sheets.sheet(near.primitive) != corner.start.sheet;
+        const Vec3d beyond = corner.start.at - near.point;
+        if (is_other)
+          turned =
+              detail::way_beside(corner.start.outwards, *corner.start.normal, sheets.normal(near.primitive), beyond);
+        return !turned;
+      });
+      if (!turned) continue;
+      corner.start.outwards = *turned;
+      stay_on_sheet(corner);
+    }
+  }
+
+  /// Returns the target of an end of a rim edge, or null.
+  [[nodiscard]] const RimTarget* target_of(const RimEdge& edge, std::size_t end) const {
+    const Continued& corner = continued_[edge.corners[end]];
+    const bool leads_away = corner.is_beside_sheet && dot(edge.outwards, corner.start.outwards) < least_lead;
+    return corner.target && !leads_away ? &*corner.target : nullptr;
   }
 
   /// Returns for each corner the largest radius at which it still counts as lying at the border of the solid.
@@ -146,13 +194,17 @@ class AxisExtender {
   /// of the first round. So two sheets that both end before they meet are extended up to each other.
   void find_strips() {
     find_starts();
-    const SearchMesh surface(boundary_of(solid_), context_);
-    const SearchMesh sheets({axis_.positions, axis_.triangles}, context_);
-    extend({&surface, &sheets, nullptr}, false);
-    const TriangleMesh strips = strips_as_mesh();
+    const SearchMesh surface(boundary_of(solid_), {}, context_);
+    const SearchMesh sheets({axis_.positions, axis_.triangles}, {view_.sheet.begin(), view_.sheet.end()}, context_);
+    turn_beside(sheets);
+    const detail::RimLines rims(axis_, rims_, context_);
+    extend({&surface, &sheets, nullptr, &rims}, false);
+    TriangleMesh strips{axis_.positions};
+    std::vector<std::int32_t> of_sheet;
+    add_strips_to(strips, of_sheet);
     const std::optional<SearchMesh> met =
-        strips.triangles.empty() ? std::nullopt : std::optional<SearchMesh>(std::in_place, strips, context_);
-    extend({&surface, &sheets, met ? &*met : nullptr}, true);
+        strips.triangles.empty() ? std::nullopt : std::optional<SearchMesh>(std::in_place, strips, of_sheet, context_);
+    extend({&surface, &sheets, met ? &*met : nullptr, &rims}, true);
   }
 
   void extend(const RimObstacles& obstacles, bool is_final) {
@@ -167,41 +219,39 @@ class AxisExtender {
     });
   }
 
-  /// Returns a mesh of all strips. It starts with all vertices of the axis.
-  [[nodiscard]] TriangleMesh strips_as_mesh() const {
-    TriangleMesh all{axis_.positions};
+  void add_strips_to(TriangleMesh& mesh, std::vector<std::int32_t>& of_sheet) const {
     for (std::size_t e = 0; e < strips_.size(); ++e) {
-      const auto first = static_cast<std::uint32_t>(all.vertices.size());
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
       const auto& ends = rims_.edges[e].vertices;
-      all.vertices.insert(all.vertices.end(), strips_[e].line.begin(), strips_[e].line.end());
+      mesh.vertices.insert(mesh.vertices.end(), strips_[e].line.begin(), strips_[e].line.end());
       for (Triangle triangle : strips_[e].triangles) {
         for (std::uint32_t& v : triangle) v = v < 2 ? ends[v] : first + v - 2;
-        all.triangles.push_back(triangle);
+        mesh.triangles.push_back(triangle);
+        of_sheet.push_back(view_.sheet[rims_.edges[e].triangle]);
       }
     }
-    return all;
   }
 
   // --- Triangles in front of rims.
 
   [[nodiscard]] Strip strip_of(const RimEdge& edge, const RimReach& reach, bool is_final) const {
-    const std::array ends{&continued_[edge.corners[0]], &continued_[edge.corners[1]]};
+    const std::array ends{target_of(edge, 0), target_of(edge, 1)};
     Strip strip;
-    if (!ends[0]->target && !ends[1]->target) return strip;
+    if (!ends[0] && !ends[1]) return strip;
     const double own = std::min(view_.radius[edge.vertices[0]], view_.radius[edge.vertices[1]]);
-    if (ends[0]->target) strip.line.push_back(ends[0]->target->at);
-    if (ends[0]->target && ends[1]->target) {
-      std::array<RimReach::Stop, 2> stops{{{ends[0]->start, *ends[0]->target}, {ends[1]->start, *ends[1]->target}}};
+    if (ends[0]) strip.line.push_back(ends[0]->at);
+    if (ends[0] && ends[1]) {
+      std::array<RimReach::Stop, 2> stops{
+          {{continued_[edge.corners[0]].start, *ends[0]}, {continued_[edge.corners[1]].start, *ends[1]}}};
       for (RimReach::Stop& stop : stops) stop.start.own = edge.vertices;
       const std::vector<Vec3d> between = reach.between(stops[0], stops[1], options_.tolerance * own);
       for (const Vec3d& p : between) {
-        const double gap = std::min(length(p - strip.line.back()), length(p - ends[1]->target->at));
+        const double gap = std::min(length(p - strip.line.back()), length(p - ends[1]->at));
         if (gap > one_point * own) strip.line.push_back(p);
       }
     }
-    if (ends[1]->target) strip.line.push_back(ends[1]->target->at);
-    if (ends[0]->target && ends[1]->target && strip.line.size() == 2 &&
-        length(strip.line[1] - strip.line[0]) <= one_point * own) {
+    if (ends[1]) strip.line.push_back(ends[1]->at);
+    if (ends[0] && ends[1] && strip.line.size() == 2 && length(strip.line[1] - strip.line[0]) <= one_point * own) {
       strip.is_pinched = true;
       strip.line.pop_back();
     }
@@ -229,8 +279,8 @@ class AxisExtender {
   /// Removes from the strip's line all points between the targets of the rim edge's ends.
   void keep_ends(const RimEdge& edge, Strip& strip) const {
     strip.line.clear();
-    for (const std::uint32_t c : edge.corners) {
-      if (continued_[c].target) strip.line.push_back(continued_[c].target->at);
+    for (const std::size_t end : {0U, 1U}) {
+      if (const RimTarget* const target = target_of(edge, end)) strip.line.push_back(target->at);
     }
     if (strip.is_pinched) strip.line.pop_back();
   }
@@ -260,8 +310,8 @@ class AxisExtender {
     std::vector<bool> is_used(rims_.corners.size(), false);
     for (std::size_t e = 0; e < strips_.size(); ++e) {
       if (strips_[e].triangles.empty()) continue;
-      for (const std::uint32_t c : rims_.edges[e].corners) {
-        if (continued_[c].target) is_used[corners.find(c)] = true;
+      for (const std::size_t end : {0U, 1U}) {
+        if (target_of(rims_.edges[e], end) != nullptr) is_used[corners.find(rims_.edges[e].corners[end])] = true;
       }
     }
     std::vector<std::uint32_t> stands_for(rims_.corners.size());
@@ -280,19 +330,22 @@ class AxisExtender {
   }
 
   std::uint32_t add_vertex(const Vec3d& position, double thickness) {
-    out_.surface.positions.push_back(position);
-    thickness_.push_back(thickness);
-    return static_cast<std::uint32_t>(out_.surface.positions.size() - 1);
+    sheets_.positions.push_back(position);
+    sheets_.thickness.push_back(thickness);
+    sheets_.is_new_vertex.push_back(1);
+    return static_cast<std::uint32_t>(sheets_.positions.size() - 1);
   }
 
   void add_strip(std::size_t e, const std::vector<std::uint32_t>& stands_for) {
     const RimEdge& edge = rims_.edges[e];
     Strip& strip = strips_[e];
     if (strip.triangles.empty()) return;
-    const std::array ends{stands_for[edge.corners[0]], stands_for[edge.corners[1]]};
-    const auto moved = std::count_if(edge.corners.begin(), edge.corners.end(),
-                                     [&](std::uint32_t c) { return continued_[c].target.has_value(); });
-    const bool is_plain = std::cmp_equal(strip.line.size(), moved);
+    const std::array is_moved{target_of(edge, 0) != nullptr, target_of(edge, 1) != nullptr};
+    std::array ends{edge.vertices};
+    for (const std::size_t end : {0U, 1U}) {
+      if (is_moved[end]) ends[end] = stands_for[edge.corners[end]];
+    }
+    const bool is_plain = std::cmp_equal(strip.line.size(), is_moved[0] + is_moved[1]);
     // Two strips with a common border edge would close a hole.
     if (is_plain && !strip.is_pinched && !border_.insert(std::minmax(ends[0], ends[1])).second) {
       leave_out(strip);
@@ -300,17 +353,23 @@ class AxisExtender {
     }
     std::vector<std::uint32_t> numbers{edge.vertices[0], edge.vertices[1]};
     for (std::size_t p = 0; p < strip.line.size(); ++p) {
-      if (p == 0 && continued_[edge.corners[0]].target) {
+      if (p == 0 && is_moved[0]) {
         numbers.push_back(ends[0]);
-      } else if (p + 1 == strip.line.size() && continued_[edge.corners[1]].target) {
+      } else if (p + 1 == strip.line.size() && is_moved[1]) {
         numbers.push_back(ends[1]);
       } else {
         numbers.push_back(add_vertex(strip.line[p], 2 * view_.radius[nearer_end(edge, strip.line[p])]));
       }
     }
     for (const auto& [a, b, c] : strip.triangles) {
-      out_.surface.triangles.push_back({numbers[a], numbers[b], numbers[c]});
-      sheet_.push_back(view_.sheet[edge.triangle]);
+      sheets_.triangles.push_back({numbers[a], numbers[b], numbers[c]});
+      sheets_.sheet.push_back(view_.sheet[edge.triangle]);
+      sheets_.is_new_triangle.push_back(1);
+    }
+    if (!is_moved[0]) numbers.insert(numbers.begin() + 2, ends[0]);
+    if (!is_moved[1]) numbers.push_back(ends[1]);
+    for (std::size_t p = 2; p + 1 < numbers.size(); ++p) {
+      if (numbers[p] != numbers[p + 1]) borders_.push_back({numbers[p], numbers[p + 1]});
     }
   }
 
@@ -319,26 +378,48 @@ class AxisExtender {
     return squared_length(p - at(a)) <= squared_length(p - at(b)) ? a : b;
   }
 
+  /// Joins the strips to the sheets and strips that they meet.
+  void join() {
+    std::vector<std::array<std::uint32_t, 2>> gaps;
+    for (std::size_t e = 0; e < strips_.size(); ++e) {
+      if (strips_[e].is_left_out) gaps.push_back(rims_.edges[e].vertices);
+    }
+    const auto is_inside = [&](const Vec3d& p) { return solid_.inside(p); };
+    sheets_ =
+        detail::share_vertices(sheets_, axis_, {borders_, std::move(gaps), options_.tolerance}, is_inside, context_);
+  }
+
   void finish() {
+    count();
     Complex& out = out_.surface;
-    const std::size_t old_vertices = axis_.positions.size();
-    const std::size_t old_triangles = axis_.triangles.size();
+    out.positions = std::move(sheets_.positions);
+    out.edges = std::move(sheets_.curves);
+    out.triangles = std::move(sheets_.triangles);
     out.vertex_columns = Columns(out.positions.size());
     out.edge_columns = Columns(out.edges.size());
     out.triangle_columns = Columns(out.triangles.size());
-    out.vertex_columns.add({std::string(extended_columns::thickness), 1, std::move(thickness_)});
-    const auto is_new_vertex = out.vertex_columns.add<std::int32_t>(std::string(extended_columns::extended));
-    for (std::size_t v = old_vertices; v < is_new_vertex.size(); ++v) is_new_vertex[v] = 1;
-    out.triangle_columns.add({std::string(extended_columns::sheet), 1, std::move(sheet_)});
-    const auto is_new_triangle = out.triangle_columns.add<std::int32_t>(std::string(extended_columns::extended));
-    for (std::size_t t = old_triangles; t < is_new_triangle.size(); ++t) is_new_triangle[t] = 1;
-    count();
+    out.vertex_columns.add({std::string(extended_columns::thickness), 1, std::move(sheets_.thickness)});
+    out.vertex_columns.add({std::string(extended_columns::extended), 1, std::move(sheets_.is_new_vertex)});
+    out.triangle_columns.add({std::string(extended_columns::sheet), 1, std::move(sheets_.sheet)});
+    out.triangle_columns.add({std::string(extended_columns::extended), 1, std::move(sheets_.is_new_triangle)});
+    warn();
+  }
+
+  void warn() {
     const ExtendReport& report = out_.report;
-    if (!(report.open_length > 0)) return;
-    out_.warnings.emplace_back(
-        WarningCode::not_extended,
-        "rims of length " + rounded_text(report.open_length) + ", of " + rounded_text(report.rim_length) +
-            " in total, are not extended: nothing is within reach, or triangles would fold back or leave the solid");
+    if (report.open_length > 0) {
+      out_.warnings.emplace_back(
+          WarningCode::not_extended,
+          "rims of length " + rounded_text(report.open_length) + ", of " + rounded_text(report.rim_length) +
+              " in total, are not extended: nothing is within reach, or triangles would fold back or leave the solid");
+    }
+    if (report.unshared_length > 0) {
+      out_.warnings.emplace_back(WarningCode::not_extended,
+                                 "extensions meet other sheets without shared vertices along " +
+                                     rounded_text(report.unshared_length) + ", and with shared ones along " +
+                                     rounded_text(report.seam_length) +
+                                     ": they do not fit, or shared vertices would change the topology");
+    }
   }
 
   void count() {
@@ -357,10 +438,15 @@ class AxisExtender {
          : own.target->end == RimEnd::border ? report.reached_border
                                              : report.reached_sheet);
     }
-    report.vertices = out_.surface.positions.size() - axis_.positions.size();
-    report.triangles = out_.surface.triangles.size() - axis_.triangles.size();
+    const auto count_of = [](const std::vector<std::int32_t>& flags) {
+      return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
+    };
+    report.vertices = count_of(sheets_.is_new_vertex);
+    report.triangles = count_of(sheets_.is_new_triangle);
+    report.seam_length = sheets_.seam_length;
+    report.unshared_length = sheets_.unshared_length;
     report.axis_area = area_of(axis_.positions, axis_.triangles);
-    report.area = area_of(out_.surface.positions, out_.surface.triangles);
+    report.area = area_of(sheets_.positions, sheets_.triangles);
   }
 
   const Complex& axis_;
@@ -372,8 +458,8 @@ class AxisExtender {
   std::vector<Continued> continued_;  ///< for each corner of the rims
   std::vector<Strip> strips_;         ///< for each edge of the rims
   std::set<std::pair<std::uint32_t, std::uint32_t>> border_;
-  std::vector<double> thickness_;
-  std::vector<std::int32_t> sheet_;
+  std::vector<std::array<std::uint32_t, 2>> borders_;  ///< outer edges of the strips
+  detail::ExtendedSheets sheets_;
   ExtendedAxis out_;
 };
 

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "blum/geometry/closest_point.hpp"
+
 namespace blum::detail {
 namespace {
 
@@ -16,6 +18,11 @@ constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing ma
 constexpr double nearly_none = 1e-6;        // of the way: crossings in this part are the start itself
 constexpr double sine_of_meeting = 0.26;    // of 15 degrees: at smaller angles, the sheet continues the rim
 constexpr double cosine_of_meeting = 0.966;
+constexpr double passing = 0.25;    // of the radius: a way that passes a rim so closely meets its sheet
+constexpr int steps_along_rim = 3;  // A way passes rims so close to its own start without meeting them.
+/// A way that is longer than the ways beside it by more than this factor leads past what they meet.
+constexpr double longer_way = 1.5;
+constexpr double on_same_sheet = 0.02;  // of the radius: a sheet so close to a corner contains it
 constexpr int most_halvings = 6;
 /// The common point of three planes is computed only if the determinant of their unit normals is at least this.
 constexpr double least_determinant = 0.05;
@@ -115,8 +122,11 @@ std::optional<Vec3d> meeting_point(const std::array<Vec3d, 3>& normals, const st
   return points[0] + sum / determinant;
 }
 
-bool is_own(const RimStart& start, const Triangle& triangle) {
-  return std::find_first_of(triangle.begin(), triangle.end(), start.own.begin(), start.own.end()) != triangle.end();
+/// Returns true if a triangle of the sheet of a start contains one of its vertices.
+bool is_own(const RimStart& start, const SearchMesh& sheets, std::uint32_t number) {
+  const Triangle& triangle = sheets.mesh().triangles[number];
+  return start.sheet == sheets.sheet(number) &&
+         std::find_first_of(triangle.begin(), triangle.end(), start.own.begin(), start.own.end()) != triangle.end();
 }
 
 /// Returns a start halfway between two starts; nullopt if their directions nearly cancel.
@@ -139,6 +149,27 @@ std::optional<RimStart> halfway(const RimStart& a, const RimStart& b) {
   return out;
 }
 
+std::vector<Segment> segments_of(const Rims& rims) {
+  std::vector<Segment> segments;
+  for (const RimEdge& edge : rims.edges) segments.push_back({edge.vertices[0], edge.vertices[1]});
+  return segments;
+}
+
+/// Returns true if a sheet forms at least 15 degrees with the plane of a start, or with the way if there is no plane.
+bool forms_angle(const RimStart& start, const Vec3d& way, const Vec3d& normal) {
+  if (start.normal) return std::abs(dot(normal, *start.normal)) < cosine_of_meeting;
+  return std::abs(dot(normal, way)) > sine_of_meeting * length(way);
+}
+
+bool is_at_sheet(const RimReach::Stop& a, const RimReach::Stop& b) {
+  return a.target.end == RimEnd::sheet || b.target.end == RimEnd::sheet;
+}
+
+/// Returns the length of the longer of two ways.
+double longest_way(const RimReach::Stop& a, const RimReach::Stop& b) {
+  return std::max(length(a.target.at - a.start.at), length(b.target.at - b.start.at));
+}
+
 std::vector<Box3> boxes_of(const TriangleMesh& mesh) {
   std::vector<Box3> boxes(mesh.triangles.size());
   for (std::size_t t = 0; t < boxes.size(); ++t) {
@@ -149,14 +180,56 @@ std::vector<Box3> boxes_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-SearchMesh::SearchMesh(TriangleMesh mesh, const Context& context)
-    : mesh_(std::move(mesh)), bvh_(mesh_, SiteTable(mesh_, context), context), boxes_(boxes_of(mesh_), context) {}
+SearchMesh::SearchMesh(TriangleMesh mesh, std::vector<std::int32_t> sheet, const Context& context)
+    : mesh_(std::move(mesh)),
+      sheet_(std::move(sheet)),
+      bvh_(mesh_, SiteTable(mesh_, context), context),
+      boxes_(boxes_of(mesh_), context) {}
 
 Vec3d SearchMesh::normal(std::uint32_t triangle) const {
   const auto& [a, b, c] = mesh_.triangles[triangle];
   const Vec3d normal = cross(mesh_.vertices[b] - mesh_.vertices[a], mesh_.vertices[c] - mesh_.vertices[a]);
   const double size = length(normal);
   return size > 0 ? normal / size : Vec3d{};
+}
+
+RimLines::RimLines(const Complex& axis, const Rims& rims, const Context& context)
+    : mesh_{.vertices = axis.positions, .segments = segments_of(rims)},
+      bvh_(mesh_, SiteTable(mesh_, context), context) {
+  for (const RimEdge& edge : rims.edges) {
+    Vec3d normal{};  // those of single triangles at rims are rough
+    for (const std::uint32_t c : edge.corners) {
+      const Vec3d own = rims.corners[c].normal.value_or(edge.normal);
+      normal += dot(own, normal) < 0 ? -own : own;
+    }
+    const double size = length(normal);
+    lines_.push_back({edge.vertices, size > 0 ? normal / size : Vec3d{}});
+    beside_[edge.vertices[0]].push_back(edge.vertices[1]);
+    beside_[edge.vertices[1]].push_back(edge.vertices[0]);
+  }
+}
+
+std::vector<std::uint32_t> RimLines::vertices_near(std::span<const std::uint32_t> vertices) const {
+  std::vector<std::uint32_t> near(vertices.begin(), vertices.end());
+  std::size_t from = 0;
+  for (int step = 0; step < steps_along_rim; ++step) {
+    const std::size_t to = near.size();
+    for (; from < to; ++from) {
+      if (const auto known = beside_.find(near[from]); known != beside_.end()) {
+        near.insert(near.end(), known->second.begin(), known->second.end());
+      }
+    }
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+void RimLines::for_each_within(const Vec3d& point, double distance, FunctionRef<void(std::uint32_t)> visit) const {
+  bvh_.for_each_within(point, distance, [&](const NearestPrimitive& near) {
+    visit(near.primitive);
+    return true;
+  });
 }
 
 std::optional<RimTarget> RimReach::on_surface(const RimStart& start) const {
@@ -186,8 +259,8 @@ std::optional<RimTarget> RimReach::first_on_way(const SearchMesh* sheets, const 
   double reach = nearly_all;
   sheets->bvh().for_each_crossing({start.at, way}, nearly_all, [&](const RayCrossing& crossing) {
     const Vec3d normal = sheets->normal(crossing.triangle.value);
-    const bool is_met = std::abs(dot(normal, way)) > sine_of_meeting * length(way);
-    const bool is_other = !is_own(start, sheets->mesh().triangles[crossing.triangle.value]);
+    const bool is_met = forms_angle(start, way, normal);
+    const bool is_other = !is_own(start, *sheets, crossing.triangle.value);
     if (is_other && is_met && crossing.t > nearly_none && crossing.t <= reach) {
       first = RimTarget{start.at + way * crossing.t, normal, RimEnd::sheet};
       reach = crossing.t;
@@ -203,8 +276,30 @@ std::optional<RimTarget> RimReach::find(const RimStart& start) const {
   if (!target) target = RimTarget{start.at + start.outwards * start.reach, start.outwards, RimEnd::open};
   if (const auto met = first_on_way(obstacles_.sheets, start, target->at - start.at)) target = met;
   if (const auto met = first_on_way(obstacles_.strips, start, target->at - start.at)) target = met;
+  if (const auto met = first_rim(start, target->at - start.at)) target = met;
   if (target->end == RimEnd::open && !allows_open_) return std::nullopt;
   return target;
+}
+
+/// Returns the first point of a rim of another sheet that the way passes within a tenth of the radius.
+std::optional<RimTarget> RimReach::first_rim(const RimStart& start, const Vec3d& way) const {
+  std::optional<RimTarget> first;
+  double along = dot(way, way) * nearly_all;
+  const double reach = passing * start.radius;
+  const std::vector<std::uint32_t> own = obstacles_.rims->vertices_near(start.own);
+  obstacles_.rims->for_each_within(start.at + way * 0.5, length(way) / 2 + reach, [&](std::uint32_t number) {
+    const RimLines::Line& line = obstacles_.rims->line(number);
+    const std::array ends{obstacles_.rims->at(line.ends[0]), obstacles_.rims->at(line.ends[1])};
+    const auto [on_way, on_rim] = closest_points_of_segments({start.at, start.at + way}, ends);
+    const bool is_own =
+        std::find_first_of(line.ends.begin(), line.ends.end(), start.own.begin(), start.own.end()) != line.ends.end();
+    const bool is_met = forms_angle(start, way, line.normal);
+    const double of = dot(on_rim - start.at, way);
+    if (is_own || !is_met || length(on_rim - on_way) > reach || !(of > 0) || of >= along) return;
+    along = of;
+    first = RimTarget{on_rim, line.normal, RimEnd::sheet};
+  });
+  return first;
 }
 
 std::vector<Vec3d> RimReach::between(const Stop& a, const Stop& b, double tolerance) const {
@@ -213,12 +308,17 @@ std::vector<Vec3d> RimReach::between(const Stop& a, const Stop& b, double tolera
   return path;
 }
 
-/// Returns the target within `tolerance` of a point: on the surface, or else on a sheet or strip. A sheet or strip must
-/// form at least 15 degrees with the plane of the start.
+/// Returns the target within `tolerance` of a point: on the surface, or else on a sheet or strip.
 std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, const RimStart& start) const {
   if (const auto near = obstacles_.surface->bvh().nearest_primitives(point, 1, tolerance); !near.empty()) {
     return RimTarget{near[0].point, obstacles_.surface->normal(near[0].primitive)};
   }
+  return on_sheet(point, tolerance, start);
+}
+
+/// Returns the target within `tolerance` of a point, on a sheet or strip that forms at least 15 degrees with the plane
+/// of the start.
+std::optional<RimTarget> RimReach::on_sheet(const Vec3d& point, double tolerance, const RimStart& start) const {
   if (!start.normal) return std::nullopt;
   std::optional<RimTarget> found;
   std::tuple best(tolerance, std::numeric_limits<std::uint32_t>::max());
@@ -228,7 +328,7 @@ std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, cons
       const Vec3d own = sheets->normal(near.primitive);
       const std::tuple of(near.distance, near.primitive);
       if (std::abs(dot(own, *start.normal)) > cosine_of_meeting || of >= best) return true;
-      if (is_own(start, sheets->mesh().triangles[near.primitive])) return true;
+      if (is_own(start, *sheets, near.primitive)) return true;
       best = of;
       found = RimTarget{near.point, own, RimEnd::sheet};
       return true;
@@ -253,6 +353,7 @@ void RimReach::add_between(const Stop& a, const Stop& b, double tolerance, int d
     const std::optional<RimStart> start = halfway(a.start, b.start);
     const std::optional<RimTarget> target = start ? find(*start) : std::nullopt;
     if (!target) return;
+    if (is_at_sheet(a, b) && length(target->at - start->at) > longer_way * longest_way(a, b)) return;
     middle = Stop{*start, *target};
   }
   add_between(a, *middle, tolerance, depth + 1, path);
@@ -276,6 +377,11 @@ std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) con
   if (!meeting) return std::nullopt;
   const double off = std::min(length(*meeting - a.target.at), length(*meeting - b.target.at));
   if (off > 2 * start->reach || length(*meeting - middle) > 8 * gap) return std::nullopt;
+  const Vec3d way = *meeting - start->at;
+  const bool knows_strips = obstacles_.strips != nullptr;
+  if (is_at_sheet(a, b) && knows_strips && !on_sheet(*meeting, on_same_sheet * start->radius, *start))
+    return std::nullopt;
+  if (is_at_sheet(a, b) && length(way) > longer_way * longest_way(a, b)) return std::nullopt;
   const std::optional<RimTarget> target = at(*meeting, corner_tolerance * start->reach, *start);
   return target ? std::optional(Stop{*start, *target}) : std::nullopt;
 }

@@ -9,11 +9,16 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/union_find.hpp"
+#include "blum/geometry/closest_point.hpp"
 
 namespace blum::detail {
 namespace {
 
 constexpr double least_cosine = 0.174;  // of 80 degrees
+/// The sine of 15 degrees. At smaller angles, one sheet continues the other.
+constexpr double sine_of_meeting = 0.26;
+/// A way passes through a plane only if its part along the plane's normal is at least this.
+constexpr double least_turn = 0.1;
 constexpr std::uint32_t first_of_line = 2;
 
 const Vec3d& point(const StripOutline& outline, std::uint32_t number) {
@@ -120,6 +125,38 @@ class RimFinder {
     bool is_on_sheet = false;
     for (std::uint32_t k = 0; k < around.size(); ++k) is_on_sheet = is_on_sheet || !corner_of.contains(groups.find(k));
     for (const auto& [group, corner] : corner_of) rims_.corners[corner].is_on_sheet = is_on_sheet;
+    if (!is_on_sheet && corner_of.size() > 1) stay_beside(corner_of, around, groups);
+  }
+
+  /// Turns the ways of corners at one vertex so that they do not pass through the triangles of another corner.
+  void stay_beside(const std::map<std::uint32_t, std::uint32_t>& corner_of, std::span<const std::uint32_t> around,
+                   detail::UnionFind& groups) {
+    std::vector<std::pair<std::uint32_t, Vec3d>> turned;
+    for (const auto& [group, c] : corner_of) {
+      for (const auto& [other_group, o] : corner_of) {
+        const RimCorner& corner = rims_.corners[c];
+        const RimCorner& other = rims_.corners[o];
+        if (o == c || !corner.normal || !other.normal) continue;
+        const Vec3d inwards = inwards_of(corner.vertex, around, groups, group);
+        if (dot(inwards, *other.normal) * dot(corner.outwards, *other.normal) >= 0) continue;
+        const std::optional<Vec3d> way = way_beside(corner.outwards, *corner.normal, *other.normal, {});
+        if (way) turned.emplace_back(c, *way);
+      }
+    }
+    for (const auto& [c, outwards] : turned) {
+      rims_.corners[c].outwards = outwards;
+      rims_.corners[c].is_beside_sheet = true;
+    }
+  }
+
+  /// Returns the sum of directions from a vertex to the triangles of a group.
+  [[nodiscard]] Vec3d inwards_of(std::uint32_t v, std::span<const std::uint32_t> around, detail::UnionFind& groups,
+                                 std::uint32_t group) const {
+    Vec3d sum{};
+    for (std::uint32_t k = 0; k < around.size(); ++k) {
+      if (groups.find(k) == group) sum += middle_of(around[k]) - at(v);
+    }
+    return sum;
   }
 
   void add_corner(std::uint32_t v, std::span<const std::uint32_t> around, detail::UnionFind& groups,
@@ -127,45 +164,49 @@ class RimFinder {
     RimCorner corner;
     corner.vertex = v;
     std::vector<std::uint32_t> own;
-    Vec3d inwards{};  // towards the triangles
     bool ends_seam = false;
     for (std::uint32_t k = 0; k < around.size(); ++k) {
       if (groups.find(k) != group) continue;
       const std::uint32_t t = around[k];
       own.push_back(t);
-      inwards += middle_of(t) - at(v);
       for (const std::uint32_t e : incidence_.sides()[t]) {
         ends_seam = ends_seam || (has_end(e, v) && triangles_at(e) > 2);
       }
     }
     if (!ends_seam) corner.normal = tangent_normal(v, std::move(own));
     corner.outwards = outwards_of(v, corner.normal, around, groups, group);
-    if (length(corner.outwards) == 0) corner.outwards = unit(in_plane(-inwards, corner.normal));
+    if (length(corner.outwards) == 0) {
+      corner.outwards = unit(in_plane(-inwards_of(v, around, groups, group), corner.normal));
+    }
     rims_.corners.push_back(corner);
   }
 
   /// Returns the mean normal of triangles around a vertex, weighted by area so that slivers hardly tilt it. Small
   /// triangles at rims are rough. So connected triangles within the vertex's radius count as well, up to about 64
-  /// triangles.
+  /// triangles. A large triangle counts as one of the size of the radius.
   [[nodiscard]] std::optional<Vec3d> tangent_normal(std::uint32_t v, std::vector<std::uint32_t> triangles) const {
     for (std::size_t k = 0; k < triangles.size() && triangles.size() < most_in_tangent; ++k) {
       for (const std::uint32_t e : incidence_.sides()[triangles[k]]) {
         const std::span<const std::uint32_t> beside = incidence_.triangles_of_edge()[e];
-        if (beside.size() != 2) continue;
+        if (beside.size() != 2 || distance_to_edge(v, e) > radius_[v]) continue;
         const std::uint32_t next = beside[beside[0] == triangles[k] ? 1 : 0];
-        const bool is_near = length(middle_of(next) - at(v)) <= radius_[v];
-        if (is_near && std::find(triangles.begin(), triangles.end(), next) == triangles.end()) {
-          triangles.push_back(next);
-        }
+        if (std::find(triangles.begin(), triangles.end(), next) == triangles.end()) triangles.push_back(next);
       }
     }
+    const double largest = radius_[v] * radius_[v];
     Vec3d sum{};
     for (const std::uint32_t t : triangles) {
       const auto& [a, b, c] = axis_.triangles[t];
-      const Vec3d own = cross(at(b) - at(a), at(c) - at(a));
+      Vec3d own = cross(at(b) - at(a), at(c) - at(a));
+      if (length(own) > largest) own = own * (largest / length(own));
       sum += dot(own, sum) < 0 ? -own : own;
     }
     return length(sum) > 0 ? std::optional(unit(sum)) : std::nullopt;
+  }
+
+  [[nodiscard]] double distance_to_edge(std::uint32_t v, std::uint32_t edge) const {
+    const auto& [a, b] = incidence_.edges()[edge];
+    return length(closest_point_on_segment(at(v), at(a), at(b)) - at(v));
   }
 
   /// Returns the mean outward direction of the rim edges of a group, weighted by length. The weight is at most three
@@ -210,6 +251,15 @@ class RimFinder {
 };
 
 }  // namespace
+
+std::optional<Vec3d> way_beside(const Vec3d& way, const Vec3d& normal, const Vec3d& other, const Vec3d& beyond) {
+  const Vec3d common = cross(normal, other);
+  const double ahead = dot(way, other);
+  const bool is_behind = dot(beyond, other) * ahead >= 0;
+  if (length(common) < sine_of_meeting || std::abs(ahead) < least_turn || !is_behind) return std::nullopt;
+  const Vec3d along = unit(common) * dot(way, unit(common));
+  return length(along) < least_turn ? Vec3d{} : unit(along);
+}
 
 std::optional<std::vector<std::array<std::uint32_t, 3>>> fill_strip(const StripOutline& outline) {
   const auto line_points = static_cast<std::uint32_t>(outline.line.size());

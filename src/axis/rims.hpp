@@ -49,12 +49,25 @@ struct RimCorner {
   Vec3d outwards;               ///< Unit vector in the tangent plane, away from the triangles; 0 if unknown.
   std::optional<Vec3d> normal;  ///< Unit normal of the tangent plane; none if a seam ends here or no triangle has area.
   bool is_on_sheet = false;     ///< True if another group of triangles at the vertex has no rim edge there.
+  /// True if the way leads through another group of triangles at the vertex, at 15 degrees or more. `outwards` then
+  /// lies in the planes of both groups, or is 0: see way_beside().
+  bool is_beside_sheet = false;
 };
 
 struct Rims {
   std::vector<RimEdge> edges;      ///< ordered by smaller vertex, then larger vertex
   std::vector<RimCorner> corners;  ///< ordered by vertex
 };
+
+/// Returns the part of a way that lies in the planes of two sheets, if the way leads through the second sheet. The
+/// result is 0 if hardly any part of the way lies in both planes. Returns nullopt if the way does not lead through the
+/// second sheet, or if the planes form less than 15 degrees.
+/// @param way     unit vector outwards, in the plane of the first sheet.
+/// @param normal  unit normal of the first sheet.
+/// @param other   unit normal of the second sheet, either sign.
+/// @param beyond  vector from the second sheet to the start of the way. If 0, the way starts on the second sheet.
+[[nodiscard]] std::optional<Vec3d> way_beside(const Vec3d& way, const Vec3d& normal, const Vec3d& other,
+                                              const Vec3d& beyond);
 
 /// Returns the rims of an axis.
 /// @param axis  has radii, and problem_of_medial() finds no problem in it.

@@ -34,6 +34,30 @@ def test_the_surface_spans_the_plate(plate, axis):
     assert np.array_equal(by_function.triangles, shell.triangles)
 
 
+def test_sheets_of_a_profile_are_joined_in_the_middle_of_its_walls():
+    outline = [[0, 0], [60, 0], [60, 3], [30, 3], [30, 40], [48, 40], [48, 41.5], [28, 41.5], [28, 3], [0, 3]]
+    middles = np.array([[[0, 1.5], [60, 1.5]], [[29, 1.5], [29, 40.75]], [[29, 40.75], [48, 40.75]]])
+    profile = blum.extrusion(outline, thickness=50)
+    axis = blum.medial_axis(profile, resolution=192).certified(120)
+    shell = axis.extend()
+    assert shell.homology() == axis.homology() == (1, 0, 0)
+    way = middles[:, 1] - middles[:, 0]
+    from_start = shell.vertices[:, None, :2] - middles[:, 0]
+    along = np.clip((from_start * way).sum(axis=2) / (way * way).sum(axis=1), 0, 1)
+    off = np.linalg.norm(from_start - along[..., None] * way, axis=2).min(axis=1)
+    assert off.max() < 0.25  # one vertex was 1.3 below the middle of the lower wall
+    assert shell.report.seam_length > 45 and shell.report.unshared_length == 0
+    sides = np.sort(shell.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges, count = np.unique(sides, axis=0, return_counts=True)
+    shared = edges[count > 2]
+    lengths = np.linalg.norm(shell.vertices[shared[:, 1]] - shell.vertices[shared[:, 0]], axis=1)
+    assert lengths.sum() > 45
+    apart = axis.extend(join=False)
+    assert apart.report.seam_length == 0
+    assert np.array_equal(apart.vertices[: len(axis.vertices)], axis.vertices)
+    assert np.array_equal(apart.triangles[: len(axis.triangles)], axis.triangles)
+
+
 def test_options_apply_and_wrong_ones_are_rejected(axis):
     with pytest.warns(blum.InputWarning, match="^rims .* are not extended") as told:
         short = axis.extend(max_length=0.3)

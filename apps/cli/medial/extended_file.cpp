@@ -46,6 +46,7 @@ std::string extended_text(const ExtendReport& report) {
   if (report.reached_sheet > 0) text += ", " + count_text(report.reached_sheet) + " now reach another sheet";
   if (report.at_border > 0) text += ", " + count_text(report.at_border) + " already were on the surface or a sheet";
   if (report.not_reached > 0) text += ", " + count_text(report.not_reached) + " reach nothing";
+  if (report.seam_length > 0) text += "; sheets share edges of length " + rounded_text(report.seam_length);
   return text;
 }
 

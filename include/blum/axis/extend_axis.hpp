@@ -26,6 +26,9 @@ struct ExtendOptions {
   /// Largest distance of the new border from the surface, between the vertices of the border, as a fraction of the
   /// radius, > 0.
   double tolerance = 0.01;
+  /// True if extensions share vertices and edges with the sheets and extensions that they meet. Triangles of the axis
+  /// are then divided where an extension meets them. Curves through gaps that an extension closes are left out.
+  bool join = true;
 };
 
 template <>
@@ -42,6 +45,8 @@ struct Description<ExtendOptions> {
       Member{"tolerance", &ExtendOptions::tolerance, "radii",
              "largest distance of the new border from the surface, between the vertices of the border",
              Range::positive()},
+      Member{"join", &ExtendOptions::join, "",
+             "true if extensions share vertices with the sheets and extensions that they meet"},
   };
 };
 
@@ -60,8 +65,11 @@ struct ExtendReport {
   std::size_t not_reached = 0;  ///< Rim vertices without a surface or sheet within ExtendOptions::max_length.
   /// Rim edges without new triangles, because such triangles would fold back or leave the solid.
   std::size_t left_out = 0;
+  double seam_length = 0;  ///< Length of the edges that extensions now share with other sheets, mesh units.
+  /// Length of the edges of extensions that lie on other sheets at both ends, but share no edge with them, mesh units.
+  double unshared_length = 0;
   std::size_t vertices = 0;   ///< New vertices.
-  std::size_t triangles = 0;  ///< New triangles.
+  std::size_t triangles = 0;  ///< New triangles, including parts of divided ones.
   double axis_area = 0;       ///< Area of all triangles of the axis, square mesh units.
   double area = 0;            ///< Area of all triangles of the extended surface, square mesh units.
 };
@@ -83,8 +91,12 @@ struct Description<ExtendReport> {
       Member{"not_reached", &ExtendReport::not_reached, "", "rim vertices that met nothing within the length"},
       Member{"left_out", &ExtendReport::left_out, "",
              "rim edges without new triangles, because the triangles would fold back or leave the solid"},
+      Member{"seam_length", &ExtendReport::seam_length, "mesh units",
+             "length of the edges that extensions share with other sheets"},
+      Member{"unshared_length", &ExtendReport::unshared_length, "mesh units",
+             "length of the edges of extensions that lie on other sheets without sharing an edge"},
       Member{"vertices", &ExtendReport::vertices, "", "new vertices"},
-      Member{"triangles", &ExtendReport::triangles, "", "new triangles"},
+      Member{"triangles", &ExtendReport::triangles, "", "new triangles, including parts of divided ones"},
       Member{"axis_area", &ExtendReport::axis_area, "square mesh units", "area of all triangles of the axis"},
       Member{"area", &ExtendReport::area, "square mesh units", "area of all triangles of the extended surface"},
   };
@@ -103,11 +115,13 @@ inline constexpr std::string_view extended = "extended";
 }  // namespace extended_columns
 
 struct ExtendedAxis {
-  /// The vertices and triangles of the axis in their order, then the new vertices and triangles. The edges are the
-  /// curves of the axis, which belong to no triangle. The columns are those of `extended_columns`.
+  /// The vertices of the axis in their order, then the new vertices. Without ExtendOptions::join, the triangles of the
+  /// axis come first as well. The edges are the curves of the axis, which belong to no triangle. With `join`, curves
+  /// through gaps that extensions close are left out, with their vertices. The columns are those of `extended_columns`.
   Complex surface;
   ExtendReport report;
-  std::vector<Warning> warnings;  ///< WarningCode::not_extended if some rims are not extended.
+  /// WarningCode::not_extended if some rims are not extended, or meet other sheets without shared vertices.
+  std::vector<Warning> warnings;
 };
 
 /// Returns the sheets of a medial axis, extended from their rims to the surface of the solid. For a solid with thin
@@ -118,12 +132,16 @@ struct ExtendedAxis {
 /// Each rim vertex is joined to the closest point of the surface in the tangent plane of its sheet. The direction to
 /// the closest point differs by at most 65 degrees from the direction straight out of the rim. Between the closest
 /// points of neighbouring rim vertices, the new border follows edges and corners of the surface. If the way to the
-/// surface meets another sheet, or the extension of another sheet, the new triangles end there. They share no vertices
-/// with the sheet or extension that they meet. The middle of each new triangle lies in the solid, and so do the middles
-/// of its sides, except for sides on the new border. A new triangle is turned by less than 80 degrees relative to the
-/// axis's triangle at the rim edge. Both triangles face the same way. The homotopy type is that of the axis, because
-/// the new triangles can be pushed back into the rims. Extensions of different rims may overlap if they meet at less
-/// than 15 degrees; this is not checked.
+/// surface meets another sheet, or the extension of another sheet, the new triangles end there. The middle of each new
+/// triangle lies in the solid, and so do the middles of its sides, except for sides on the new border. A new triangle
+/// is turned by less than 80 degrees relative to the axis's triangle at the rim edge. Both triangles face the same way.
+/// The homotopy type is that of the axis, because the new triangles can be pushed back into the rims. Extensions of
+/// different rims may overlap if they meet at less than 15 degrees; this is not checked.
+///
+/// With ExtendOptions::join, new triangles share vertices and edges with the sheet or extension that they meet. For
+/// this, triangles are divided, border vertices move by at most ExtendOptions::tolerance, and gaps of few edges are
+/// filled. Extensions are joined only where the Betti numbers stay those of the axis. All others keep their own
+/// vertices, and their length is ExtendReport::unshared_length.
 ///
 /// @param axis   axis with radii and sheets, for example from MedialAxis::simplify(), fitted(), decimate() or a file.
 /// @param solid  solid of a mesh; the axis must be an axis of this solid.

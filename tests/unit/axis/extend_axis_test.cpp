@@ -5,19 +5,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <ostream>
 #include <stop_token>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "blum/complex/homology.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/closest_point.hpp"
 #include "blum/grid/image_generators.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
@@ -120,6 +124,31 @@ void check(const TriangleMesh& mesh, const Complex& axis, const ExtendedAxis& ma
   }
 }
 
+/// The extended axis whose extensions share no vertices with the sheets that they meet.
+ExtendedAxis extended_apart(const Complex& axis, const TriangleMesh& mesh) {
+  return extend_axis(axis, mesh, {.join = false});
+}
+
+/// Checks that extensions that share vertices keep the topology, the area and the places of all vertices.
+void check_joined(const TriangleMesh& mesh, const Complex& axis, const ExtendedAxis& apart) {
+  const ExtendedAxis joined = extend_axis(axis, mesh);
+  ASSERT_EQ(problem_of(joined.surface), "");
+  EXPECT_EQ(homology(joined.surface.view()), homology(axis.view()));
+  // Beyond the sheet that it meets, an extension loses at most slivers.
+  EXPECT_NEAR(joined.report.area, apart.report.area, 0.02 * apart.report.area);
+  EXPECT_EQ(joined.report.rim_length, apart.report.rim_length);
+  const TriangleMesh before{apart.surface.positions, apart.surface.triangles};
+  const Bvh bvh(before, SiteTable(before));
+  const auto thickness = joined.surface.vertex_columns.get<double>(extended_columns::thickness);
+  std::vector<bool> is_used(joined.surface.positions.size(), false);
+  for (const auto& triangle : joined.surface.triangles) {
+    for (const std::uint32_t v : triangle) is_used[v] = true;
+  }
+  for (std::size_t v = 0; v < is_used.size(); ++v) {
+    EXPECT_TRUE(!is_used[v] || bvh.nearest(joined.surface.positions[v], 0.05 * thickness[v]));
+  }
+}
+
 Box3 box_of(const Complex& complex) {
   Box3 box;
   for (const Vec3d& p : complex.positions) box.extend(p);
@@ -129,7 +158,7 @@ Box3 box_of(const Complex& complex) {
 TEST(ExtendAxis, CoversAPlateUpToItsCorners) {
   const TriangleMesh plate = extruded(rectangle(0, 0, 100, 50), 2);
   const Complex axis = axis_of(plate, 110);
-  const ExtendedAxis made = extend_axis(axis, plate);
+  const ExtendedAxis made = extended_apart(axis, plate);
   check(plate, axis, made);
   EXPECT_LT(made.report.axis_area, 4750);
   EXPECT_NEAR(made.report.area, 5000, 1e-6);
@@ -146,7 +175,7 @@ TEST(ExtendAxis, CoversAPlateWithAJaggedRim) {
   MedialAxisOptions options;
   options.resolution = 96;
   const Complex axis = medial_axis(plate, options).simplify(110);
-  const ExtendedAxis made = extend_axis(axis, plate);
+  const ExtendedAxis made = extended_apart(axis, plate);
   check(plate, axis, made);
   double seen_from_above = 0;  // overlapping strips would make it too large
   for (std::size_t t = 0; t < made.surface.triangles.size(); ++t) {
@@ -162,7 +191,7 @@ TEST(ExtendAxis, ReachesTheWallOfAHole) {
   const std::vector<Outline> holes{circle({20, 20}, 8, 40), {{40, 12}, {50, 14}, {46, 28}}};
   const TriangleMesh plate = extruded(outline, 2, holes);
   const Complex axis = axis_of(plate, 110);
-  const ExtendedAxis made = extend_axis(axis, plate);
+  const ExtendedAxis made = extended_apart(axis, plate);
   check(plate, axis, made);
   EXPECT_NEAR(made.report.area, 2400 - area_of(holes[0]) - area_of(holes[1]), 2);
   // All new vertices lie on the surface.
@@ -176,7 +205,7 @@ TEST(ExtendAxis, LeavesATinyHoleOpen) {
   const TriangleMesh plate = extruded(rectangle(0, 0, 12, 8), 2, {circle({6, 4}, 2e-4, 8)});
   const Complex axis = axis_of(plate, 110);
   ASSERT_EQ(homology(axis.view()), (BettiNumbers{1, 1, 0}));
-  const ExtendedAxis made = extend_axis(axis, plate);
+  const ExtendedAxis made = extended_apart(axis, plate);
   check(plate, axis, made);
   EXPECT_GE(made.report.left_out, 1U);  // otherwise the hole would be closed
   EXPECT_NEAR(made.report.area, 96, 1.5);
@@ -198,7 +227,7 @@ TEST(ExtendAxis, FollowsBentWallsAndRoundEnds) {
   const double pi = std::acos(-1.0);
   const TriangleMesh bent = extruded(arc(20, 2, pi, 48), 50);
   const Complex axis = axis_of(bent, 110, 96);
-  const ExtendedAxis made = extend_axis(axis, bent);
+  const ExtendedAxis made = extended_apart(axis, bent);
   check(bent, axis, made);
   EXPECT_NEAR(made.report.area, pi * 20 * 50, 0.002 * pi * 20 * 50);
   EXPECT_EQ(made.report.open_length, 0);
@@ -208,7 +237,7 @@ TEST(ExtendAxis, FollowsBentWallsAndRoundEnds) {
   round.insert(round.end(), {{60, 3}, {0, 3}});
   const TriangleMesh slab = extruded(round, 30);
   const Complex middle = axis_of(slab, 110, 96);
-  const ExtendedAxis whole = extend_axis(middle, slab);
+  const ExtendedAxis whole = extended_apart(middle, slab);
   check(slab, middle, whole);
   EXPECT_NEAR(whole.report.area, 61.5 * 30, 0.1);
 }
@@ -237,7 +266,7 @@ TEST_P(ExtendedProfile, ReachesItsEnds) {
   const Profile& profile = GetParam();
   const TriangleMesh mesh = extruded(profile.outline, 60, profile.holes);
   const Complex axis = axis_of(mesh, 110, 96);
-  const ExtendedAxis made = extend_axis(axis, mesh);
+  const ExtendedAxis made = extended_apart(axis, mesh);
   check(mesh, axis, made);
   EXPECT_EQ(made.report.not_reached, 0U);
   EXPECT_EQ(made.report.open_length, 0);
@@ -252,12 +281,102 @@ TEST_P(ExtendedProfile, ClosesGapsOfTheAxisBetweenWalls) {
   const Profile& profile = GetParam();
   const TriangleMesh mesh = extruded(profile.outline, 60, profile.holes);
   const Complex axis = axis_of(mesh, 170, 96);
-  const ExtendedAxis made = extend_axis(axis, mesh);
+  const ExtendedAxis made = extended_apart(axis, mesh);
   check(mesh, axis, made);
   // The surface does not reach the outer side of the corner, which would add 2 to 12 %.
   EXPECT_NEAR(made.report.area, 60 * profile.middle_length, 0.01 * 60 * profile.middle_length);
   EXPECT_LT(made.report.axis_area, 0.9 * made.report.area);
 }
+
+/// Returns the length of all edges that three or more triangles have.
+double junction_length(const Complex& surface) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles_at;
+  for (const auto& [a, b, c] : surface.triangles) {
+    for (const auto& side : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)}) ++triangles_at[side];
+  }
+  double sum = 0;
+  for (const auto& [side, count] : triangles_at) {
+    if (count > 2) sum += length(surface.positions[side.second] - surface.positions[side.first]);
+  }
+  return sum;
+}
+
+TEST_P(ExtendedProfile, KeepsItsTopologyIfSheetsShareVertices) {
+  const Profile& profile = GetParam();
+  const TriangleMesh mesh = extruded(profile.outline, 60, profile.holes);
+  for (const double theta : {110.0, 150.0, 170.0}) {
+    SCOPED_TRACE(theta);
+    const Complex axis = axis_of(mesh, theta, 96);
+    check_joined(mesh, axis, extended_apart(axis, mesh));
+  }
+}
+
+/// A thin-walled profile, and the segments in the middle of its walls.
+struct Section {
+  const char* name;
+  Outline outline;
+  std::vector<std::array<Point2, 2>> middles;
+  double bulge;           ///< the axis leaves the middles by this at junctions
+  std::size_t junctions;  ///< lines along which walls meet in a T
+};
+
+const std::vector<Section> sections{
+    {"channel",  // its extension at 192 voxels had a vertex far off the middle of the wall
+     {{0, 0}, {60, 0}, {60, 3}, {30, 3}, {30, 40}, {48, 40}, {48, 41.5}, {28, 41.5}, {28, 3}, {0, 3}},
+     {{{{0, 1.5}, {60, 1.5}}}, {{{29, 1.5}, {29, 40.75}}}, {{{29, 40.75}, {48, 40.75}}}},
+     0.25,
+     1},
+    {"tee",
+     {{0, 0}, {40, 0}, {40, 2}, {21, 2}, {21, 30}, {19, 30}, {19, 2}, {0, 2}},
+     {{{{0, 1}, {40, 1}}}, {{{20, 1}, {20, 30}}}},
+     0.26,
+     1},
+    {"beam",
+     {{0, 0}, {40, 0}, {40, 2}, {21, 2}, {21, 38}, {40, 38}, {40, 40}, {0, 40}, {0, 38}, {19, 38}, {19, 2}, {0, 2}},
+     {{{{0, 1}, {40, 1}}}, {{{20, 1}, {20, 39}}}, {{{0, 39}, {40, 39}}}},
+     0.26,
+     2},
+    {"angle", {{0, 0}, {40, 0}, {40, 2}, {2, 2}, {2, 30}, {0, 30}}, {{{{1, 1}, {40, 1}}}, {{{1, 1}, {1, 30}}}}, 0.2, 0},
+    {"zed",
+     {{0, 0}, {20, 0}, {20, 30}, {40, 30}, {40, 32}, {18, 32}, {18, 2}, {0, 2}},
+     {{{{0, 1}, {19, 1}}}, {{{19, 1}, {19, 31}}}, {{{19, 31}, {40, 31}}}},
+     0.2,
+     0},
+};
+
+void PrintTo(const Section& section, std::ostream* out) {
+  *out << section.name;
+}
+
+class ExtendedSection : public ::testing::TestWithParam<std::tuple<Section, int>> {};
+
+TEST_P(ExtendedSection, LiesInTheMiddleOfItsWallsAndIsJoined) {
+  const auto& [section, resolution] = GetParam();
+  const TriangleMesh mesh = extruded(section.outline, 50);
+  for (const double theta : {100.0, 120.0}) {
+    SCOPED_TRACE(theta);
+    const Complex axis = axis_of(mesh, theta, resolution);
+    const ExtendedAxis made = extend_axis(axis, mesh);
+    EXPECT_EQ(homology(made.surface.view()), homology(axis.view()));
+    EXPECT_LE(made.report.unshared_length, 2);  // of corners at the ends of junctions
+    for (const Vec3d& p : made.surface.positions) {
+      double off = std::numeric_limits<double>::infinity();
+      for (const auto& [a, b] : section.middles) {
+        const Vec3d flat{p.x, p.y, 0};
+        off = std::min(off, length(closest_point_on_segment(flat, {a[0], a[1], 0}, {b[0], b[1], 0}) - flat));
+      }
+      EXPECT_LE(off, section.bulge) << p.x << ' ' << p.y << ' ' << p.z;
+    }
+    // A bend counts as well if one wall passes the other a little.
+    EXPECT_GE(junction_length(made.surface), 50.0 * static_cast<double>(section.junctions) - 4.5);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sections, ExtendedSection,
+                         ::testing::Combine(::testing::ValuesIn(sections), ::testing::Values(112, 128, 160)),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param).name) + std::to_string(std::get<1>(info.param));
+                         });
 
 INSTANTIATE_TEST_SUITE_P(Profiles, ExtendedProfile, ::testing::ValuesIn(profiles),
                          [](const auto& info) { return std::string(info.param.name); });
@@ -272,8 +391,9 @@ TEST(ExtendAxis, KeepsTheTopologyOfThickShapes) {
     const MedialAxis axes = medial_axis(mesh, options);
     for (const double theta : {40.0, 110.0, 150.0}) {
       const Complex axis = axes.simplify(theta);
-      const ExtendedAxis made = extend_axis(axis, mesh);
+      const ExtendedAxis made = extended_apart(axis, mesh);
       check(mesh, axis, made);
+      if (theta == 110) check_joined(mesh, axis, made);
       triangles += made.report.triangles;
     }
   }
@@ -287,7 +407,7 @@ TEST(ExtendAxis, LeavesAClosedSurfaceAsItIs) {
   const TriangleMesh shell = make_nested_shells(options);
   const Complex axis = axis_of(shell, 120, 32);
   ASSERT_EQ(homology(axis.view()), (BettiNumbers{1, 0, 1}));
-  const ExtendedAxis made = extend_axis(axis, shell);
+  const ExtendedAxis made = extended_apart(axis, shell);
   check(shell, axis, made);
   EXPECT_EQ(made.report.rim_vertices, 0U);
   EXPECT_EQ(made.report.rim_length, 0);
@@ -297,7 +417,7 @@ TEST(ExtendAxis, LeavesAClosedSurfaceAsItIs) {
 TEST(ExtendAxis, KeepsTheCurvesOfARod) {
   const TriangleMesh rod = make_cylinder({.radius = 1, .height = 8, .sides = 24});
   const Complex axis = axis_of(rod, 150, 32);
-  const ExtendedAxis made = extend_axis(axis, rod);
+  const ExtendedAxis made = extended_apart(axis, rod);
   check(rod, axis, made);
   EXPECT_FALSE(made.surface.edges.empty());
 }
@@ -305,7 +425,7 @@ TEST(ExtendAxis, KeepsTheCurvesOfARod) {
 TEST(ExtendAxis, LeavesRimsAtEdgesOfTheSolid) {
   const TriangleMesh block = extruded(rectangle(0, 0, 3, 2), 1);
   const Complex axis = axis_of(block, 0, 64);
-  const ExtendedAxis made = extend_axis(axis, block);
+  const ExtendedAxis made = extended_apart(axis, block);
   check(block, axis, made);
   EXPECT_GT(made.report.at_border, made.report.rim_vertices / 2);
   EXPECT_NEAR(made.report.area, made.report.axis_area, 0.005 * made.report.axis_area);
