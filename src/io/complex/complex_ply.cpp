@@ -47,9 +47,11 @@ std::string property_lines(const Columns& columns, const PlyNames& names) {
 /// copy.
 const Column* derived_column(const Columns& columns) {
   if (columns.find(derived_property) != nullptr || columns.size() == max_file_columns) return nullptr;
-  const Column* const column = columns.find(derived_from);
-  const bool is_real = column != nullptr && column->components == 1 && column->type_name().starts_with("float");
-  return is_real ? column : nullptr;
+  for (const std::string_view name : derived_from) {
+    const Column* const column = columns.find(name);
+    if (column != nullptr && column->components == 1 && column->type_name().starts_with("float")) return column;
+  }
+  return nullptr;
 }
 
 /// @throws InvalidOption if a row has more numbers than Blum's reader accepts.
@@ -327,22 +329,28 @@ class ComplexPlyReader {
     file_.complex.vertex_columns = std::move(columns);
   }
 
-  /// Removes the copy of the column `radius` that is written for MeshLab.
+  /// Removes the copy of a column that is written for MeshLab.
   void drop_derived(Columns& columns) const {
     const Column* const copy = columns.find(derived_property);
-    const Column* const source = columns.find(derived_from);
-    if (copy == nullptr || source == nullptr || source->components != 1 || copy->type_name() != "float32") return;
+    if (copy == nullptr || copy->type_name() != "float32") return;
     if (is_listed(derived_property, "vertex", header_.comments)) return;
     const auto& copies = std::get<std::vector<float>>(copy->values);
-    const bool is_copy = std::visit(
+    const bool is_copy = std::any_of(derived_from.begin(), derived_from.end(), [&](std::string_view name) {
+      const Column* const source = columns.find(name);
+      return source != nullptr && source->components == 1 && are_copies(*source, copies);
+    });
+    if (is_copy) columns.erase(derived_property);
+  }
+
+  static bool are_copies(const Column& source, const std::vector<float>& copies) {
+    return std::visit(
         [&](const auto& values) {
           return std::equal(values.begin(), values.end(), copies.begin(), copies.end(), [](auto from, float to) {
             return to_float(static_cast<double>(from)) == to ||
                    (std::isnan(static_cast<double>(from)) && std::isnan(to));
           });
         },
-        source->values);
-    if (is_copy) columns.erase(derived_property);
+        source.values);
   }
 
   void read_faces(const PlyElement& element) {

@@ -1,6 +1,7 @@
 // Blum: names of columns as properties of PLY files. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -11,10 +12,10 @@
 
 namespace blum::complex_files {
 
-/// Property of vertices with a copy of the column `radius`, by which MeshLab colours. If the vertices have a column of
-/// that name, no copy is written, and a comment declares the column.
+/// Property of vertices by which MeshLab colours. It holds a copy of the first of the columns `derived_from` that the
+/// vertices have. If the vertices have a column of that name, no copy is written, and a comment declares the column.
 inline constexpr std::string_view derived_property = "quality";
-inline constexpr std::string_view derived_from = "radius";
+inline constexpr std::array<std::string_view, 2> derived_from{"radius", "distance"};
 
 /// Largest number of properties of an element; below, the largest number of those that are not columns.
 inline constexpr std::size_t max_ply_properties = 100'000;
