@@ -47,7 +47,7 @@ def test_the_overlap_of_two_solids_is_reported(folder):
     assert np.allclose(np.array(curve)[:, 2], 0.5)
     with np.load(folder / "parts.npz") as file:
         assert file["distance"].tolist() == [-part["depth"]]
-        assert np.linalg.norm(file["point"][0, 0] - file["point"][0, 1]) == pytest.approx(part["depth"])
+        assert np.linalg.norm(file["closest"][0, 0] - file["closest"][0, 1]) == pytest.approx(part["depth"])
         for name in ("depth_bound", "direction", "area", "volume", "deep_object"):
             assert file[name].tolist() == [part[name]]
     scene = blum.ProximityScene()
@@ -118,8 +118,8 @@ def test_all_pairs_are_those_of_the_library(folder, tmp_path):
     run("proximity", "signed", *files, "--self", "-o", tmp_path / "pairs.npz")
     signed = scene.signed_separations()
     with np.load(tmp_path / "pairs.npz") as file:
-        for name in ("object", "primitive", "distance", "point", "feature"):
-            column = getattr(signed, "closest" if name == "point" else name)
+        for name in ("object", "primitive", "distance", "closest", "feature"):
+            column = getattr(signed, name)
             assert file[name].tolist() == column.tolist(), name
 
 
@@ -135,7 +135,7 @@ def test_signed_returns_one_number_for_each_pair_of_solids(folder, tmp_path):
         scene.add(blum.read_mesh(file))
     with np.load(out) as held:
         assert held["object"].tolist() == [[a, b] for a in range(4) for b in range(a + 1, 4)]
-        for (a, b), distance, (p, q) in zip(held["object"], held["distance"], held["point"], strict=True):
+        for (a, b), distance, (p, q) in zip(held["object"], held["distance"], held["closest"], strict=True):
             assert distance == scene.signed_separation(int(a), int(b)), (a, b)
             assert np.isclose(np.linalg.norm(p - q), abs(distance))
         overlapping = {tuple(pair) for pair in held["object"][held["distance"] < 0].tolist()}

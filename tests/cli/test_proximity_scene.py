@@ -80,13 +80,13 @@ def read_csv(path):
         "object": both(int, ["object"]).reshape(-1, 2),
         "primitive": both(int, ["primitive"]).reshape(-1, 2),
         "distance": np.array([float(row["distance"]) for row in rows]),
-        "point": both(float, "xyz").reshape(-1, 2, 3),
+        "closest": both(float, "xyz").reshape(-1, 2, 3),
         "feature": both(int, ["feature_0", "feature_1", "feature_2"]).reshape(-1, 2, 3),
     }
 
 
 def read_json(path):
-    shapes = {"object": (-1, 2), "primitive": (-1, 2), "distance": (-1,), "point": (-1, 2, 3), "feature": (-1, 2, 3)}
+    shapes = {"object": (-1, 2), "primitive": (-1, 2), "distance": (-1,), "closest": (-1, 2, 3), "feature": (-1, 2, 3)}
     text = json.loads(path.read_text())
     return {"metadata": text["metadata"], **{name: np.array(text[name]).reshape(shapes[name]) for name in shapes}}
 
@@ -103,10 +103,10 @@ def read_vtp(path):
     assert data.GetNumberOfCells() == count and data.GetNumberOfPoints() == 2 * count
     cells = {name: vtk_to_numpy(data.GetCellData().GetArray(name)) for name in ("object", "primitive", "distance")}
     if count == 0:
-        return {**cells, "point": np.zeros((0, 2, 3)), "feature": np.zeros((0, 2, 3))}
+        return {**cells, "closest": np.zeros((0, 2, 3)), "feature": np.zeros((0, 2, 3))}
     ends = vtk_to_numpy(data.GetLines().GetConnectivityArray()).reshape(-1, 2)
     feature = vtk_to_numpy(data.GetCellData().GetArray("feature")).reshape(-1, 2, 3)
-    return {**cells, "point": vtk_to_numpy(data.GetPoints().GetData())[ends], "feature": feature}
+    return {**cells, "closest": vtk_to_numpy(data.GetPoints().GetData())[ends], "feature": feature}
 
 
 READERS = {"npz": read_npz, "csv": read_csv, "json": read_json, "vtp": read_vtp}
@@ -119,8 +119,8 @@ def test_every_format_equals_the_package(objects, tmp_path, query, options, ask)
         output = tmp_path / f"p.{extension}"
         answer = run_json("proximity", query, *objects, *options, "-o", output)
         found = read(output)
-        for name in ("object", "primitive", "distance", "point", "feature"):
-            column = getattr(wanted, "closest" if name == "point" else name)
+        for name in ("object", "primitive", "distance", "closest", "feature"):
+            column = getattr(wanted, name)
             assert found[name].tolist() == column.tolist(), (extension, name)
         assert answer["pairs"] == len(wanted) > 0 and answer["outputs"] == [str(output)]
         assert answer["object_pairs"] == wanted.object_pairs
@@ -130,7 +130,7 @@ def test_every_format_equals_the_package(objects, tmp_path, query, options, ask)
         assert answer["closest"]["object"] == list(wanted.closest_pair.object)
         assert answer["closest"]["primitive"] == list(wanted.closest_pair.primitive)
     types = {name: array.dtype.str[1:] for name, array in read_npz(tmp_path / "p.npz").items() if name != "metadata"}
-    assert types == {"object": "i4", "primitive": "i4", "distance": "f8", "point": "f8", "feature": "i4"}
+    assert types == {"object": "i4", "primitive": "i4", "distance": "f8", "closest": "f8", "feature": "i4"}
     metadata = json.loads(str(read_npz(tmp_path / "p.npz")["metadata"]))
     typed = read_json(tmp_path / "p.json")["metadata"]
     within = [float(options[k + 1]) for k, word in enumerate(options) if word == "--max-distance"]
@@ -155,8 +155,8 @@ def test_empty_results_are_written(objects, tmp_path, extension):
     answer = run_json("proximity", "closest", objects[0], objects[2], "--max-distance", "1e-3", "-o", output)
     assert [answer["pairs"], answer["min_distance"], answer["closest"]] == [0, None, None]
     found = READERS[extension](output)
-    assert {name: found[name].shape for name in ("object", "distance", "point", "feature")} == {
-        "object": (0, 2), "distance": (0,), "point": (0, 2, 3), "feature": (0, 2, 3)}  # fmt: skip
+    assert {name: found[name].shape for name in ("object", "distance", "closest", "feature")} == {
+        "object": (0, 2), "distance": (0,), "closest": (0, 2, 3), "feature": (0, 2, 3)}  # fmt: skip
 
 
 def test_separation_is_reported_as_text_and_json(objects):

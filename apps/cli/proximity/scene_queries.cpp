@@ -23,7 +23,7 @@ SceneFound ask_penetration(const ProximityScene& scene, const SceneQuestion& ask
 }
 
 constexpr std::string_view pairs_output =
-    "Pairs: .npz (object, primitive, distance, point, feature, metadata), .csv, .json, .vtp (lines between closest "
+    "Pairs: .npz (object, primitive, distance, closest, feature, metadata), .csv, .json, .vtp (lines between closest "
     "points)";
 constexpr std::string_view within = "Only pairs at most D apart, in mesh units (default: all)";
 

@@ -15,10 +15,10 @@ namespace blum {
 /// Writes pairs of primitives of a scene. The extension selects the format.
 ///
 ///   `.npz`   Arrays for n pairs. `object` [n, 2] and `primitive` [n, 2] are the indices of the two objects, and of the
-///            primitives in the meshes of these objects (int32). `distance` [n] and `point` [n, 2, 3], the two closest
-///            points, are float64. `feature` [n, 2, 3] (int32) holds the vertices of the feature on which each of the
-///            two points lies. These are one, two or three indices in the object's mesh, padded with -1. `metadata` is
-///            a JSON object.
+///            primitives in the meshes of these objects (int32). `distance` [n] and `closest` [n, 2, 3], the two
+///            closest points, are float64. `feature` [n, 2, 3] (int32) holds the vertices of the feature on which each
+///            of the two points lies. These are one, two or three indices in the object's mesh, padded with -1.
+///            `metadata` is a JSON object.
 ///   `.csv`   A row for each pair: `first_object, first_primitive, second_object, second_primitive, distance, first_x,
 ///            first_y, first_z, second_x, second_y, second_z`, `first_feature_0` to `_2`, `second_feature_0` to `_2`.
 ///   `.json`  An object with the metadata, and lists with the names of the .npz arrays. The metadata `max_distance` and

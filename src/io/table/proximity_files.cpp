@@ -93,8 +93,8 @@ class PairColumns {
     return primitive_vertices(objects_[object.value], primitive);
   }
 
-  static constexpr std::array<std::string_view, 6> own_names{"object", "primitive", "distance",
-                                                             "point",  "feature",   "metadata"};
+  static constexpr std::array<std::string_view, 6> own_names{"object",  "primitive", "distance",
+                                                             "closest", "feature",   "metadata"};
 
   std::span<const PrimitivePair> pairs_;
   std::span<const MeshView> objects_;
@@ -147,7 +147,7 @@ void add_places(const PairColumns& pairs, std::vector<TableColumn>& columns) {
     for (std::size_t k = 0; k < 6; ++k) out[k] = sides[k / 3][k % 3];
   };
   columns.push_back(made_column<double>("distance", {}, distance));
-  columns.push_back(made_column<double>("point", {2, 3}, point, point_names));
+  columns.push_back(made_column<double>("closest", {2, 3}, point, point_names));
   columns.push_back(made_column<std::int32_t>("feature", {2, 3}, feature, feature_names));
   for (const Column& column : pairs.more()) columns.push_back(tables::column_of(column));
 }

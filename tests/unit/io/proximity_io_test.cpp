@@ -68,7 +68,7 @@ TEST_F(ProximityFiles, ArraysHoldEveryPair) {
   EXPECT_EQ(array_of<std::int32_t>(npz, "object", {4, 2}), objects);
   EXPECT_EQ(array_of<std::int32_t>(npz, "primitive", {4, 2}), primitives);
   const auto distance = array_of<double>(npz, "distance", {4});
-  const auto point = array_of<double>(npz, "point", {4, 2, 3});
+  const auto point = array_of<double>(npz, "closest", {4, 2, 3});
   EXPECT_EQ(distance[0], 2);
   for (std::size_t n = 0; n < 4; ++n) {
     EXPECT_EQ(distance[n], pairs_[n].between.distance);
@@ -88,7 +88,7 @@ TEST_F(ProximityFiles, JsonAndRowsHoldTheSame) {
   EXPECT_EQ(json["metadata"]["source"], "test");
   EXPECT_EQ(json["object"], nlohmann::json::parse("[[0,0],[0,1],[0,1],[1,0]]"));
   EXPECT_EQ(json["feature"][1], nlohmann::json::parse("[[3,4,-1],[0,-1,-1]]"));
-  EXPECT_EQ(json["point"][0], nlohmann::json::parse("[[1,0,0],[3,0,0]]"));
+  EXPECT_EQ(json["closest"][0], nlohmann::json::parse("[[1,0,0],[3,0,0]]"));
   const std::string rows = test::file_content(written("p.csv"));
   EXPECT_EQ(rows.substr(rows.find('\n') + 1, rows.find('\n', rows.find('\n') + 1) - rows.find('\n') - 1),
             "0,0,0,1,2,1,0,0,3,0,0,1,-1,-1,3,-1,-1");
