@@ -152,6 +152,12 @@ void bind_updates(nb::class_<ProximityScene>& scene) {
       },
       nb::arg("object"), nb::arg("name"));
   scene.def(
+      "mesh",
+      [](const ProximityScene& self, std::uint32_t object) {
+        return arrays_of(run({0, nb::none()}, [&](const Context&) { return copy_of(self.mesh(ObjectId(object))); }));
+      },
+      nb::arg("object"));
+  scene.def(
       "set_mesh",
       [](ProximityScene& self, std::uint32_t object, const MeshArrays& mesh, int threads, nb::object progress) {
         const MeshView view = mesh.view();

@@ -8,8 +8,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import Any, NoReturn, TypeGuard, Unpack, cast, overload
+from dataclasses import dataclass, replace
+from typing import Any, TypeGuard, Unpack, cast, overload
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from ._arguments import (
     truth,
 )
 from ._errors import InvalidMesh, InvalidOption
-from ._mesh import MeshLike, as_mesh, end_vertices
+from ._mesh import Mesh, MeshLike, as_mesh, end_vertices, mesh_of_arrays
 from ._methods import ShortList, Shown
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
@@ -76,15 +76,23 @@ class ProximityScene:
 
     def __init__(self, **options: Unpack[SceneOptions]) -> None:
         self._scene = _core.ProximityScene(dict(options))
-        self._count = 0
+        self._options = dict(options)
+        self._objects: list[_Object | None] = []  # None: removed
+        self._excluded: set[tuple[int, int]] = set()
         self._busy = threading.Lock()
         self._owner: int | None = None  # Thread that uses the scene.
 
-    def __reduce__(self) -> NoReturn:
-        raise TypeError("a ProximityScene cannot be pickled or copied: add its meshes to a new scene")
+    def __reduce__(self) -> tuple[Any, ...]:
+        with self._alone():
+            objects = [
+                None if each is None else (mesh_of_arrays(self._scene.mesh(number)), each)
+                for number, each in enumerate(self._objects)
+            ]
+            return _restored, (type(self), self._options, objects, sorted(self._excluded))
 
     def __repr__(self) -> str:
-        return f"ProximityScene({self._count} {'object' if self._count == 1 else 'objects'})"
+        count = sum(each is not None for each in self._objects)
+        return f"ProximityScene({count} {'object' if count == 1 else 'objects'})"
 
     def add(
         self,
@@ -133,7 +141,7 @@ class ProximityScene:
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             added: int = self._scene.add(own._arrays, *options, called, place, count, report)
-            self._count += 1
+            self._objects.append(_Object(*options, called, place.copy()))
         return added
 
     def remove(self, index: Integer) -> None:
@@ -150,7 +158,8 @@ class ProximityScene:
         which = _object(index, "index")
         with self._alone():
             self._scene.remove(which)
-            self._count -= 1
+            self._objects[which] = None
+            self._excluded = {pair for pair in self._excluded if which not in pair}
 
     def rename(self, index: Integer, name: str) -> None:
         """Changes the name of an object in messages.
@@ -164,6 +173,7 @@ class ProximityScene:
         which, called = _object(index, "index"), text(name, "name")
         with self._alone():
             self._scene.rename(which, called)
+            self._change(which, name=called)
 
     def update(
         self,
@@ -219,6 +229,7 @@ class ProximityScene:
                 self._scene.set_mesh(which, own._arrays, count, report)
             if place is not None:
                 self._scene.set_place(which, place)
+                self._change(which, place=place.copy())
 
     def exclude(self, a: Integer, b: Integer, excluded: bool = True) -> None:
         """Excludes a pair of objects, or one object and itself, from comparisons, or includes the pair again.
@@ -234,8 +245,11 @@ class ProximityScene:
         (True, 0)
         """
         first, second = _object(a, "a"), _object(b, "b")
+        is_excluded = truth(excluded, "excluded")
         with self._alone():
-            self._scene.exclude(first, second, truth(excluded, "excluded"))
+            self._scene.exclude(first, second, is_excluded)
+            pair = (min(first, second), max(first, second))
+            (self._excluded.add if is_excluded else self._excluded.discard)(pair)
 
     @overload
     def separation(
@@ -531,6 +545,12 @@ class ProximityScene:
         with self._alone(progress) as report:
             return SceneCollisions(*self._scene.continuous(rows, dict(options), count, report))
 
+    def _change(self, index: int, **facts: Any) -> None:
+        """Notes changes of an object, for copies of the scene."""
+        own = self._objects[index]
+        assert own is not None  # The library rejects removed objects.
+        self._objects[index] = replace(own, **facts)
+
     @contextmanager
     def _alone(self, progress: Progress = False) -> Iterator[ProgressCallback | None]:
         """Returns a context with the library's progress callback, in which no other thread uses the scene."""
@@ -542,6 +562,43 @@ class ProximityScene:
                 yield report
             finally:
                 self._owner = None
+
+
+@dataclass(frozen=True)
+class _Object:
+    """Facts about an object of a scene, in addition to its mesh."""
+
+    layers: int
+    meets: int
+    compare_self: bool
+    name: str
+    place: FloatArray
+
+
+def _restored(
+    kind: type[ProximityScene],
+    options: Any,
+    objects: list[tuple[Mesh, _Object] | None],
+    excluded: list[tuple[int, int]],
+) -> ProximityScene:
+    """Returns a copy of a scene. Its objects have the same numbers."""
+    scene = kind(**options)
+    for each in objects:
+        if each is None:
+            scene.remove(scene.add(Mesh([[0.0, 0.0, 0.0]])))
+        else:
+            mesh, own = each
+            scene.add(
+                mesh,
+                layers=own.layers,
+                meets=own.meets,
+                compare_self=own.compare_self,
+                name=own.name,
+                transform=own.place,
+            )
+    for a, b in excluded:
+        scene.exclude(a, b)
+    return scene
 
 
 def separation(

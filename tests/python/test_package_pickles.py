@@ -222,9 +222,51 @@ def test_solvers_and_verifiers_work_again(way):
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_scenes_are_rejected_with_advice(way):
-    with pytest.raises(TypeError, match="a ProximityScene cannot be pickled or copied: add its meshes to a new scene"):
-        WAYS[way](blum.ProximityScene())
+def test_scenes_keep_objects_numbers_and_comparisons(way):
+    ball, place = blum.generate("sphere"), np.eye(4)
+    scene = blum.ProximityScene(culling="voronoi", cell_size=3)
+    table = scene.add(BOX, name="table")
+    gone = scene.add(ball)
+    moved = scene.add(ball, layers=2, meets=1, transform=place)
+    folded = scene.add(blum.Mesh(BOX.vertices, BOX.triangles, [[0, 6]], [1]), compare_self=True, name="folded")
+    other = scene.add(ball, name="other")
+    scene.remove(gone)
+    place[:3, 3] = (0, 0, 0.9)
+    scene.update(moved, transform=place)
+    scene.update(folded, vertices=BOX.vertices * 1.5)
+    scene.update(other, mesh=BOX)
+    scene.rename(other, "box")
+    scene.exclude(table, other)
+    scene.exclude(folded, folded)
+    scene.exclude(folded, folded, False)
+    place[:] = 7  # The caller may reuse the array.
+
+    again = WAYS[way](scene)
+    assert repr(again) == repr(scene) == "ProximityScene(4 objects)"
+
+    def answers(asked):
+        return [
+            content_of(asked.collisions()), content_of(asked.separation()), content_of(asked.closest_primitives(0.3)),
+            content_of(asked.separation(table, moved)),
+        ]  # fmt: skip
+
+    wanted = answers(scene)
+    assert answers(again) == wanted and len(scene.collisions()) > 0
+    objects = {tuple(pair) for pair in again.collisions().object.tolist()}
+    assert (table, other) not in objects and (table, moved) in objects
+    assert again.collisions().culling == "voronoi"
+    # Both scenes are complete, and independent of each other.
+    for numbers in (again, scene):
+        with pytest.raises(blum.InvalidOption, match="1"):
+            numbers.update(gone, vertices=ball.vertices)
+    again.update(moved, transform=np.eye(4))
+    again.exclude(table, other, False)
+    assert answers(scene) == wanted != answers(again)
+    assert again.add(BOX) == scene.add(BOX) == 5
+    again.remove(table)
+    with pytest.raises(blum.InvalidMesh, match="'box'"):
+        again.update(other, vertices=[[0, 0, 0]])
+    assert repr(WAYS[way](again)) == "ProximityScene(4 objects)"
 
 
 def test_pickles_are_whole_in_another_process(tmp_path):
