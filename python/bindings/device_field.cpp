@@ -217,9 +217,9 @@ std::uint64_t compute(FieldSolverHere& solver, const DeviceArray& vertices, cons
 }
 
 std::uint64_t transform(TransformHere& transform, const DeviceArray& values, const DeviceArray& distance,
-                        const DeviceArray& site, std::uintptr_t stream) {
+                        const DeviceArray* site, std::uintptr_t stream) {
   const DeviceArrayView from = values.view(3);
-  const DeviceFieldView to = output_of(distance, &site);
+  const DeviceFieldView to = output_of(distance, site);
   return transform.with([&](DeviceDistanceTransform& own) {
     own.compute(from, to, stream_of(stream));
     return own.progress().queued;
@@ -301,7 +301,7 @@ void bind_device_field(nb::module_& m) {
                    [](TransformHere& self) {
                      return dict_of(self.with([](const DeviceDistanceTransform& own) { return own.options(); }));
                    })
-      .def("compute", &transform, nb::arg("values"), nb::arg("distance"), nb::arg("site"), nb::arg("stream"));
+      .def("compute", &transform, nb::arg("values"), nb::arg("distance"), nb::arg("site").none(), nb::arg("stream"));
   bind_queue(transforms);
 }
 

@@ -432,7 +432,8 @@ class DeviceDistanceTransform(_DeviceSolver):
             signed transform has the same result if every voxel is selected. No error is raised, because nothing waits
             for the device.
         out : (distance, site), optional
-            Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape.
+            Arrays on the device to write to: float32, and int32 or uint32, of the grid's shape. Without sites, the
+            second one is None.
         stream : int, or a stream of PyTorch, CuPy or Warp
             Stream of the work. Default: the legacy default stream.
 

@@ -51,8 +51,12 @@ void DeviceDistanceTransform::compute(const DeviceArrayView& values, const Devic
     throw InvalidImage(std::to_string(values.rows) + " values, but the grid has " +
                        std::to_string(state_->grid.node_count()) + " voxels");
   }
-  if (values.data == nullptr || field.distance == nullptr || field.site == nullptr) {
-    throw InvalidOption("values, distances and sites on a device must not be null");
+  if (values.data == nullptr || field.distance == nullptr) {
+    throw InvalidOption("values and distances on a device must not be null");
+  }
+  if ((field.site != nullptr) != state_->options.sites) {
+    throw InvalidOption(state_->options.sites ? "the memory for sites on a device must not be null"
+                                              : "the options request no sites, so their memory must be null");
   }
   detail::ImageRequest request = state_->request;
   request.distance = field.distance;

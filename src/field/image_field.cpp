@@ -27,9 +27,10 @@ std::string describe(const LabelSelection& selection) {
 void check_selected(std::size_t selected, const VoxelImageView& image, const ImageRequest& request) {
   if (selected == 0) throw InvalidImage(nothing_selected_text(image, request.selection));
   if (request.is_signed && selected == request.voxel_count()) {
-    throw InvalidImage(
-        "every voxel of the image " + describe(request.selection) +
-        ", so a signed field has no boundary to measure to; request an unsigned field or another selection");
+    throw InvalidImage("every voxel of the image " + describe(request.selection) +
+                       ", so a signed field has no boundary to measure to: select a part of the voxels, by a label or "
+                       "a threshold, or add a "
+                       "layer of voxels of 0 around the image if the solid ends at its border (numpy.pad(values, 1))");
   }
 }
 
@@ -37,11 +38,11 @@ void begin_field(const VoxelImageView& image, const DistanceTransformOptions& op
                  Field& field) {
   field.grid = image.grid;
   field.distance = Buffer<float>(image.grid.node_count());
-  field.site = Buffer<SiteId>(image.grid.node_count());
+  field.site = options.sites ? Buffer<SiteId>(image.grid.node_count()) : Buffer<SiteId>();
   request.distance = field.distance.data();
   // A SiteId consists of its 32-bit value only, so result memory may be cast to integers.
   static_assert(sizeof(SiteId) == sizeof(std::uint32_t));
-  request.site = &field.site.data()->value;
+  request.site = options.sites ? &field.site.data()->value : nullptr;
   field.site_ids = SiteIds::voxels;
   field.band = options.band;
   const sign::Plan plan = sign::plan_image_signs(request.is_signed, describe(request.selection));

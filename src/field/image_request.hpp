@@ -29,8 +29,9 @@ struct ImageRequest {
   float band = 0;  ///< half-width, rounded to float; also the distance written for voxels beyond it
 
   LabelSelection selection = {};
-  float* distance = nullptr;      ///< one per voxel, x fastest, in the unit of the spacing
-  std::uint32_t* site = nullptr;  ///< one per voxel: linear index of the closest site voxel; 0xffffffff beyond the band
+  float* distance = nullptr;  ///< one per voxel, x fastest, in the unit of the spacing
+  /// One per voxel: linear index of the closest site voxel; 0xffffffff beyond the band. Null if they are not wanted.
+  std::uint32_t* site = nullptr;
 
   [[nodiscard]] std::size_t voxel_count() const { return size[0] * size[1] * size[2]; }
 };

@@ -41,7 +41,7 @@ class DeviceDistanceTransform {
   /// @param values  the values of the voxels, x fastest.
   /// @param field   memory that receives distances and sites.
   /// @throws InvalidImage if the number of values is not the number of voxels.
-  /// @throws InvalidOption if a pointer to memory is missing.
+  /// @throws InvalidOption if a pointer to memory is missing, or memory for sites is given without the option `sites`.
   /// @throws OutOfMemory, DeviceError.
   void compute(const DeviceArrayView& values, const DeviceFieldView& field, void* stream = nullptr);
 

@@ -26,6 +26,9 @@ struct DistanceTransformOptions {
   /// Largest distance that is computed (half-width of the band), > 0, in the units of the image's spacing. Voxels with
   /// a larger distance get +-band and no site. Unset: no limit.
   std::optional<double> band = {};
+  /// True: the field contains the closest voxel of every voxel. False: the field contains no sites and takes half the
+  /// memory, also while it is computed. The distances do not depend on this option.
+  bool sites = true;
 };
 
 template <>
@@ -40,6 +43,7 @@ struct Description<DistanceTransformOptions> {
       Member{"band", &DistanceTransformOptions::band, "units of the spacing",
              "half-width of a band around the selected voxels; voxels beyond it get the distance +-band and no site",
              Range::positive()},
+      Member{"sites", &DistanceTransformOptions::sites, "", "true: store the closest voxels, which doubles the memory"},
   };
 };
 
@@ -59,16 +63,17 @@ struct Description<DistanceTransformOptions> {
 /// @throws InvalidImage if the image spans less than 1e-36 or more than 1e37, which 32-bit distances cannot represent.
 /// @throws InvalidOption, OutOfMemory, DeviceError, Cancelled.
 /// Cost: about O(voxels log(side)) for `side` voxels along the longest side, at worst twice that. The result takes 8
-/// bytes per voxel. The working memory takes 1/8 byte per voxel, and a few MiB per thread. Method: one pass per axis
-/// (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use no lower envelopes. Instead, they use
-/// that the index of the closest row is monotone along a column (Aggarwal 1987). These passes process many columns at a
-/// time.
+/// bytes per voxel, or 4 without sites. The working memory takes 1/8 byte per voxel, and a few MiB per thread. Method:
+/// one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012). The passes along y and z use no lower envelopes.
+/// Instead, they use that the index of the closest row is monotone along a column (Aggarwal 1987). These passes process
+/// many columns at a time.
 [[nodiscard]] Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
                                        const Context& context = {});
 
 /// Computes the transforms of several selections (labels, thresholds) of one image, in their order. Each result equals
 /// that of distance_transform() with one selection, byte for byte. options.selection is ignored. The image is checked
-/// once, and working memory is shared. The results take 8 bytes per voxel and selection.
+/// once, and working memory is shared. The results take 8 bytes per voxel and selection, or 4 without
+/// sites.
 /// @throws as distance_transform().
 [[nodiscard]] std::vector<Field> distance_transforms(const VoxelImageView& image,
                                                      std::span<const LabelSelection> selections,

@@ -66,6 +66,7 @@ constexpr std::size_t depth_task_voxels = std::size_t{1} << 18U;
 /// touch them first. Its columns meet a new page in every layer. So its first few tasks would map all of the memory and
 /// could not react to a cancel.
 void touch_distances(const TransformPlan& plan, std::size_t first_row, std::size_t last_row) {
+  if (plan.site == nullptr) return;  // the x pass writes there
   constexpr std::size_t page = 4096 / sizeof(float);
   const std::size_t end = last_row * plan.size[0];
   for (std::size_t i = first_row * plan.size[0]; i < end; i += page) plan.distance[i] = 0;
@@ -129,6 +130,7 @@ Field transform(const VoxelImageView& image, const LabelSelection& selection, co
   detail::check_selected(selected, image, plan);
   clock.lap("select voxels");
   detail::begin_field(image, options, plan, field);
+  plan.partial = plan.site != nullptr ? plan.site : reinterpret_cast<std::uint32_t*>(plan.distance);
   plan.mask = work.mask.words.data();
   plan.mask_words_per_row = work.mask.words_per_row;
   transform_planes(plan, work, context);

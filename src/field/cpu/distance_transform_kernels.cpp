@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -161,11 +162,14 @@ void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& colu
   std::size_t lowest = columns.length;
   std::size_t highest = 0;
   for (std::size_t row = 0; row < columns.length; ++row) {
-    const auto* in = reinterpret_cast<const std::int32_t*>(plan.site) + columns.first + row * columns.row_stride;
+    const auto* in = reinterpret_cast<const std::int32_t*>(plan.partial) + columns.first + row * columns.row_stride;
     // The rows of a column are far apart in memory, so the processor does not prefetch them by itself.
     if constexpr (kFinal) hwy::Prefetch(in + (next_columns ? width : 0));
     if (columns.lanes < width) {
-      for (std::size_t lane = 0; lane < width; ++lane) buffer[lane] = in[std::min(lane, columns.lanes - 1)];
+      for (std::size_t lane = 0; lane < width; ++lane) {
+        // Copied as bytes, because distances may be written over these integers next.
+        std::memcpy(buffer + lane, in + std::min(lane, columns.lanes - 1), sizeof(*in));
+      }
       in = buffer;
     }
     const auto partial = hn::LoadU(di, in);
@@ -320,7 +324,7 @@ class Sweep {
     const DI di;
     const VI packed = hn::Or(hn::ShiftLeftSame(closest_row, static_cast<int>(plan_.x_bits)), partial);
     const VI none = hn::Set(di, static_cast<std::int32_t>(no_site));
-    auto* out = reinterpret_cast<std::int32_t*>(plan_.site) + columns_.first + lane_ + row * columns_.row_stride;
+    auto* out = reinterpret_cast<std::int32_t*>(plan_.partial) + columns_.first + lane_ + row * columns_.row_stride;
     store(di, hn::IfThenElse(hn::Eq(partial, none), none, packed), out);
   }
 
@@ -344,7 +348,7 @@ class Sweep {
     distance = hn::Or(distance, hn::And(hn::BitCast(df, negative), hn::SignBit(df)));
     const std::size_t out = columns_.first + lane_ + row * columns_.row_stride;
     store(df, distance, plan_.distance + out);
-    store(di, site, reinterpret_cast<std::int32_t*>(plan_.site) + out);
+    if (plan_.site != nullptr) store(di, site, reinterpret_cast<std::int32_t*>(plan_.site) + out);
   }
 
   /// Converts squared distances to distances.

@@ -19,7 +19,11 @@ inline constexpr std::size_t tile_width = 64;
 /// closest voxel in the row. After the y pass, it is `y << x_bits | x` of the closest voxel in the plane. A value with
 /// all bits set means none. Values fit in 32 bits, and no site has all bits set, because an image has fewer than 2^31
 /// voxels.
+///
+/// Without sites, the partial sites are in the memory of the distances. The z pass reads all partial sites of a column
+/// before it writes distances over them.
 struct TransformPlan : ImageRequest {
+  std::uint32_t* partial = nullptr;     ///< the site array; the memory of the distances if that is null
   unsigned x_bits = 0;                  ///< number of bits for an x coordinate
   const std::uint64_t* mask = nullptr;  ///< see MaskBits
   std::size_t mask_words_per_row = 0;

@@ -154,7 +154,7 @@ void transform_row(const TransformPlan& plan, PassScratch& scratch, const std::u
 void rows(const TransformPlan& plan, PassScratch& scratch, std::size_t begin, std::size_t end) {
   for (std::size_t row = begin; row < end; ++row) {
     const std::uint64_t* words = plan.mask + row * plan.mask_words_per_row;
-    std::uint32_t* out = plan.site + row * plan.size[0];
+    std::uint32_t* out = plan.partial + row * plan.size[0];
     if (plan.is_signed) {
       transform_row<true>(plan, scratch, words, out);
     } else {

@@ -16,7 +16,7 @@ namespace blum::cuda {
 
 /// Must be increased with every change of this file, or of the types that are passed to the module: FieldRequest,
 /// ImageRequest.
-inline constexpr std::uint32_t module_version = 7;
+inline constexpr std::uint32_t module_version = 8;
 inline constexpr const char* module_symbol = "blum_cuda_module";
 inline constexpr const char* module_file = "libblum_cuda.so";
 

@@ -43,7 +43,7 @@ class ImageEngine {
   void transform(const detail::ImageRequest& request) {
     transform_.run(distance_.data(), site_.data());
     device_.download(distance_.data(), voxels_, request.distance);
-    device_.download(site_.data(), voxels_, request.site);
+    if (request.site != nullptr) device_.download(site_.data(), voxels_, request.site);
   }
 
   /// Transforms an image in the device's memory, and writes to arrays there. Queues the work without waiting for it.
@@ -51,7 +51,8 @@ class ImageEngine {
     transform_.set_request(request);
     with_type(values.type,
               [&]<class T>(T) { transform_.select(static_cast<const T*>(values.data), request.selection); });
-    transform_.run(request.distance, request.site);
+    if (request.site == nullptr) site_.resize(request.voxel_count());  // the passes need them
+    transform_.run(request.distance, request.site != nullptr ? request.site : site_.data());
   }
 
  private:

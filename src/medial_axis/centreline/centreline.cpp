@@ -318,6 +318,7 @@ Buffer<float> depth_of(const VoxelSet& voxels, const Vec3d& spacing, const Conte
   DistanceTransformOptions options;
   options.selection = LabelSelection::of_label(0);
   options.is_signed = false;
+  options.sites = false;
   return std::move(distance_transform(image, options, context).distance);
 }
 

@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <stop_token>
 #include <string>
 
@@ -91,10 +93,16 @@ constexpr std::array<Size, 14> sizes = {{{1, 1, 3},
 
 class DistanceTransform : public test::BackEndTest {
  protected:
+  /// Returns the transform. Expects that the transform without sites has the same bytes of distances.
   [[nodiscard]] Field transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
                                 const Context& how = {}) const {
     Field field = distance_transform(image, options, context(how));
     EXPECT_EQ(field.device, device());
+    DistanceTransformOptions without = options;
+    without.sites = false;
+    const Field half = distance_transform(image, without, context(how));
+    EXPECT_TRUE(half.site.empty());
+    EXPECT_TRUE(std::ranges::equal(std::as_bytes(half.distance.span()), std::as_bytes(field.distance.span())));
     return field;
   }
 
