@@ -57,7 +57,10 @@ void bind_meshes(nb::module_& m) {
 void bind_volumes(nb::module_& m) {
   m.def(
       "read_image",
-      [](const Path& path) { return image_of(run({0, nb::none()}, [&](const Context&) { return read_image(path); })); },
+      [](const Path& path) {
+        ImageFile file = run({0, nb::none()}, [&](const Context&) { return read_image_file(path); });
+        return nb::make_tuple(image_of(std::move(file.image)), to_python(file.warnings));
+      },
       nb::arg("path"));
   m.def(
       "write_image",

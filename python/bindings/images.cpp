@@ -70,6 +70,16 @@ void bind_transforms(nb::module_& m) {
       },
       nb::arg("image"), nb::arg("most_labels"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
+      "rounded_labels",
+      [](const ImageArrays& image, const std::vector<std::int64_t>& labels) -> nb::object {
+        auto rounded =
+            run({0, nb::none()}, [&](const Context& context) { return rounded_labels(image.view, labels, context); });
+        if (!rounded) return nb::none();
+        VoxelImage made{image.view.grid, std::move(rounded->values), image.view.space};
+        return nb::make_tuple(image_of(std::move(made)), to_python(std::vector{std::move(rounded->warning)}));
+      },
+      nb::arg("image"), nb::arg("labels"));
+  m.def(
       "selected_voxels",
       [](const ImageArrays& image, std::optional<std::int64_t> label, std::optional<double> threshold, int threads,
          nb::object progress) {

@@ -16,7 +16,7 @@ from ._arguments import FloatArray, Integer, integer, label_of
 from ._axis_graph import multigraph
 from ._complex import Complex
 from ._errors import InvalidOption
-from ._image import as_image
+from ._image import as_image, labelled
 from ._mesh import Betti, betti_of
 from ._methods import Shown
 from ._options import takes
@@ -207,7 +207,12 @@ def centreline(
     if isinstance(labels, (str, bytes)):
         raise TypeError(f"labels must be a list of integers, not {type(labels).__name__}")
     wanted = None if labels is None else [label_of(label, "labels") for label in labels]
-    source = as_image(image, spacing, origin, direction)
+    label = options.get("label")
+    if options.get("threshold") is None:
+        selected = wanted or ([] if label is None else [label_of(label, "label")])
+    else:
+        selected = None
+    source = labelled(as_image(image, spacing, origin, direction), selected)
     with reporting(progress) as report:
         parts, edges, seconds, found = _core.centreline(
             source._arrays, wanted, dict(options), integer(threads, "threads"), report

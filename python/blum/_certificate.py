@@ -17,7 +17,7 @@ from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number
 from ._complex import Complex
 from ._grid import Grid
-from ._image import Image, as_image, is_image
+from ._image import Image, as_image, is_image, labelled
 from ._mesh import MeshOrVertices, as_mesh
 from ._progress import Progress, reporting
 from ._structs import Certificate, CertificateOptions, MeshSolidRule
@@ -61,6 +61,7 @@ class ShapeVerifier:
         self._weld = weld
         self._is_image = triangles is None and is_image(shape)
         self._image: _core.ImageAxisVerifier | None = None
+        self._has_labels = False
         self._mesh: _core.MeshAxisVerifier | None = None
         self._merged: Real | None = None  # Tolerance with which the vertices of _mesh were merged.
 
@@ -102,7 +103,7 @@ class ShapeVerifier:
         found: Certificate
         core = claim.complex._core
         if self._is_image:
-            image = self._of_image()
+            image = self._of_image(chosen)
             with reporting(progress) as report:
                 found = image.verify(core, said, has, chosen, least, asked, count, report)
         else:
@@ -111,9 +112,11 @@ class ShapeVerifier:
                 found = mesh.verify(core, said, has, asked, count, report)
         return found
 
-    def _of_image(self) -> _core.ImageAxisVerifier:
-        if self._image is None:
-            self._image = _core.ImageAxisVerifier(as_image(self._shape)._arrays)
+    def _of_image(self, label: int | None) -> _core.ImageAxisVerifier:
+        has_labels = label is not None  # If so, labels may be rounded.
+        if self._image is None or has_labels != self._has_labels:
+            image = labelled(as_image(self._shape), None if label is None else [label])
+            self._image, self._has_labels = _core.ImageAxisVerifier(image._arrays), has_labels
         return self._image
 
     def _of_mesh(self, merged: Real | None) -> _core.MeshAxisVerifier:

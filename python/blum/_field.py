@@ -29,7 +29,7 @@ from ._arguments import (
     source_name,
 )
 from ._grid import Grid, grid_for, mask_array
-from ._image import as_image
+from ._image import as_image, labelled
 from ._mesh import Mesh, MeshOrVertices, as_mesh, mesh_of_arrays
 from ._methods import Rebuilt
 from ._options import takes
@@ -568,10 +568,12 @@ def selected_voxels(
     >>> blum.selected_voxels(np.array([[[0, 1, 2, 3]]]), threshold=2).tolist()
     [[[False, False, True, True]]]
     """
+    chosen = None if label is None else label_of(label, "label")
+    given = labelled(as_image(image), None if chosen is None else [chosen])
     with reporting(progress) as report:
         mask: npt.NDArray[np.uint8] = _core.selected_voxels(
-            as_image(image)._arrays,
-            None if label is None else label_of(label, "label"),
+            given._arrays,
+            chosen,
             optional_number(threshold, "threshold"),
             integer(threads, "threads"),
             report,

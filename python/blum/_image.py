@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from ._formats import extensions
 from ._grid import Grid, image_grid
 from ._progress import Progress, reporting
 from ._structs import ImageValues
+from ._warn import warn_all
 
 __all__ = ["Image", "as_image", "read_image"]
 
@@ -87,6 +89,8 @@ class Image:
     def labels(self, most: int = 20, *, threads: int = 0, progress: Progress = False) -> ImageValues:
         """Returns the range of the values, and voxels, volume and Betti numbers of the most frequent labels.
 
+        Values within 0.01 of whole numbers are rounded, with a warning, if all values are.
+
         Parameters
         ----------
         most : int
@@ -102,7 +106,7 @@ class Image:
         """
         with reporting(progress) as report:
             found: ImageValues = _core.image_values(
-                self._arrays, integer(most, "most"), integer(threads, "threads"), report
+                labelled(self, [])._arrays, integer(most, "most"), integer(threads, "threads"), report
             )
         return found
 
@@ -153,8 +157,10 @@ def read_image(path: PathLike) -> Image:
     ...     blum.read_image(path).grid.size
     (4, 3, 2)
     """
-    image = image_of_parts(*_core.read_image(existing_file(path)))
+    parts, warnings = _core.read_image(existing_file(path))
+    image = image_of_parts(*parts)
     image.source = source_name(path)
+    warn_all(warnings)
     return image
 
 
@@ -168,6 +174,28 @@ def image_of_parts(values: npt.NDArray[Any], spec: _core.GridSpec, space: str) -
     """Returns an image from the library's arrays."""
     grid = Grid._of(spec)
     return Image(values, grid.spacing, grid.origin, grid.direction, space=space)
+
+
+def labelled(image: Image, labels: Sequence[int] | None) -> Image:
+    """Returns an image whose labels are whole numbers, because selections by label compare exactly.
+
+    If values are nearly whole, as after a scale in single precision, they are rounded with a warning.
+
+    Parameters
+    ----------
+    labels : integers
+        Labels that are selected; empty: all. None: nothing is selected by label, and the image is returned as it is.
+    """
+    if labels is None or image.values.dtype.kind != "f":
+        return image
+    found = _core.rounded_labels(image._arrays, list(labels))
+    if found is None:
+        return image
+    parts, warnings = found
+    rounded = image_of_parts(*parts)
+    rounded.source = image.source
+    warn_all(warnings)
+    return rounded
 
 
 def refuse_selection(label: Any, threshold: Any) -> None:

@@ -9,11 +9,11 @@ from typing import Any, Unpack, cast
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import PathLike, Real, integer, number, optional_number
+from ._arguments import PathLike, Real, integer, label_of, number, optional_number
 from ._certificate import ShapeVerifier
 from ._errors import NotCertified
 from ._grid import check_one
-from ._image import Image, as_image, is_image, refuse_selection
+from ._image import Image, as_image, is_image, labelled, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
 from ._mesh import MeshOrVertices, as_mesh
@@ -151,7 +151,7 @@ class MedialAxis(Rebuilt):
             if isinstance(shape, Image):
                 label, threshold = self._origin.label, self._origin.threshold
                 made = _core.certified_axis_of_image(
-                    self._core, verifier._of_image(), label, threshold, angle, most, count, report
+                    self._core, verifier._of_image(label), label, threshold, angle, most, count, report
                 )
             else:
                 of_mesh = verifier._of_mesh(None)
@@ -283,10 +283,10 @@ def medial_axis(
     label, threshold = options.get("label"), options.get("threshold")
     smallest = number(options.get("lambda_", default_of("MedialAxisOptions", "lambda_")), "lambda_")
     if triangles is None and is_image(shape):
-        image = as_image(shape, spacing)
+        chosen = None if label is None else label_of(label, "label")
+        image = labelled(as_image(shape, spacing), None if chosen is None else [chosen])
         with reporting(progress) as report:
             core = _core.medial_axis_of_image(image._arrays, dict(options), count, report)
-        chosen = None if label is None else int(label)
         origin = Origin(image, chosen, optional_number(threshold, "threshold"), lambda_=smallest, source=image.source)
         return MedialAxis(core, origin, dict(options))
     refuse_selection(label, threshold)

@@ -6,7 +6,7 @@ from typing import Any, Unpack
 
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number
-from ._image import as_image
+from ._image import as_image, labelled
 from ._mesh import Mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
@@ -65,11 +65,12 @@ def smooth_surface(
     >>> blum.medial_axis(tubes, spacing=1).simplify(60).certificate.holds
     True
     """
-    given = as_image(image, spacing, origin, direction)
+    chosen = None if label is None else label_of(label, "label")
+    given = labelled(as_image(image, spacing, origin, direction), None if chosen is None else [chosen])
     with reporting(progress) as report:
         arrays, _ = _core.smooth_surface(
             given._arrays,
-            None if label is None else label_of(label, "label"),
+            chosen,
             optional_number(threshold, "threshold"),
             dict(options),
             integer(threads, "threads"),

@@ -22,7 +22,7 @@ from ._arguments import (
 )
 from ._complex import Complex
 from ._grid import check_one
-from ._image import Image, as_image, is_image, refuse_selection
+from ._image import Image, as_image, is_image, labelled, refuse_selection
 from ._mesh import Betti, Mesh, MeshOrVertices, as_mesh, betti_of, mesh_of_arrays
 from ._methods import Rebuilt, Shown
 from ._options import takes
@@ -168,7 +168,7 @@ class Solid(Rebuilt):
         self._threshold = optional_number(threshold, "threshold")
         self._shape: Mesh | Image
         if triangles is None and is_image(shape):
-            self._shape = as_image(shape)
+            self._shape = labelled(as_image(shape), None if self._label is None else [self._label])
         else:
             refuse_selection(label, threshold)
             self._shape = as_mesh(cast(MeshOrVertices, shape), triangles, "shape", weld=weld)

@@ -12,7 +12,7 @@ from . import _core
 from ._arguments import Integer, device_name, integer, label_of
 from ._errors import InvalidOption
 from ._field import Field
-from ._image import Image, as_image
+from ._image import Image, as_image, labelled
 from ._methods import ShortList
 from ._options import takes
 from ._progress import Progress, reporting
@@ -42,7 +42,7 @@ def distance_transform(
     spacing, origin, direction
         As for :class:`Image`, in x, y, z order: the reverse of the array's axes.
     device : "cpu", "auto", "cuda" or "cuda:K"
-        As for :func:`distance_field`. A device must hold the whole image, and 8 bytes per voxel.
+        As for :func:`distance_field`. A device must hold the whole image, and 8 bytes per voxel, also without sites.
     threads, progress
         As for :func:`distance_field`.
     **options
@@ -50,7 +50,7 @@ def distance_transform(
     Returns
     -------
     Field
-        `Field.site` holds flat indices of the closest voxels.
+        `Field.site` holds flat indices of the closest voxels. It is None with `sites=False`.
 
     Examples
     --------
@@ -111,6 +111,9 @@ def _transforms(
     image: Image, labels: list[int], options: DistanceTransformOptions, threads: int, device: str, progress: Progress
 ) -> list[Field]:
     """Returns the transforms of several labels; without labels, that of the options' selection."""
+    label = options.get("label")
+    selected = labels or (None if label is None else [label_of(label, "label")])
+    image = labelled(image, selected)
     with reporting(progress) as report:
         fields = _core.distance_transforms(
             image._arrays, labels, dict(options), integer(threads, "threads"), device_name(device), report

@@ -24,6 +24,17 @@ double longest_side(const Box3& box) {
   return std::max({side.x, side.y, side.z});
 }
 
+/// Returns why a direction matrix is invalid. `product` is the scalar product of its columns a and b.
+std::string direction_problem(std::size_t a, std::size_t b, double product) {
+  const std::string text = "the direction matrix is not orthonormal: ";
+  if (a == b) {
+    return text + "the length of column " + std::to_string(a) + " is " + rounded_text(std::sqrt(product)) +
+           ", but must be 1; lengths of steps belong in the spacing";
+  }
+  return text + "columns " + std::to_string(a) + " and " + std::to_string(b) + " have the scalar product " +
+         rounded_text(product) + ", but must be perpendicular; resample an image with shear to a grid without it";
+}
+
 void check_resolution(int resolution) {
   if (resolution < 2 || resolution > 65536) {
     throw InvalidOption("resolution is " + std::to_string(resolution) + ", but must be 2 to 65536 nodes");
@@ -83,7 +94,7 @@ void validate(const GridSpec& grid) {
     for (std::size_t b = 0; b < 3; ++b) {
       const double product = dot(grid.direction.columns[a], grid.direction.columns[b]);
       if (!(std::abs(product - (a == b ? 1.0 : 0.0)) <= 1e-6))
-        throw InvalidGrid("the grid's direction matrix is not orthonormal");
+        throw InvalidGrid(direction_problem(a, b, product));
     }
   }
 }

@@ -1,6 +1,8 @@
 #include "blum/grid/image_values.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -9,7 +11,9 @@
 #include <utility>
 #include <variant>
 
+#include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/plural.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 
@@ -71,6 +75,79 @@ ImageValues counted(std::span<const T> values, const Context& context) {
   return out;
 }
 
+/// Returns the shortest text from which this value of its own type is read back.
+template <class T>
+std::string value_text(T value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
+
+/// Values that are not whole numbers, by their distance from the nearest one.
+template <class T>
+struct Fractions {
+  std::uint64_t near = 0;             ///< number of voxels within the tolerance
+  T example{};                        ///< the first of them
+  std::optional<T> far = {};          ///< first value beyond the tolerance, or beyond the range of labels
+  std::optional<T> near_wanted = {};  ///< first value within the tolerance of a label that is asked for
+};
+
+template <class T>
+Fractions<T> fractions(std::span<const T> values, std::span<const std::int64_t> labels, const Context& context) {
+  Fractions<T> out;
+  std::vector<std::int64_t> wanted(labels.begin(), labels.end());
+  std::sort(wanted.begin(), wanted.end());
+  constexpr std::size_t piece = std::size_t{1} << 20U;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i % piece == 0) throw_if_cancelled(context);
+    const T value = values[i];
+    if (is_label(value) || std::isnan(value)) continue;
+    const T whole = std::round(value);
+    if (!is_label(whole) || std::abs(static_cast<double>(value) - static_cast<double>(whole)) > label_tolerance) {
+      if (!out.far) out.far = value;
+    } else {
+      if (out.near++ == 0) out.example = value;
+      if (out.near_wanted) continue;
+      if (std::binary_search(wanted.begin(), wanted.end(), static_cast<std::int64_t>(whole))) out.near_wanted = value;
+    }
+  }
+  return out;
+}
+
+template <class T>
+std::optional<RoundedLabels> rounded(std::span<const T> values, std::span<const std::int64_t> labels,
+                                     const Context& context) {
+  const Fractions<T> found = fractions(values, labels, context);
+  if (found.far) {
+    if (!found.near_wanted) return std::nullopt;
+    throw InvalidImage("the image has the value " + value_text(*found.near_wanted) + ", which is nearly the label " +
+                       value_text(std::round(*found.near_wanted)) + ", but also values that are not within " +
+                       exact_text(label_tolerance) + " of whole numbers, for example " + value_text(*found.far) +
+                       ": round the values first, or give a threshold");
+  }
+  if (found.near == 0) return std::nullopt;
+  std::vector<T> out(values.size());
+  std::transform(values.begin(), values.end(), out.begin(), [](T value) { return std::round(value); });
+  const std::string text = plural(found.near, "voxel has a label that is", "voxels have labels that are") +
+                           " not quite whole, for example " + value_text(found.example) +
+                           ": all labels were rounded to whole numbers, by at most " + exact_text(label_tolerance);
+  return RoundedLabels{std::move(out), {WarningCode::rounded, text}};
+}
+
+/// Returns ", for example V, which is not a whole number" for the first such value, or an empty text.
+std::string fraction_text(const VoxelImageView& image) {
+  return std::visit(
+      [&]<class T>(const std::span<const T>& values) -> std::string {
+        if constexpr (std::is_floating_point_v<T>) {
+          const auto is_fraction = [](T value) { return value != std::trunc(value) && !std::isnan(value); };
+          const auto found = std::find_if(values.begin(), values.end(), is_fraction);
+          if (found != values.end()) return ", for example " + value_text(*found) + ", which is not a whole number";
+        }
+        return {};
+      },
+      image.values);
+}
+
 ImageValues counted(const VoxelImageView& image, const Context& context) {
   return std::visit([&](const auto& values) { return counted(values, context); }, image.values);
 }
@@ -89,17 +166,27 @@ ImageValues image_values(const VoxelImageView& image, std::size_t most_labels, c
   return out;
 }
 
+std::optional<RoundedLabels> rounded_labels(const VoxelImageView& image, std::span<const std::int64_t> labels,
+                                            const Context& context) {
+  return std::visit(
+      [&]<class T>(const std::span<const T>& values) -> std::optional<RoundedLabels> {
+        if constexpr (std::is_floating_point_v<T>) return rounded(values, labels, context);
+        return std::nullopt;
+      },
+      image.values);
+}
+
 std::string nothing_selected_text(const VoxelImageView& image, const LabelSelection& selection) {
   const ImageValues values = counted(image, {});
   const std::string none = "no voxel of the image ";
   if (!values.range) return none + "is a number";
   if (selection.rule == LabelSelection::Rule::nonzero) return none + "is selected: none differs from 0";
   if (selection.rule == LabelSelection::Rule::threshold || !values.distinct) {
-    const std::string wanted = selection.rule == LabelSelection::Rule::label
-                                   ? "has the label " + std::to_string(selection.label)
-                                   : "reaches the threshold " + rounded_text(selection.threshold);
+    const bool is_label = selection.rule == LabelSelection::Rule::label;
+    const std::string wanted = is_label ? "has the label " + std::to_string(selection.label)
+                                        : "reaches the threshold " + rounded_text(selection.threshold);
     return none + wanted + ": its values are " + rounded_text((*values.range)[0]) + " to " +
-           rounded_text((*values.range)[1]);
+           rounded_text((*values.range)[1]) + (is_label ? fraction_text(image) : "");
   }
   std::vector<std::int64_t> labels;
   for (const LabelFacts& facts : values.labels) {

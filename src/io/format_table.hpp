@@ -62,12 +62,12 @@ struct MeshCode {
 
 struct ImageCode {
   /// @param path  path of the source; empty if the bytes come from memory.
-  VoxelImage (*read)(const ByteSource& source, const fs::path& path);
+  ImageFile (*read)(const ByteSource& source, const fs::path& path);
   /// Null if Blum does not write the format.
   void (*write)(const fs::path& path, const VoxelImageView& image) = nullptr;
   Sniffer sniffer = {};
   /// Reads an image that consists of several files. Returns nullopt if the path is not one of these files. May be null.
-  std::optional<VoxelImage> (*read_several)(const fs::path& path) = nullptr;
+  std::optional<ImageFile> (*read_several)(const fs::path& path) = nullptr;
 };
 
 struct FieldCode {

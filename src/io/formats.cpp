@@ -229,11 +229,11 @@ MeshFile read_mesh_of_any_name(const fs::path& path, const MeshReadOptions& opti
   return read_mesh_file(read_whole_file(path).span(), *format, options, path.string());
 }
 
-VoxelImage read_image_of_any_name(const fs::path& path) {
-  if (ImageFormat::by_name(path)) return read_image(path);
+ImageFile read_image_of_any_name(const fs::path& path) {
+  if (ImageFormat::by_name(path)) return read_image_file(path);
   const auto format = ImageFormat::by_head(read_head(path));
-  if (!format) return read_image(path);
-  return read_image(read_whole_file(path).span(), *format, path.string());
+  if (!format) return read_image_file(path);
+  return read_image_file(read_whole_file(path).span(), *format, path.string());
 }
 
 std::string_view image_format_name(const fs::path& path) {

@@ -29,3 +29,37 @@ def test_each_format_is_fuzzed():
     wanted |= {"fuzz_queries_csv", "fuzz_points_csv", "fuzz_maps_npz"}  # the inputs of `blum ccd`, `query` and `view`
     assert wanted == {folder.name for folder in CORPUS.iterdir()}
     assert all(any(folder.iterdir()) for folder in CORPUS.iterdir())
+
+
+VERBS = [
+    ("field", ["m.ply"], ".npz"), ("slice", ["f.npz"], ".png"), ("make", ["box"], ".ply"), ("medial", ["m.ply"], ".npz"),
+    ("reconstruct", ["a.npz"], ".ply"), ("surface", ["f.npz"], ".ply"), ("centreline", ["i.npy"], ".json"),
+    ("query", ["m.ply", "p.csv"], ".npz"), ("sample", ["m.ply", "--count", "3"], ".npy"),
+    ("surface-map", ["m.ply"], ".npz"), ("hausdorff", ["m.ply", "m.ply"], ".npz"), ("clean", ["m.ply"], ".ply"),
+    ("voronoi", ["m.ply"], ".ply"), ("view", ["m.ply"], ".html"),
+    *[(f"proximity {query}", ["m.ply", "m.ply"], ".npz")
+      for query in ("separation", "signed", "closest", "collide", "penetration", "continuous")],
+]  # fmt: skip
+
+
+def test_the_list_of_verbs_with_outputs_is_complete():
+    listed = run("--help")[0].split("Subcommands:\n")[1].split("\n\n")[0]
+    verbs = [line.split()[0] for line in listed.splitlines()]
+    with_output = {verb for verb in verbs if "--output" in run(verb, "--help")[0]}
+    assert with_output >= {"field", "medial", "surface-map"}
+    assert with_output <= {verb.split()[0] for verb, _, _ in VERBS}
+
+
+@pytest.mark.parametrize("verb, inputs, extension", VERBS, ids=[verb for verb, _, _ in VERBS])
+def test_a_second_output_is_written_or_refused(tmp_path, verb, inputs, extension):
+    """Only surface maps are written to several files; no other verb drops one of two outputs."""
+    run("make", "box", "-o", tmp_path / "m.ply")
+    outputs = ["-o", tmp_path / f"one{extension}", "-o", tmp_path / f"two{extension}"]
+    given = [tmp_path / name if "." in name else name for name in inputs]
+    if verb == "surface-map":
+        run(verb, *given, "--self", *outputs)
+        assert (tmp_path / "one.npz").exists() and (tmp_path / "two.npz").exists()
+        return
+    _, err = run(*verb.split(), *given, *outputs, status=2)
+    assert "--output may be given only once" in err
+    assert not list(tmp_path.glob("one*")) and not list(tmp_path.glob("two*"))

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "blum/grid/image_values.hpp"
 #include "common/files.hpp"
 
 namespace blum::cli {
@@ -74,6 +75,13 @@ TextTable mesh_table(const std::filesystem::path& path, const MeshFile& file, co
   table.add("input", mesh);
   table.detail("file", file_text(file) + "; " + plural(sites.edge_count(), "edge", "edges"));
   return table;
+}
+
+void round_labels(ImageFile& file, std::span<const std::int64_t> labels, const Context& context) {
+  auto rounded = rounded_labels(file.image, labels, context);
+  if (!rounded) return;
+  file.image.values = std::move(rounded->values);
+  file.warnings.push_back(std::move(rounded->warning));
 }
 
 bool has_only_nan(const VoxelImage& image) {

@@ -3,13 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/grid/voxel_image.hpp"
+#include "blum/io/image_io.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "common/summary.hpp"
 
@@ -32,6 +35,9 @@ namespace blum::cli {
 /// Returns the file, format, value type and grid of an image as JSON.
 [[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image);
 [[nodiscard]] TextTable image_table(const std::filesystem::path& path, const VoxelImage& image);
+/// Rounds labels that are nearly whole numbers, and adds the warning about it.
+/// @param labels  labels that are asked for; empty: all. @throws InvalidImage as rounded_labels().
+void round_labels(ImageFile& file, std::span<const std::int64_t> labels, const Context& context = {});
 /// Returns true if every voxel is NaN.
 [[nodiscard]] bool has_only_nan(const VoxelImage& image);
 /// Returns the name of the value type: "uint8", "float32" and so on.

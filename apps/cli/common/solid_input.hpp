@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,18 +22,25 @@ struct SolidInput {
   InputKind kind = InputKind::mesh;
   MeshFile mesh;
   VoxelImage image;
+  std::vector<Warning> image_warnings;
   std::optional<WeldFacts> weld;  ///< set if vertices were welded within a tolerance above 0
   Json json;
   TextTable table;
 };
 
 /// @param weld  welding tolerance of meshes, in mesh units; 0 welds only vertices at equal positions.
+/// @param labels  labels that will be selected in an image. If there are any, labels that are nearly whole are rounded.
 /// @throws FileError if the file is a field, cannot be read, or is an image that contains only NaN; InvalidMesh,
 /// InvalidImage.
-[[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
+[[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld,
+                                    std::span<const std::int64_t> labels = {});
 
-/// Returns the warnings about an input: a weld tolerance changed its number of components or its Euler number.
+/// Returns the warnings about an input: those of an image's file, or that a weld tolerance changed the number of
+/// components or the Euler number of a mesh.
 [[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);
+
+/// Returns the diagonal of the box of a solid: of the mesh, or of the selected voxels of the image.
+[[nodiscard]] double size_of(const SolidInput& input, const LabelSelection& selection, const Context& context);
 
 /// Returns the result of make(), and adds the file's name to its errors. @throws InvalidMesh.
 template <class Make>

@@ -40,6 +40,9 @@ class Stopwatch {
 /// Returns a point as text. `size` is the size of the scene in mesh units. Coordinates within its rounding error are
 /// printed as 0.
 [[nodiscard]] std::string point_text(const Vec3d& point, double size);
+/// Returns a length as text. From a thousandth of the size of a shape on, adds the share: "23 (7.5 % of the size)".
+/// @param size  diagonal of the shape's box, in the unit of the length; 0 if it is unknown.
+[[nodiscard]] std::string share_text(double length, double size);
 /// Returns the range of the distances in a field as text.
 [[nodiscard]] std::string node_range_text(double smallest, double largest, bool is_signed);
 /// Returns a text like "by normals, because the mesh is closed". `reason` may be empty.

@@ -101,7 +101,6 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
                 {a.bounds.has_value(), "--bounds"},
                 {a.padding.has_value(), "--padding"},
                 {a.options.has("site_ids"), "--site-ids"},
-                {a.options.has("sites"), "--no-sites"},
                 {a.options.has("order"), "--order"},
                 {a.options.has("second"), "--second"},
                 {a.weld.has_value(), "--weld"},
@@ -124,8 +123,8 @@ struct Run {
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
   std::vector<Output> outputs;
-  std::optional<fs::path> removed;       ///< sites file of the replaced field, if the new field has none
-  std::vector<fs::path> removed_second;  ///< second-order files of the replaced field, if the new field has order 1
+  std::vector<fs::path> removed;         ///< sites files of the replaced fields, if the new fields have none
+  std::vector<fs::path> removed_second;  ///< second-order files of the replaced fields, if the new fields have order 1
   std::vector<Warning> warnings;
   TextTable table;
   bool names_device = false;  ///< --device is not `cpu`; with `auto`, the CPU may still be used
@@ -229,14 +228,28 @@ double coarsest_step(const GridSpec& grid) {
   return step > 0 ? step : grid.spacing.x;
 }
 
+Json names_json(const std::vector<fs::path>& files) {
+  Json names = Json::array();
+  for (const fs::path& file : files) names.push_back(file.string());
+  return names;
+}
+
+/// Notes the files of the field at `output` that write_field() is about to remove.
+void note_removed(const fs::path& output, const Request& r, Run& run) {
+  if (!r.options.sites) {
+    if (auto file = sites_of_replaced_field(output)) run.removed.push_back(std::move(*file));
+  }
+  if (r.options.order != 1) return;
+  for (fs::path& file : second_of_replaced_field(output)) run.removed_second.push_back(std::move(file));
+}
+
 void finish(const Request& request, Run& run, const GridSpec& grid, const Context& context) {
   const PhaseSummary spent = summarize(run.phases);
   const double nodes = static_cast<double>(grid.node_count()) * static_cast<double>(run.fields.size());
   const double rate = nodes / std::max(run.field_seconds, 1e-9);
   Json outputs = Json::array();
   for (const Output& file : run.outputs) outputs.push_back(file.path.string());
-  Json removed_second = Json::array();
-  for (const fs::path& file : run.removed_second) removed_second.push_back(file.string());
+  const Json removed = names_json(run.removed);
   const Json json = answer_json("field", {{"input", run.input},
                                           {"grid", to_json(grid)},
                                           {"sign_asked", to_string(request.options.sign)},
@@ -250,8 +263,10 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                                           {"thread_backend", thread_backend()},
                                           {"warnings", to_json(run.warnings)},
                                           {"outputs", outputs},
-                                          {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)},
-                                          {"removed_second", removed_second}});
+                                          {"removed", run.removed.empty()       ? Json(nullptr)
+                                                      : run.removed.size() == 1 ? Json(run.removed[0].string())
+                                                                                : removed},
+                                          {"removed_second", names_json(run.removed_second)}});
   run.table.add(run.input_table);
   spent.add_to(run.table);
   run.table.detail("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
@@ -259,7 +274,9 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
   for (const auto& [file, content] : run.outputs) {
     run.table.add("wrote", file.string() + (content.empty() ? "" : " (" + content + ")"));
   }
-  if (run.removed) run.table.add("removed", run.removed->string() + ": sites of the replaced field");
+  for (const fs::path& file : run.removed) {
+    run.table.add("removed", file.string() + ": sites of the replaced field");
+  }
   for (const fs::path& file : run.removed_second) {
     run.table.add("removed", file.string() + ": second order of the replaced field");
   }
@@ -326,8 +343,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   const SiteTable* features = r.options.site_ids == SiteIds::features ? &sites : nullptr;
   const FieldStatistics statistics = field_statistics(field, features, context);
   run.time("statistics", watch.lap());
-  if (!r.options.sites) run.removed = sites_of_replaced_field(r.output);
-  if (r.options.order == 1) run.removed_second = second_of_replaced_field(r.output);
+  note_removed(r.output, r, run);
   write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
   run.time("write", watch.lap());
   progress.clear();
@@ -354,23 +370,27 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   Run run;
   run.names_device = r.device != Device::cpu();
   Stopwatch watch;
-  VoxelImage image;
+  ImageFile file;
   {
     const Unattended reading;
-    image = read_image_of_any_name(r.input);
+    file = read_image_of_any_name(r.input);
   }
   run.time("read", watch.lap());
+  const VoxelImage& image = file.image;
   if (has_only_nan(image)) {
     throw FileError("'" + r.input.string() + "': every voxel is NaN (not a number), so none can be selected");
   }
+  if (!r.selections.labels.empty()) round_labels(file, r.selections.labels, context);
+  run.warnings = file.warnings;
   run.input = image_json(r.input, image);
   run.input_table = image_table(r.input, image);
   run.time("input facts", watch.lap());
   const std::vector<LabelSelection> selections = r.selections.all();
-  check_field_memory(image.grid, selections.size());
+  check_field_memory(image.grid, selections.size(), r.options.sites ? 8 : 4);
   add_grid_text(run, image.grid);
   DistanceTransformOptions options;
   options.is_signed = r.options.sign != SignMode::none;
+  options.sites = r.options.sites;
   options.band = r.option_texts.read(coarsest_step(image.grid)).band;
   static_cast<void>(watch.lap());
   std::vector<Field> fields = distance_transforms(image, selections, options, context);
@@ -381,10 +401,11 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
     static_cast<void>(watch.lap());
     const FieldStatistics statistics = field_statistics(fields[i], nullptr, context);
     run.time("statistics", watch.lap());
+    note_removed(names[i], r, run);
     write_field(names[i], fields[i], {nullptr, nullptr, r.input.filename().string(), BLUM_VERSION, image.space},
                 context);
     run.time("write", watch.lap());
-    add_field(run, fields[i], statistics, files_of_field(names[i]),
+    add_field(run, fields[i], statistics, files_of_field(names[i], r.options.sites),
               r.selections.labels.empty() ? nullptr : &r.selections.labels[i]);
     fields[i] = {};
   }

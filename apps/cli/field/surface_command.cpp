@@ -70,7 +70,8 @@ void run_smooth(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
-  const SolidInput image = load_solid(input, {});
+  const SolidInput image = load_solid(input, {}, selections.labels);
+  const std::vector<Warning> warnings = warnings_of(image);
   const double read_seconds = watch.lap();
   const SmoothSurface surface = smooth_surface(image.image, selections.all().front(), options, context);
   const double surface_seconds = watch.lap();
@@ -88,7 +89,7 @@ void run_smooth(const Arguments& a) {
        {"total_seconds", read_seconds + surface_seconds + write_seconds},
        {"peak_memory_bytes", peak_memory()},
        {"threads", thread_count(context)},
-       {"warnings", Json::array()},
+       {"warnings", to_json(warnings)},
        {"outputs", {output.string()}}});
   TextTable table;
   table.add("surface", count_text(surface.mesh.vertices.size()) + " vertices, " +
@@ -97,6 +98,7 @@ void run_smooth(const Arguments& a) {
   table.add(image.table);
   table.add("wrote", output.string());
   report(a.report, json, table);
+  if (!a.report.quiet) warn(warnings);
 }
 
 void run_level(const Arguments& a) {
@@ -142,10 +144,11 @@ void run_level(const Arguments& a) {
                   {"threads", thread_count(context)},
                   {"warnings", to_json(warnings)},
                   {"outputs", {output.string()}}});
+  const double surface_size = surface.vertices.empty() ? 0 : bounds(surface).diagonal();
   TextTable table;
   table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
                            " triangles at the level " + rounded_text(level));
-  table.add("error", "up to half a cell's diagonal, " + rounded_text(0.5 * length(field.grid.spacing)) +
+  table.add("error", "up to half a cell's diagonal, " + share_text(0.5 * length(field.grid.spacing), surface_size) +
                          ", in edges and corners of the surface; much less where it is smooth");
   table.add("field", input.string() + ": " + size_text(field.grid) + " nodes");
   table.add("wrote", output.string());

@@ -29,6 +29,10 @@ AxisSolid solid_of_axis(const SolidSelection& given, InputKind kind, const Media
                              OptionStyle::command_line);
 }
 
+std::vector<std::int64_t> labels_of(const SolidSelection& selection) {
+  return selection.label ? std::vector{*selection.label} : std::vector<std::int64_t>{};
+}
+
 void record(const LabelSelection& selection, std::optional<double> weld, InputKind kind, MedialMetadata& metadata) {
   if (kind == InputKind::mesh) {
     metadata.weld = weld;

@@ -22,6 +22,9 @@ namespace blum::cli {
 [[nodiscard]] AxisSolid solid_of_axis(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                                       const std::filesystem::path& axis);
 
+/// Returns the label of a selection, if it has one.
+[[nodiscard]] std::vector<std::int64_t> labels_of(const SolidSelection& selection);
+
 /// Records the input's selection of voxels or its weld tolerance in the metadata of an axis.
 void record(const LabelSelection& selection, std::optional<double> weld, InputKind kind, MedialMetadata& metadata);
 

@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "common/common_options.hpp"
 #include "common/files.hpp"
+#include "common/input_facts.hpp"
 #include "common/options.hpp"
 #include "common/progress.hpp"
 #include "common/summary.hpp"
@@ -150,14 +151,18 @@ void run(const Arguments& a) {
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
   std::vector<PhaseTime> phases;
-  VoxelImage image;
+  ImageFile file;
   {
     const Unattended reading;
-    image = read_image_of_any_name(input);
+    file = read_image_of_any_name(input);
   }
+  if (!a.threshold) round_labels(file, labels ? labels->all : std::vector<std::int64_t>{}, context);
+  const VoxelImage& image = file.image;
+  std::vector<Warning> warnings = std::move(file.warnings);
   phases.push_back({"read", watch.lap()});
   const Centrelines lines = lines_of(image, labels, options, context);
   phases.insert(phases.end(), lines.phases.begin(), lines.phases.end());
+  warnings.insert(warnings.end(), lines.warnings.begin(), lines.warnings.end());
   static_cast<void>(watch.lap());
   const Json head = answer_json(
       "centreline", {{"source", input.filename().string()},
@@ -175,14 +180,14 @@ void run(const Arguments& a) {
   Json json = answer_json(
       "centreline",
       {{"image", input.string()}, {"grid", to_json(image.grid)}, {"spur", options.spur}, {"labels", briefs}});
-  add_run_facts(json, spent, context, lines.warnings, Json::array({output.string()}));
+  add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
   TextTable table;
   add_lines(table, lines);
   table.add("image", input.string() + ": " + size_text(image.grid) + " voxels");
   table.add("wrote", output.string());
   spent.add_to(table);
   report(a.report, json, table);
-  if (!a.report.quiet) warn(lines.warnings);
+  if (!a.report.quiet) warn(warnings);
 }
 
 }  // namespace

@@ -317,9 +317,10 @@ void add_axis(MedialRun& run, const Request& r, const AskedSolid& solid, const C
   run.warnings.insert(run.warnings.end(), made.warnings.begin(), made.warnings.end());
   run.is_kept.push_back((certificate.holds() && model_passes) || r.allow_uncertified);
   const MedialCounts counts = count(made.axis.axis);
-  add_certificate(run.table, " at theta " + rounded_text(theta), certificate, r.nested);
+  const double size = size_of(input, solid.selection, context);
+  add_certificate(run.table, " at theta " + rounded_text(theta), certificate, r.nested, size);
   add_axis_counts(run.table, "", counts, true);
-  add_decimated(run.table, made);
+  add_decimated(run.table, made, size);
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
@@ -477,7 +478,7 @@ void run(const Arguments& arguments) {
   const Context context = make_context(r.threads, progress, interrupt);
   MedialRun run;
   Stopwatch watch;
-  const SolidInput input = load_solid(r.input, r.weld);
+  const SolidInput input = load_solid(r.input, r.weld, r.selections.labels);
   run.warnings = warnings_of(input);
   run.phases.push_back({"read", watch.lap()});
   const std::vector<LabelSelection> selections = r.selections.all();

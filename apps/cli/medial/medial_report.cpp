@@ -288,17 +288,17 @@ Json not_checked_json(const Certificate& c, bool has_nested) {
 
 }  // namespace
 
-std::string balls_text(const BallUnionCheck& balls) {
-  return "from the solid's surface to the union of the medial balls: at most " + rounded_text(balls.solid_to_balls) +
-         " (mean " + rounded_text(balls.mean_solid_to_balls) +
-         "); from the surface of the union back to the solid's surface: at most " +
-         rounded_text(balls.balls_to_surface);
+std::string balls_text(const BallUnionCheck& balls, double size) {
+  return "from the solid's surface to the union of the medial balls: at most " +
+         share_text(balls.solid_to_balls, size) + ", mean " + share_text(balls.mean_solid_to_balls, size) +
+         "; from the surface of the union back to the solid's surface: at most " +
+         share_text(balls.balls_to_surface, size);
 }
 
-void add_decimated(TextTable& table, const CertifiedAxis& made) {
+void add_decimated(TextTable& table, const CertifiedAxis& made, double size) {
   if (!made.metadata.deviation) return;
   table.detail("decimated", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
-                                rounded_text(made.axis.deviation));
+                                share_text(made.axis.deviation, size));
 }
 
 Json certificate_json(const Certificate& c, bool has_nested) {
@@ -372,7 +372,7 @@ std::string angles_text(double least_theta) {
   return "all from " + rounded_text(least_theta) + " to 180 degrees";
 }
 
-void add_certificate(TextTable& table, const std::string& of, const Certificate& c, bool has_nested) {
+void add_certificate(TextTable& table, const std::string& of, const Certificate& c, bool has_nested, double size) {
   if (c.holds()) {
     table.add("certified", "yes" + of + ": the axis has the topology of " + against_text(c) + " (" +
                                betti_text(c.axis) + ")" +
@@ -390,18 +390,18 @@ void add_certificate(TextTable& table, const std::string& of, const Certificate&
   if (!c.geometry.holds || !c.edges.holds || !c.triangles.holds) geometry = "wrong";
   if (c.edges.pushed > 0) {
     geometry += ", except " + plural(c.edges.pushed, "edge that cuts a corner", "edges that cut corners") +
-                " by up to " + rounded_text(c.edges.pushed_by);
+                " by up to " + share_text(c.edges.pushed_by, size);
   }
   if (c.triangles.holds && c.triangles.leaving > 0) {
     geometry += ", except the interiors of " + plural(c.triangles.leaving, "triangle", "triangles") + ", by up to " +
-                rounded_text(c.triangles.outside_by);
+                share_text(c.triangles.outside_by, size);
   }
   if (c.triangles.undecided > 0) {
     geometry += ", " + plural(c.triangles.undecided, "triangle", "triangles") + " in thin walls undecided";
   }
-  if (c.checked.radii) geometry += "; radius error at most " + rounded_text(c.geometry.radius_error);
+  if (c.checked.radii) geometry += "; radius error at most " + share_text(c.geometry.radius_error, size);
   if (c.checked.footprints) {
-    geometry += ", footprints at most " + rounded_text(c.geometry.footprint_off_surface) + " off the surface";
+    geometry += ", footprints at most " + share_text(c.geometry.footprint_off_surface, size) + " off the surface";
   }
   table.detail("geometry", geometry + " (tolerance " + rounded_text(c.geometry.tolerance) + ")");
   std::string unknown;
@@ -417,7 +417,7 @@ void add_certificate(TextTable& table, const std::string& of, const Certificate&
   table.detail("not verified", said + ": copied from the file");
   if (c.checked.medial) table.detail("medial", medial_text(c));
   if (!c.checked.balls) return;
-  table.add("balls", "distance " + balls_text(c.balls));
+  table.add("balls", "distance " + balls_text(c.balls, size));
 }
 
 }  // namespace blum::cli

@@ -70,16 +70,19 @@ class SolidVerifier {
 /// For a file with the axes of all angles, returns their range of angles as text.
 [[nodiscard]] std::string angles_text(double least_theta);
 /// Returns, as text, the distances between the surface of the solid and that of the union of the balls.
-[[nodiscard]] std::string balls_text(const BallUnionCheck& balls);
+/// @param size  see share_text().
+[[nodiscard]] std::string balls_text(const BallUnionCheck& balls, double size);
 
 /// If the axis was decimated, adds the number of vertices before decimation and the largest distance moved.
-void add_decimated(TextTable& table, const CertifiedAxis& made);
+void add_decimated(TextTable& table, const CertifiedAxis& made, double size);
 /// Adds the counts of an axis. Counts of edges are details (shown with --verbose).
 /// @param before  text before the counts, for example the name of the file.
 void add_axis_counts(TextTable& table, const std::string& before, const MedialCounts& counts, bool has_labels);
 /// Adds the result of a certificate, the solid and the errors. If it failed, the message of NotCertified gives the
 /// reasons.
 /// @param of  text after "yes" or "NO", for example " at theta 60".
-void add_certificate(TextTable& table, const std::string& of, const Certificate& certificate, bool has_nested);
+/// @param size  see share_text().
+void add_certificate(TextTable& table, const std::string& of, const Certificate& certificate, bool has_nested,
+                     double size);
 
 }  // namespace blum::cli

@@ -144,7 +144,8 @@ void run(const Arguments& a) {
     const InputKind kind = input_kind(*r.input);
     const auto [selection, found] = solid_of_axis(r.given, kind, file.metadata, r.axis);
     warnings = found;
-    const SolidInput input = load_solid(*r.input, selection.weld);
+    const SolidInput input = load_solid(*r.input, selection.weld, labels_of(selection));
+    warnings.insert(warnings.end(), input.image_warnings.begin(), input.image_warnings.end());
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
     const Certificate certificate = SolidVerifier(input).certificate_of(file, voxels, context);
     json["input"] = input.json;
@@ -152,7 +153,7 @@ void run(const Arguments& a) {
                         {"mean_solid_to_balls", certificate.balls.mean_solid_to_balls},
                         {"balls_beyond_solid", certificate.balls.balls_beyond_solid},
                         {"balls_to_surface", certificate.balls.balls_to_surface}};
-    table.add("distance", balls_text(certificate.balls));
+    table.add("distance", balls_text(certificate.balls, size_of(input, voxels, context)));
   }
   if (r.is_field) {
     const std::optional<fs::path> removed = sites_of_replaced_field(r.output);

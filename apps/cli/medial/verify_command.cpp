@@ -69,7 +69,8 @@ class Verifier {
     MedialFile file = read_axis(axis);
     if (smooth_ && !file.metadata.smooth) file.metadata.smooth = SmoothSurfaceOptions{}.iterations;
     auto [selection, warnings] = solid_of_axis(given_, kind_, file.metadata, axis);
-    const SolidInput& solid = load(selection.weld);
+    const SolidInput& solid = load(selection.weld, labels_of(selection));
+    warnings.insert(warnings.end(), solid.image_warnings.begin(), solid.image_warnings.end());
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
     const Certificate certificate = verifier_->certificate_of(file, voxels, context_);
     if (solid.weld && solid.weld->lost > 0) {
@@ -82,7 +83,8 @@ class Verifier {
     warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
     const MedialCounts counts = count(file.complex);
     const std::optional<double>& theta = file.metadata.theta;
-    add_certificate(table_, theta ? " at theta " + rounded_text(*theta) : "", certificate, file.nested.has_value());
+    add_certificate(table_, theta ? " at theta " + rounded_text(*theta) : "", certificate, file.nested.has_value(),
+                    size_of(solid, voxels, context_));
     add_axis_counts(table_, axis.string() + ": ", counts, file.has_labels);
     results_.push_back(
         answer_json("verify", {{"input", solid.json},
@@ -124,14 +126,15 @@ class Verifier {
     std::string advice;
   };
 
-  /// Returns the mesh or image. Reads the file again only if an axis needs another weld tolerance.
-  const SolidInput& load(const std::optional<double>& weld) {
-    if (!solid_ || weld != weld_) {
+  /// Returns the mesh or image. Reads the file again only if an axis needs another weld tolerance or label.
+  const SolidInput& load(const std::optional<double>& weld, const std::vector<std::int64_t>& labels) {
+    if (!solid_ || weld != weld_ || labels != labels_) {
       verifier_.reset();
-      solid_ = load_solid(path_, weld);
+      solid_ = load_solid(path_, weld, labels);
       verifier_.emplace(*solid_);
     }
     weld_ = weld;
+    labels_ = labels;
     return *solid_;
   }
 
@@ -143,6 +146,7 @@ class Verifier {
   std::optional<SolidInput> solid_;
   std::optional<SolidVerifier> verifier_;  ///< verifier for solid_
   std::optional<double> weld_;
+  std::vector<std::int64_t> labels_;
   TextTable table_;
   Json results_ = Json::array();
   std::vector<Warning> warnings_;

@@ -270,7 +270,8 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
 
 std::string labels_text(const ImageValues& values) {
   if (!values.distinct)
-    return "too many values for labels, or values outside the range of labels (at most 2^63 - 1); use --threshold";
+    return "none: values are not whole numbers, are beyond 2^53 (integers: 2^63 - 1), or are more than 100,000; use "
+           "--threshold";
   return plural(*values.distinct, "value", "values");
 }
 
@@ -297,14 +298,18 @@ void add_grid(TextTable& table, const GridSpec& grid) {
 }
 
 void run_image(const Arguments& a) {
-  const VoxelImage image = read_image_of_any_name(a.input);
+  ImageFile file = read_image_of_any_name(a.input);
+  const VoxelImage& image = file.image;
   validate(image);
   Progress progress(!a.report.quiet);
   const Interrupt interrupt;
-  const ImageValues values = image_values(image, label_limit, make_context(0, progress, interrupt));
+  const Context context = make_context(0, progress, interrupt);
+  round_labels(file, {}, context);
+  const ImageValues values = image_values(image, label_limit, context);
   progress.clear();
   Json json = image_json(a.input, image);
   json.update(to_json(values));
+  json["warnings"] = to_json(file.warnings);
 
   TextTable table;
   table.add("file", a.input + ": " + std::string(image_format_name(a.input)) + " image of " + type_name(image.values));
@@ -316,6 +321,7 @@ void run_image(const Arguments& a) {
   if (values.not_numbers > 0) table.add("not a number", plural(values.not_numbers, "voxel", "voxels"));
   add_labels(table, values);
   report(a.report, answer_json("info", json), table);
+  if (!a.report.quiet) warn(file.warnings);
 }
 
 // ---- Fields ----

@@ -154,7 +154,9 @@ void check_exact(const std::vector<T>& values, const fs::path& path) {
 }
 
 Json image_item(SceneBlob& blob, const fs::path& path) {
-  const VoxelImage image = read_image_of_any_name(path);
+  const ImageFile file = read_image_of_any_name(path);
+  warn(file.warnings);
+  const VoxelImage& image = file.image;
   validate(image);
   check_size(image.grid.node_count(), most_nodes, "voxels", path, "show a coarser image");
   Json item = {{"kind", "image"}, {"units", "units of the spacing"}};

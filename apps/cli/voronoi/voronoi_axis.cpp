@@ -93,10 +93,11 @@ VoronoiAxis make_voronoi_axis(const Complex& walls, const SolidInput& input, con
                                             certify, out.phases, context);
   const MedialCounts counts = count(made.axis.axis);
   out.warnings = made.warnings;
+  const double size = size_of(input, {}, context);
   out.mismatches = made.certificate.mismatches;
-  add_certificate(out.table, " (the axis)", made.certificate, false);
+  add_certificate(out.table, " (the axis)", made.certificate, false, size);
   add_axis_counts(out.table, "", counts, true);
-  add_decimated(out.table, made);
+  add_decimated(out.table, made, size);
   out.json = {{"theta", options.theta},
               {"counts", counts_json(counts, true)},
               {"deviation", made.axis.deviation},

@@ -167,7 +167,7 @@ std::string certificate_text(VoronoiPart part) {
   return "same topology (homology) as the exact diagram";
 }
 
-void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, TextTable& table) {
+void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, double size, TextTable& table) {
   table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
   table.add("topology", subject_of(part) + ": " + betti_text(report.found) + regions_text(report, part) +
                             (report.found == report.expected ? "" : "; expected " + betti_text(report.expected)));
@@ -180,7 +180,7 @@ void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& coun
                             count_text(report.exact_lines) + " of them decided by exact signs");
   table.add("complex", counts.text());
   if (report.certified) {
-    table.add("error", "Hausdorff distance from the exact diagram at most " + rounded_text(report.hausdorff_bound));
+    table.add("error", "Hausdorff distance from the exact diagram at most " + share_text(report.hausdorff_bound, size));
   }
 }
 
@@ -367,7 +367,7 @@ void run(const Arguments& a) {
   add_run_facts(json, spent, context, warnings, outputs);
   TextTable table;
   if (cleaning) add_cleaning(*cleaning, *r.clean, table);
-  add_facts(found, r.options.part, counts, table);
+  add_facts(found, r.options.part, counts, bounds(input.mesh.mesh).diagonal(), table);
   if (axis) table.add(axis->table);
   if (graph) table.add("graph", graph_text(*graph));
   if (a.cleaned) table.add("wrote", *a.cleaned);

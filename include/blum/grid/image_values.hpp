@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -13,6 +14,7 @@
 #include "blum/core/betti_numbers.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
 
@@ -74,6 +76,30 @@ struct Description<ImageValues> {
 /// this takes about 10 ms per label.
 [[nodiscard]] ImageValues image_values(const VoxelImageView& image, std::size_t most_labels = 20,
                                        const Context& context = {});
+
+/// Largest distance of a value from a whole number at which the value still counts as a label. A scale in single
+/// precision, as in NIfTI files, moves labels up to 65,535 by less.
+inline constexpr double label_tolerance = 0.01;
+
+/// Values of an image of labels, rounded to whole numbers.
+struct RoundedLabels {
+  VoxelImage::Values values;  ///< of the same type as those of the image
+  Warning warning;            ///< WarningCode::rounded
+};
+
+/// Rounds the values of an image to labels, if that is necessary and safe. It is necessary if values are not whole
+/// numbers, and safe if all values are within label_tolerance of whole numbers of at most 2^53. NaN stays NaN.
+/// Functions that select a label compare exactly, so pass them an image with the rounded values.
+/// @param image   must pass validate(image).
+/// @param labels  labels that are asked for; empty: all.
+/// @return        nullopt if no value has to be rounded, or if rounding is not safe.
+/// @throws InvalidImage if rounding is not safe, and a voxel has nearly the value of one of the labels, but not
+/// exactly. To select such voxels would be a guess.
+/// @throws Cancelled.
+/// Cost: one pass over images of floating-point numbers. Other images cost nothing.
+[[nodiscard]] std::optional<RoundedLabels> rounded_labels(const VoxelImageView& image,
+                                                          std::span<const std::int64_t> labels = {},
+                                                          const Context& context = {});
 
 /// Returns a message that no voxel is selected. The message lists the values that the image contains.
 [[nodiscard]] std::string nothing_selected_text(const VoxelImageView& image, const LabelSelection& selection);

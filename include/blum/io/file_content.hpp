@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
-#include "blum/grid/voxel_image.hpp"
 #include "blum/io/formats.hpp"
+#include "blum/io/image_io.hpp"
 #include "blum/io/mesh_io.hpp"
 
 namespace blum {
@@ -33,7 +33,7 @@ namespace blum {
 /// Read a mesh or an image. If the extension is unknown, the first bytes of the file decide the format.
 /// @throws as read_mesh(), read_image().
 [[nodiscard]] MeshFile read_mesh_of_any_name(const std::filesystem::path& path, const MeshReadOptions& options = {});
-[[nodiscard]] VoxelImage read_image_of_any_name(const std::filesystem::path& path);
+[[nodiscard]] ImageFile read_image_of_any_name(const std::filesystem::path& path);
 
 /// Returns the name of an image's format: "NRRD", "NIfTI", "NPY", "Vol", or "unknown".
 [[nodiscard]] std::string_view image_format_name(const std::filesystem::path& path);

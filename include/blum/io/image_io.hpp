@@ -6,12 +6,22 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/core/warning.hpp"
 #include "blum/grid/voxel_image.hpp"
 #include "blum/io/formats.hpp"
 
 namespace blum {
+
+/// Image with what its reader noticed.
+struct ImageFile {
+  VoxelImage image = {};
+  /// The frames (positions of voxels) that the file states disagree, or one of them cannot be used. Each warning names
+  /// both frames, and the one that the image has (WarningCode::left_out).
+  std::vector<Warning> warnings = {};
+};
 
 /// Reads a 3D image of scalars. Values keep the type that they have in the file, with the exceptions below. Spacing,
 /// origin and direction are those of the file, in the world axes and units of the file. The name of the unit is not
@@ -20,14 +30,16 @@ namespace blum {
 ///   `.nrrd`, `.nhdr`  NRRD 1 to 5 in either byte order, with raw, gzip or text data. The data are in the same file or
 ///                     in one other file, also with line skip and byte skip. The geometry is given by "space
 ///                     directions", "space origin" and "space" (VoxelImage::space), or else by "spacings" and "axis
-///                     mins". NaN means unknown: a spacing then becomes 1, and an origin 0. Axes without a direction
-///                     ("none"), and axes whose kind counts components (vector, colour, matrix), must have one entry,
-///                     and are removed. If more than three axes remain, axes with one entry are removed, too. Other
-///                     kinds of axes are treated like spatial axes.
+///                     mins" and "axis maxs". NaN means unknown: a spacing then becomes 1, and an origin 0.
+///                     Axes without a direction ("none"), and axes whose kind counts components (vector, colour, matrix),
+///                     must have one entry, and are removed. If more than three axes remain, axes with one entry are
+///                     removed, too.
+///                     Other kinds of axes are treated like spatial axes.
 ///   `.nii`, `.hdr` with `.img`, each also with `.gz`
 ///                     NIfTI-1 and 2, in either byte order. The geometry is given by the sform if it is set, else by
 ///                     the qform if that is set, else by the spacings alone. If the sform has shear, the qform is used
-///                     instead; if there is no qform, this is an error. If the sform or qform is used, the space is
+///                     instead; if there is no qform, this is an error. read_image_file() warns if sform and qform (or
+///                     spacings) place a corner more than 0.1 voxels apart. If either form is used, the space is
 ///                     right-anterior-superior. If the file has a scale (scl_slope, scl_inter), values become double. A
 ///                     slope of 0, NaN or infinity is ignored. Sizes along dimensions beyond the third must be 1.
 ///   `.npy`            Arrays of one to three axes, indexed [z, y, x], in C or Fortran order, and in either byte order.
@@ -52,6 +64,11 @@ namespace blum {
 /// file is rejected.
 [[nodiscard]] VoxelImage read_image(std::span<const std::byte> bytes, ImageFormat format,
                                     const std::string& name = "image");
+
+/// Read an image as read_image() does, and also return warnings.
+[[nodiscard]] ImageFile read_image_file(const std::filesystem::path& path);
+[[nodiscard]] ImageFile read_image_file(std::span<const std::byte> bytes, ImageFormat format,
+                                        const std::string& name = "image");
 
 /// Writes an image as .nrrd (raw data, with geometry and space) or .npy (values only), in the byte order of the
 /// machine. The file appears under its name only when it is complete.

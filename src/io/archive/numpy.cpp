@@ -258,14 +258,14 @@ bool begins_as_npy(std::string_view head) {
   return head.starts_with("\x93NUMPY");
 }
 
-VoxelImage read_npy(const ByteSource& source, const std::filesystem::path&) {
+ImageFile read_npy(const ByteSource& source, const std::filesystem::path&) {
   PlainStream stream(source);
   const NpyHeader header = read_npy_header(stream);
   VoxelImage image;
   image.grid.size = npy_image_size(header, stream.name());
   check_count(image.grid.size, max_id_count, stream.name());
   image.values = read_npy_values(stream, header);
-  return image;
+  return {std::move(image)};
 }
 
 void write_npy(const std::filesystem::path& path, const VoxelImageView& image) {

@@ -10,12 +10,13 @@
 #include "blum/core/vec3.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/voxel_image.hpp"
+#include "blum/io/image_io.hpp"
 #include "io/bytes/byte_source.hpp"
 
 namespace blum::volume_io {
 
 /// @param data_source  the .img file of a pair; null if the data follow the header. Both files may be gzip-compressed.
-[[nodiscard]] VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source);
+[[nodiscard]] ImageFile read_nifti(const ByteSource& source, const ByteSource* data_source);
 [[nodiscard]] VoxelImage read_vol(const ByteSource& source);
 
 /// Writes a header and then the values of an image, in the machine's byte order. The file appears under its name when
@@ -41,6 +42,18 @@ void set_frame(GridSpec& grid, const std::array<std::optional<Vec3d>, 3>& steps,
 
 /// Returns true if the vectors are non-zero, finite and perpendicular within the tolerance.
 [[nodiscard]] bool is_perpendicular(const std::array<Vec3d, 3>& axes);
+
+/// Returns the first pair of axes that are not perpendicular, with their angle: "axes x and y form an angle of 84
+/// degrees". Axes that are zero or not finite are skipped. Returns an empty text if all pairs are perpendicular.
+[[nodiscard]] std::string shear_text(const std::array<Vec3d, 3>& axes);
+
+/// Returns the largest distance between the positions of a corner voxel in two frames of an image of one size. The unit
+/// is the smallest spacing of `a` among axes with several voxels. The result is NaN if a position is NaN.
+[[nodiscard]] double frame_distance(const GridSpec& a, const GridSpec& b);
+
+/// Frames of one file that place no corner voxel farther apart than this, in voxels, agree. Rounding to float32 and
+/// programs that recompute a frame cause such differences.
+inline constexpr double largest_frame_distance = 0.1;
 
 /// Returns the orthonormal matrix nearest to a given matrix, which must be nearly orthonormal (polar decomposition by
 /// Newton's iteration, Higham 1986).

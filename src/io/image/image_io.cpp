@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -18,13 +19,13 @@ namespace {
 
 using namespace volume_io;
 
-VoxelImage checked(VoxelImage image, const std::string& name) {
+ImageFile checked(ImageFile file, const std::string& name) {
   try {
-    validate(image);
+    validate(file.image);
   } catch (const InvalidImage& error) {
     throw FormatError(name + ": " + error.what());
   }
-  return image;
+  return file;
 }
 
 }  // namespace
@@ -38,16 +39,24 @@ void volume_io::write_values_after(const std::filesystem::path& path, const std:
   file.commit();
 }
 
-VoxelImage read_image(const std::filesystem::path& path) {
+ImageFile read_image_file(const std::filesystem::path& path) {
   const formats::ImageCode& code = formats::code_of(ImageFormat::of(path));
   if (code.read_several != nullptr) {
-    if (auto image = code.read_several(path)) return checked(std::move(*image), path.string());
+    if (auto file = code.read_several(path)) return checked(std::move(*file), path.string());
   }
   return checked(code.read(FileSource(path), path), path.string());
 }
 
-VoxelImage read_image(std::span<const std::byte> bytes, ImageFormat format, const std::string& name) {
+ImageFile read_image_file(std::span<const std::byte> bytes, ImageFormat format, const std::string& name) {
   return checked(formats::code_of(format).read(MemorySource(bytes, name), {}), name);
+}
+
+VoxelImage read_image(const std::filesystem::path& path) {
+  return read_image_file(path).image;
+}
+
+VoxelImage read_image(std::span<const std::byte> bytes, ImageFormat format, const std::string& name) {
+  return read_image_file(bytes, format, name).image;
 }
 
 void write_image(const std::filesystem::path& path, const VoxelImageView& image) {
@@ -100,10 +109,37 @@ bool is_perpendicular(const std::array<Vec3d, 3>& axes) {
   for (const Vec3d& axis : axes) {
     if (!is_finite(axis) || !(largest_component(axis) > 0)) return false;
   }
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (!(std::abs(dot(unit(axes[a]), unit(axes[(a + 1) % 3]))) <= frame_tolerance)) return false;
+  return shear_text(axes).empty();
+}
+
+std::string shear_text(const std::array<Vec3d, 3>& axes) {
+  constexpr std::array<std::array<std::size_t, 2>, 3> pairs{{{0, 1}, {1, 2}, {0, 2}}};
+  const auto is_direction = [](const Vec3d& axis) { return is_finite(axis) && largest_component(axis) > 0; };
+  for (const auto& [a, b] : pairs) {
+    if (!is_direction(axes[a]) || !is_direction(axes[b])) continue;
+    const double cosine = dot(unit(axes[a]), unit(axes[b]));
+    if (std::abs(cosine) <= frame_tolerance) continue;
+    const double degrees = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+    return std::string("axes ") + axis_names[a] + " and " + axis_names[b] + " form an angle of " +
+           rounded_text(degrees) + " degrees";
   }
-  return true;
+  return {};
+}
+
+double frame_distance(const GridSpec& a, const GridSpec& b) {
+  double step = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (a.size[axis] > 1 && (step == 0 || a.spacing[axis] < step)) step = a.spacing[axis];
+  }
+  if (step == 0) step = a.spacing.x;
+  double farthest = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    std::array<std::int64_t, 3> at{};
+    for (unsigned axis = 0; axis < 3; ++axis) at[axis] = (corner >> axis & 1U) != 0 ? a.size[axis] - 1 : 0;
+    const double apart = safe_length(a.position(at[0], at[1], at[2]) - b.position(at[0], at[1], at[2]));
+    if (!(apart <= farthest)) farthest = apart;
+  }
+  return farthest / step;
 }
 
 Mat3 nearest_orthonormal(const Mat3& matrix) {
@@ -130,9 +166,9 @@ void set_frame(GridSpec& grid, const std::array<Vec3d, 3>& unit_axes, const Vec3
     const bool is_unit = is_finite(unit_axes[a]) && std::abs(safe_length(unit_axes[a]) - 1) <= frame_tolerance;
     if (!is_unit) throw FormatError(name + ": the direction of axis " + axis_names[a] + " is not a unit vector");
   }
-  if (!is_perpendicular(unit_axes)) {
-    throw FormatError(name +
-                      ": the axes are not perpendicular to each other; resample the image to a grid without shear");
+  if (const std::string shear = shear_text(unit_axes); !shear.empty()) {
+    throw FormatError(name + ": its " + shear + ", but must be perpendicular; resample the image to a grid without " +
+                      "shear, for example with SimpleITK.Resample or nibabel.processing.resample_to_output");
   }
   Mat3 direction;
   std::copy(unit_axes.begin(), unit_axes.end(), direction.columns);

@@ -215,15 +215,68 @@ void set_qform(const NiftiHeader& header, GridSpec& grid, const std::string& nam
   grid.origin = header.qoffset;
 }
 
-void read_frame(const NiftiHeader& header, GridSpec& grid, const std::string& name) {
-  if (header.sform_code > 0) {
-    try {
-      set_sform(header, grid, name);
-    } catch (const FormatError&) {
-      // Registration may have put shear into the sform. Then the qform, which has the scanner's grid, is used.
-      if (header.qform_code <= 0) throw;
-      set_qform(header, grid, name);
-    }
+/// Returns the reason why set_sform() failed.
+std::string sform_problem(const NiftiHeader& header) {
+  std::array<Vec3d, 3> axes;
+  for (std::size_t a = 0; a < 3; ++a) axes[a] = {header.srow[0][a], header.srow[1][a], header.srow[2][a]};
+  const std::string shear = shear_text(axes);
+  return shear.empty() ? "has a step that is zero or not finite" : "has shear: its " + shear;
+}
+
+/// Sets the frame of a file with two frames. The sform is used if it is valid.
+void read_both(const NiftiHeader& header, ImageFile& file, const std::string& name) {
+  GridSpec& grid = file.image.grid;
+  GridSpec other = grid;
+  const auto add = [&](const std::string& text) {
+    file.warnings.emplace_back(WarningCode::left_out, name + ": " + text);
+  };
+  try {
+    set_sform(header, grid, name);
+  } catch (const FormatError&) {
+    // Registration may have put shear into the sform. Then the qform, which has the scanner's grid, is used.
+    set_qform(header, grid, name);
+    add("the sform " + sform_problem(header) + "; the qform is used instead");
+    return;
+  }
+  try {
+    set_qform(header, other, name);
+  } catch (const FormatError&) {
+    add("the qform is invalid; the sform is used");
+    return;
+  }
+  const double apart = frame_distance(grid, other);
+  if (apart <= largest_frame_distance) return;
+  add("the sform and the qform disagree: they place corners of the image up to " + rounded_text(apart) +
+      " voxels apart; the sform is used, and the qform is ignored");
+}
+
+/// Warns if the steps of the sform, which is the only form, disagree with the header's spacings. Spacings that are
+/// missing agree with everything.
+void compare_spacings(const NiftiHeader& header, ImageFile& file, const std::string& name) {
+  const GridSpec& grid = file.image.grid;
+  const Vec3d other = spacings(header, grid);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double last = static_cast<double>(grid.size[a] - 1);  // index of the last voxel
+    const double step = grid.spacing[a];
+    const bool is_stated = other[a] > 0 && std::isfinite(other[a]);
+    if (!is_stated || std::abs(other[a] - step) * last <= largest_frame_distance * step) continue;
+    const auto text = [](const Vec3d& v) {
+      return "(" + rounded_text(v.x) + ", " + rounded_text(v.y) + ", " + rounded_text(v.z) + ")";
+    };
+    file.warnings.emplace_back(WarningCode::left_out, name + ": the sform has the steps " + text(grid.spacing) +
+                                                          ", but the spacings (pixdim) are " + text(other) +
+                                                          "; the sform is used");
+    return;
+  }
+}
+
+void read_frame(const NiftiHeader& header, ImageFile& file, const std::string& name) {
+  GridSpec& grid = file.image.grid;
+  if (header.sform_code > 0 && header.qform_code > 0) {
+    read_both(header, file, name);
+  } else if (header.sform_code > 0) {
+    set_sform(header, grid, name);
+    compare_spacings(header, file, name);
   } else if (header.qform_code > 0) {
     set_qform(header, grid, name);
   } else {
@@ -267,14 +320,15 @@ std::unique_ptr<ByteStream> open_plain_or_gzip(const ByteSource& source) {
   return std::make_unique<PlainStream>(source);
 }
 
-VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source) {
+ImageFile read_nifti(const ByteSource& source, const ByteSource* data_source) {
   const std::string& name = source.name();
   std::unique_ptr<ByteStream> stream = open_plain_or_gzip(source);
   const NiftiHeader header = read_header(*stream);
   const ScalarType type = type_of(header.datatype, name);
-  VoxelImage image;
+  ImageFile file;
+  VoxelImage& image = file.image;
   image.grid.size = image_size(header, name);
-  read_frame(header, image.grid, name);
+  read_frame(header, file, name);
   if (header.sform_code > 0 || header.qform_code > 0) image.space = "right-anterior-superior";
   const bool scales = std::isfinite(header.slope) && header.slope != 0 && (header.slope != 1 || header.intercept != 0);
   if (scales && !std::isfinite(header.intercept))
@@ -290,7 +344,7 @@ VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source) {
   stream->check_end();
   to_native(as_bytes(image.values), type, header.order);
   if (scales) image.values = scaled(image.values, header.slope, header.intercept);
-  return image;
+  return file;
 }
 
 namespace {
@@ -299,7 +353,7 @@ bool begins_as_nifti(std::string_view head) {
   return head.size() >= 348 && (head.substr(344, 3) == "n+1" || head.substr(4, 3) == "n+2");
 }
 
-VoxelImage read(const ByteSource& source, const std::filesystem::path&) {
+ImageFile read(const ByteSource& source, const std::filesystem::path&) {
   return read_nifti(source, nullptr);
 }
 
@@ -318,7 +372,7 @@ std::filesystem::path half_of_pair(const std::filesystem::path& stem, const char
 }
 
 /// Reads an image whose header and data are in two files. The path is that of either file.
-std::optional<VoxelImage> read_pair(const std::filesystem::path& path) {
+std::optional<ImageFile> read_pair(const std::filesystem::path& path) {
   std::filesystem::path stem = path;
   if (lower_case(stem.extension().string()) == ".gz") stem.replace_extension();
   const std::string extension = lower_case(stem.extension().string());

@@ -308,10 +308,10 @@ class HeaderParser {
     std::array<std::optional<Vec3d>, 3> steps;
     if (!directions_.empty()) {
       for (std::size_t i = 0; i < axes_.size(); ++i) steps[i] = to_vec3(*directions_[axes_[i]]);
-      set_frame(header_.grid, steps, name_);
+      set_frame(header_.grid, steps, name_ + ": 'space directions'");
       if (const std::string* text = find("space")) header_.space = nrrd_space(*text);
     } else {
-      read_spacings();
+      read_spacings(header_.grid);
     }
     if (const std::string* text = find("spaceorigin")) {
       const Vectors origin = vectors("space origin", *text);
@@ -325,13 +325,51 @@ class HeaderParser {
         fail("the space origin is not finite");
       }
     }
+    if (!directions_.empty()) compare_spacings();
+  }
+
+  /// Warns if the axes' own spacings and positions disagree with the space directions and origin. Fields of axes that
+  /// are missing or unknown agree with everything.
+  void compare_spacings() {
+    const bool has_steps = find("spacings") != nullptr;
+    const bool has_starts = find("axismins") != nullptr && find("spaceorigin") != nullptr;
+    if (!has_steps && !has_starts) return;
+    std::vector<double> spacings;
+    std::vector<double> mins;
+    GridSpec other = header_.grid;
+    try {
+      spacings = numbers("spacings");
+      mins = numbers("axismins");
+      read_spacings(other);
+    } catch (const FormatError&) {
+      return;  // they are not needed, and may be filled with anything
+    }
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const std::size_t a = axes_[i];
+      const double step = header_.grid.spacing[i];
+      const double start = dot(header_.grid.origin, header_.grid.direction.columns[i]);
+      const bool same_step = !has_steps || std::isnan(spacings[a]) ||
+                             std::abs(other.spacing[i] - step) * static_cast<double>(header_.grid.size[i]) <=
+                                 largest_frame_distance * step;
+      const bool same_start =
+          !has_starts || std::isnan(mins[a]) || std::abs(other.origin[i] - start) <= largest_frame_distance * step;
+      if (same_step && same_start) continue;
+      header_.warnings.emplace_back(
+          WarningCode::left_out,
+          name_ + ": its " + (same_step ? "space origin and 'axis mins'" : "space directions and spacings") +
+              " disagree at axis " + std::to_string(a) + ": " + exact_text(same_step ? start : step) + " and " +
+              exact_text(same_step ? other.origin[i] : other.spacing[i]) + "; the former is used");
+      return;
+    }
   }
 
   /// Reads the spacings of axes without directions, which are x, y, z of the world in this order. NaN means that a
-  /// spacing is unknown.
-  void read_spacings() {
+  /// spacing is unknown. If an axis has no spacing, its range (min to max) gives it. The range ends at the borders of
+  /// the outer voxels, unless the axis is centred at nodes; this is the default of Teem, too.
+  void read_spacings(GridSpec& grid) {
     const std::vector<double> spacings = numbers("spacings");
     const std::vector<double> mins = numbers("axismins");
+    const std::vector<double> maxs = numbers("axismaxs");
     std::vector<std::string_view> centers;
     if (const std::string* text = find(find("centers") != nullptr ? "centers" : "centerings")) {
       centers = split_words(*text);
@@ -340,15 +378,23 @@ class HeaderParser {
     std::array<std::optional<Vec3d>, 3> steps;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const std::size_t a = axes_[i];
-      const double step = spacings.empty() || std::isnan(spacings[a]) ? 1.0 : spacings[a];
+      const std::string center = lower_case(centers[a]);
+      double step = spacings.empty() || std::isnan(spacings[a]) ? 1.0 : spacings[a];
+      const bool has_range = !mins.empty() && !maxs.empty() && std::isfinite(mins[a]) && std::isfinite(maxs[a]);
+      const bool is_from_range = has_range && (spacings.empty() || std::isnan(spacings[a])) && mins[a] != maxs[a];
+      if (is_from_range) {
+        const auto count = static_cast<double>(sizes_[a]);
+        step = (maxs[a] - mins[a]) / (center == "node" ? std::max(count - 1, 1.0) : count);
+      }
       steps[i].emplace();
       (*steps[i])[i] = step;
       if (!mins.empty() && !std::isnan(mins[a])) {
-        header_.grid.origin[i] = mins[a] + (lower_case(centers[a]) == "cell" ? 0.5 * step : 0.0);
+        const bool is_cell = center == "cell" || (is_from_range && center != "node");
+        grid.origin[i] = mins[a] + (is_cell ? 0.5 * step : 0.0);
       }
     }
-    set_frame(header_.grid, steps, name_);
-    if (!is_finite(header_.grid.origin)) fail("'axis mins' are not finite");
+    set_frame(grid, steps, name_);
+    if (!is_finite(grid.origin)) fail("'axis mins' are not finite");
   }
 
   std::string data_file() const {
@@ -506,8 +552,8 @@ bool begins_as_nrrd(std::string_view head) {
   return head.starts_with("NRRD000");
 }
 
-VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path) {
-  const NrrdHeader header = read_nrrd_header(source);
+ImageFile read_nrrd(const ByteSource& source, const std::filesystem::path& path) {
+  NrrdHeader header = read_nrrd_header(source);
   check_count(header.grid.size, max_id_count, source.name());
   std::optional<FileSource> detached;
   if (!header.data_file.empty()) {
@@ -521,7 +567,7 @@ VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path
   image.space = header.space;
   image.values = make_values(header.type, header.grid.node_count());
   read_nrrd_data(data, header, as_bytes(image.values));
-  return image;
+  return {std::move(image), std::move(header.warnings)};
 }
 
 namespace {

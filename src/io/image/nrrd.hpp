@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "blum/grid/voxel_image.hpp"
+#include "blum/io/image_io.hpp"
 #include "io/bytes/byte_source.hpp"
 #include "io/bytes/scalar_type.hpp"
 #include "io/field/field_files.hpp"
@@ -30,6 +30,7 @@ struct NrrdHeader {
   std::uint64_t line_skip = 0;
   std::int64_t byte_skip = 0;  ///< number of bytes to skip; -1 if the data are the last bytes of the file
   Metadata key_values;
+  std::vector<Warning> warnings;  ///< frames that disagree, see ImageFile
 };
 
 /// Returns the header of a file whose raw data follow in the machine's byte order. It includes the empty line at its
@@ -58,6 +59,6 @@ void check_nrrd_data_size(const ByteSource& source, const NrrdHeader& header);
 [[nodiscard]] bool begins_as_nrrd(std::string_view head);
 
 /// @param path  path of the header. Detached data are looked for next to it. If empty, detached data are rejected.
-[[nodiscard]] VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path);
+[[nodiscard]] ImageFile read_nrrd(const ByteSource& source, const std::filesystem::path& path);
 
 }  // namespace blum::volume_io

@@ -81,8 +81,8 @@ bool begins_as_vol(std::string_view head) {
   return head.starts_with("X: ") || head.starts_with("Center-X:");
 }
 
-VoxelImage read(const ByteSource& source, const std::filesystem::path&) {
-  return read_vol(source);
+ImageFile read(const ByteSource& source, const std::filesystem::path&) {
+  return {read_vol(source)};
 }
 
 }  // namespace

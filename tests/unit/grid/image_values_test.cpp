@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace blum {
@@ -75,6 +78,45 @@ TEST(ImageValues, LabelAndThresholdExcludeEachOther) {
   EXPECT_EQ(LabelSelection::of({}, 0.5).threshold, 0.5);
   EXPECT_EQ(LabelSelection::of({}, {}).rule, LabelSelection::Rule::nonzero);
   EXPECT_THROW((void)LabelSelection::of(7, 0.5), InvalidOption);
+}
+
+std::string rounding_error(const VoxelImage& image, std::vector<std::int64_t> labels) {
+  try {
+    return rounded_labels(image, labels) ? "rounded" : "as they are";
+  } catch (const InvalidImage& error) {
+    return error.what();
+  }
+}
+
+TEST(RoundedLabels, AreRoundedIfAllValuesAreNearlyWhole) {
+  const auto rounded = rounded_labels(row_of<float>({-0.0004F, 7000.9995F, 2.99F, std::nanf(""), -1.009F, 5}));
+  ASSERT_TRUE(rounded);
+  const auto& values = std::get<std::vector<float>>(rounded->values);
+  EXPECT_EQ(values[0], 0.0F);
+  EXPECT_EQ(values[1], 7001.0F);
+  EXPECT_EQ(values[2], 3.0F);
+  EXPECT_TRUE(std::isnan(values[3]));
+  EXPECT_EQ(values[4], -1.0F);
+  EXPECT_EQ(values[5], 5.0F);
+  EXPECT_EQ(rounded->warning.code, WarningCode::rounded);
+  EXPECT_NE(rounded->warning.text.find("4 voxels have labels that are not quite whole"), std::string::npos);
+}
+
+TEST(RoundedLabels, AreLeftAloneWhereRoundingIsNotNeededOrNotSafe) {
+  EXPECT_EQ(rounding_error(row_of<double>({0, 1, 2, std::nan("")}), {}), "as they are");
+  EXPECT_EQ(rounding_error(row_of<std::int16_t>({0, 1, 2}), {1}), "as they are");
+  EXPECT_EQ(rounding_error(row_of<double>({0, 0.999, 2.5}), {}), "as they are");
+  EXPECT_EQ(rounding_error(row_of<double>({0, 0.999, 2.5}), {2}), "as they are");
+  EXPECT_EQ(rounding_error(row_of<double>({0, 0.98}), {1}), "as they are");
+  EXPECT_EQ(rounding_error(row_of<double>({0.999, std::numeric_limits<double>::infinity()}), {}), "as they are");
+  EXPECT_EQ(rounding_error(row_of<double>({0, 0.98}), {1, 0}), "as they are");
+  EXPECT_EQ(rounding_error(row_of<double>({0, 0.991}), {1}), "rounded");
+}
+
+TEST(RoundedLabels, AreAnErrorIfALabelIsNearlyThereAndOthersAreNot) {
+  const std::string text = rounding_error(row_of<double>({0, 0.999, 2.5}), {4, 1});
+  EXPECT_NE(text.find("has the value 0.999, which is nearly the label 1"), std::string::npos) << text;
+  EXPECT_NE(text.find("for example 2.5"), std::string::npos) << text;
 }
 
 }  // namespace

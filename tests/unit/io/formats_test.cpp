@@ -62,7 +62,7 @@ TEST(Formats, ImagesAndFieldsAreDistinguished) {
     EXPECT_EQ(content_of(path), FileContent::image) << end;
     EXPECT_FALSE(may_hold_field(path));
     std::filesystem::copy_file(path, folder / ("i" + end.substr(1)));
-    EXPECT_EQ(read_image_of_any_name(folder / ("i" + end.substr(1))).values, image.values) << end;
+    EXPECT_EQ(read_image_of_any_name(folder / ("i" + end.substr(1))).image.values, image.values) << end;
   }
   EXPECT_EQ(image_format_name(folder / "inrrd"), "NRRD");
   Field field;

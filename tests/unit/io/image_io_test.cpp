@@ -280,7 +280,7 @@ TEST(NiftiGeometry, QformReplacesAShearedSform) {
   nifti.sform({1, 0.2F, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
   expect_qform(read_text(nifti.bytes + data24, ImageFormat("NIfTI")).grid);
   nifti.set<std::int16_t>(252, 0);
-  EXPECT_PRED2(contains, error_of(nifti.bytes + data24, ImageFormat("NIfTI")), "not perpendicular");
+  EXPECT_PRED2(contains, error_of(nifti.bytes + data24, ImageFormat("NIfTI")), "must be perpendicular");
 }
 
 TEST(NiftiGeometry, SpacingsAloneIfNoFormIsSet) {
