@@ -29,11 +29,12 @@ from ._arguments import (
     truth,
 )
 from ._errors import InvalidMesh, InvalidOption
-from ._mesh import Mesh, MeshLike, as_mesh, end_vertices, mesh_of_arrays
+from ._mesh import MeshLike, as_mesh, end_vertices, mesh_of_arrays
 from ._methods import ShortList, Shown
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
 from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
+from ._scene_copies import SceneObject, restored_scene
 from ._structs import ImpactOptions, PenetrationOptions, SceneOptions
 
 __all__ = [
@@ -77,7 +78,7 @@ class ProximityScene:
     def __init__(self, **options: Unpack[SceneOptions]) -> None:
         self._scene = _core.ProximityScene(dict(options))
         self._options = dict(options)
-        self._objects: list[_Object | None] = []  # None: removed
+        self._objects: list[SceneObject | None] = []  # None: removed
         self._excluded: set[tuple[int, int]] = set()
         self._busy = threading.Lock()
         self._owner: int | None = None  # Thread that uses the scene.
@@ -88,7 +89,7 @@ class ProximityScene:
                 None if each is None else (mesh_of_arrays(self._scene.mesh(number)), each)
                 for number, each in enumerate(self._objects)
             ]
-            return _restored, (type(self), self._options, objects, sorted(self._excluded))
+            return restored_scene, (type(self), self._options, objects, sorted(self._excluded))
 
     def __repr__(self) -> str:
         count = sum(each is not None for each in self._objects)
@@ -141,7 +142,7 @@ class ProximityScene:
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             added: int = self._scene.add(own._arrays, *options, called, place, count, report)
-            self._objects.append(_Object(*options, called, place.copy()))
+            self._objects.append(SceneObject(*options, called, place.copy()))
         return added
 
     def remove(self, index: Integer) -> None:
@@ -562,43 +563,6 @@ class ProximityScene:
                 yield report
             finally:
                 self._owner = None
-
-
-@dataclass(frozen=True)
-class _Object:
-    """Facts about an object of a scene, in addition to its mesh."""
-
-    layers: int
-    meets: int
-    compare_self: bool
-    name: str
-    place: FloatArray
-
-
-def _restored(
-    kind: type[ProximityScene],
-    options: Any,
-    objects: list[tuple[Mesh, _Object] | None],
-    excluded: list[tuple[int, int]],
-) -> ProximityScene:
-    """Returns a copy of a scene. Its objects have the same numbers."""
-    scene = kind(**options)
-    for each in objects:
-        if each is None:
-            scene.remove(scene.add(Mesh([[0.0, 0.0, 0.0]])))
-        else:
-            mesh, own = each
-            scene.add(
-                mesh,
-                layers=own.layers,
-                meets=own.meets,
-                compare_self=own.compare_self,
-                name=own.name,
-                transform=own.place,
-            )
-    for a, b in excluded:
-        scene.exclude(a, b)
-    return scene
 
 
 def separation(

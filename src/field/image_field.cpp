@@ -28,9 +28,8 @@ void check_selected(std::size_t selected, const VoxelImageView& image, const Ima
   if (selected == 0) throw InvalidImage(nothing_selected_text(image, request.selection));
   if (request.is_signed && selected == request.voxel_count()) {
     throw InvalidImage("every voxel of the image " + describe(request.selection) +
-                       ", so a signed field has no boundary to measure to: select a part of the voxels, by a label or "
-                       "a threshold, or add a "
-                       "layer of voxels of 0 around the image if the solid ends at its border (numpy.pad(values, 1))");
+                       ", so a signed field has no boundary: select some by label or threshold, or add a layer of 0 "
+                       "(numpy.pad(values, 1))");
   }
 }
 

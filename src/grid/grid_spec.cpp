@@ -93,8 +93,7 @@ void validate(const GridSpec& grid) {
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b < 3; ++b) {
       const double product = dot(grid.direction.columns[a], grid.direction.columns[b]);
-      if (!(std::abs(product - (a == b ? 1.0 : 0.0)) <= 1e-6))
-        throw InvalidGrid(direction_problem(a, b, product));
+      if (!(std::abs(product - (a == b ? 1.0 : 0.0)) <= 1e-6)) throw InvalidGrid(direction_problem(a, b, product));
     }
   }
 }

@@ -190,7 +190,7 @@ def test_images_without_background_name_remedies(tmp_path):
     np.save(tmp_path / "full.npy", np.ones((4, 5, 6), dtype=np.uint8))
     _, err = run("field", tmp_path / "full.npy", "-o", tmp_path / "o.npz", status=1)
     assert "every voxel of the image differs from zero" in err
-    assert "a label or a threshold" in err and "numpy.pad(values, 1)" in err
+    assert "select some by label or threshold" in err and "numpy.pad(values, 1)" in err
     np.save(tmp_path / "padded.npy", np.pad(np.load(tmp_path / "full.npy"), 1))
     run("field", tmp_path / "padded.npy", "-o", tmp_path / "o.npz")
 
@@ -209,6 +209,7 @@ def test_fields_of_images_without_sites(tmp_path, options):
         assert distances[0] == distances[1] and len(set(np.frombuffer(distances[0], np.float32))) > 2
         assert (tmp_path / f"full{end}.site.nrrd").exists() and not (tmp_path / f"half{end}.site.nrrd").exists()
     assert all(field["sites"] is None for field in report["fields"])
+    assert "--no-sites" in run("field", "--help")[0] and "Turn this off: store" in run("field", "--help")[0]
     # The sites of a replaced field are removed.
     removed = run_json("field", tmp_path / "a.npy", *options, "--no-sites", "-o", tmp_path / "full.nrrd")["removed"]
     wanted = [str(tmp_path / f"full{end}.site.nrrd") for end in ends]

@@ -67,7 +67,7 @@ def test_all_formats_at_once(shapes, tmp_path):
     text, _ = run(
         "surface-map", shapes / "plate.ply", shapes / "sphere.ply", *options, "--units", "mm", "--range", "0,2", "--texel", 0.1
     )
-    assert all(out.stat().st_size > 500 for out in outs) and text.count("wrote") == 5 and " mm between texels" in text
+    assert all(out.stat().st_size > 500 for out in outs) and text.count("wrote") == 5 and " mm (1.4 % of the size) between texels" in text
 
 
 def test_wrong_arguments_are_rejected(shapes, tmp_path):

@@ -95,7 +95,7 @@ def test_vtk_and_trimesh_read_columns(maps):
     # MeshLab colours by this property: see test_meshlab_shows_the_distance.
     assert numpy.array_equal(vertex["quality"], vertex["distance"].astype(numpy.float32))
     # Blum's own reader does not see the copy.
-    assert set(blum.read_complex(maps / "map.ply").vertex_columns) == {"distance"}
+    assert set(blum.read_complex(maps / "map.ply").complex.vertex_columns) == {"distance"}
 
 
 def test_meshlab_shows_the_distance(maps):

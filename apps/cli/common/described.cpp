@@ -58,6 +58,12 @@ std::string type_text(std::string_view member) {
   return text;
 }
 
+/// Returns the help of a flag that turns an option off. `doc` states what the option does, often after "true: ".
+std::string text_of_off(std::string_view doc) {
+  constexpr std::string_view on = "true: ";
+  return doc.starts_with(on) ? "turn this off: " + std::string(doc.substr(on.size())) : "without " + std::string(doc);
+}
+
 }  // namespace
 
 void OptionTable::add_to(const Command& command, std::string_view prefix,
@@ -69,7 +75,7 @@ void OptionTable::add_to(const Command& command, std::string_view prefix,
     if (member.is_flag) {
       command.add_flag_function(
           member.is_on ? "--no-" + name.substr(2) : name, [set] { set(""); },
-          option_help(prefix, (member.is_on ? "without " : "") + std::string(member.doc), member.unit, {}));
+          option_help(prefix, member.is_on ? text_of_off(member.doc) : std::string(member.doc), member.unit, {}));
       continue;
     }
     std::string unit(member.unit);

@@ -35,8 +35,8 @@ struct SolidInput {
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld,
                                     std::span<const std::int64_t> labels = {});
 
-/// Returns the warnings about an input: those of an image's file, or that a weld tolerance changed the number of
-/// components or the Euler number of a mesh.
+/// Returns the warnings about an input. Images: those of the file. Meshes: a weld tolerance changed the number of
+/// components or the Euler number.
 [[nodiscard]] std::vector<Warning> warnings_of(const SolidInput& input);
 
 /// Returns the diagonal of the box of a solid: of the mesh, or of the selected voxels of the image.

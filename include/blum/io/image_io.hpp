@@ -31,14 +31,13 @@ struct ImageFile {
 ///                     in one other file, also with line skip and byte skip. The geometry is given by "space
 ///                     directions", "space origin" and "space" (VoxelImage::space), or else by "spacings" and "axis
 ///                     mins" and "axis maxs". NaN means unknown: a spacing then becomes 1, and an origin 0.
-///                     Axes without a direction ("none"), and axes whose kind counts components (vector, colour, matrix),
-///                     must have one entry, and are removed. If more than three axes remain, axes with one entry are
-///                     removed, too.
-///                     Other kinds of axes are treated like spatial axes.
+///                     Axes without a direction ("none"), and axes whose kind counts components (vector, colour,
+///                     matrix), must have one entry, and are removed. If more than three axes remain, axes with one
+///                     entry are removed, too. Other kinds of axes are treated like spatial axes.
 ///   `.nii`, `.hdr` with `.img`, each also with `.gz`
 ///                     NIfTI-1 and 2, in either byte order. The geometry is given by the sform if it is set, else by
 ///                     the qform if that is set, else by the spacings alone. If the sform has shear, the qform is used
-///                     instead; if there is no qform, this is an error. read_image_file() warns if sform and qform (or
+///                     instead. Without a qform, this is an error. read_image_file() warns if sform and qform (or the
 ///                     spacings) place a corner more than 0.1 voxels apart. If either form is used, the space is
 ///                     right-anterior-superior. If the file has a scale (scl_slope, scl_inter), values become double. A
 ///                     slope of 0, NaN or infinity is ignored. Sizes along dimensions beyond the third must be 1.

@@ -333,6 +333,14 @@ def test_images_are_those_of_the_host(kind, number):
         assert field.site_ids == "voxels"
         assert field.sign_rule == transform.sign_rule == ("label" if options.get("signed", True) else "none")
         assert field.band == options.get("band")
+        half = blum.DeviceDistanceTransform(grid, sites=False, **options)
+        without = half.compute(kind(values))
+        assert without.site is None and np.array_equal(on_host(without.distance), on_host(field.distance))
+        out = OnDevice(np.zeros(grid.shape, np.float32))
+        half.compute(kind(values), out=(out, None))
+        assert np.array_equal(out.values, on_host(field.distance))
+        host = blum.distance_transform(values, spacing=(1, 0.5, 2), device="cuda", sites=False, **options)
+        assert host.site is None and np.array_equal(host.distance, on_host(field.distance))
 
 
 def test_images_without_selected_voxels_are_infinitely_far():
