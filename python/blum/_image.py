@@ -188,7 +188,7 @@ def labelled(image: Image, labels: Sequence[int] | None) -> Image:
     """
     if labels is None or image.values.dtype.kind != "f":
         return image
-    found = _core.rounded_labels(image._arrays, list(labels))
+    found: Any = _core.rounded_labels(image._arrays, list(labels))
     if found is None:
         return image
     parts, warnings = found

@@ -44,7 +44,7 @@ def test_nearly_whole_labels_are_those_of_whole_labels(name):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         wanted = content_of(TAKERS[name](EXACT))
-    with pytest.warns(blum.InputWarning, match="not quite whole, for example .*rounded") as caught:
+    with pytest.warns(blum.InputWarning, match=r"not quite whole, for example .*rounded") as caught:
         found = content_of(TAKERS[name](NEARLY))
     assert found == wanted
     assert {warning.message.code for warning in caught} == {"rounded"}
@@ -60,7 +60,7 @@ def test_facts_of_labels_are_rounded():
 
 @pytest.mark.parametrize("name", ["distance_transform", "smooth_surface", "medial_axis", "Solid", "selected_voxels"])
 def test_labels_among_other_numbers_are_an_error(name):
-    with pytest.raises(blum.InvalidImage, match="nearly the label .* but also values .* for example 0.5"):
+    with pytest.raises(blum.InvalidImage, match=r"nearly the label .* but also values .* for example 0.5"):
         TAKERS[name](image(7000.9995, 3.002, 0.5))
 
 
@@ -69,7 +69,7 @@ def test_thresholds_and_whole_labels_are_compared_as_they_are():
     assert blum.selected_voxels(grey, label=3).sum() == 192
     assert blum.selected_voxels(NEARLY, threshold=7001).sum() == 0
     assert blum.selected_voxels(NEARLY, threshold=7000.999).sum() == 192
-    with pytest.raises(blum.InvalidImage, match="no voxel .* has the label 7.* 0.25, which is not a whole number"):
+    with pytest.raises(blum.InvalidImage, match=r"no voxel .* has the label 7.* 0.25, which is not a whole number"):
         blum.distance_transform(grey, label=7)
 
 
@@ -88,7 +88,7 @@ def test_conflicting_frames_warn_in_python(tmp_path):
     made.set_sform(one, 1)
     made.set_qform(other, 1)
     nibabel.save(made, tmp_path / "a.nii")
-    with pytest.warns(blum.InputWarning, match="the sform and the qform disagree.*the sform is used") as caught:
+    with pytest.warns(blum.InputWarning, match=r"the sform and the qform disagree.*the sform is used") as caught:
         read = blum.read_image(tmp_path / "a.nii")
     assert caught[0].message.code == "left-out" and caught[0].filename == __file__
     assert read.spacing == (2, 3, 4)

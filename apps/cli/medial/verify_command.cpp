@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -80,7 +81,10 @@ class Verifier {
         warnings.emplace_back(WarningCode::other_vertices, asked + weld_text(*solid.weld));
       }
     }
-    warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
+    for (const Warning& warning : warnings) {
+      // Several axes of one image have the same warnings about the image.
+      if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end()) warnings_.push_back(warning);
+    }
     const MedialCounts counts = count(file.complex);
     const std::optional<double>& theta = file.metadata.theta;
     add_certificate(table_, theta ? " at theta " + rounded_text(*theta) : "", certificate, file.nested.has_value(),
