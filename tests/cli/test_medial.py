@@ -495,3 +495,22 @@ def test_bad_usage_is_2_and_writes_nothing(solids, command, word):
     assert done.returncode == 2 and done.stdout == b"", done
     assert done.stderr.startswith(b"blum: error: ") and word.encode() in done.stderr, done
     assert {path: path.read_bytes() for path in solids.iterdir()} == files
+
+
+def test_large_errors_are_also_shares_of_the_size(tmp_path):
+    """The size of the box, its diagonal, is 10 * sqrt(3). At theta 120 its balls do not reach the edges."""
+    sides = ("--size-x", 10, "--size-y", 10, "--size-z", 10)
+    run("make", "box", *sides, "-o", tmp_path / "box.ply")
+    text, _ = run("medial", tmp_path / "box.ply", "--theta", 120, "--resolution", 24, "-o", tmp_path / "axis.vtp")
+    report = run_json("verify", tmp_path / "box.ply", tmp_path / "axis.vtp")["certificate"]["balls"]
+    worst = report["solid_to_balls"]
+    share = re.search(r"at most ([0-9.]+) \(([0-9.]+) % of the size\), mean", text)
+    assert share is not None, text
+    assert float(share[1]) == pytest.approx(worst, rel=1e-4)
+    assert float(share[2]) == pytest.approx(100 * worst / (10 * 3**0.5), abs=0.51)
+    run("field", tmp_path / "box.ply", "--resolution", 64, "-o", tmp_path / "f.npz")
+    assert re.search(r"diagonal, [0-9.]+ \([0-9.]+ % of the size\), in", run(
+        "surface", tmp_path / "f.npz", "-o", tmp_path / "s.ply")[0])  # fmt: skip
+    # Errors below a thousandth of the size have no share.
+    done = run("clean", tmp_path / "box.ply", "--tolerance", 1e-3, "-o", tmp_path / "c.ply")[0]
+    assert "of the size" not in done

@@ -66,7 +66,7 @@ void run(const Arguments& a) {
   Json json = answer_json("clean", facts);
   add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
   TextTable table;
-  add_cleaning(cleaned.report, tolerance, table);
+  add_cleaning(cleaned.report, tolerance, bounds(input.mesh.mesh).diagonal(), table);
   table.add(input.table);
   table.add("wrote", output.string());
   spent.add_to(table);

@@ -16,8 +16,8 @@ std::string change_text(std::size_t before, std::size_t after) {
 
 }  // namespace
 
-void add_cleaning(const CleanReport& done, double tolerance, TextTable& table) {
-  table.add("deviation", "at most " + rounded_text(done.deviation) + " in both directions (tolerance " +
+void add_cleaning(const CleanReport& done, double tolerance, double size, TextTable& table) {
+  table.add("deviation", "at most " + share_text(done.deviation, size) + " in both directions (tolerance " +
                              rounded_text(tolerance) + ")");
   table.add("topology", "unchanged: " + betti_text(done.betti) + "; no self-intersections (exact test)");
   table.add("vertices", change_text(done.vertices_before, done.vertices));

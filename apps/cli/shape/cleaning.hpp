@@ -11,7 +11,8 @@
 namespace blum::cli {
 
 /// Adds the report of cleaning to a table.
-void add_cleaning(const CleanReport& done, double tolerance, TextTable& table);
+/// @param size  of the mesh; see share_text().
+void add_cleaning(const CleanReport& done, double tolerance, double size, TextTable& table);
 
 /// Returns the report as JSON.
 [[nodiscard]] Json cleaning_json(const CleanReport& done, double tolerance);

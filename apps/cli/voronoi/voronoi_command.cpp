@@ -366,8 +366,9 @@ void run(const Arguments& a) {
   if (is_graph_written) outputs.push_back(r.axis.graph->string());
   add_run_facts(json, spent, context, warnings, outputs);
   TextTable table;
-  if (cleaning) add_cleaning(*cleaning, *r.clean, table);
-  add_facts(found, r.options.part, counts, bounds(input.mesh.mesh).diagonal(), table);
+  const double size = bounds(input.mesh.mesh).diagonal();
+  if (cleaning) add_cleaning(*cleaning, *r.clean, size, table);
+  add_facts(found, r.options.part, counts, size, table);
   if (axis) table.add(axis->table);
   if (graph) table.add("graph", graph_text(*graph));
   if (a.cleaned) table.add("wrote", *a.cleaned);
