@@ -7,6 +7,7 @@
 
 #include "blum/core/inline_list.hpp"
 #include "blum/core/vec3.hpp"
+#include "proximity/exact/shifted_impact.hpp"
 
 namespace blum::detail {
 namespace {
@@ -140,7 +141,8 @@ Bernstein<3> along(const QuadraticVector& v, std::size_t axis) {
 class Filter {
  public:
   Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance)
-      : is_face_(kinds == FeatureKinds::vertex_face),
+      : points_(points),
+        is_face_(kinds == FeatureKinds::vertex_face),
         tolerance_(tolerance),
         u_(is_face_ ? between(points, 1, 2) : between(points, 0, 1)),
         v_(is_face_ ? between(points, 1, 3) : between(points, 2, 3)),
@@ -159,8 +161,13 @@ class Filter {
   }
 
   [[nodiscard]] FilteredImpact meeting() {
+    if (in_range_ && !may_be_zero(volume_, volume_error_)) return {FilteredImpact::Answer::never, 0};
+    if (may_only_shift()) {
+      const FeatureKinds kinds = is_face_ ? FeatureKinds::vertex_face : FeatureKinds::edge_edge;
+      const FilteredImpact shifted = shifted_impact(points_, kinds, tolerance_);
+      if (shifted.answer != FilteredImpact::Answer::unknown) return shifted;
+    }
     if (!in_range_) return {};
-    if (!may_be_zero(volume_, volume_error_)) return {FilteredImpact::Answer::never, 0};
     first_ = product(w_, v_);
     second_ = is_face_ ? product(u_, w_) : product(w_, u_);
     return first_by(most_looks_for_meeting, [&](const Interval& interval) { return look_at(interval); });
@@ -193,7 +200,7 @@ class Filter {
       const Interval interval = left_.pop_back();
       const FilteredImpact::Answer answer = look_at(interval);
       if (answer == FilteredImpact::Answer::never) continue;
-      if (answer == FilteredImpact::Answer::meets) return {answer, interval.low};
+      if (answer == FilteredImpact::Answer::meets) return {answer, grid_time(interval.low)};
       if (interval.high - interval.low < least_width) return {};
       const double cut = 0.5 * (interval.low + interval.high);
       left_.push_back({cut, interval.high});
@@ -214,6 +221,15 @@ class Filter {
   /// Returns true if products of three numbers of this magnitude do not overflow, and underflow causes no larger errors
   /// than rounding.
   static bool is_in_range(double magnitude) { return magnitude > 1e-80 && magnitude < 1e90; }
+
+  /// Returns false if one of the features certainly does more than shift.
+  [[nodiscard]] bool may_only_shift() const { return u_.start == u_.end && v_.start == v_.end; }
+
+  /// Returns the largest time on the grid of reported times that is not above `low`.
+  [[nodiscard]] double grid_time(double low) const {
+    const int depth = time_depth(tolerance_);
+    return std::ldexp(std::floor(std::ldexp(low, depth)), -depth);
+  }
 
   template <std::size_t size>
   static bool may_be_zero(const Bernstein<size>& c, double error) {
@@ -289,6 +305,7 @@ class Filter {
 
   static Vec3d at(const MovingVector& v, double t) { return v.start * (1 - t) + v.end * t; }
 
+  const FourMovingPoints& points_;
   bool is_face_;
   double tolerance_;
   MovingVector u_, v_, w_;
@@ -305,6 +322,12 @@ class Filter {
 };
 
 }  // namespace
+
+int time_depth(double tolerance) {
+  int exponent = 0;
+  std::frexp(tolerance, &exponent);
+  return 1 - exponent;
+}
 
 FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
   Filter filter(points, kinds, options.tolerance);

@@ -10,20 +10,24 @@ namespace blum::detail {
 
 enum class FeatureKinds : std::uint8_t { vertex_face, edge_edge };
 
-/// The result for two features, as far as double arithmetic can decide it.
+/// Times of impact are multiples of 2^-depth: the first contact, rounded down. So they do not depend on the arithmetic
+/// that decides. Returns the least depth for which such times are early by at most the tolerance.
+[[nodiscard]] int time_depth(double tolerance);
+
+/// The result for two features, as far as fast arithmetic can decide it.
 struct FilteredImpact {
   enum class Answer : std::uint8_t { never, meets, unknown };
   Answer answer = Answer::unknown;
   double time = 0;  ///< if they meet: the time that vertex_face_impact() returns
 };
 
-/// Returns the time at which two moving features meet, if they do. Exact: uses double arithmetic if that decides, else
-/// integer arithmetic.
+/// Returns the time at which two moving features meet, if they do. Exact: uses filtered_impact() if that decides, else
+/// integers of any size.
 [[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds,
                                            const ImpactOptions& options);
 
-/// Returns the time at which two moving features meet, if double arithmetic can decide it, else `unknown`. It never
-/// returns a wrong answer.
+/// Returns the time at which two moving features meet, if doubles or integers of a fixed width can decide it, else
+/// `unknown`. It never returns a wrong answer.
 [[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds,
                                              const ImpactOptions& options);
 

@@ -12,6 +12,7 @@
 
 #include "blum/proximity/impact.hpp"
 #include "proximity/exact/polynomial.hpp"
+#include "proximity/impact_filter.hpp"
 
 namespace blum::detail {
 namespace {
@@ -113,14 +114,6 @@ Polynomial dot(const PolynomialVector& a, const MovingVector& b) {
   return sum;
 }
 
-/// Returns a number of halvings after which an interval of width 1 is no wider than a tolerance. The tolerance must be
-/// 2^-40 to 1.
-unsigned depth_of(double tolerance) {
-  int exponent = 0;
-  std::frexp(tolerance, &exponent);
-  return static_cast<unsigned>(std::max(1 - exponent, 0)) + 1;
-}
-
 /// Conditions over time for two parts of features; a part is a vertex, the inside of an edge, or the inside of a face.
 /// The parts are at most the distance apart if `excess` is not positive, no item of `inside` is negative, and `size` is
 /// positive. `inside` expresses that the closest points lie on the parts.
@@ -202,11 +195,12 @@ class Approach {
                                std::optional<double>& best) {
     if (polynomial.degree() <= 0) return;
     const RealRoots roots(polynomial);
+    const auto depth = static_cast<unsigned>(time_depth(tolerance));
     for (const RealRoot& isolated : roots.all()) {
-      const RealRoot root = roots.refined(isolated, depth_of(tolerance));
-      if (best && root.lower_bound() >= *best) return;
+      const RealRoot root = roots.refined(isolated, depth);
+      if (best && root.rounded_down(depth) >= *best) return;
       if (!holds(parts, roots, root)) continue;
-      best = root.lower_bound();
+      best = root.rounded_down(depth);
       return;
     }
   }
@@ -300,10 +294,11 @@ class Features {
 /// Returns the first root of a polynomial at which the features meet.
 std::optional<double> first_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance) {
   const RealRoots roots(polynomial);
+  const auto depth = static_cast<unsigned>(time_depth(tolerance));
   for (const RealRoot& isolated : roots.all()) {
     // In a narrow interval around the root, signs of other polynomials are decided fast.
-    const RealRoot root = roots.refined(isolated, depth_of(tolerance));
-    if (features.meet_at(roots, root)) return root.lower_bound();
+    const RealRoot root = roots.refined(isolated, depth);
+    if (features.meet_at(roots, root)) return root.rounded_down(depth);
   }
   return std::nullopt;
 }

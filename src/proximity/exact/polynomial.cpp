@@ -43,8 +43,7 @@ bool is_less(const RealRoot& a, const RealRoot& b) {
 
 }  // namespace
 
-double RealRoot::lower_bound() const {
-  constexpr unsigned digits = 52;
+double RealRoot::rounded_down(unsigned digits) const {
   const Integer whole = depth > digits ? Integer(cell >> (depth - digits)) : Integer(cell << (digits - depth));
   return std::ldexp(static_cast<double>(whole.convert_to<std::uint64_t>()), -static_cast<int>(digits));
 }

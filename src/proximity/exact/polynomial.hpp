@@ -90,8 +90,9 @@ struct RealRoot {
 
   [[nodiscard]] Dyadic low() const { return {cell, depth}; }
   [[nodiscard]] Dyadic high() const { return {cell + 1, depth}; }
-  /// Returns a number that is not above the root. The root exceeds it by at most 2^-52 plus the width of the interval.
-  [[nodiscard]] double lower_bound() const;
+  /// Returns the root, rounded down to a multiple of 2^-digits. The interval must be at most 2^-digits wide, and digits
+  /// at most 52.
+  [[nodiscard]] double rounded_down(unsigned digits) const;
 };
 
 /// Real roots of a polynomial in [0, 1], and the signs of other polynomials at these roots. All answers are exact.
