@@ -3,14 +3,17 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/proximity/continuous_collisions.hpp"
+#include "blum/proximity/first_contact.hpp"
 #include "call.hpp"
 #include "columns.hpp"
+#include "contacts.hpp"
 #include "structs.hpp"
 
 namespace blum::python {
@@ -92,6 +95,19 @@ void bind_proximity(nb::module_& m) {
             view);
       },
       nb::arg("mesh"), nb::arg("end").noconvert(), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "first_contact",
+      [](const MeshArrays& mesh, const PointsIn& end, const MeshArrays* other, const std::optional<PointsIn>& other_end,
+         const nb::dict& given, int threads, nb::object progress) {
+        const auto options = options_from<ImpactOptions>(given);
+        return contact_out(run({threads, std::move(progress)}, [&](const Context& context) {
+          if (other == nullptr) return first_contact(mesh.view(), vectors(end), options, context);
+          const std::span<const Vec3d> last = other_end ? vectors(*other_end) : other->view().vertices;
+          return first_contact(mesh.view(), vectors(end), other->view(), last, options, context);
+        }));
+      },
+      nb::arg("mesh"), nb::arg("end").noconvert(), nb::arg("other").none(), nb::arg("other_end").none(),
+      nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   bind_impacts(m, "vertex_face_impacts",
                [](std::span<const FourMovingPoints> points, const ImpactOptions& options, const Context& context) {
                  return vertex_face_impacts(points, options, context);

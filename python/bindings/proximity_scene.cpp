@@ -19,6 +19,7 @@
 #include "blum/geometry/primitives.hpp"
 #include "blum/geometry/triangle_distance.hpp"
 #include "call.hpp"
+#include "contacts.hpp"
 #include "structs.hpp"
 
 namespace blum::python {
@@ -299,21 +300,36 @@ void bind_solids(nb::class_<ProximityScene>& scene) {
 /// Object, and its vertices and its place at the end of the motion.
 using MotionIn = std::tuple<std::uint32_t, std::optional<PointsIn>, std::optional<PlaceIn>>;
 
+std::vector<ObjectMotion> motions_of(const std::vector<MotionIn>& given) {
+  std::vector<ObjectMotion> motions;
+  for (const auto& [object, vertices, place] : given) {
+    ObjectMotion& motion = motions.emplace_back();
+    motion.object = ObjectId(object);
+    if (vertices) motion.vertices = vectors(*vertices);
+    if (place) motion.place = place_of(*place);
+  }
+  return motions;
+}
+
 void bind_motions(nb::class_<ProximityScene>& scene) {
   scene.def(
       "continuous",
       [](const ProximityScene& self, const std::vector<MotionIn>& given_motions, const nb::dict& given, int threads,
          nb::object progress) {
         const auto options = options_from<ImpactOptions>(given);
-        std::vector<ObjectMotion> motions;
-        for (const auto& [object, vertices, place] : given_motions) {
-          ObjectMotion& motion = motions.emplace_back();
-          motion.object = ObjectId(object);
-          if (vertices) motion.vertices = vectors(*vertices);
-          if (place) motion.place = place_of(*place);
-        }
+        const std::vector<ObjectMotion> motions = motions_of(given_motions);
         return collisions_out(run({threads, std::move(progress)},
                                   [&](const Context& context) { return self.continuous(motions, options, context); }));
+      },
+      nb::arg("motions"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "first_contact",
+      [](const ProximityScene& self, const std::vector<MotionIn>& given_motions, const nb::dict& given, int threads,
+         nb::object progress) {
+        const auto options = options_from<ImpactOptions>(given);
+        const std::vector<ObjectMotion> motions = motions_of(given_motions);
+        return contact_out(run({threads, std::move(progress)},
+                               [&](const Context& context) { return self.first_contact(motions, options, context); }));
       },
       nb::arg("motions"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }

@@ -13,10 +13,16 @@ from ._errors import InvalidMesh
 from ._mesh import MeshLike, MeshOrVertices, as_mesh, end_vertices
 from ._options import takes
 from ._progress import Progress, reporting
-from ._proximity_results import earliest_of
+from ._proximity_results import FirstContact, earliest_of
 from ._structs import ImpactOptions
 
-__all__ = ["ContinuousCollisions", "continuous_collisions", "edge_edge_impacts", "vertex_face_impacts"]
+__all__ = [
+    "ContinuousCollisions",
+    "continuous_collisions",
+    "edge_edge_impacts",
+    "first_contact",
+    "vertex_face_impacts",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +97,57 @@ def continuous_collisions(
     with reporting(progress) as report:
         found = _core.continuous_collisions(start._arrays, last, dict(options), integer(threads, "threads"), report)
     return ContinuousCollisions(*found)
+
+
+@takes("ImpactOptions")
+def first_contact(
+    mesh: MeshLike,
+    end: MeshOrVertices,
+    other: MeshLike | None = None,
+    other_end: MeshOrVertices | None = None,
+    *,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[ImpactOptions],
+) -> FirstContact | None:
+    """Returns the first contact of two moving meshes, or None if they do not meet. With one mesh, that with itself.
+
+    It is the first of all pairs of features that meet, by time. The search for it alone is much faster than
+    :func:`continuous_collisions` if many pairs meet. Vertices move along straight lines. :class:`ProximityScene` finds
+    the first contact of several meshes.
+
+    Parameters
+    ----------
+    mesh : mesh
+        The mesh at time 0, as for :func:`distance_field`.
+    end : (n, 3) array, or mesh
+        The vertices at time 1, or the mesh at time 1 with the same triangles. C-contiguous float64 is not copied.
+    other, other_end
+        The same for the other mesh. Without `other_end`, it rests. Contacts of a mesh with itself then do not count.
+    threads, progress
+        As for :func:`distance_field`.
+    **options
+
+    Examples
+    --------
+    >>> import blum
+    >>> box = blum.generate("box")
+    >>> ball = blum.generate("sphere")
+    >>> blum.first_contact(ball, ball.vertices + [0, 0, 9], box)
+    """
+    if other is None and other_end is not None:
+        raise TypeError("other_end is given, but other is not: give both meshes, or only mesh and end")
+    start = as_mesh(mesh)
+    last = end_vertices(end, "end", start.triangles)
+    partner = None if other is None else as_mesh(other)
+    partner_last = (
+        None if partner is None or other_end is None else end_vertices(other_end, "other_end", partner.triangles)
+    )
+    arrays = None if partner is None else partner._arrays
+    count = integer(threads, "threads")
+    with reporting(progress) as report:
+        found = _core.first_contact(start._arrays, last, arrays, partner_last, dict(options), count, report)
+    return FirstContact(*found) if found is not None else None
 
 
 @takes("ImpactOptions")

@@ -11,7 +11,7 @@ import numpy as np
 from ._arguments import FloatArray, IntArray, Integer, integer
 from ._methods import Shown
 
-__all__ = ["Penetration", "PrimitivePair", "ProximityPairs", "SceneCollisions"]
+__all__ = ["FirstContact", "Penetration", "PrimitivePair", "ProximityPairs", "SceneCollisions"]
 
 
 def earliest_of(*times: FloatArray) -> float | None:
@@ -163,3 +163,27 @@ class SceneCollisions:
 
     def __repr__(self) -> str:
         return f"SceneCollisions({len(self.vertex_face):,} vertex_face, {len(self.edge_edge):,} edge_edge)"
+
+
+@dataclass(frozen=True)
+class FirstContact:
+    """The first pair of features that meet while meshes move.
+
+    See :meth:`ProximityScene.first_contact` and :func:`first_contact`.
+
+    Examples
+    --------
+    >>> import blum
+    >>> scene, box = blum.ProximityScene(), blum.generate("box")
+    >>> a, b = scene.add(box), scene.add((box.vertices + [3, 0, 0], box.triangles))
+    >>> scene.first_contact({b: box.vertices - [1, 0, 0]}).time
+    0.5
+    """
+
+    time: float  #: Time of the contact, 0 to 1.
+    #: ``"vertex_face"`` or ``"edge_edge"``, or ``"face_vertex"``: a face of the first object, a vertex of the second.
+    kind: str
+    object: tuple[int, int]  #: First and second object.
+    vertex: int | None  #: None for ``"edge_edge"``.
+    face: int | None  #: None for ``"edge_edge"``.
+    edges: tuple[tuple[int, int], tuple[int, int]] | None  #: Ends of both edges. None for a vertex and a face.

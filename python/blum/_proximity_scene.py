@@ -33,7 +33,7 @@ from ._mesh import MeshLike, as_mesh, end_vertices, mesh_of_arrays
 from ._methods import ShortList, Shown
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
-from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
+from ._proximity_results import FirstContact, Penetration, PrimitivePair, ProximityPairs, SceneCollisions
 from ._scene_copies import SceneObject, restored_scene
 from ._structs import ImpactOptions, PenetrationOptions, SceneOptions
 
@@ -545,6 +545,45 @@ class ProximityScene:
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             return SceneCollisions(*self._scene.continuous(rows, dict(options), count, report))
+
+    @takes("ImpactOptions")
+    def first_contact(
+        self,
+        motions: Mapping[int, Any],
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[ImpactOptions],
+    ) -> FirstContact | None:
+        """Returns the first contact of objects that move, or None if nothing meets.
+
+        It is the first of all pairs that :meth:`continuous` returns, by time. The search for it alone is much faster if
+        many pairs meet. Among pairs with the same time, it is the first by objects, then by kind, then by vertex and
+        face, or by the ends of the edges. Kinds are ordered: ``vertex_face``, ``face_vertex``, ``edge_edge``.
+
+        Parameters
+        ----------
+        motions : dict
+            As for :meth:`continuous`.
+        threads, progress
+            As for :func:`distance_field`.
+        **options
+
+        Examples
+        --------
+        >>> import blum
+        >>> scene = blum.ProximityScene()
+        >>> box = blum.generate("box")
+        >>> floor, falling = scene.add(box), scene.add((box.vertices + [0.25, 0.25, 3], box.triangles))
+        >>> first = scene.first_contact({falling: box.vertices + [0.25, 0.25, -1]})
+        >>> first.time, first.object
+        (0.5, (0, 1))
+        """
+        rows = [_motion(which, end) for which, end in _motions_of(motions)]
+        count = integer(threads, "threads")
+        with self._alone(progress) as report:
+            found = self._scene.first_contact(rows, dict(options), count, report)
+        return FirstContact(*found) if found is not None else None
 
     def _change(self, index: int, **facts: Any) -> None:
         """Notes changes of an object, for copies of the scene."""

@@ -13,4 +13,12 @@ using Integer = boost::multiprecision::number<
                                            boost::multiprecision::unchecked, std::allocator<unsigned long long>>,
     boost::multiprecision::et_off>;
 
+/// An integer of at most `bits` bits beside its sign. Results must not be larger. It allocates no memory, and is faster
+/// than an Integer.
+template <unsigned bits>
+using FixedInteger = boost::multiprecision::number<
+    boost::multiprecision::cpp_int_backend<bits, bits, boost::multiprecision::signed_magnitude,
+                                           boost::multiprecision::unchecked, void>,
+    boost::multiprecision::et_off>;
+
 }  // namespace blum::detail

@@ -11,6 +11,10 @@
 namespace blum {
 namespace {
 
+using detail::exact_edge_edge_approach;
+using detail::exact_edge_edge_impact;
+using detail::exact_vertex_face_approach;
+using detail::exact_vertex_face_impact;
 using detail::FeatureKinds;
 
 constexpr std::size_t grain = 256;
@@ -21,6 +25,17 @@ void check(const FourMovingPoints& points, std::size_t number) {
       if (!is_finite(p)) throw InvalidMesh("points " + std::to_string(number) + ": a coordinate is not finite");
     }
   }
+}
+
+/// Returns the time of impact, computed by integers of any size.
+std::optional<double> exact_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
+  const auto [tolerance, distance] = options;
+  if (distance > 0) {
+    return kinds == FeatureKinds::vertex_face ? exact_vertex_face_approach(points, distance, tolerance)
+                                              : exact_edge_edge_approach(points, distance, tolerance);
+  }
+  return kinds == FeatureKinds::vertex_face ? exact_vertex_face_impact(points, tolerance)
+                                            : exact_edge_edge_impact(points, tolerance);
 }
 
 std::optional<double> checked_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
@@ -42,17 +57,13 @@ std::vector<std::optional<double>> impacts(std::span<const FourMovingPoints> poi
 
 }  // namespace
 
-std::optional<double> detail::impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
-  const auto [tolerance, distance] = options;
-  const FilteredImpact filtered = filtered_impact(points, kinds, options);
+std::optional<double> detail::impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options,
+                                     double before) {
+  const FilteredImpact filtered = filtered_impact(points, kinds, options, before);
   if (filtered.answer == FilteredImpact::Answer::never) return std::nullopt;
-  if (filtered.answer == FilteredImpact::Answer::meets) return filtered.time;
-  if (distance > 0) {
-    return kinds == FeatureKinds::vertex_face ? exact_vertex_face_approach(points, distance, tolerance)
-                                              : exact_edge_edge_approach(points, distance, tolerance);
-  }
-  return kinds == FeatureKinds::vertex_face ? exact_vertex_face_impact(points, tolerance)
-                                            : exact_edge_edge_impact(points, tolerance);
+  const std::optional<double> time =
+      filtered.answer == FilteredImpact::Answer::meets ? filtered.time : exact_impact(points, kinds, options);
+  return time && *time < before ? time : std::nullopt;
 }
 
 void check(const ImpactOptions& options) {

@@ -140,10 +140,11 @@ Bernstein<3> along(const QuadraticVector& v, std::size_t axis) {
 /// is w x u for edges and u x w for a face.
 class Filter {
  public:
-  Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance)
+  Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance, double before)
       : points_(points),
         is_face_(kinds == FeatureKinds::vertex_face),
         tolerance_(tolerance),
+        before_(before),
         u_(is_face_ ? between(points, 1, 2) : between(points, 0, 1)),
         v_(is_face_ ? between(points, 1, 3) : between(points, 2, 3)),
         w_(is_face_ ? between(points, 1, 0) : between(points, 0, 2)),
@@ -198,6 +199,7 @@ class Filter {
     for (int looks = 0; !left_.empty(); ++looks) {
       if (looks > most_looks) return {};
       const Interval interval = left_.pop_back();
+      if (interval.low >= before_) break;  // so are the intervals that are left
       const FilteredImpact::Answer answer = look_at(interval);
       if (answer == FilteredImpact::Answer::never) continue;
       if (answer == FilteredImpact::Answer::meets) return {answer, grid_time(interval.low)};
@@ -308,6 +310,7 @@ class Filter {
   const FourMovingPoints& points_;
   bool is_face_;
   double tolerance_;
+  double before_;
   MovingVector u_, v_, w_;
   double u_most_, v_most_, w_most_;
   bool in_range_;
@@ -329,8 +332,9 @@ int time_depth(double tolerance) {
   return 1 - exponent;
 }
 
-FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
-  Filter filter(points, kinds, options.tolerance);
+FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options,
+                               double before) {
+  Filter filter(points, kinds, options.tolerance, before);
   return options.min_separation > 0 ? filter.approach(options.min_separation) : filter.meeting();
 }
 

@@ -21,14 +21,19 @@ struct FilteredImpact {
   double time = 0;  ///< if they meet: the time that vertex_face_impact() returns
 };
 
+/// Later than any time of impact.
+inline constexpr double after_all_times = 2;
+
 /// Returns the time at which two moving features meet, if they do. Exact: uses filtered_impact() if that decides, else
 /// integers of any size.
+/// @param before  a multiple of 2^-time_depth(options.tolerance). Returns nullopt for pairs that meet then or later.
 [[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds,
-                                           const ImpactOptions& options);
+                                           const ImpactOptions& options, double before = after_all_times);
 
 /// Returns the time at which two moving features meet, if doubles or integers of a fixed width can decide it, else
 /// `unknown`. It never returns a wrong answer.
+/// @param before  as for impact(). Returns `never` or a later time for pairs that meet then or later.
 [[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds,
-                                             const ImpactOptions& options);
+                                             const ImpactOptions& options, double before = after_all_times);
 
 }  // namespace blum::detail

@@ -18,9 +18,8 @@
 #include "proximity/impact_filter.hpp"
 
 namespace blum {
-namespace {
 
-void check(const MeshView& mesh, std::span<const Vec3d> end) {
+void check_motion(const MeshView& mesh, std::span<const Vec3d> end) {
   validate(mesh);
   if (end.size() != mesh.vertices.size()) {
     throw InvalidMesh("the mesh has " + std::to_string(mesh.vertices.size()) + " vertices at the start, but " +
@@ -34,6 +33,8 @@ void check(const MeshView& mesh, std::span<const Vec3d> end) {
     throw InvalidMesh(std::string("at the end: ") + error.what());
   }
 }
+
+namespace {
 
 /// Returns, for each vertex that the mesh uses, the smallest used vertex with the same positions at the start and the
 /// end. Returns an empty list if no two used vertices have the same position at the start.
@@ -62,7 +63,23 @@ std::vector<std::uint32_t> places(const MeshView& mesh, std::span<const Vec3d> e
   return out;
 }
 
+/// Moves the sides of a box outwards by at least half of `min_separation`.
+void grow(Box3& box, double min_separation) {
+  if (!(min_separation > 0)) return;
+  const double by = 0.5 * min_separation;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = std::nextafter(box.lower[axis] - by, -infinite);
+    box.upper[axis] = std::nextafter(box.upper[axis] + by, infinite);
+  }
+}
+
 }  // namespace
+
+void grow(MovingBox& box, double min_separation) {
+  grow(box.start, min_separation);
+  grow(box.end, min_separation);
+}
 
 MovingFeatures::MovingFeatures(const MeshView& mesh, std::span<const Vec3d> end, const Context& context)
     : mesh_(mesh), end_(end), place_(places(mesh, end)) {
@@ -81,9 +98,6 @@ MovingFeatures::MovingFeatures(const MeshView& mesh, std::span<const Vec3d> end,
   detail::sort_unique(edges_);
 }
 
-}  // namespace blum
-
-namespace blum::detail {
 namespace {
 
 constexpr std::size_t direction_count = 10;
@@ -133,11 +147,8 @@ Gaps gaps_of(const std::array<Vec3d, 4>& points, std::size_t first_count) {
   return gaps;
 }
 
-/// Returns true if one of ten directions certainly separates the first points from the others. Along such a direction,
-/// the first points are more than `distance` above or below the others, both at the start and at the end. So the same
-/// holds at all times. The three axes are not among the directions, because boxes were already compared along them.
-/// @param first_count  1 for a vertex and a face, 2 for two edges.
-/// @param distance  mesh units, >= 0.
+}  // namespace
+
 bool are_apart(const FourMovingPoints& points, std::size_t first_count, double distance) {
   const Gaps start = gaps_of(points.start, first_count);
   const Gaps end = gaps_of(points.end, first_count);
@@ -150,10 +161,6 @@ bool are_apart(const FourMovingPoints& points, std::size_t first_count, double d
   return widest > rounding_of(points.start) + rounding_of(points.end) + 0x1p-50 * distance;
 }
 
-}  // namespace
-}  // namespace blum::detail
-
-namespace blum {
 namespace {
 
 using detail::FeatureKinds;
@@ -161,26 +168,13 @@ using detail::FeatureKinds;
 constexpr std::size_t blocks_per_range = 32;
 constexpr std::size_t most_collisions = std::size_t{1} << 26;  ///< largest number of collisions: they take 1.6 GB
 
-/// Moves the sides of a box outwards by at least half of `min_separation`.
-void grow(Box3& box, double min_separation) {
-  if (!(min_separation > 0)) return;
-  const double by = 0.5 * min_separation;
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = std::nextafter(box.lower[axis] - by, -infinite);
-    box.upper[axis] = std::nextafter(box.upper[axis] + by, infinite);
-  }
-}
-
 /// Returns a hierarchy over the boxes of features. Each box contains the vertices of a feature.
 template <class Features, class Vertices>
 MovingBoxBvh hierarchy(const MovingFeatures& moving, const Features& features, const Vertices& vertices_of,
                        double min_separation, const Context& context) {
   std::vector<MovingBox> boxes(features.size());
   for (std::size_t k = 0; k < boxes.size(); ++k) {
-    boxes[k] = moving.box(vertices_of(features[k]));
-    grow(boxes[k].start, min_separation);
-    grow(boxes[k].end, min_separation);
+    boxes[k] = moving.box(vertices_of(features[k]), min_separation);
   }
   return MovingBoxBvh(boxes, context);
 }
@@ -192,9 +186,28 @@ std::span<const std::uint32_t> alone(const std::uint32_t& vertex) {
   return {&vertex, 1};
 }
 
-/// Returns the points of two features, of one object or of two objects.
-FourMovingPoints points(const MovingFeatures& a, std::span<const std::uint32_t> first, const MovingFeatures& b,
-                        std::span<const std::uint32_t> second) {
+}  // namespace
+
+MovingBox MovingFeatures::box(std::span<const std::uint32_t> vertices, double min_separation) const {
+  MovingBox box;
+  for (const std::uint32_t v : vertices) {
+    box.start.extend(start(v));
+    box.end.extend(end(v));
+  }
+  grow(box, min_separation);
+  return box;
+}
+
+bool MovingFeatures::is_corner(std::uint32_t vertex, const Triangle& face) const {
+  return std::any_of(face.begin(), face.end(), [&](std::uint32_t corner) { return place(corner) == vertex; });
+}
+
+bool share_end(const Segment& a, const Segment& b) {
+  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
+
+FourMovingPoints moving_points(const MovingFeatures& a, std::span<const std::uint32_t> first, const MovingFeatures& b,
+                               std::span<const std::uint32_t> second) {
   FourMovingPoints out;
   std::size_t k = 0;
   for (const std::uint32_t v : first) {
@@ -208,11 +221,10 @@ FourMovingPoints points(const MovingFeatures& a, std::span<const std::uint32_t> 
   return out;
 }
 
-}  // namespace
-
 MovingObject::MovingObject(const MeshView& mesh, std::span<const Vec3d> end, double min_separation,
                            const Context& context)
     : features_(mesh, end, context),
+      min_separation_(min_separation),
       vertices_(hierarchy(features_, features_.vertices(), alone, min_separation, context)),
       edges_(hierarchy(features_, features_.edges(), itself, min_separation, context)),
       faces_(hierarchy(features_, features_.faces(), itself, min_separation, context)) {}
@@ -296,13 +308,10 @@ void ImpactSearch::test_vertex_face(const MovingFeatures& of_vertices, const Mov
                                     std::uint32_t vertex, std::uint32_t face, Found<VertexFaceCollision>& found) {
   const std::uint32_t v = of_vertices.vertices()[vertex];
   const Triangle& corners = of_faces.faces()[face];
-  if (&of_vertices == &of_faces) {
-    const auto is_same = [&](std::uint32_t corner) { return of_faces.place(corner) == v; };
-    if (std::any_of(corners.begin(), corners.end(), is_same)) return;
-  }
+  if (&of_vertices == &of_faces && of_faces.is_corner(v, corners)) return;
   if (stops(found)) return;
-  const FourMovingPoints four = points(of_vertices, alone(v), of_faces, corners);
-  if (detail::are_apart(four, 1, options_.min_separation)) return;
+  const FourMovingPoints four = moving_points(of_vertices, alone(v), of_faces, corners);
+  if (are_apart(four, 1, options_.min_separation)) return;
   ++found.exact_tests;
   if (const auto time = detail::impact(four, FeatureKinds::vertex_face, options_)) {
     found.collisions.push_back({v, TriangleId(face), *time});
@@ -314,11 +323,10 @@ void ImpactSearch::test_edge_edge(const MovingFeatures& a, const MovingFeatures&
                                   std::uint32_t second, Found<EdgeEdgeCollision>& found) {
   const Segment& one = a.edges()[first];
   const Segment& other = b.edges()[second];
-  const bool is_shared = one[0] == other[0] || one[0] == other[1] || one[1] == other[0] || one[1] == other[1];
-  if (&a == &b && is_shared) return;
+  if (&a == &b && share_end(one, other)) return;
   if (stops(found)) return;
-  const FourMovingPoints four = points(a, one, b, other);
-  if (detail::are_apart(four, 2, options_.min_separation)) return;
+  const FourMovingPoints four = moving_points(a, one, b, other);
+  if (are_apart(four, 2, options_.min_separation)) return;
   ++found.exact_tests;
   if (const auto time = detail::impact(four, FeatureKinds::edge_edge, options_)) {
     found.collisions.push_back({one, other, *time});
@@ -338,7 +346,7 @@ std::optional<double> ContinuousCollisions::earliest() const {
 
 ContinuousCollisions continuous_collisions(const MeshView& mesh, std::span<const Vec3d> end,
                                            const ImpactOptions& options, const Context& context) {
-  check(mesh, end);
+  check_motion(mesh, end);
   check(options);
   ContinuousCollisions out;
   PhaseTimer timer(out.phases);

@@ -15,6 +15,12 @@
 
 namespace blum {
 
+/// Checks a mesh, and its vertices at the end of a motion. @throws InvalidMesh
+void check_motion(const MeshView& mesh, std::span<const Vec3d> end);
+
+/// Moves the sides of a box outwards by at least half of `min_separation`.
+void grow(MovingBox& box, double min_separation);
+
 /// The features of a mesh between two frames. Vertices with equal positions in both frames count as one vertex,
 /// represented by the smallest of their indices. Only vertices that the mesh uses count.
 class MovingFeatures {
@@ -34,14 +40,11 @@ class MovingFeatures {
   [[nodiscard]] const Vec3d& start(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
   [[nodiscard]] const Vec3d& end(std::uint32_t vertex) const { return end_[vertex]; }
 
-  [[nodiscard]] MovingBox box(std::span<const std::uint32_t> vertices) const {
-    MovingBox box;
-    for (const std::uint32_t v : vertices) {
-      box.start.extend(start(v));
-      box.end.extend(end(v));
-    }
-    return box;
-  }
+  /// Returns a box around vertices, with its sides moved outwards by at least half of `min_separation`.
+  [[nodiscard]] MovingBox box(std::span<const std::uint32_t> vertices, double min_separation) const;
+
+  /// Returns true if a vertex is a corner of a face.
+  [[nodiscard]] bool is_corner(std::uint32_t vertex, const Triangle& face) const;
 
  private:
   MeshView mesh_;
@@ -52,6 +55,19 @@ class MovingFeatures {
   std::vector<Segment> edges_;
 };
 
+/// Returns true if two edges have an end in common.
+[[nodiscard]] bool share_end(const Segment& a, const Segment& b);
+
+/// Returns the points of two features, of one object or of two objects.
+[[nodiscard]] FourMovingPoints moving_points(const MovingFeatures& a, std::span<const std::uint32_t> first,
+                                             const MovingFeatures& b, std::span<const std::uint32_t> second);
+
+/// Returns true if one of ten directions certainly separates the first points from the others at all times, by more
+/// than a distance. The three axes are not among the directions, because boxes are compared along them.
+/// @param first_count  1 for a vertex and a face, 2 for two edges.
+/// @param distance  mesh units, >= 0.
+[[nodiscard]] bool are_apart(const FourMovingPoints& points, std::size_t first_count, double distance);
+
 /// A mesh between two frames, with hierarchies over the boxes of its features.
 class MovingObject {
  public:
@@ -61,12 +77,17 @@ class MovingObject {
   MovingObject(const MeshView& mesh, std::span<const Vec3d> end, double min_separation, const Context& context);
 
   [[nodiscard]] const MovingFeatures& features() const { return features_; }
+  /// Returns the box of a feature that the hierarchies contain.
+  [[nodiscard]] MovingBox box(std::span<const std::uint32_t> vertices) const {
+    return features_.box(vertices, min_separation_);
+  }
   [[nodiscard]] const MovingBoxBvh& vertices() const { return vertices_; }
   [[nodiscard]] const MovingBoxBvh& edges() const { return edges_; }
   [[nodiscard]] const MovingBoxBvh& faces() const { return faces_; }
 
  private:
   MovingFeatures features_;
+  double min_separation_;
   MovingBoxBvh vertices_;
   MovingBoxBvh edges_;
   MovingBoxBvh faces_;

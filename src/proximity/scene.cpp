@@ -17,7 +17,9 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/proximity/first_contact.hpp"
 #include "blum/proximity/motion.hpp"
+#include "proximity/first_search.hpp"
 #include "proximity/impact_search.hpp"
 #include "proximity/scene_object.hpp"
 #include "proximity/scene_pairs.hpp"
@@ -42,16 +44,13 @@ class SceneMotion {
   [[nodiscard]] SceneCollisions collisions(std::span<const TwoObjects> pairs, const ImpactOptions& options,
                                            const Context& context) const;
 
+  /// See ProximityScene::first_contact().
+  [[nodiscard]] std::optional<FirstContact> first(std::span<const TwoObjects> pairs, const ImpactOptions& options,
+                                                  const Context& context) const;
+
  private:
   /// For each object that moves: its vertices at the end, in scene coordinates.
   std::vector<std::optional<std::vector<Vec3d>>> ends_;
-};
-
-/// An object between two frames, with copies of its data.
-struct Moving {
-  TriangleMesh mesh;
-  std::vector<Vec3d> end;
-  std::optional<MovingObject> object;
 };
 
 /// @throws InvalidMesh if the vertices at the end are not valid. Its message contains the name of the object.
@@ -63,14 +62,70 @@ void check_end(const SceneObject& object, const ObjectMotion& motion, const Cont
   }
 }
 
-Box3 box_around(std::span<const Vec3d> start, std::span<const Vec3d> end, const MeshView& mesh) {
-  Box3 box;
-  for_each_named_vertex(mesh, [&](std::uint32_t v) {
-    box.extend(start[v]);
-    box.extend(end[v]);
-  });
-  return box;
-}
+/// The objects of a scene between two frames, with copies of their data.
+class MovingObjects {
+ public:
+  /// @param ends  for each object that moves: its vertices at the end, in scene coordinates.
+  MovingObjects(std::span<const TwoObjects> pairs, const std::vector<std::optional<std::vector<Vec3d>>>& ends,
+                double min_separation)
+      : objects_(ends.size()), min_separation_(min_separation) {
+    for (const TwoObjects& pair : pairs) {
+      add(pair.first, *pair.a, ends[pair.first.value]);
+      add(pair.second, *pair.b, ends[pair.second.value]);
+    }
+  }
+
+  /// Returns a box around all features of an object, whose sides are moved outwards by half of the separation.
+  [[nodiscard]] MovingBox grown_box(ObjectId id) const {
+    MovingBox out = box(id);
+    grow(out, min_separation_);
+    return out;
+  }
+
+  /// Returns true if the boxes around the whole motions of two objects are within the separation of each other.
+  [[nodiscard]] bool are_close(ObjectId a, ObjectId b) const {
+    return box_gap(swept(box(a)), swept(box(b))) <= min_separation_;
+  }
+
+  /// Returns an object with its hierarchies. They are built on the first call.
+  [[nodiscard]] const MovingObject& object(ObjectId id, const Context& context) {
+    Moving& one = *objects_[id.value];
+    if (!one.object) one.object.emplace(one.mesh, one.end, min_separation_, context);
+    return *one.object;
+  }
+
+ private:
+  struct Moving {
+    TriangleMesh mesh;
+    std::vector<Vec3d> end;
+    MovingBox box;
+    std::optional<MovingObject> object;
+  };
+
+  [[nodiscard]] const MovingBox& box(ObjectId id) const { return objects_[id.value]->box; }
+
+  static Box3 swept(const MovingBox& box) {
+    Box3 out = box.start;
+    out.extend(box.end);
+    return out;
+  }
+
+  void add(ObjectId id, const SceneObject& object, const std::optional<std::vector<Vec3d>>& end) {
+    std::optional<Moving>& one = objects_[id.value];
+    if (one) return;
+    one.emplace();
+    one->mesh = object.mesh();
+    one->mesh.vertices = object.positions();
+    one->end = end.value_or(one->mesh.vertices);
+    for_each_named_vertex(one->mesh, [&](std::uint32_t v) {
+      one->box.start.extend(one->mesh.vertices[v]);
+      one->box.end.extend(one->end[v]);
+    });
+  }
+
+  std::vector<std::optional<Moving>> objects_;
+  double min_separation_;
+};
 
 void SceneMotion::add(const SceneObject& object, const ObjectMotion& motion, const Context& context) {
   std::optional<std::vector<Vec3d>>& end = ends_[motion.object.value];
@@ -85,36 +140,16 @@ SceneCollisions SceneMotion::collisions(std::span<const TwoObjects> pairs, const
                                         const Context& context) const {
   SceneCollisions out;
   PhaseTimer timer(out.phases);
-  std::vector<std::optional<Moving>> moving(ends_.size());
-  std::vector<Box3> boxes(ends_.size());
-  const auto look_at = [&](ObjectId id, const SceneObject& object) {
-    std::optional<Moving>& one = moving[id.value];
-    if (one) return;
-    one.emplace();
-    one->mesh = object.mesh();
-    one->mesh.vertices = object.positions();
-    one->end = ends_[id.value].value_or(one->mesh.vertices);
-    boxes[id.value] = box_around(one->mesh.vertices, one->end, one->mesh);
-  };
-  std::vector<const TwoObjects*> close;
-  for (const TwoObjects& pair : pairs) {
-    look_at(pair.first, *pair.a);
-    look_at(pair.second, *pair.b);
-    if (box_gap(boxes[pair.first.value], boxes[pair.second.value]) <= options.min_separation) close.push_back(&pair);
-  }
-  const auto object = [&](ObjectId id) -> const MovingObject& {
-    Moving& one = *moving[id.value];
-    if (!one.object) one.object.emplace(one.mesh, one.end, options.min_separation, context);
-    return *one.object;
-  };
+  MovingObjects moving(pairs, ends_, options.min_separation);
   timer.lap("objects");
   ImpactSearch search(options, context);
-  for (const TwoObjects* pair : close) {
-    ObjectCollisions found{pair->first, pair->second, {}, {}, {}};
-    const MovingObject& a = object(pair->first);
-    const MovingObject& b = object(pair->second);
+  for (const TwoObjects& pair : pairs) {
+    if (!moving.are_close(pair.first, pair.second)) continue;
+    ObjectCollisions found{pair.first, pair.second, {}, {}, {}};
+    const MovingObject& a = moving.object(pair.first, context);
+    const MovingObject& b = moving.object(pair.second, context);
     found.vertex_face = search.vertices_and_faces(a, b);
-    if (pair->first != pair->second) found.face_vertex = search.vertices_and_faces(b, a);
+    if (pair.first != pair.second) found.face_vertex = search.vertices_and_faces(b, a);
     found.edge_edge = search.edges_and_edges(a, b);
     const bool is_empty = found.vertex_face.empty() && found.face_vertex.empty() && found.edge_edge.empty();
     if (!is_empty) out.objects.push_back(std::move(found));
@@ -123,6 +158,22 @@ SceneCollisions SceneMotion::collisions(std::span<const TwoObjects> pairs, const
   out.box_pairs = search.box_pairs();
   out.exact_tests = search.exact_tests();
   return out;
+}
+
+std::optional<FirstContact> SceneMotion::first(std::span<const TwoObjects> pairs, const ImpactOptions& options,
+                                               const Context& context) const {
+  MovingObjects moving(pairs, ends_, options.min_separation);
+  FirstSearch search(options, context);
+  std::vector<std::pair<double, const TwoObjects*>> order;  // objects that may meet early come first
+  for (const TwoObjects& pair : pairs) {
+    order.emplace_back(search.bound(moving.grown_box(pair.first), moving.grown_box(pair.second)), &pair);
+  }
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [bound, pair] : order) {
+    if (search.is_hopeless(pair->first, pair->second, bound)) continue;
+    search.add(pair->first, moving.object(pair->first, context), pair->second, moving.object(pair->second, context));
+  }
+  return search.result();
 }
 
 }  // namespace
@@ -403,6 +454,14 @@ SceneCollisions ProximityScene::continuous(std::span<const ObjectMotion> motions
   detail::SceneMotion motion(data_->objects.size());
   for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one, context);
   return motion.collisions(data_->compared(infinite, context), options, context);
+}
+
+std::optional<FirstContact> ProximityScene::first_contact(std::span<const ObjectMotion> motions,
+                                                          const ImpactOptions& options, const Context& context) const {
+  check(options);
+  detail::SceneMotion motion(data_->objects.size());
+  for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one, context);
+  return motion.first(data_->compared(infinite, context), options, context);
 }
 
 Penetrations ProximityScene::penetration(ObjectId first, ObjectId second, const PenetrationOptions& options,

@@ -157,6 +157,7 @@ TAKERS = {
     "separation": lambda mesh: blum.separation(mesh, (blum.generate("box").vertices + 3, [[0, 1, 2]])),
     "collisions": lambda mesh: blum.collisions([mesh, blum.generate("box")]),
     "continuous_collisions": lambda mesh: blum.continuous_collisions(mesh, mesh),
+    "first_contact": lambda mesh: blum.first_contact(mesh, mesh, mesh, mesh),
     "surface_distance_map": lambda mesh: blum.surface_distance_map(mesh, mesh, texel=0.1),
     "SurfaceMapper": lambda mesh: blum.SurfaceMapper(mesh, mesh, texel=0.1).map(),
     "SurfaceMapper.replace_other": replaced,

@@ -67,6 +67,7 @@ DATA = {
     "pairs": lambda: blum.collisions([BOX, blum.generate("sphere")]),
     "pair": lambda: blum.separation(BOX, blum.Mesh([[0, 0, 3]])),
     "impacts": lambda: blum.continuous_collisions(BOX, BOX.vertices[::-1].copy()),
+    "first contact": lambda: blum.first_contact(BOX, BOX.vertices[::-1].copy()),
     "features": lambda: blum.close_features(BOX, 0.5),
     "SurfaceMap": lambda: blum.surface_distance_map(BOX, blum.generate("sphere"), texel=0.1),
     "thickness map": lambda: blum.thickness_map(BOX, texel=0.1),

@@ -81,6 +81,7 @@ def results():
         "penetrations": moving.penetrations(),
         "continuous": moving.continuous({0: blum.generate("bracket").vertices + 1}),
         "continuous_collisions": blum.continuous_collisions(BRACKET, BRACKET.vertices + 1),
+        "first_contact": blum.first_contact(BRACKET, BRACKET.vertices * [1, 1, -1]),
         "triangle_distances": blum.triangle_distances(corners, corners),
         "close_features": blum.close_features(BRACKET, 0.01),
         "surface_distance_map": blum.surface_distance_map(*pair, texel=0.1),

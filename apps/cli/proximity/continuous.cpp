@@ -37,10 +37,20 @@ struct Answer {
   MovingMesh mesh;
   ImpactOptions options;
   ContinuousCollisions found;
+  std::optional<FirstContact> first;  ///< for --first only
   PhaseSummary spent;
   int threads = 0;
   std::size_t limit = 0;
 };
+
+/// Returns the collisions of a mesh in which only one pair of features meets.
+ContinuousCollisions collisions_of_mesh(const FirstContact& contact) {
+  SceneCollisions scene = collisions_of(contact);
+  ContinuousCollisions out;
+  out.vertex_face = std::move(scene.objects.front().vertex_face);
+  out.edge_edge = std::move(scene.objects.front().edge_edge);
+  return out;
+}
 
 void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
   const ContinuousCollisions& found = answer.found;
@@ -66,8 +76,9 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"vertex_face", found.vertex_face.size()},
                                    {"edge_edge", found.edge_edge.size()},
                                    {"earliest", to_json(found.earliest())},
-                                   {"box_pairs", found.box_pairs},
-                                   {"exact_tests", found.exact_tests},
+                                   {"first_contact", contact_json(answer.first)},
+                                   {"box_pairs", count_json(a, found.box_pairs)},
+                                   {"exact_tests", count_json(a, found.exact_tests)},
                                    {"seconds", answer.spent.seconds},
                                    {"total_seconds", answer.spent.total},
                                    {"peak_memory_bytes", peak_memory()},
@@ -82,14 +93,20 @@ TextTable table_of(const ProximityArguments& a, const Answer& answer) {
   const auto first = found.earliest();
   const std::size_t count = found.vertex_face.size() + found.edge_edge.size();
   TextTable table;
-  table.add("collisions", plural(found.vertex_face.size(), "of a vertex and a face", "of a vertex and a face") + ", " +
-                              plural(found.edge_edge.size(), "of two edges", "of two edges") +
-                              (first ? "; the first at time " + rounded_text(*first) : "") +
-                              (a.output ? limit_text(count, answer.limit) : ""));
+  if (a.first) {
+    table.add("first contact", contact_text(answer.first, {a.scene[0]}));
+  } else {
+    table.add("collisions", plural(found.vertex_face.size(), "of a vertex and a face", "of a vertex and a face") +
+                                ", " + plural(found.edge_edge.size(), "of two edges", "of two edges") +
+                                (first ? "; the first at time " + rounded_text(*first) : "") +
+                                (a.output ? limit_text(count, answer.limit) : ""));
+  }
   table.add("input", a.scene[0] + " to " + a.scene[1] + ": " + plural(mesh.vertices.size(), "vertex", "vertices") +
                          ", " + plural(mesh.triangles.size(), "triangle", "triangles"));
-  table.detail("tests", count_text(found.exact_tests) + " exact ones, of " + count_text(found.box_pairs) +
-                            " pairs whose moving boxes touch");
+  if (!a.first) {
+    table.detail("tests", count_text(found.exact_tests) + " exact ones, of " + count_text(found.box_pairs) +
+                              " pairs whose moving boxes touch");
+  }
   if (a.output) table.add("wrote", *a.output);
   answer.spent.add_to(table);
   return table;
@@ -153,7 +170,13 @@ void run_continuous_query(const ProximityArguments& a) {
   answer.mesh = read_moving_mesh(start, end, weld);
   phases.push_back({"read", watch.lap()});
   const std::vector<Vec3d>& last = answer.mesh.end.empty() ? answer.mesh.start.vertices : answer.mesh.end;
-  answer.found = continuous_collisions(answer.mesh.start, last, answer.options, context);
+  if (a.first) {
+    answer.first = first_contact(answer.mesh.start, last, answer.options, context);
+    if (answer.first) answer.found = collisions_of_mesh(*answer.first);
+    phases.push_back({"first contact", watch.lap()});
+  } else {
+    answer.found = continuous_collisions(answer.mesh.start, last, answer.options, context);
+  }
   phases.insert(phases.end(), answer.found.phases.begin(), answer.found.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {

@@ -141,7 +141,17 @@ class Sequence {
     ObjectMotion motion;
     motion.object = object_;
     motion.vertices = next_->vertices;
-    add_result(scene_.continuous({&motion, 1}, impact_, context_), mesh_, next_->vertices, limit_, out);
+    add_result(arguments_.first ? first_of_step(motion) : scene_.continuous({&motion, 1}, impact_, context_), mesh_,
+               next_->vertices, limit_, out);
+  }
+
+  /// Returns the first contact of a step, as the only collision.
+  SceneCollisions first_of_step(const ObjectMotion& motion) {
+    Stopwatch watch;
+    const auto contact = scene_.first_contact({&motion, 1}, impact_, context_);
+    SceneCollisions out = contact ? collisions_of(*contact) : SceneCollisions{};
+    out.phases.push_back({"first contact", watch.lap()});
+    return out;
   }
 
   const ProximityArguments& arguments_;

@@ -34,7 +34,8 @@ struct Answer {
   std::vector<MovingMesh> meshes;
   ImpactOptions options;
   SceneCollisions found;
-  std::vector<std::string> names;  ///< one per object
+  std::optional<FirstContact> first;  ///< for --first only
+  std::vector<std::string> names;     ///< one per object
   PhaseSummary spent;
   int threads = 0;
   std::size_t limit = 0;
@@ -150,8 +151,9 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"edge_edge", all.edge_edge},
                                    {"earliest", to_json(all.earliest)},
                                    {"pairs", pairs_json(answer.found)},
-                                   {"box_pairs", answer.found.box_pairs},
-                                   {"exact_tests", answer.found.exact_tests},
+                                   {"first_contact", contact_json(answer.first)},
+                                   {"box_pairs", count_json(a, answer.found.box_pairs)},
+                                   {"exact_tests", count_json(a, answer.found.exact_tests)},
                                    {"seconds", answer.spent.seconds},
                                    {"total_seconds", answer.spent.total},
                                    {"peak_memory_bytes", peak_memory()},
@@ -172,8 +174,12 @@ TextTable table_of(const ProximityArguments& a, const Answer& answer) {
   const auto& pairs = answer.found.objects;
   TextTable table;
   const PairSummary all = summary_of(answer.found);
-  table.add("collisions", collisions_text(all) + (a.output ? limit_text(all.count(), answer.limit) : ""));
-  for (std::size_t k = 0; k < std::min(pairs.size(), most_rows); ++k) {
+  if (a.first) {
+    table.add("first contact", contact_text(answer.first, answer.names));
+  } else {
+    table.add("collisions", collisions_text(all) + (a.output ? limit_text(all.count(), answer.limit) : ""));
+  }
+  for (std::size_t k = 0; !a.first && k < std::min(pairs.size(), most_rows); ++k) {
     table.add(objects_text(answer.names, pairs[k].first, pairs[k].second), collisions_text(summary_of(pairs[k])));
   }
   if (pairs.size() > most_rows) {
@@ -181,8 +187,10 @@ TextTable table_of(const ProximityArguments& a, const Answer& answer) {
   }
   table.add("input", plural(answer.meshes.size(), "object", "objects") + ", of which " +
                          plural(answer.moving(), "moves", "move") + "; " + plural(triangles, "triangle", "triangles"));
-  table.detail("tests", count_text(answer.found.exact_tests) + " exact ones, of " + count_text(answer.found.box_pairs) +
-                            " pairs whose moving boxes touch");
+  if (!a.first) {
+    table.detail("tests", count_text(answer.found.exact_tests) + " exact ones, of " +
+                              count_text(answer.found.box_pairs) + " pairs whose moving boxes touch");
+  }
   if (a.output) table.add("wrote", *a.output);
   answer.spent.add_to(table);
   return table;
@@ -219,7 +227,13 @@ void run_moving_scene(const ProximityArguments& a) {
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const ProximityScene scene = scene_of(answer.meshes, a, context);
   phases.push_back({"build", watch.lap()});
-  answer.found = scene.continuous(motions_of(answer.meshes), answer.options, context);
+  if (a.first) {
+    answer.first = scene.first_contact(motions_of(answer.meshes), answer.options, context);
+    if (answer.first) answer.found = collisions_of(*answer.first);
+    phases.push_back({"first contact", watch.lap()});
+  } else {
+    answer.found = scene.continuous(motions_of(answer.meshes), answer.options, context);
+  }
   phases.insert(phases.end(), answer.found.phases.begin(), answer.found.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {

@@ -58,6 +58,9 @@ void add_query(const Command& parent, const SceneQuery& query) {
         "view --frames --pairs`");
   }
   if (query.moves) {
+    command.add_flag("--first", a->first,
+                     "Find only the first contact: of the pairs that meet first, the first by index. Much faster if "
+                     "many pairs meet; counts and -o contain this pair alone");
     command.add_flag("--skip-changed", a->skip_changed,
                      "With --frames: skip and list steps between frames that differ in triangles or numbers of "
                      "vertices (default: report an error)");

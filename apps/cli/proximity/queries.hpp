@@ -12,6 +12,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/proximity/continuous_collisions.hpp"
+#include "blum/proximity/first_contact.hpp"
 #include "blum/proximity/impact.hpp"
 #include "blum/proximity/scene.hpp"
 #include "common/common_options.hpp"
@@ -26,6 +27,7 @@ struct ProximityArguments {
   std::string query;              ///< name of the query, see SceneQuery::name
   bool self = false;
   bool frames = false;        ///< true if the files are frames of one object
+  bool first = false;         ///< for `continuous` only: true to find the first contact alone
   bool skip_changed = false;  ///< for frames and `continuous`: true to skip steps between different meshes
   std::optional<std::string> max_distance;
   std::optional<std::string> limit;  ///< largest number of pairs that are written
@@ -111,6 +113,14 @@ void run_frames(const ProximityArguments& a, const SceneQuery& query);
 /// Returns the names of two objects as text. If both are the same object, it is "name, itself".
 [[nodiscard]] std::string objects_text(const std::vector<std::string>& names, ObjectId first, ObjectId second);
 
+/// Returns a first contact as text: "at time 0.25: vertex 3 of a.ply, face 7 of b.ply", or "none".
+/// @param names  of the objects.
+[[nodiscard]] std::string contact_text(const std::optional<FirstContact>& contact,
+                                       const std::vector<std::string>& names);
+
+/// Returns a first contact for --json; null if nothing meets, or if --first is not given.
+[[nodiscard]] Json contact_json(const std::optional<FirstContact>& contact);
+
 /// Largest number of rows in a summary for pairs, parts or steps.
 inline constexpr std::size_t most_rows = 6;
 
@@ -131,6 +141,11 @@ void check_objects(const ProximityArguments& a);
 /// Returns the value of --limit for --json; null if the option is not given.
 [[nodiscard]] inline Json limit_json(const ProximityArguments& a) {
   return a.limit ? Json(read_limit(a)) : Json(nullptr);
+}
+
+/// Returns a number of tests for --json; null with --first, which does not count them.
+[[nodiscard]] inline Json count_json(const ProximityArguments& a, std::size_t count) {
+  return a.first ? Json(nullptr) : Json(count);
 }
 
 /// Returns the paths of the written files for --json.

@@ -48,6 +48,12 @@ class MovingBoxBvh {
   /// either of its boxes may be a.
   void for_each_self_pair(std::size_t block, FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const;
 
+  /// Calls limit = visit(k) for each box k that may touch `box` before or at the time `limit`. Among boxes of one node,
+  /// those that may touch earlier are visited first. Because of rounding to single precision, boxes that touch a little
+  /// later, or not at all, are visited, too.
+  /// @param limit  a time; all boxes that may touch are visited if it is 1.
+  void visit_until(const MovingBox& box, double limit, FunctionRef<double(std::uint32_t)> visit) const;
+
  private:
   struct Data;
   std::unique_ptr<Data> data_;

@@ -19,6 +19,7 @@
 #include "blum/geometry/rigid_transform.hpp"
 #include "blum/geometry/triangle_distance.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/proximity/first_contact.hpp"
 #include "blum/proximity/impact.hpp"
 #include "blum/proximity/motion.hpp"
 #include "blum/proximity/penetration.hpp"
@@ -215,6 +216,16 @@ class ProximityScene {
   /// @throws InvalidMesh for vertices as update() does; InvalidOption; OutOfMemory if more than 2^26 pairs collide.
   [[nodiscard]] SceneCollisions continuous(std::span<const ObjectMotion> motions, const ImpactOptions& options = {},
                                            const Context& context = {}) const;
+
+  /// Returns the first contact of objects that move: the first of all pairs that continuous() returns, by time. Among
+  /// pairs with the same time, it is the first that continuous() lists. It does not search for the other pairs.
+  /// @param motions  at most one for each object.
+  /// @return nullopt if nothing meets.
+  /// @throws InvalidMesh for vertices as update() does; InvalidOption.
+  /// Cost: see the function first_contact() (blum/proximity/first_contact.hpp).
+  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const ObjectMotion> motions,
+                                                          const ImpactOptions& options = {},
+                                                          const Context& context = {}) const;
 
   /// Returns the connected parts of the overlap of two solids, with their depths. Returns no parts if the solids only
   /// touch.

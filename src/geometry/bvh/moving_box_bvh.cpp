@@ -55,6 +55,41 @@ MovingBoxF around(const MovingBlock& block) {
   return box;
 }
 
+float most_magnitude(const MovingBoxF& box) {
+  float most = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      most = std::max({most, std::abs(box.lower[side][axis]), std::abs(box.upper[side][axis])});
+    }
+  }
+  return most;
+}
+
+/// Raises a lower bound of the time at which two boxes touch. One is above the other along an axis by the given gaps at
+/// the start and at the end. The bound becomes infinite if they never touch.
+void raise(float start_gap, float end_gap, float& bound) {
+  const float time = end_gap > 0 ? std::numeric_limits<float>::infinity() : start_gap / (start_gap - end_gap);
+  if (start_gap > 0 && time > bound) bound = time;  // false if the time is not a number
+}
+
+/// Computes lower bounds of the times at which a box touches eight boxes. They are infinite for boxes that it does not
+/// touch.
+/// @param rounding  bound on the rounding errors of gaps.
+void touch_times(const MovingBlock& block, const MovingBoxF& box, float rounding, double (&out)[lanes]) {
+  float bounds[lanes] = {};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      raise(block.lower[0][axis][lane] - box.upper[0][axis] - rounding,
+            block.lower[1][axis][lane] - box.upper[1][axis] - rounding, bounds[lane]);
+      raise(box.lower[0][axis] - block.upper[0][axis][lane] - rounding,
+            box.lower[1][axis] - block.upper[1][axis][lane] - rounding, bounds[lane]);
+    }
+  }
+  // Gaps already allow for rounding; this allows for that of the quotient.
+  constexpr double margin = 1 - 0x1p-20;
+  for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = margin * static_cast<double>(bounds[lane]);
+}
+
 /// Maps coordinates to magnitudes of at most 1, in single precision, preserving order. Boxes from other trees may have
 /// larger coordinates. Infinite values are clamped to finite ones, because infinite coordinates mark empty boxes.
 struct Frame {
@@ -171,6 +206,33 @@ void MovingBoxBvh::for_each_self_pair(std::size_t block, FunctionRef<void(std::u
     }
     return true;
   });
+}
+
+void MovingBoxBvh::visit_until(const MovingBox& box, double limit, FunctionRef<double(std::uint32_t)> visit) const {
+  if (size() == 0) return;
+  const MovingBoxF own = data_->frame.of(box);
+  // A gap at one end has errors of two coordinates and of two differences. Each is at most 2^-23 of the largest
+  // magnitude. Magnitudes of the boxes of this hierarchy are at most 1.
+  const float rounding = 0x1p-20F * std::max(1.0F, most_magnitude(own));
+  const BlockTree<MovingBlock>& tree = data_->tree;
+  PendingBoxes pending;
+  pending.items.push_back({0.0, 0, tree.top()});
+  double times[lanes];
+  while (!pending.items.empty()) {
+    const PendingBox item = pending.items.pop_back();
+    if (!(item.key <= limit)) continue;
+    const bool is_leaf = item.level < 0;
+    const MovingBlock& block =
+        is_leaf ? data_->blocks[item.block] : tree.levels[static_cast<std::size_t>(item.level)][item.block];
+    touch_times(block, own, rounding, times);
+    if (!is_leaf) {
+      pending.push_children(item, times, std::min(limit, 1.0));
+      continue;
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (times[lane] <= std::min(limit, 1.0)) limit = visit(data_->order[item.block * lanes + lane]);
+    }
+  }
 }
 
 }  // namespace blum

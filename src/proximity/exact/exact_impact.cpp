@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -78,11 +79,10 @@ IntegerPoints integer_points(const FourMovingPoints& points, double distance) {
 }
 
 MovingVector operator-(const MovingVector& a, const MovingVector& b) {
-  MovingVector out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    out[axis] = {a[axis].start - b[axis].start, a[axis].slope - b[axis].slope};
-  }
-  return out;
+  const auto difference = [&](std::size_t axis) {
+    return Linear{a[axis].start - b[axis].start, a[axis].slope - b[axis].slope};
+  };
+  return {difference(0), difference(1), difference(2)};
 }
 
 Polynomial operator*(const Linear& a, const Linear& b) {
@@ -212,7 +212,7 @@ class Approach {
 };
 
 /// Two features: a vertex and a face, or two edges. Two vectors span the plane of the face, or the plane parallel to
-/// both edges.
+/// both edges. Polynomials are computed when first needed, because most of them never are.
 class Features {
  public:
   /// A point that may lie on a segment; both are given by indices of points.
@@ -223,61 +223,83 @@ class Features {
   };
 
   static Features vertex_and_face(const FourMovingPoints& points) {
-    return {integer_points(points).at, {1, 2}, {1, 3}, {1, 0}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}};
+    return {points, {1, 2}, {1, 3}, {1, 0}, {{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}}, 3};
   }
   static Features edge_and_edge(const FourMovingPoints& points) {
-    return {integer_points(points).at, {0, 1}, {2, 3}, {0, 2}, {{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}}};
+    return {points, {0, 1}, {2, 3}, {0, 2}, {{{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}}}, 4};
   }
 
   /// Returns a polynomial that is zero at times at which all four points lie in one plane.
   [[nodiscard]] Polynomial volume() const {
-    return dot(cross(vector(first_[0], first_[1]), vector(second_[0], second_[1])), vector(between_[0], between_[1]));
+    const MovingVector w = vector(between_);
+    Polynomial sum;
+    for (std::size_t axis = 0; axis < 3; ++axis) sum = sum + normal(axis) * Polynomial{w[axis].start, w[axis].slope};
+    return sum;
   }
   /// Returns one component of a vector: the cross product of two edge vectors of the face, or of both edges. It is zero
   /// if these do not span a plane.
-  [[nodiscard]] Polynomial normal(std::size_t axis) const {
-    return cross_component(vector(first_[0], first_[1]), vector(second_[0], second_[1]), axis);
+  [[nodiscard]] const Polynomial& normal(std::size_t axis) const {
+    return once(normals_[axis], [&] { return cross_component(u_, v_, axis); });
   }
   /// Returns one component of a vector that is zero at times at which the three points of a touch lie on a line.
-  [[nodiscard]] Polynomial area(const Touch& touch, std::size_t axis) const {
-    return cross_component(vector(touch.from, touch.to), vector(touch.from, touch.point), axis);
+  [[nodiscard]] const Polynomial& area(std::size_t touch, std::size_t axis) const {
+    const auto [point, from, to] = touches_[touch];
+    return once(areas_[touch][axis], [&] { return cross_component(vector({from, to}), vector({from, point}), axis); });
   }
-  /// Returns a polynomial that is positive if the point lies on the line of the segment beyond its ends. If the point
-  /// lies on the segment, it is zero or negative.
-  [[nodiscard]] Polynomial beyond(const Touch& touch) const {
-    return dot(vector(touch.from, touch.point), vector(touch.to, touch.point));
+  /// Returns a polynomial that is positive if the point of a touch lies on the line of its segment beyond its ends. If
+  /// the point lies on the segment, it is zero or negative.
+  [[nodiscard]] const Polynomial& beyond(std::size_t touch) const {
+    const auto [point, from, to] = touches_[touch];
+    return once(beyond_[touch], [&] { return dot(vector({from, point}), vector({to, point})); });
   }
-  /// Returns the points that may lie on segments of the other feature. If no plane is spanned, features meet if and
-  /// only if one of these points lies on its segment.
-  [[nodiscard]] const std::vector<Touch>& touches() const { return touches_; }
+  /// Returns the number of points that may lie on segments of the other feature. If no plane is spanned, features meet
+  /// if and only if one of these points lies on its segment.
+  [[nodiscard]] std::size_t touches() const { return touch_count_; }
 
   /// Returns true if the features meet at a root: at a time at which all four points lie in one plane.
   [[nodiscard]] bool meet_at(const RealRoots& roots, const RealRoot& root) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (roots.sign_at(root, normal(axis)) != 0) return overlap_along(axis, roots, root);
     }
-    return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (roots.sign_at(root, area(touch, axis)) != 0) return false;
-      }
-      return roots.sign_at(root, beyond(touch)) <= 0;
-    });
+    for (std::size_t touch = 0; touch < touch_count_; ++touch) {
+      if (is_on_line(touch, roots, root) && roots.sign_at(root, beyond(touch)) <= 0) return true;
+    }
+    return false;
   }
 
  private:
   using Ends = std::array<std::size_t, 2>;
 
-  Features(const std::array<MovingVector, 4>& points, Ends first, Ends second, Ends between, std::vector<Touch> touches)
-      : points_(points), first_(first), second_(second), between_(between), touches_(std::move(touches)) {}
+  Features(const FourMovingPoints& points, Ends first, Ends second, Ends between, std::array<Touch, 4> touches,
+           std::size_t touch_count)
+      : points_(integer_points(points).at),
+        u_(vector(first)),
+        v_(vector(second)),
+        between_(between),
+        touches_(touches),
+        touch_count_(touch_count) {}
 
-  [[nodiscard]] MovingVector vector(std::size_t from, std::size_t to) const { return points_[to] - points_[from]; }
+  template <class Make>
+  static const Polynomial& once(std::optional<Polynomial>& kept, const Make& make) {
+    if (!kept) kept.emplace(make());
+    return *kept;
+  }
+
+  [[nodiscard]] MovingVector vector(Ends ends) const { return points_[ends[1]] - points_[ends[0]]; }
+
+  [[nodiscard]] bool is_on_line(std::size_t touch, const RealRoots& roots, const RealRoot& root) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (roots.sign_at(root, area(touch, axis)) != 0) return false;
+    }
+    return true;
+  }
 
   /// Returns true if the features meet in the projection along an axis that is not parallel to their plane.
   [[nodiscard]] bool overlap_along(std::size_t axis, const RealRoots& roots, const RealRoot& root) const {
-    const auto side = [&](std::size_t k) { return roots.sign_at(root, area(touches_[k], axis)); };
+    const auto side = [&](std::size_t k) { return roots.sign_at(root, area(k, axis)); };
     const int first = side(0);
     const int second = side(1);
-    const bool is_face = touches_.size() == 3;
+    const bool is_face = touch_count_ == 3;
     if (!is_face) return first * second <= 0 && side(2) * side(3) <= 0;
     if (first * second < 0) return false;
     const int third = side(2);
@@ -285,44 +307,67 @@ class Features {
   }
 
   std::array<MovingVector, 4> points_;
-  Ends first_;
-  Ends second_;
+  MovingVector u_, v_;
   Ends between_;  ///< a point of the first feature and a point of the second
-  std::vector<Touch> touches_;
+  std::array<Touch, 4> touches_;
+  std::size_t touch_count_;
+  mutable std::array<std::optional<Polynomial>, 3> normals_;
+  mutable std::array<std::array<std::optional<Polynomial>, 3>, 4> areas_;
+  mutable std::array<std::optional<Polynomial>, 4> beyond_;
 };
 
-/// Returns the first root of a polynomial at which the features meet.
-std::optional<double> first_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance) {
+/// Looks for the first root of a polynomial at which the features meet. Roots that are not before `best` do not count.
+void look_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance,
+                      std::optional<double>& best) {
+  if (polynomial.degree() <= 0) return;
   const RealRoots roots(polynomial);
   const auto depth = static_cast<unsigned>(time_depth(tolerance));
   for (const RealRoot& isolated : roots.all()) {
     // In a narrow interval around the root, signs of other polynomials are decided fast.
     const RealRoot root = roots.refined(isolated, depth);
-    if (features.meet_at(roots, root)) return root.rounded_down(depth);
+    const double time = root.rounded_down(depth);
+    if (best && time >= *best) return;
+    if (!features.meet_at(roots, root)) continue;
+    best = time;
+    return;
   }
-  return std::nullopt;
 }
 
-/// Returns the first time at which two features meet whose points lie in one plane at all times. It is the start, or a
-/// root of one of the polynomials whose signs decide if features meet.
-std::optional<double> first_in_plane(const Features& features, double tolerance) {
-  std::optional<double> first = first_at_roots_of(Polynomial{0, 1}, features, tolerance);
-  const auto look_at = [&](const Polynomial& polynomial) {
-    if (polynomial.is_zero() || first == 0.0) return;
-    const std::optional<double> next = first_at_roots_of(polynomial, features, tolerance);
-    if (next && !(first && *first <= *next)) first = next;
-  };
+/// Calls visit(polynomial) for polynomials of features whose points lie in one plane at all times. The first contact is
+/// the start, or a root of one of them.
+template <class Visit>
+void for_each_decisive(const Features& features, const Visit& visit) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    look_at(features.normal(axis));
-    for (const Features::Touch& touch : features.touches()) look_at(features.area(touch, axis));
+    if (features.normal(axis).is_zero()) continue;
+    // Along this axis, areas alone decide, except at roots of this component.
+    visit(features.normal(axis));
+    for (std::size_t touch = 0; touch < features.touches(); ++touch) visit(features.area(touch, axis));
+    return;
   }
-  for (const Features::Touch& touch : features.touches()) look_at(features.beyond(touch));
-  return first;
+  // A point lies on a segment at a root of any component that is not zero at all times.
+  for (std::size_t touch = 0; touch < features.touches(); ++touch) {
+    std::size_t axis = 0;
+    while (axis < 3 && features.area(touch, axis).is_zero()) ++axis;
+    visit(axis < 3 ? features.area(touch, axis) : features.beyond(touch));
+  }
+}
+
+/// Returns the first time at which two features meet whose points lie in one plane at all times.
+std::optional<double> first_in_plane(const Features& features, double tolerance) {
+  std::optional<double> best;
+  const RealRoots start(Polynomial{0, 1});
+  if (features.meet_at(start, start.all().front())) return 0.0;
+  for_each_decisive(features,
+                    [&](const Polynomial& polynomial) { look_at_roots_of(polynomial, features, tolerance, best); });
+  return best;
 }
 
 std::optional<double> first_meeting(const Features& features, double tolerance) {
   const Polynomial volume = features.volume();
-  return volume.is_zero() ? first_in_plane(features, tolerance) : first_at_roots_of(volume, features, tolerance);
+  if (volume.is_zero()) return first_in_plane(features, tolerance);
+  std::optional<double> best;
+  look_at_roots_of(volume, features, tolerance, best);
+  return best;
 }
 
 }  // namespace

@@ -1,22 +1,25 @@
 #include "proximity/exact/shifted_impact.hpp"
 
-#include <boost/multiprecision/cpp_int.hpp>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <limits>
 #include <optional>
-#include <utility>
+#include <type_traits>
+
+#include "exact/integer.hpp"
 
 namespace blum::detail {
 namespace {
 
 using Answer = FilteredImpact::Answer;
 
-/// Coordinates as integers: multiples of one power of two.
+/// Coordinates as integers: multiples of one power of two along each axis. Different scales along axes do not change
+/// when features meet.
 struct LatticePoints {
   std::array<std::array<std::int64_t, 3>, 4> start;
   std::array<std::array<std::int64_t, 3>, 4> end;
@@ -25,41 +28,55 @@ struct LatticePoints {
 
 constexpr int most_bits = 62;  ///< so that differences of coordinates fit into 64 bits
 
+constexpr int mantissa_bits = 52;
+constexpr std::uint64_t hidden_bit = std::uint64_t{1} << mantissa_bits;
+
+int exponent_of(double x) {
+  constexpr int mask = 0x7ff;
+  return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> mantissa_bits) & mask;
+}
+
+std::uint64_t mantissa_of(double x) {
+  return (std::bit_cast<std::uint64_t>(x) & (hidden_bit - 1)) | hidden_bit;
+}
+
+/// Places of the lowest and the highest bit of coordinates along an axis.
+struct BitRange {
+  int low = std::numeric_limits<int>::max();
+  int high = 0;
+  bool is_normal = true;  ///< false if a number is too small to have a hidden bit
+
+  void add(double x) {
+    if (x == 0) return;
+    const int exponent = exponent_of(x);
+    is_normal = is_normal && exponent > 0;
+    low = std::min(low, exponent + std::countr_zero(mantissa_of(x)));
+    high = std::max(high, exponent + mantissa_bits + 1);
+  }
+  [[nodiscard]] int bits() const { return high == 0 ? 0 : high - low; }
+};
+
+/// Returns x divided by the place value of a bit.
+std::int64_t integer(double x, int low) {
+  if (x == 0) return 0;
+  const int shift = exponent_of(x) - low;
+  const std::uint64_t size = shift < 0 ? mantissa_of(x) >> -shift : mantissa_of(x) << shift;
+  return x < 0 ? -static_cast<std::int64_t>(size) : static_cast<std::int64_t>(size);
+}
+
 /// Returns the integers; nullopt if they have more than 62 bits.
 std::optional<LatticePoints> lattice_points(const FourMovingPoints& points) {
-  constexpr int mantissa_bits = 52;
-  constexpr std::uint64_t hidden = std::uint64_t{1} << mantissa_bits;
-  constexpr int exponent_mask = 0x7ff;
-  const auto exponent_of = [](std::uint64_t bits) { return static_cast<int>(bits >> mantissa_bits) & exponent_mask; };
-  const auto mantissa_of = [](std::uint64_t bits) { return (bits & (hidden - 1)) | hidden; };
-  int least = exponent_mask + mantissa_bits;
-  int most = 0;
-  for (const auto* ends : {&points.start, &points.end}) {
-    for (const Vec3d& p : *ends) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (p[axis] == 0) continue;
-        const auto bits = std::bit_cast<std::uint64_t>(p[axis]);
-        const int exponent = exponent_of(bits);
-        if (exponent == 0) return std::nullopt;  // has no hidden bit
-        least = std::min(least, exponent + std::countr_zero(mantissa_of(bits)));
-        most = std::max(most, exponent + mantissa_bits + 1);
-      }
-    }
-  }
   LatticePoints out;
-  out.bits = std::max(most - least, 0);
-  if (out.bits > most_bits) return std::nullopt;
-  const auto integer = [&](double x) -> std::int64_t {
-    if (x == 0) return 0;
-    const auto bits = std::bit_cast<std::uint64_t>(x);
-    const int shift = exponent_of(bits) - least;
-    const std::uint64_t size = shift < 0 ? mantissa_of(bits) >> -shift : mantissa_of(bits) << shift;
-    return x < 0 ? -static_cast<std::int64_t>(size) : static_cast<std::int64_t>(size);
-  };
-  for (std::size_t k = 0; k < 4; ++k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      out.start[k][axis] = integer(points.start[k][axis]);
-      out.end[k][axis] = integer(points.end[k][axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    BitRange range;
+    for (const auto* ends : {&points.start, &points.end}) {
+      for (const Vec3d& p : *ends) range.add(p[axis]);
+    }
+    if (!range.is_normal || range.bits() > most_bits) return std::nullopt;
+    out.bits = std::max(out.bits, range.bits());
+    for (std::size_t k = 0; k < 4; ++k) {
+      out.start[k][axis] = integer(points.start[k][axis], range.low);
+      out.end[k][axis] = integer(points.end[k][axis], range.low);
     }
   }
   return out;
@@ -71,10 +88,7 @@ using Vector = std::array<Number, 3>;
 /// Integers for a test of two features. With coordinates below 2^b, intermediate results are below 2^(5b + 12), and
 /// times are fractions of numbers below 2^(3b + 7).
 __extension__ using Int128 = __int128;
-using Int384 = boost::multiprecision::number<
-    boost::multiprecision::cpp_int_backend<384, 384, boost::multiprecision::signed_magnitude,
-                                           boost::multiprecision::unchecked, void>,
-    boost::multiprecision::et_off>;
+using Int384 = FixedInteger<384>;
 constexpr int bits_for_64 = 10;
 constexpr int bits_for_128 = 23;
 
@@ -154,8 +168,9 @@ class Times {
   bool is_moment_ = false;  ///< true if only the time `first` is left
 };
 
-/// Two features that shift, given by vectors between their points: the sides u and v of a face, or both edges, and the
-/// vector w between the features. Two edges meet if s u = w + r v. A vertex and a face meet if w = s u + r v.
+/// Two features that shift, given by vectors between their points. These are the sides u and v of a face, or both
+/// edges, and the vector w between the features. Two edges meet if s u = w + r v. A vertex and a face meet if w = s u +
+/// r v.
 template <class Number>
 class Shifted {
  public:
@@ -179,8 +194,8 @@ class Shifted {
         std::find_if(normal.begin(), normal.end(), [](const Number& n) { return n != 0; }) - normal.begin());
     Times<Number> times;
     if (axis < 3) {
-      const bool meet = times.require_zero({dot(normal, w_start_), dot(normal, w_end_)}) &&
-                        overlap(normal[axis], axis, times);
+      const bool meet =
+          times.require_zero({dot(normal, w_start_), dot(normal, w_end_)}) && overlap(normal[axis], axis, times);
       return meet ? at_first(times, depth) : FilteredImpact{Answer::never, 0};
     }
     const auto length_axis = [](const Vector<Number>& edge) {

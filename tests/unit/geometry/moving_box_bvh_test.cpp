@@ -154,5 +154,63 @@ TEST(MovingBoxBvh, SeparatesBoxesThatPassOneAfterTheOther) {
   EXPECT_TRUE(self_pairs_of(MovingBoxBvh(std::vector{first, second})).empty());
 }
 
+/// Returns the first of many sampled times at which two boxes overlap by more than a margin; 2 if there is none.
+double sampled_touch(const MovingBox& a, const MovingBox& b, double margin) {
+  constexpr int samples = 200;
+  for (int k = 0; k <= samples; ++k) {
+    const double t = static_cast<double>(k) / samples;
+    bool overlap = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = [&](const Vec3d& from, const Vec3d& to) { return (1 - t) * from[axis] + t * to[axis]; };
+      const double a_low = at(a.start.lower, a.end.lower);
+      const double a_high = at(a.start.upper, a.end.upper);
+      const double b_low = at(b.start.lower, b.end.lower);
+      const double b_high = at(b.start.upper, b.end.upper);
+      overlap = overlap && a_low <= b_high - margin && b_low <= a_high - margin;
+    }
+    if (overlap) return t;
+  }
+  return 2;
+}
+
+/// A box that touches before the limit is visited. Far later ones are not. The visitor may lower the limit.
+TEST(MovingBoxBvh, VisitsBoxesThatTouchUntilALimit) {
+  Random random(9);
+  std::size_t visited = 0;
+  for (const Vec3d& place : {Vec3d{0, 0, 0}, Vec3d{1e6, -3e5, 1e7}}) {
+    const std::vector<MovingBox> there = random_boxes(random, 400, 0.1, 1, place);
+    const MovingBoxBvh tree(there);
+    const double margin = 1e-9 * (1 + place.x);
+    for (const MovingBox& box : random_boxes(random, 30, 0.2, 2, place)) {
+      for (const double limit : {0.0, 0.25, 0.7, 1.0}) {
+        std::set<std::uint32_t> seen;
+        tree.visit_until(box, limit, [&](std::uint32_t k) {
+          EXPECT_TRUE(seen.insert(k).second);
+          return limit;
+        });
+        visited += seen.size();
+        for (std::uint32_t k = 0; k < there.size(); ++k) {
+          if (sampled_touch(box, there[k], margin) <= limit) {
+            EXPECT_TRUE(seen.contains(k)) << limit << " " << k;
+          }
+        }
+        if (limit == 0) {
+          for (const std::uint32_t k : seen) {
+            EXPECT_FALSE(are_apart({box.start, box.start}, {there[k].start, there[k].start}, 1e-4));
+          }
+        }
+      }
+      std::size_t calls = 0;
+      tree.visit_until(box, 1, [&](std::uint32_t) {
+        ++calls;
+        return -1.0;
+      });
+      EXPECT_LE(calls, 1U);
+    }
+  }
+  EXPECT_GT(visited, 1000U);
+  MovingBoxBvh({}).visit_until({}, 1, [](std::uint32_t) { return 1.0; });
+}
+
 }  // namespace
 }  // namespace blum

@@ -13,6 +13,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
 #include "proximity/exact/exact_impact.hpp"
+#include "proximity/exact/shifted_impact.hpp"
 #include "proximity/impact_filter.hpp"
 #include "support/slow_impact.hpp"
 
@@ -75,13 +76,14 @@ bool expect_right(const FourMovingPoints& points, const ImpactOptions& options =
     SCOPED_TRACE(is_face ? "vertex and face" : "edge and edge");
     const auto right = slow_impact(points, kinds, options.min_separation);
     const double tolerance = options.tolerance;
-    expect_time(is_face ? vertex_face_impact(points, options) : edge_edge_impact(points, options), right, tolerance);
-    expect_time(exact_impact(points, kinds, options), right, tolerance);
+    const auto found = is_face ? vertex_face_impact(points, options) : edge_edge_impact(points, options);
+    expect_time(found, right, tolerance);
+    EXPECT_EQ(found, exact_impact(points, kinds, options));  // times do not depend on the arithmetic
     const FilteredImpact filtered = detail::filtered_impact(points, kinds, options);
     if (filtered.answer == FilteredImpact::Answer::never) {
       EXPECT_FALSE(right);
     } else if (filtered.answer == FilteredImpact::Answer::meets) {
-      expect_time(filtered.time, right, tolerance);
+      EXPECT_EQ(filtered.time, found);
     }
     any = any || right;
   }
@@ -222,6 +224,77 @@ TEST(Impact, MatchesRationalArithmeticWhenSliding) {
     points.end[0].z += (static_cast<double>(random.below(5)) - 2) * 0x1p-53;
     expect_right(points);
   }
+}
+
+/// Shifts each feature of one of the two kinds by its own vector.
+FourMovingPoints shifted(FourMovingPoints points, FeatureKinds kinds, const Vec3d& by, const Vec3d& other_by) {
+  const std::size_t first_count = kinds == FeatureKinds::vertex_face ? 1 : 2;
+  for (std::size_t k = 0; k < 4; ++k) points.end[k] = points.start[k] + (k < first_count ? by : other_by);
+  return points;
+}
+
+/// Parallel, coplanar and general features shift. Factors give coordinates of few bits, of about 20 and of about 50:
+/// each is decided by integers of another width.
+TEST(Impact, MatchesRationalArithmeticForFeaturesThatShift) {
+  Random random(21);
+  for (const double factor : {1.0, 0x1.8p14 + 1, 0x1p45 + 1}) {
+    int meet = 0;
+    int decided = 0;
+    for (int k = 0; k < 200; ++k) {
+      const FeatureKinds kinds = k % 2 == 0 ? FeatureKinds::vertex_face : FeatureKinds::edge_edge;
+      const FourMovingPoints own = on_lattice(random, 2);
+      FourMovingPoints points = shifted(own, kinds, own.end[0], own.end[1]);
+      points = with_each(points, [&](const Vec3d& p) { return p * factor; });
+      meet += expect_right(points) ? 1 : 0;
+      decided += detail::shifted_impact(points, kinds, 1e-6).answer == FilteredImpact::Answer::unknown ? 0 : 1;
+    }
+    EXPECT_GT(meet, 20);
+    EXPECT_GT(decided, 140);  // the others are degenerate
+  }
+}
+
+/// Edges that stay parallel, or move along a common line.
+TEST(Impact, MatchesRationalArithmeticForParallelEdgesThatShift) {
+  Random random(22);
+  int meet = 0;
+  for (int k = 0; k < 300; ++k) {
+    FourMovingPoints points = on_lattice(random, 2);
+    const Vec3d along = points.start[1];
+    const auto scale = [&] { return static_cast<double>(random.below(5)) - 2; };
+    points.start[1] = points.start[0] + along;
+    points.start[3] = points.start[2] + along * scale();
+    if (k % 3 == 0) points.start[2] = points.start[0] + along * scale();
+    if (k % 3 == 0) points.start[3] = points.start[2] + along * scale();
+    const Vec3d by = k % 2 == 0 ? along * scale() : points.end[0];
+    points = shifted(points, FeatureKinds::edge_edge, by, points.end[1] * (k % 4 == 0 ? 0 : 1));
+    meet += expect_right(points) ? 1 : 0;
+  }
+  EXPECT_GT(meet, 40);
+  EXPECT_LT(meet, 260);
+}
+
+/// A search for the first contact passes the time from which a contact would be too late.
+TEST(Impact, IsNothingIfItIsTooLate) {
+  Random random(23);
+  int late = 0;
+  int kept = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const FourMovingPoints points =
+        k % 2 == 0 ? on_lattice(random, 3) : random_points([&] { return random.in_cube(); });
+    const ImpactOptions options{.min_separation = k % 5 == 0 ? 0.25 : 0};
+    for (const FeatureKinds kinds : {FeatureKinds::vertex_face, FeatureKinds::edge_edge}) {
+      const auto time = detail::impact(points, kinds, options);
+      const double step = std::ldexp(1.0, -detail::time_depth(options.tolerance));
+      for (const double before : {0.25, 0.5, 1.0, time.value_or(0.125), time.value_or(0.125) + step}) {
+        const bool is_early = time && *time < before;
+        ASSERT_EQ(detail::impact(points, kinds, options, before), is_early ? time : std::nullopt);
+        late += time && !is_early ? 1 : 0;
+        kept += is_early ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(late, 100);
+  EXPECT_GT(kept, 100);
 }
 
 TEST(Impact, ScaleAndPlaceChangeNothing) {

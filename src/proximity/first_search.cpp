@@ -1,0 +1,265 @@
+#include "proximity/first_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "blum/core/parallel.hpp"
+#include "exact/dyadic.hpp"
+#include "proximity/impact_filter.hpp"
+
+namespace blum {
+namespace {
+
+using detail::FeatureKinds;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t bound_grain = 64;
+constexpr std::size_t search_grain = 8;
+
+/// Positions along an axis of a side of one box, and of the opposite side of another, at the start and the end. The
+/// first box is above the other while the first side is above the other one.
+struct Sides {
+  double start, other_start;
+  double end, other_end;
+
+  [[nodiscard]] double start_gap() const { return start - other_start; }
+  [[nodiscard]] double end_gap() const { return end - other_end; }
+};
+
+/// Calls visit(sides) for the pairs of sides that may separate two boxes, until a call returns false.
+template <class Visit>
+bool for_each_sides(const MovingBox& a, const MovingBox& b, const Visit& visit) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!visit(Sides{a.start.lower[axis], b.start.upper[axis], a.end.lower[axis], b.end.upper[axis]})) return false;
+    if (!visit(Sides{b.start.lower[axis], a.start.upper[axis], b.end.lower[axis], a.end.upper[axis]})) return false;
+  }
+  return true;
+}
+
+/// Returns a lower bound of the times at which two boxes touch; infinite if they never do. It is too low by a few
+/// units in the last place at most.
+double touch_time(const MovingBox& a, const MovingBox& b) {
+  constexpr double margin = 0x1p-50;  // four roundings
+  double enter = 0;
+  double exit = 1;
+  const bool may_touch = for_each_sides(a, b, [&](const Sides& sides) {
+    const double from = sides.start_gap();
+    const double to = sides.end_gap();
+    if (from > 0 && to > 0) return false;
+    if (from > 0) enter = std::max(enter, from / (from - to) * (1 - margin));
+    if (to > 0) exit = std::min(exit, from / (from - to) * (1 + margin));
+    return true;
+  });
+  return may_touch && enter <= exit ? enter : infinite;
+}
+
+/// Returns the sign of the gap between two sides at a time. Exact.
+int gap_sign(const Sides& sides, double time) {
+  const double from = sides.start_gap();
+  const double to = sides.end_gap();
+  const double gap = from * (1 - time) + to * time;
+  constexpr double rounding = 0x1p-50;  // five roundings
+  if (std::abs(gap) > rounding * (std::abs(from) + std::abs(to)) + std::numeric_limits<double>::min()) {
+    return gap > 0 ? 1 : -1;
+  }
+  using detail::Dyadic;
+  return ((Dyadic(sides.start) - Dyadic(sides.other_start)) * Dyadic(1 - time) +
+          (Dyadic(sides.end) - Dyadic(sides.other_end)) * Dyadic(time))
+      .sign();
+}
+
+/// Returns true if two boxes are apart along one axis at all times before the given one. Exact.
+/// @param time  a multiple of 2^-40.
+bool are_apart_before(const MovingBox& a, const MovingBox& b, double time) {
+  if (time > 1) return false;
+  return !for_each_sides(a, b,
+                         [&](const Sides& sides) { return !(sides.start_gap() > 0 && gap_sign(sides, time) >= 0); });
+}
+
+}  // namespace
+
+struct FirstSearch::Side {
+  ContactKind kind;
+  ObjectId first, second;
+  const MovingObject& a;  ///< of the vertices, or of the first edges
+  const MovingObject& b;  ///< of the faces, or of the second edges
+
+  [[nodiscard]] bool is_edge() const { return kind == ContactKind::edge_edge; }
+  [[nodiscard]] std::size_t count() const {
+    return is_edge() ? a.features().edges().size() : a.features().vertices().size();
+  }
+  [[nodiscard]] std::span<const std::uint32_t> of_a(std::uint32_t k) const {
+    if (is_edge()) return a.features().edges()[k];
+    return {&a.features().vertices()[k], 1};
+  }
+  [[nodiscard]] std::span<const std::uint32_t> of_b(std::uint32_t k) const {
+    if (is_edge()) return b.features().edges()[k];
+    return b.features().faces()[k];
+  }
+  [[nodiscard]] const MovingBoxBvh& partners() const { return is_edge() ? b.edges() : b.faces(); }
+
+  /// Returns true if two features are compared: each pair once, and no features of one object that share a vertex.
+  [[nodiscard]] bool are_compared(std::uint32_t of_first, std::uint32_t of_second) const {
+    if (&a != &b) return true;
+    if (!is_edge()) {
+      return !b.features().is_corner(a.features().vertices()[of_first], b.features().faces()[of_second]);
+    }
+    const std::vector<Segment>& edges = a.features().edges();
+    return of_first < of_second && !share_end(edges[of_first], edges[of_second]);
+  }
+
+  [[nodiscard]] FourMovingPoints points(std::uint32_t of_first, std::uint32_t of_second) const {
+    return moving_points(a.features(), of_a(of_first), b.features(), of_b(of_second));
+  }
+};
+
+const FirstSearch::Side& FirstSearch::side_of(const std::vector<Side>& sides, ContactKind kind) {
+  return *std::find_if(sides.begin(), sides.end(), [&](const Side& one) { return one.kind == kind; });
+}
+
+FirstSearch::FirstSearch(const ImpactOptions& options, const Context& context)
+    : options_(options),
+      context_(context),
+      depth_(detail::time_depth(options.tolerance)),
+      step_(std::ldexp(1.0, -depth_)) {}
+
+double FirstSearch::bound(const MovingBox& a, const MovingBox& b) const {
+  const double time = touch_time(a, b);
+  if (time == infinite) return infinite;
+  const double below = std::ldexp(std::floor(std::ldexp(time, depth_)), -depth_);
+  // Many boxes touch exactly at a multiple of the step. Rounding must not lower their bounds by a whole step.
+  constexpr double margin = 1 + 0x1p-46;
+  return time * margin >= below + step_ && are_apart_before(a, b, below + step_) ? below + step_ : below;
+}
+
+bool FirstSearch::is_hopeless(ObjectId first, ObjectId second, double bound) const {
+  return bound == infinite || !(Rank{bound, first, second} < best_rank_);
+}
+
+/// Returns the least bound of a feature and its partners; infinite if it is not below a limit.
+double FirstSearch::bound_of(const Side& side, std::uint32_t feature, double limit) const {
+  const MovingBox box = side.a.box(side.of_a(feature));
+  double least = infinite;
+  // Only bounds below the least one so far matter.
+  const auto below = [](double time) { return std::nextafter(time, -1.0); };
+  side.partners().visit_until(box, below(limit), [&](std::uint32_t partner) {
+    if (side.are_compared(feature, partner)) least = std::min(least, bound(box, side.b.box(side.of_b(partner))));
+    return below(std::min(least, limit));
+  });
+  return least < limit ? least : infinite;
+}
+
+/// Returns the features of all sides with bounds of their contacts with the whole other object, sorted.
+std::vector<FirstSearch::Feature> FirstSearch::features_of(const std::vector<Side>& sides) const {
+  std::vector<Feature> all;
+  for (const Side& side : sides) {
+    MovingBox whole;
+    for (std::uint32_t v : side.b.features().vertices()) {
+      const MovingBox box = side.b.box({&v, 1});
+      whole.start.extend(box.start);
+      whole.end.extend(box.end);
+    }
+    for (std::uint32_t k = 0; k < side.count(); ++k) {
+      all.push_back({bound(side.a.box(side.of_a(k)), whole), side.kind, k});
+    }
+  }
+  std::erase_if(all, [](const Feature& one) { return one.bound == infinite; });
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// Replaces bounds by those of contacts with the features of the other object. Features that come too late are left
+/// out, the others are sorted again.
+void FirstSearch::sharpen(const std::vector<Side>& sides, std::vector<Feature>& features) const {
+  const double limit = std::min(best_rank_.time, 1.0) + step_;
+  parallel_for(context_, features.size(), bound_grain, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      Feature& feature = features[k];
+      const Side& side = side_of(sides, feature.kind);
+      feature.bound = may_precede(best_rank_, side, feature) ? bound_of(side, feature.index, limit) : infinite;
+    }
+  });
+  std::erase_if(features, [](const Feature& one) { return one.bound == infinite; });
+  std::sort(features.begin(), features.end());
+}
+
+/// Returns true if a contact at the time of a feature's bound would precede the best contact.
+bool FirstSearch::may_precede(const Rank& best, const Side& side, const Feature& feature) {
+  return Rank{feature.bound, side.first, side.second, feature.kind, feature.index} < best;
+}
+
+FirstSearch::Rank FirstSearch::best_rank() const {
+  const std::lock_guard lock(mutex_);
+  return best_rank_;
+}
+
+void FirstSearch::offer(const Rank& rank, const Side& side) {
+  const std::lock_guard lock(mutex_);
+  if (!(rank < best_rank_)) return;
+  best_rank_ = rank;
+  best_ = FirstContact{rank.first, rank.second, rank.kind, {}};
+  if (side.is_edge()) {
+    best_->features =
+        EdgeEdgeCollision{side.a.features().edges()[rank.a], side.b.features().edges()[rank.b], rank.time};
+  } else {
+    best_->features = VertexFaceCollision{side.a.features().vertices()[rank.a], TriangleId(rank.b), rank.time};
+  }
+}
+
+/// Tests the pairs of a feature that may precede the best contact.
+void FirstSearch::look_at(const Side& side, const Feature& feature) {
+  const MovingBox box = side.a.box(side.of_a(feature.index));
+  Rank best = best_rank();
+  std::vector<std::pair<double, std::uint32_t>> partners;  // with their bounds
+  side.partners().visit_until(box, std::min(best.time, 1.0) + step_, [&](std::uint32_t partner) {
+    const double limit = std::min(best.time, 1.0) + step_;
+    if (!side.are_compared(feature.index, partner)) return limit;
+    const double of_pair = bound(box, side.b.box(side.of_b(partner)));
+    if (of_pair < limit) partners.emplace_back(of_pair, partner);
+    return limit;
+  });
+  std::sort(partners.begin(), partners.end());
+  for (const auto& [of_pair, partner] : partners) {
+    Rank rank{of_pair, side.first, side.second, side.kind, feature.index, partner};
+    if (!(rank < best)) continue;
+    const FourMovingPoints four = side.points(feature.index, partner);
+    if (are_apart(four, side.is_edge() ? 2 : 1, options_.min_separation)) continue;
+    rank.time = best.time;
+    // At the time of the best contact, only pairs before it in the order of results count.
+    const double before = best.time > 1 ? detail::after_all_times : best.time + (rank < best ? step_ : 0);
+    const auto time =
+        detail::impact(four, side.is_edge() ? FeatureKinds::edge_edge : FeatureKinds::vertex_face, options_, before);
+    if (!time) continue;
+    rank.time = *time;
+    offer(rank, side);
+    best = best_rank();
+  }
+}
+
+void FirstSearch::add(ObjectId first, const MovingObject& a, ObjectId second, const MovingObject& b) {
+  std::vector<Side> sides{{ContactKind::vertex_face, first, second, a, b}};
+  if (&a != &b) sides.push_back({ContactKind::face_vertex, first, second, b, a});
+  sides.push_back({ContactKind::edge_edge, first, second, a, b});
+  std::vector<Feature> features = features_of(sides);
+  // A contact that is known early saves most of the work.
+  constexpr std::size_t probes = 16;
+  for (std::size_t k = 0; k < std::min(probes, features.size()); ++k) {
+    throw_if_cancelled(context_);
+    const Side& side = side_of(sides, features[k].kind);
+    if (may_precede(best_rank_, side, features[k])) look_at(side, features[k]);
+  }
+  sharpen(sides, features);
+  parallel_for(context_, features.size(), search_grain, "first contact", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const Side& side = side_of(sides, features[k].kind);
+      if (!may_precede(best_rank(), side, features[k]))
+        return;  // nor may those that follow, which are sorted like results
+      look_at(side, features[k]);
+    }
+  });
+}
+
+}  // namespace blum
