@@ -79,6 +79,14 @@ bool are_apart_before(const MovingBox& a, const MovingBox& b, double time) {
                          [&](const Sides& sides) { return !(sides.start_gap() > 0 && gap_sign(sides, time) >= 0); });
 }
 
+/// Returns the part of a motion before a time, up to rounding.
+FourMovingPoints until(const FourMovingPoints& points, double time) {
+  if (time >= 1) return points;
+  FourMovingPoints out = points;
+  for (std::size_t k = 0; k < 4; ++k) out.end[k] = points.start[k] * (1 - time) + points.end[k] * time;
+  return out;
+}
+
 }  // namespace
 
 struct FirstSearch::Side {
@@ -226,10 +234,10 @@ void FirstSearch::look_at(const Side& side, const Feature& feature) {
     Rank rank{of_pair, side.first, side.second, side.kind, feature.index, partner};
     if (!(rank < best)) continue;
     const FourMovingPoints four = side.points(feature.index, partner);
-    if (are_apart(four, side.is_edge() ? 2 : 1, options_.min_separation)) continue;
     rank.time = best.time;
     // At the time of the best contact, only pairs before it in the order of results count.
     const double before = best.time > 1 ? detail::after_all_times : best.time + (rank < best ? step_ : 0);
+    if (are_apart(until(four, before), side.is_edge() ? 2 : 1, options_.min_separation)) continue;
     const auto time =
         detail::impact(four, side.is_edge() ? FeatureKinds::edge_edge : FeatureKinds::vertex_face, options_, before);
     if (!time) continue;
@@ -239,24 +247,36 @@ void FirstSearch::look_at(const Side& side, const Feature& feature) {
   }
 }
 
+/// Tests the pairs of a few features, because a contact that is known early saves most of the work.
+/// @return  true if sharper bounds probably save work, too.
+bool FirstSearch::probe(const std::vector<Side>& sides, const std::vector<Feature>& features) {
+  constexpr std::size_t first_count = 16;
+  constexpr std::size_t spread_count = 64;
+  const std::size_t stride = std::max<std::size_t>(features.size() / spread_count, 1);
+  std::size_t probes = 0;
+  std::size_t sharper = 0;
+  for (std::size_t k = 0; k < features.size(); k += k + 1 < first_count ? 1 : stride) {
+    throw_if_cancelled(context_);
+    const Feature& feature = features[k];
+    const Side& side = side_of(sides, feature.kind);
+    if (!may_precede(best_rank_, side, feature)) break;  // nor may those that follow: they are sorted
+    ++probes;
+    if (bound_of(side, feature.index, detail::after_all_times) > feature.bound) ++sharper;
+    look_at(side, feature);
+  }
+  return 2 * sharper >= probes;
+}
+
 void FirstSearch::add(ObjectId first, const MovingObject& a, ObjectId second, const MovingObject& b) {
   std::vector<Side> sides{{ContactKind::vertex_face, first, second, a, b}};
   if (&a != &b) sides.push_back({ContactKind::face_vertex, first, second, b, a});
   sides.push_back({ContactKind::edge_edge, first, second, a, b});
   std::vector<Feature> features = features_of(sides);
-  // A contact that is known early saves most of the work.
-  constexpr std::size_t probes = 16;
-  for (std::size_t k = 0; k < std::min(probes, features.size()); ++k) {
-    throw_if_cancelled(context_);
-    const Side& side = side_of(sides, features[k].kind);
-    if (may_precede(best_rank_, side, features[k])) look_at(side, features[k]);
-  }
-  sharpen(sides, features);
+  if (probe(sides, features)) sharpen(sides, features);
   parallel_for(context_, features.size(), search_grain, "first contact", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const Side& side = side_of(sides, features[k].kind);
-      if (!may_precede(best_rank(), side, features[k]))
-        return;  // nor may those that follow, which are sorted like results
+      if (!may_precede(best_rank(), side, features[k])) return;  // nor may those that follow: they are sorted
       look_at(side, features[k]);
     }
   });

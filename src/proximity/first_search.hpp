@@ -69,6 +69,7 @@ class FirstSearch {
 
   [[nodiscard]] static const Side& side_of(const std::vector<Side>& sides, ContactKind kind);
   [[nodiscard]] std::vector<Feature> features_of(const std::vector<Side>& sides) const;
+  [[nodiscard]] bool probe(const std::vector<Side>& sides, const std::vector<Feature>& features);
   void sharpen(const std::vector<Side>& sides, std::vector<Feature>& features) const;
   [[nodiscard]] double bound_of(const Side& side, std::uint32_t feature, double limit) const;
   void look_at(const Side& side, const Feature& feature);

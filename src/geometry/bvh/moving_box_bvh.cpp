@@ -65,29 +65,36 @@ float most_magnitude(const MovingBoxF& box) {
   return most;
 }
 
-/// Raises a lower bound of the time at which two boxes touch. One is above the other along an axis by the given gaps at
-/// the start and at the end. The bound becomes infinite if they never touch.
-void raise(float start_gap, float end_gap, float& bound) {
-  const float time = end_gap > 0 ? std::numeric_limits<float>::infinity() : start_gap / (start_gap - end_gap);
-  if (start_gap > 0 && time > bound) bound = time;  // false if the time is not a number
+/// Returns a lower bound of the times at which one side of a box passes another one. It is above the other by the given
+/// gaps at the start and at the end, less rounding, and not above it at both.
+float passing_time(float start_gap, float end_gap) {
+  return start_gap > 0 && end_gap < start_gap ? start_gap / (start_gap - end_gap) : 0;
+}
+
+/// Returns a lower bound of the times at which a box touches a box of a block.
+/// @param rounding  bound on the rounding errors of gaps.
+double touch_time(const MovingBlock& block, std::size_t lane, const MovingBoxF& box, float rounding) {
+  float time = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    time = std::max({time,
+                     passing_time(block.lower[0][axis][lane] - box.upper[0][axis] - rounding,
+                                  block.lower[1][axis][lane] - box.upper[1][axis] - rounding),
+                     passing_time(box.lower[0][axis] - block.upper[0][axis][lane] - rounding,
+                                  box.lower[1][axis] - block.upper[1][axis][lane] - rounding)});
+  }
+  // Gaps already allow for rounding; this allows for that of the quotient.
+  constexpr double margin = 1 - 0x1p-20;
+  return margin * static_cast<double>(time);
 }
 
 /// Computes lower bounds of the times at which a box touches eight boxes. They are infinite for boxes that it does not
 /// touch.
-/// @param rounding  bound on the rounding errors of gaps.
 void touch_times(const MovingBlock& block, const MovingBoxF& box, float rounding, double (&out)[lanes]) {
-  float bounds[lanes] = {};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      raise(block.lower[0][axis][lane] - box.upper[0][axis] - rounding,
-            block.lower[1][axis][lane] - box.upper[1][axis] - rounding, bounds[lane]);
-      raise(box.lower[0][axis] - block.upper[0][axis][lane] - rounding,
-            box.lower[1][axis] - block.upper[1][axis][lane] - rounding, bounds[lane]);
-    }
+  std::fill_n(out, lanes, std::numeric_limits<double>::infinity());
+  for (unsigned bits = touching(block, box); bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+    out[lane] = touch_time(block, lane, box, rounding);
   }
-  // Gaps already allow for rounding; this allows for that of the quotient.
-  constexpr double margin = 1 - 0x1p-20;
-  for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = margin * static_cast<double>(bounds[lane]);
 }
 
 /// Maps coordinates to magnitudes of at most 1, in single precision, preserving order. Boxes from other trees may have
