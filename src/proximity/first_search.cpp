@@ -16,8 +16,8 @@ namespace {
 using detail::FeatureKinds;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr std::size_t bound_grain = 64;
 constexpr std::size_t search_grain = 8;
+constexpr std::size_t sweep_grain = 32;
 
 /// Positions along an axis of a side of one box, and of the opposite side of another, at the start and the end. The
 /// first box is above the other while the first side is above the other one.
@@ -147,19 +147,6 @@ bool FirstSearch::is_hopeless(ObjectId first, ObjectId second, double bound) con
   return bound == infinite || !(Rank{bound, first, second} < best_rank_);
 }
 
-/// Returns the least bound of a feature and its partners; infinite if it is not below a limit.
-double FirstSearch::bound_of(const Side& side, std::uint32_t feature, double limit) const {
-  const MovingBox box = side.a.box(side.of_a(feature));
-  double least = infinite;
-  // Only bounds below the least one so far matter.
-  const auto below = [](double time) { return std::nextafter(time, -1.0); };
-  side.partners().visit_until(box, below(limit), [&](std::uint32_t partner) {
-    if (side.are_compared(feature, partner)) least = std::min(least, bound(box, side.b.box(side.of_b(partner))));
-    return below(std::min(least, limit));
-  });
-  return least < limit ? least : infinite;
-}
-
 /// Returns the features of all sides with bounds of their contacts with the whole other object, sorted.
 std::vector<FirstSearch::Feature> FirstSearch::features_of(const std::vector<Side>& sides) const {
   std::vector<Feature> all;
@@ -177,21 +164,6 @@ std::vector<FirstSearch::Feature> FirstSearch::features_of(const std::vector<Sid
   std::erase_if(all, [](const Feature& one) { return one.bound == infinite; });
   std::sort(all.begin(), all.end());
   return all;
-}
-
-/// Replaces bounds by those of contacts with the features of the other object. Features that come too late are left
-/// out, the others are sorted again.
-void FirstSearch::sharpen(const std::vector<Side>& sides, std::vector<Feature>& features) const {
-  const double limit = std::min(best_rank_.time, 1.0) + step_;
-  parallel_for(context_, features.size(), bound_grain, "", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      Feature& feature = features[k];
-      const Side& side = side_of(sides, feature.kind);
-      feature.bound = may_precede(best_rank_, side, feature) ? bound_of(side, feature.index, limit) : infinite;
-    }
-  });
-  std::erase_if(features, [](const Feature& one) { return one.bound == infinite; });
-  std::sort(features.begin(), features.end());
 }
 
 /// Returns true if a contact at the time of a feature's bound would precede the best contact.
@@ -217,62 +189,86 @@ void FirstSearch::offer(const Rank& rank, const Side& side) {
   }
 }
 
-/// Tests the pairs of a feature that may precede the best contact.
+/// Tests a pair of features, if it may precede the best contact.
+/// @param of_pair  bound of the pair.
+/// @param best     the best contact that is known; it is brought up to date.
+void FirstSearch::test(const Side& side, std::uint32_t first, std::uint32_t second, double of_pair, Rank& best) {
+  Rank rank{of_pair, side.first, side.second, side.kind, first, second};
+  if (of_pair == infinite || !(rank < best)) return;
+  const FourMovingPoints four = side.points(first, second);
+  rank.time = best.time;
+  // At the time of the best contact, only pairs before it in the order of results count.
+  const double before = best.time > 1 ? detail::after_all_times : best.time + (rank < best ? step_ : 0);
+  if (are_apart(until(four, before), side.is_edge() ? 2 : 1, options_.min_separation)) return;
+  const auto kinds = side.is_edge() ? FeatureKinds::edge_edge : FeatureKinds::vertex_face;
+  const std::optional<double> time = detail::impact(four, kinds, options_, before);
+  if (!time) return;
+  rank.time = *time;
+  offer(rank, side);
+  best = best_rank();
+}
+
+/// Tests the pairs of a feature that may precede the best contact, those with the least bounds first.
 void FirstSearch::look_at(const Side& side, const Feature& feature) {
   const MovingBox box = side.a.box(side.of_a(feature.index));
   Rank best = best_rank();
+  const double limit = std::min(best.time, 1.0) + step_;
   std::vector<std::pair<double, std::uint32_t>> partners;  // with their bounds
-  side.partners().visit_until(box, std::min(best.time, 1.0) + step_, [&](std::uint32_t partner) {
-    const double limit = std::min(best.time, 1.0) + step_;
+  side.partners().visit_until(box, limit, [&](std::uint32_t partner) {
     if (!side.are_compared(feature.index, partner)) return limit;
     const double of_pair = bound(box, side.b.box(side.of_b(partner)));
     if (of_pair < limit) partners.emplace_back(of_pair, partner);
     return limit;
   });
   std::sort(partners.begin(), partners.end());
-  for (const auto& [of_pair, partner] : partners) {
-    Rank rank{of_pair, side.first, side.second, side.kind, feature.index, partner};
-    if (!(rank < best)) continue;
-    const FourMovingPoints four = side.points(feature.index, partner);
-    rank.time = best.time;
-    // At the time of the best contact, only pairs before it in the order of results count.
-    const double before = best.time > 1 ? detail::after_all_times : best.time + (rank < best ? step_ : 0);
-    if (are_apart(until(four, before), side.is_edge() ? 2 : 1, options_.min_separation)) continue;
-    const auto time =
-        detail::impact(four, side.is_edge() ? FeatureKinds::edge_edge : FeatureKinds::vertex_face, options_, before);
-    if (!time) continue;
-    rank.time = *time;
-    offer(rank, side);
-    best = best_rank();
-  }
+  for (const auto& [of_pair, partner] : partners) test(side, feature.index, partner, of_pair, best);
+}
+
+/// Tests all pairs that may precede the best contact, in the order of the hierarchies. For one object this is faster
+/// than look_at() for all features: each has few partners, and touches most of them at the start.
+void FirstSearch::sweep(const Side& side) {
+  const MovingBoxBvh& own = side.is_edge() ? side.a.edges() : side.a.vertices();
+  parallel_for(context_, own.block_count(), sweep_grain, "first contact", [&](const WorkRange& range) {
+    Rank best = best_rank();
+    const auto visit = [&](std::uint32_t first, std::uint32_t second) {
+      if (!side.are_compared(first, second)) return;
+      test(side, first, second, bound(side.a.box(side.of_a(first)), side.b.box(side.of_b(second))), best);
+    };
+    for (std::size_t block = range.begin; block < range.end; ++block) {
+      if (&own == &side.partners()) {
+        own.for_each_self_pair(
+            block, [&](std::uint32_t one, std::uint32_t other) { visit(std::min(one, other), std::max(one, other)); });
+      } else {
+        own.for_each_pair(block, side.partners(), visit);
+      }
+    }
+  });
 }
 
 /// Tests the pairs of a few features, because a contact that is known early saves most of the work.
-/// @return  true if sharper bounds probably save work, too.
-bool FirstSearch::probe(const std::vector<Side>& sides, const std::vector<Feature>& features) {
+void FirstSearch::probe(const std::vector<Side>& sides, const std::vector<Feature>& features) {
   constexpr std::size_t first_count = 16;
   constexpr std::size_t spread_count = 64;
   const std::size_t stride = std::max<std::size_t>(features.size() / spread_count, 1);
-  std::size_t probes = 0;
-  std::size_t sharper = 0;
   for (std::size_t k = 0; k < features.size(); k += k + 1 < first_count ? 1 : stride) {
     throw_if_cancelled(context_);
-    const Feature& feature = features[k];
-    const Side& side = side_of(sides, feature.kind);
-    if (!may_precede(best_rank_, side, feature)) break;  // nor may those that follow: they are sorted
-    ++probes;
-    if (bound_of(side, feature.index, detail::after_all_times) > feature.bound) ++sharper;
-    look_at(side, feature);
+    const Side& side = side_of(sides, features[k].kind);
+    if (!may_precede(best_rank_, side, features[k])) return;  // nor may those that follow: they are sorted
+    look_at(side, features[k]);
   }
-  return 2 * sharper >= probes;
 }
 
 void FirstSearch::add(ObjectId first, const MovingObject& a, ObjectId second, const MovingObject& b) {
+  const bool is_self = &a == &b;
   std::vector<Side> sides{{ContactKind::vertex_face, first, second, a, b}};
-  if (&a != &b) sides.push_back({ContactKind::face_vertex, first, second, b, a});
+  if (!is_self) sides.push_back({ContactKind::face_vertex, first, second, b, a});
   sides.push_back({ContactKind::edge_edge, first, second, a, b});
-  std::vector<Feature> features = features_of(sides);
-  if (probe(sides, features)) sharpen(sides, features);
+  const std::vector<Feature> features = features_of(sides);
+  probe(sides, features);
+  if (is_self) {
+    for (const Side& side : sides) sweep(side);
+    return;
+  }
   parallel_for(context_, features.size(), search_grain, "first contact", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const Side& side = side_of(sides, features[k].kind);

@@ -69,10 +69,10 @@ class FirstSearch {
 
   [[nodiscard]] static const Side& side_of(const std::vector<Side>& sides, ContactKind kind);
   [[nodiscard]] std::vector<Feature> features_of(const std::vector<Side>& sides) const;
-  [[nodiscard]] bool probe(const std::vector<Side>& sides, const std::vector<Feature>& features);
-  void sharpen(const std::vector<Side>& sides, std::vector<Feature>& features) const;
-  [[nodiscard]] double bound_of(const Side& side, std::uint32_t feature, double limit) const;
+  void probe(const std::vector<Side>& sides, const std::vector<Feature>& features);
   void look_at(const Side& side, const Feature& feature);
+  void sweep(const Side& side);
+  void test(const Side& side, std::uint32_t first, std::uint32_t second, double of_pair, Rank& best);
   [[nodiscard]] Rank best_rank() const;
   [[nodiscard]] static bool may_precede(const Rank& best, const Side& side, const Feature& feature);
   void offer(const Rank& rank, const Side& side);
