@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -134,6 +134,20 @@ class Penetration:
 
     def __repr__(self) -> str:
         return f"Penetration(depth {self.depth:.6g}, volume {self.volume:.6g})"
+
+
+def penetration_of(
+    objects: tuple[int, int],
+    depth: float,
+    bound: float,
+    direction: Any,
+    deep: Any,
+    surface: Any,
+    is_first: bool,
+    *rest: Any,
+) -> Penetration:
+    """Returns a Penetration from the library's values."""
+    return Penetration(objects, depth, bound, np.array(direction), np.array(deep), np.array(surface), is_first, *rest)
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,7 +33,14 @@ from ._mesh import MeshLike, as_mesh, end_vertices, mesh_of_arrays
 from ._methods import ShortList, Shown
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
-from ._proximity_results import FirstContact, Penetration, PrimitivePair, ProximityPairs, SceneCollisions
+from ._proximity_results import (
+    FirstContact,
+    Penetration,
+    PrimitivePair,
+    ProximityPairs,
+    SceneCollisions,
+    penetration_of,
+)
 from ._scene_copies import SceneObject, restored_scene
 from ._structs import ImpactOptions, PenetrationOptions, SceneOptions
 
@@ -411,7 +418,7 @@ class ProximityScene:
         first, second, count = _object(a, "a"), _object(b, "b"), integer(threads, "threads")
         with self._alone(progress) as report:
             found = self._scene.penetration(first, second, dict(options), count, report)
-        return ShortList(_penetration(*part) for part in found)
+        return ShortList(penetration_of(*part) for part in found)
 
     @takes("PenetrationOptions")
     def signed_separation(
@@ -478,7 +485,7 @@ class ProximityScene:
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             found = self._scene.penetrations(dict(options), count, report)
-        return ShortList(_penetration(*part) for part in found)
+        return ShortList(penetration_of(*part) for part in found)
 
     @takes("PenetrationOptions")
     def signed_separations(
@@ -572,12 +579,10 @@ class ProximityScene:
         Examples
         --------
         >>> import blum
-        >>> scene = blum.ProximityScene()
-        >>> box = blum.generate("box")
+        >>> scene, box = blum.ProximityScene(), blum.generate("box")
         >>> floor, falling = scene.add(box), scene.add((box.vertices + [0.25, 0.25, 3], box.triangles))
-        >>> first = scene.first_contact({falling: box.vertices + [0.25, 0.25, -1]})
-        >>> first.time, first.object
-        (0.5, (0, 1))
+        >>> scene.first_contact({falling: box.vertices + [0.25, 0.25, -1]}).time
+        0.5
         """
         rows = [_motion(which, end) for which, end in _motions_of(motions)]
         count = integer(threads, "threads")
@@ -769,20 +774,6 @@ def _scene_of(meshes: MeshLike | Sequence[MeshLike], compare_self: bool | None, 
     for name, mesh in several:
         scene.add(as_mesh(mesh, name=name), name=name, compare_self=own, threads=threads)
     return scene
-
-
-def _penetration(
-    objects: tuple[int, int],
-    depth: float,
-    bound: float,
-    direction: Any,
-    deep: Any,
-    surface: Any,
-    is_first: bool,
-    *rest: Any,
-) -> Penetration:
-    """Returns a Penetration from the library's values."""
-    return Penetration(objects, depth, bound, np.array(direction), np.array(deep), np.array(surface), is_first, *rest)
 
 
 def _motions_of(motions: Any) -> list[tuple[Any, Any]]:
