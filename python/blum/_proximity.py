@@ -132,8 +132,9 @@ def first_contact(
     --------
     >>> import blum
     >>> box = blum.generate("box")
-    >>> ball = blum.generate("sphere")
-    >>> blum.first_contact(ball, ball.vertices + [0, 0, 9], box)
+    >>> lid = box.vertices + [0.25, 0.25, 3], box.triangles
+    >>> blum.first_contact(box, box.vertices + [0, 0, 4], lid).time
+    0.5
     """
     if other is None and other_end is not None:
         raise TypeError("other_end is given, but other is not: give both meshes, or only mesh and end")
