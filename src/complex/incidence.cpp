@@ -29,6 +29,11 @@ void for_each_pair(const ComplexView& complex, const Use& use) {
   }
 }
 
+/// Loops of two to eight ranges read all cells. They take long from some 10,000 cells.
+Start start_for(const ComplexView& complex) {
+  return complex.edges.size() + complex.triangles.size() > 10000 ? Start::at_once : Start::measured;
+}
+
 /// Pairs of vertices, grouped by the smaller vertex. Each is a listed edge or a side of a triangle.
 struct VertexPairs {
   std::vector<std::size_t> first;    ///< for each vertex: index of its first pair; then the number of pairs
@@ -53,11 +58,14 @@ struct VertexPairs {
     constexpr std::size_t most_ranges = 8;
     const std::size_t count = complex.vertex_count;
     const std::size_t ranges = std::min(static_cast<std::size_t>(thread_count(context)), most_ranges);
-    parallel_for(context, count, (count + ranges - 1) / ranges, {}, [&](const WorkRange& range) {
-      for_each_pair(complex, [&](std::uint32_t a, std::uint32_t b, std::uint32_t number) {
-        if (a >= range.begin && a < range.end) use(a, b, number);
-      });
-    });
+    parallel_for(
+        context, count, (count + ranges - 1) / ranges, {},
+        [&](const WorkRange& range) {
+          for_each_pair(complex, [&](std::uint32_t a, std::uint32_t b, std::uint32_t number) {
+            if (a >= range.begin && a < range.end) use(a, b, number);
+          });
+        },
+        start_for(complex));
   }
 
   void sort(std::size_t a) {
@@ -100,14 +108,15 @@ Incidence::Incidence(const ComplexView& complex, const Context& context) {
   }
   throw_if_cancelled(context);
   find_edges(complex, context);
-  parallel_for(context, 2, 1, {}, [&](const WorkRange& range) {
+  const auto find_rows = [&](const WorkRange& range) {
     const auto rows_of = [&](const auto& cells) {
       return detail::rows_of(cells.size(), complex.vertex_count,
                              [&](std::size_t k) -> const auto& { return cells[k]; });
     };
     if (range.begin == 0) edges_of_vertex_ = rows_of(edges_);
     if (range.end == 2) triangles_of_vertex_ = rows_of(complex.triangles);
-  });
+  };
+  parallel_for(context, 2, 1, {}, find_rows, start_for(complex));
 }
 
 /// Each range of vertices sorts and counts its pairs. Then each range writes its edges after the edges of all earlier

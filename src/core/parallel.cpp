@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <exception>
 #include <map>
 #include <memory>
@@ -14,8 +15,6 @@
 
 #if defined(BLUM_THREADS_TBB)
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 #elif defined(BLUM_THREADS_STD)
 #include <thread>
@@ -77,23 +76,90 @@ class ArenaPool {
 };
 #endif
 
-/// Calls run(0) to run(workers - 1), concurrently if the back end can, and waits until all calls have returned.
-void run_workers(int workers, const std::function<void(int)>& run) {
+/// Admits helpers to a loop until the loop closes. Helpers that come later must not touch the loop, which has ended.
+class Gate {
+ public:
+  /// Returns false if the gate is closed. After true, leave() must be called.
+  [[nodiscard]] bool enter() {
+    std::uint32_t state = state_.load();
+    while ((state & closed) == 0) {
+      if (state_.compare_exchange_weak(state, state + 1)) return true;
+    }
+    return false;
+  }
+  void leave() {
+    if (state_.fetch_sub(1) == closed + 1) state_.notify_one();
+  }
+  /// Closes the gate, and waits until everyone who entered has left.
+  void close() {
+    std::uint32_t state = state_.fetch_or(closed) | closed;
+    for (; state != closed; state = state_.load()) state_.wait(state);
+  }
+
+ private:
+  static constexpr std::uint32_t closed = std::uint32_t{1} << 31;
+  std::atomic<std::uint32_t> state_{0};  ///< number of helpers inside, and `closed`
+};
+
 #if defined(BLUM_THREADS_TBB)
-  // An arena with more slots than TBB has threads would cause a warning. Fewer slots suffice, because a thread runs
-  // several workers one after the other.
-  ArenaPool::Lease lease(ArenaPool::instance(), std::min(workers, tbb::info::default_concurrency()));
-  lease.arena().execute(
-      [&] { tbb::parallel_for(0, workers, [&](int worker) { run(worker); }, tbb::simple_partitioner()); });
+/// Number of helpers that were invited by any loop, but did not start yet.
+std::atomic<int>& waiting_helpers() {
+  static std::atomic<int> count{0};
+  return count;
+}
+
+/// Runs `run` on the calling thread, and on helpers as far as threads of TBB are free. The loop does not wait for
+/// helpers that have not started when its work is done. So a busy machine does not delay it.
+void run_workers(int workers, const std::function<void(int)>& run) {
+  // An arena with more slots than TBB has threads would cause a warning. One slot belongs to the calling thread.
+  const int slots = std::min(workers, tbb::info::default_concurrency());
+  // While no thread of TBB is free, invitations would only use memory.
+  constexpr int most_waiting = 256;
+  if (slots <= 1 || waiting_helpers() > most_waiting) return run(0);
+  ArenaPool::Lease lease(ArenaPool::instance(), slots);
+  const auto gate = std::make_shared<Gate>();
+  for (int worker = 1; worker < slots; ++worker) {
+    ++waiting_helpers();
+    lease.arena().enqueue([gate, &run, worker] {
+      --waiting_helpers();
+      if (!gate->enter()) return;
+      run(worker);
+      gate->leave();
+    });
+  }
+  run(0);
+  gate->close();
+}
 #elif defined(BLUM_THREADS_STD)
+/// Calls run(0) to run(workers - 1), concurrently, and waits until all calls have returned.
+void run_workers(int workers, const std::function<void(int)>& run) {
   std::vector<std::jthread> threads;
   threads.reserve(static_cast<std::size_t>(workers - 1));
   for (int worker = 1; worker < workers; ++worker) threads.emplace_back([&run, worker] { run(worker); });
   run(0);
-#else
-  for (int worker = 0; worker < workers; ++worker) run(worker);
-#endif
 }
+#else
+void run_workers(int /*workers*/, const std::function<void(int)>& run) {
+  run(0);
+}
+#endif
+
+/// Decides if helpers would shorten a loop, from the time of the ranges that the calling thread has run.
+class Trial {
+ public:
+  [[nodiscard]] bool needs_helpers(std::size_t done, std::size_t ranges) const {
+    const Seconds spent = std::chrono::steady_clock::now() - begin_;
+    return spent >= least_spent && spent * static_cast<double>(ranges - done) >= least_left * static_cast<double>(done);
+  }
+
+ private:
+  using Seconds = std::chrono::duration<double>;
+  /// Inviting a helper costs the caller some 5 us. The helper begins some 50 us later. So it saves time only if much
+  /// is left.
+  static constexpr Seconds least_spent = std::chrono::microseconds(50);
+  static constexpr Seconds least_left = std::chrono::microseconds(150);
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 
 /// Reports the start, the end, and at most every 30 ms the progress in between. It never reports from two threads at
 /// once.
@@ -138,7 +204,7 @@ class ProgressReporter {
 }  // namespace
 
 void parallel_for(const Context& context, std::size_t count, std::size_t grain, std::string_view phase,
-                  const std::function<void(const WorkRange&)>& body) {
+                  const std::function<void(const WorkRange&)>& body, Start start) {
   throw_if_cancelled(context);
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
@@ -151,26 +217,38 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain, 
   std::exception_ptr failure;
   std::mutex failure_mutex;
 
-  const auto work = [&](int worker) {
+  /// Runs the next range. Returns false if none is left, or if the loop must stop.
+  const auto run_one = [&](int worker) {
+    if (failed.load(std::memory_order_relaxed) || context.cancel.stop_requested()) return false;
+    const std::size_t range = next.fetch_add(1, std::memory_order_relaxed);
+    if (range >= ranges) return false;
     try {
-      while (!failed.load(std::memory_order_relaxed) && !context.cancel.stop_requested()) {
-        const std::size_t range = next.fetch_add(1, std::memory_order_relaxed);
-        if (range >= ranges) return;
-        const std::size_t begin = range * grain;
-        const std::size_t end = std::min(begin + grain, count);
-        body({begin, end, worker});
-        reporter.advance(end - begin);
-      }
+      const std::size_t begin = range * grain;
+      const std::size_t end = std::min(begin + grain, count);
+      body({begin, end, worker});
+      reporter.advance(end - begin);
     } catch (...) {
       const std::scoped_lock lock(failure_mutex);
       if (!failure) failure = std::current_exception();
       failed = true;
     }
+    return true;
+  };
+  const auto run_all = [&](int worker) {
+    while (run_one(worker)) {
+    }
   };
   if (workers == 1) {
-    work(0);
+    run_all(0);
+  } else if (start == Start::at_once) {
+    run_workers(workers, run_all);
   } else {
-    run_workers(workers, work);
+    const Trial trial;
+    for (std::size_t done = 1; run_one(0) && done < ranges; ++done) {
+      if (!trial.needs_helpers(done, ranges)) continue;
+      run_workers(static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(workers), ranges - done)), run_all);
+      break;
+    }
   }
   if (failure) std::rethrow_exception(failure);
   throw_if_cancelled(context);

@@ -24,7 +24,9 @@
 namespace blum {
 namespace {
 
-constexpr std::size_t queries_per_range = sign::most_shared;
+/// A range is short enough that the first one, which runs alone, costs little. Only winding numbers need longer ranges,
+/// in which queries share work.
+constexpr std::size_t queries_per_range = 32;
 /// Upper bound on the rounding error of a sum of two distances, relative to the lengths involved.
 constexpr double rounding = 1e-12;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
@@ -320,7 +322,8 @@ void ClosestPointQuery::for_each_nearest(std::span<const Vec3d> queries, Use use
     return;
   }
   const std::vector<std::uint32_t> order = order_along_curve(queries);
-  parallel_for(context, order.size(), queries_per_range, "closest points", [&](const WorkRange& range) {
+  const std::size_t grain = data_->sides.winding() != nullptr ? sign::most_shared : queries_per_range;
+  parallel_for(context, order.size(), grain, "closest points", [&](const WorkRange& range) {
     data_->find(queries, std::span(order).subspan(range.begin, range.end - range.begin), use);
   });
 }

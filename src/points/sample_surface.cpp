@@ -123,12 +123,15 @@ std::vector<std::uint32_t> most_even(std::span<const Vec3d> points, std::size_t 
   const Cells cells(points, width);
   const Weight weight(width, static_cast<double>(count) / static_cast<double>(points.size()));
   std::vector<double> sum(points.size());
-  parallel_for(context, points.size(), grain, "weights", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      cells.for_each_near(static_cast<std::uint32_t>(k),
-                          [&](std::uint32_t, double squared) { sum[k] += weight(squared); });
-    }
-  });
+  parallel_for(
+      context, points.size(), grain, "weights",
+      [&](const WorkRange& range) {
+        for (std::size_t k = range.begin; k < range.end; ++k) {
+          cells.for_each_near(static_cast<std::uint32_t>(k),
+                              [&](std::uint32_t, double squared) { sum[k] += weight(squared); });
+        }
+      },
+      Start::at_once);
   // The point with the largest sum is on top. If its sum has changed since it was entered, it is entered again with the
   // new sum.
   using Entry = std::tuple<double, std::uint32_t>;

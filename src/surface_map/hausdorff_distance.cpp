@@ -426,8 +426,9 @@ class MeshPair {
       return;
     }
     const Context half{.threads = threads / 2, .cancel = context.cancel};
-    parallel_for(context, 2, 1, "",
-                 [&](const WorkRange& range) { surfaces_[range.begin].emplace(meshes_[range.begin], half); });
+    parallel_for(
+        context, 2, 1, "", [&](const WorkRange& range) { surfaces_[range.begin].emplace(meshes_[range.begin], half); },
+        more > 1000 ? Start::at_once : Start::measured);
   }
 
   std::size_t max_points_;

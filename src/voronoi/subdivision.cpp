@@ -666,9 +666,12 @@ void CellSplitter::split_cubes(std::span<const CellId> cubes, const Context& con
   squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
   split_squares(squares, context);
   std::vector<std::array<NewEdge, 6>> made(cubes.size());
-  parallel_for(context, cubes.size(), splitter_grain, {}, [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) made[k] = inner_edges(tree_.cubes[cubes[k]]);
-  });
+  parallel_for(
+      context, cubes.size(), splitter_grain, {},
+      [&](const WorkRange& range) {
+        for (std::size_t k = range.begin; k < range.end; ++k) made[k] = inner_edges(tree_.cubes[cubes[k]]);
+      },
+      Start::at_once);
   const auto first_edge = static_cast<CellId>(tree_.edges.size());
   const auto first_square = static_cast<CellId>(tree_.squares.size());
   const auto first_cube = static_cast<CellId>(tree_.cubes.size());
@@ -680,15 +683,18 @@ void CellSplitter::split_cubes(std::span<const CellId> cubes, const Context& con
     tree_.cubes[cubes[k]].children = first_cube + 8 * k;
     tree_.cubes[cubes[k]].state = CubeState::split;
   }
-  parallel_for(context, cubes.size(), splitter_grain, {}, [&](const WorkRange& range) {
-    for (auto k = static_cast<CellId>(range.begin); k < range.end; ++k) {
-      GridCube& cube = tree_.cubes[cubes[k]];
-      place_squares(cube, first_edge + 6 * k, first_square + 12 * k);
-      place_children(cube, first_square + 12 * k);
-      cube.governors = {};
-      cube.triangles = {};
-    }
-  });
+  parallel_for(
+      context, cubes.size(), splitter_grain, {},
+      [&](const WorkRange& range) {
+        for (auto k = static_cast<CellId>(range.begin); k < range.end; ++k) {
+          GridCube& cube = tree_.cubes[cubes[k]];
+          place_squares(cube, first_edge + 6 * k, first_square + 12 * k);
+          place_children(cube, first_square + 12 * k);
+          cube.governors = {};
+          cube.triangles = {};
+        }
+      },
+      Start::at_once);
 }
 
 Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options, const Context& context,

@@ -17,17 +17,27 @@ struct WorkRange {
   int worker = 0;
 };
 
+/// Time at which other workers join the calling thread in a loop.
+enum class Start {
+  /// The calling thread begins alone. Others join after 50 us, if the loop is expected to take 150 us more. So a short
+  /// loop costs the same with any number of threads. A loop of few long ranges loses the time of its first range.
+  measured,
+  /// Others join at the beginning. This is for loops of few ranges that take long.
+  at_once,
+};
+
 /// Calls `body` for consecutive ranges of at most `grain` items, which together cover [0, count). Workers start the
 /// ranges in ascending order.
 ///
 /// The ranges depend only on `count` and `grain`, never on the number of threads. So results are the same for any
-/// number of threads if `body` writes only data of its own range. A single worker runs on the calling thread.
+/// number of threads if `body` writes only data of its own range. A single worker runs on the calling thread. The loop
+/// does not wait for threads that are busy elsewhere.
 ///
 /// @param phase  name for Context::progress. An empty name reports no progress.
 /// @param body   must not throw, except std::bad_alloc. The first exception is rethrown once all workers have stopped.
 /// @throws Cancelled if the caller asked to stop. This is checked before every range.
 void parallel_for(const Context& context, std::size_t count, std::size_t grain, std::string_view phase,
-                  const std::function<void(const WorkRange&)>& body);
+                  const std::function<void(const WorkRange&)>& body, Start start = Start::measured);
 
 /// Returns the thread back end that was compiled in: "tbb", "std" or "serial".
 [[nodiscard]] std::string_view thread_backend();

@@ -33,8 +33,9 @@ void for_each_part(const Context& context, std::span<const std::size_t> sizes, s
     run(order[large++], context);
   }
   const Context alone{.threads = 1, .cancel = context.cancel, .device = context.device};
-  parallel_for(context, order.size() - large, 1, phase,
-               [&](const WorkRange& range) { run(order[large + range.begin], alone); });
+  parallel_for(
+      context, order.size() - large, 1, phase, [&](const WorkRange& range) { run(order[large + range.begin], alone); },
+      Start::at_once);
 }
 
 }  // namespace blum::detail

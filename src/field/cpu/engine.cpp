@@ -56,6 +56,11 @@ void remove_reaches(SiteRecords& sites, const Context& context) {
   }
 }
 
+/// A tile of a coarse grid may take long if there are many sites.
+Start start_for(const SiteTable& sites) {
+  return sites.size() > 5000 ? Start::at_once : Start::measured;
+}
+
 /// Returns true if an edge joins vertices of different labels.
 bool has_mixed_edges(const SiteTable& sites, const SecondLabels& labels) {
   return std::any_of(sites.edges().begin(), sites.edges().end(),
@@ -235,11 +240,12 @@ FieldResult Engine::compute(const FieldRequest& request, const Context& context,
   const Tiling tiling(request.grid.size, tile_size(request.grid.size));
   scratch_.resize(static_cast<std::size_t>(thread_count(context)));
   for (TileScratch& scratch : scratch_) scratch.unsettled.clear();
-  parallel_for(context, tiling.count(), 1, "field", [&](const WorkRange& range) {
+  const auto compute_tiles = [&](const WorkRange& range) {
     for (std::size_t tile = range.begin; tile < range.end; ++tile) {
       compute_tile(job, tiling.box(tile), scratch_[static_cast<std::size_t>(range.worker)]);
     }
-  });
+  };
+  parallel_for(context, tiling.count(), 1, "field", compute_tiles, start_for(sites_));
   FieldResult result;
   result.is_signed = by_normals;
   std::vector<std::size_t>& unsettled = result.unsettled;
@@ -261,11 +267,12 @@ std::vector<std::size_t> Engine::compute_second(const SecondRequest& request, co
   job.request = request;
   const Tiling tiling(request.grid.size, tile_size(request.grid.size));
   std::vector<SecondScratch> scratch(static_cast<std::size_t>(thread_count(context)));
-  parallel_for(context, tiling.count(), 1, "second order", [&](const WorkRange& range) {
+  const auto compute_tiles = [&](const WorkRange& range) {
     for (std::size_t tile = range.begin; tile < range.end; ++tile) {
       compute_second_tile(job, tiling.box(tile), scratch[static_cast<std::size_t>(range.worker)]);
     }
-  });
+  };
+  parallel_for(context, tiling.count(), 1, "second order", compute_tiles, start_for(sites_));
   std::vector<std::size_t> unsettled;
   for (const SecondScratch& one : scratch) {
     unsettled.insert(unsettled.end(), one.unsettled.begin(), one.unsettled.end());

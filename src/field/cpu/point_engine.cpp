@@ -152,7 +152,7 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
     std::vector<FoundSite> group;
   };
   std::vector<Worker> workers(static_cast<std::size_t>(thread_count(context)));
-  parallel_for(context, cells.size(), 1, "closest points", [&](const WorkRange& range) {
+  const auto compute = [&](const WorkRange& range) {
     Worker& mine = workers[static_cast<std::size_t>(range.worker)];
     const PointCell& cell = cells[range.begin];
     compute_point_cell(job, cell, mine.scratch);
@@ -167,7 +167,8 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
       }
       use(mine.group);
     }
-  });
+  };
+  parallel_for(context, cells.size(), 1, "closest points", compute, Start::at_once);
 }
 
 }  // namespace blum::cpu

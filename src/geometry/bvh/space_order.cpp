@@ -141,9 +141,12 @@ std::vector<std::uint32_t> space_order(std::size_t count, const std::function<Ve
   while (!ranges.empty()) {
     std::vector<Range> long_ranges;
     for (const Range& range : ranges) (range[1] - range[0] > local_size ? long_ranges : local).push_back(range);
-    parallel_for(context, long_ranges.size(), 1, "", [&](const WorkRange& work) {
-      for (std::size_t i = work.begin; i < work.end; ++i) cut(entries, long_ranges[i]);
-    });
+    parallel_for(
+        context, long_ranges.size(), 1, "",
+        [&](const WorkRange& work) {
+          for (std::size_t i = work.begin; i < work.end; ++i) cut(entries, long_ranges[i]);
+        },
+        Start::at_once);
     ranges.clear();
     for (const Range& range : long_ranges) {
       ranges.push_back({range[0], cut_of(range)});

@@ -247,9 +247,12 @@ std::uint32_t parallel_crc32(std::span<const std::byte> bytes, const Context& co
   const auto piece = [&](std::size_t i) {
     return bytes.subspan(i * crc_piece, std::min(crc_piece, bytes.size() - i * crc_piece));
   };
-  parallel_for(context, pieces, 1, "", [&](const WorkRange& range) {
-    for (std::size_t i = range.begin; i < range.end; ++i) parts[i] = crc_of(0, piece(i));
-  });
+  parallel_for(
+      context, pieces, 1, "",
+      [&](const WorkRange& range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) parts[i] = crc_of(0, piece(i));
+      },
+      Start::at_once);
   std::uint32_t crc = 0;
   for (std::size_t i = 0; i < pieces; ++i) {
     crc = static_cast<std::uint32_t>(crc32_combine(crc, parts[i], static_cast<z_off_t>(piece(i).size())));

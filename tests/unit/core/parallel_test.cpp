@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <fstream>
 #include <new>
 #include <stop_token>
@@ -17,13 +19,16 @@ namespace blum {
 namespace {
 
 TEST(ParallelFor, VisitsEveryItemOnceOnAnyNumberOfThreads) {
-  for (const int threads : {1, 2, 7}) {
-    std::vector<std::atomic<int>> visits(1003);
-    parallel_for({.threads = threads}, visits.size(), 10, "", [&](const WorkRange& range) {
-      EXPECT_LT(range.worker, threads);
-      for (std::size_t i = range.begin; i < range.end; ++i) ++visits[i];
-    });
-    for (const auto& count : visits) EXPECT_EQ(count, 1);
+  for (const Start start : {Start::measured, Start::at_once}) {
+    for (const int threads : {1, 2, 7}) {
+      std::vector<std::atomic<int>> visits(1003);
+      const auto visit = [&](const WorkRange& range) {
+        EXPECT_LT(range.worker, threads);
+        for (std::size_t i = range.begin; i < range.end; ++i) ++visits[i];
+      };
+      parallel_for({.threads = threads}, visits.size(), 10, "", visit, start);
+      for (const auto& count : visits) EXPECT_EQ(count, 1);
+    }
   }
 }
 
@@ -40,8 +45,9 @@ TEST(ParallelFor, StopsWhenAsked) {
 }
 
 TEST(ParallelFor, RethrowsTheFirstFailure) {
-  EXPECT_THROW(parallel_for({.threads = 2}, 100, 1, "", [](const WorkRange&) { throw std::bad_alloc(); }),
-               std::bad_alloc);
+  const auto fail = [](const WorkRange&) { throw std::bad_alloc(); };
+  EXPECT_THROW(parallel_for({.threads = 2}, 100, 1, "", fail), std::bad_alloc);
+  EXPECT_THROW(parallel_for({.threads = 2}, 100, 1, "", fail, Start::at_once), std::bad_alloc);
 }
 
 TEST(ParallelFor, ReportsRisingProgressThatEndsAtOne) {
@@ -70,7 +76,7 @@ TEST(ParallelFor, KeepsNoMemoryFromLoopToLoop) {
     return resident;
   };
   const auto loops = [](int count) {
-    for (int n = 0; n < count; ++n) parallel_for({.threads = 2}, 2, 1, "", [](const WorkRange&) {});
+    for (int n = 0; n < count; ++n) parallel_for({.threads = 2}, 2, 1, "", [](const WorkRange&) {}, Start::at_once);
   };
   loops(100);
   const long before = resident_pages();
@@ -84,14 +90,73 @@ TEST(ParallelFor, MayRunInManyThreadsAtOnceAndWithinItself) {
   for (int caller = 0; caller < 4; ++caller) {
     callers.emplace_back([&] {
       for (int n = 0; n < 50; ++n) {
-        parallel_for({.threads = 2}, 4, 1, "", [&](const WorkRange&) {
-          parallel_for({.threads = 2}, 3, 1, "", [&](const WorkRange&) { ++visits; });
-        });
+        const auto inner = [&](const WorkRange&) {
+          parallel_for({.threads = 2}, 3, 1, "", [&](const WorkRange&) { ++visits; }, Start::at_once);
+        };
+        parallel_for({.threads = 2}, 4, 1, "", inner, Start::at_once);
       }
     });
   }
   callers.clear();
   EXPECT_EQ(visits, 4 * 50 * 4 * 3);
+}
+
+// A short loop must not wake other threads, which takes longer than the loop. A preempted loop may still do so.
+TEST(ParallelFor, RunsShortLoopsOnTheCallingThread) {
+  constexpr int loops = 1000;
+  int alone = 0;
+  for (int n = 0; n < loops; ++n) {
+    std::atomic<bool> is_alone{true};
+    parallel_for({.threads = 4}, 8, 1, "", [&, caller = std::this_thread::get_id()](const WorkRange&) {
+      if (std::this_thread::get_id() != caller) is_alone = false;
+    });
+    if (is_alone) ++alone;
+  }
+  EXPECT_GT(alone, loops / 2);
+}
+
+/// Returns true if a second thread ran a range of a loop while the first range waited for it, for at most ten seconds.
+bool has_company(int ranges_before, Start start) {
+  std::atomic<int> begun{0};
+  std::atomic<bool> is_joined{false};
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto body = [&](const WorkRange& range) {
+    if (range.begin < static_cast<std::size_t>(ranges_before)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return;
+    }
+    if (++begun == 2) is_joined = true;
+    while (!is_joined && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
+  };
+  parallel_for({.threads = 2}, static_cast<std::size_t>(ranges_before) + 2, 1, "", body, start);
+  return is_joined;
+}
+
+TEST(ParallelFor, GetsHelpersAtOnceOrWhenTheLoopProvesLong) {
+  if (thread_backend() == "serial" || thread_count({}) < 2) GTEST_SKIP() << "one thread only";
+  EXPECT_TRUE(has_company(0, Start::at_once));
+  EXPECT_TRUE(has_company(3, Start::measured));
+}
+
+// All other threads are busy, so the inner loops must not wait for them.
+TEST(ParallelFor, DoesNotWaitForBusyThreads) {
+  std::atomic<bool> is_over{false};
+  std::atomic<int> visits{0};
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto body = [&](const WorkRange& range) {
+    if (range.begin > 0) {
+      while (!is_over && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
+      return;
+    }
+    for (int n = 0; n < 1000; ++n) {
+      parallel_for({.threads = 4}, 4, 1, "", [&](const WorkRange&) { ++visits; }, Start::at_once);
+    }
+    is_over = true;
+  };
+  parallel_for({}, static_cast<std::size_t>(thread_count({})), 1, "", body, Start::at_once);
+  EXPECT_TRUE(is_over);
+  EXPECT_EQ(visits, 4000);
+  EXPECT_LT(std::chrono::steady_clock::now(), limit);
 }
 
 TEST(ThreadCount, RefusesNonsense) {
