@@ -42,24 +42,26 @@ nb::tuple columns_of(NearPrimitives found) {
                         shown(&NearestPrimitive::point));
 }
 
-using DistancesIn = In<double, nb::shape<-1>>;
-
 void check_counts(std::size_t points, std::initializer_list<std::size_t> others) {
   for (const std::size_t count : others) {
     if (count != points) throw InvalidOption("the arrays must have equal numbers of rows");
   }
 }
 
-/// Returns the gradient at each point, NaN if it has none.
-Out<double> gradients(const PointsIn& points, const PointsIn& closest, const DistancesIn& distance) {
-  check_counts(points.shape(0), {closest.shape(0), distance.shape(0)});
+/// Returns the columns of the closest points, and the gradient at each query: NaN if it has none.
+nb::tuple with_gradients(const ClosestPointQuery& query, const PointsIn& points, int threads, nb::object progress) {
   const std::span<const Vec3d> queries = vectors(points);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Vec3d> out(queries.size());
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k] = gradient(queries[k], {vectors(closest)[k], distance.data()[k], {}, {}}).value_or(Vec3d{nan, nan, nan});
-  }
-  return handed_over<double>(std::move(out), 3);
+  std::vector<Vec3d> gradients;
+  std::vector<ClosestPoint> found = run({threads, std::move(progress)}, [&](const Context& context) {
+    std::vector<ClosestPoint> nearest = query.nearest(queries, context);
+    gradients.reserve(queries.size());
+    for (const std::optional<Vec3d>& one : query.gradients(queries, nearest, context)) {
+      gradients.push_back(one.value_or(Vec3d{nan, nan, nan}));
+    }
+    return nearest;
+  });
+  return nb::make_tuple(columns_of(std::move(found)), handed_over<double>(std::move(gradients), 3));
 }
 
 /// Returns the barycentric weights of each closest point, NaN if it has none.
@@ -95,8 +97,6 @@ void bind_closest_points(nb::module_& m) {
       },
       nb::arg("mesh"), nb::arg("points").noconvert(), nb::arg("max_error"), nb::arg("threads"),
       nb::arg("progress").none());
-  m.def("gradients", &gradients, nb::arg("points").noconvert(), nb::arg("closest").noconvert(),
-        nb::arg("distance").noconvert());
   m.def("barycentric", &weights, nb::arg("mesh"), nb::arg("closest").noconvert(), nb::arg("site").noconvert(),
         nb::arg("triangle").noconvert());
   nb::class_<ClosestPointQuery>(m, "ClosestPointQuery")
@@ -117,6 +117,8 @@ void bind_closest_points(nb::module_& m) {
                                   [&](const Context& context) { return self.nearest(vectors(points), context); }));
           },
           nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
+      .def("nearest_with_gradients", &with_gradients, nb::arg("points").noconvert(), nb::arg("threads"),
+           nb::arg("progress").none())
       .def(
           "within",
           [](const ClosestPointQuery& self, const PointsIn& points, double distance, int threads, nb::object progress) {

@@ -38,6 +38,9 @@ class ClosestPoints(Shown):
     distance: FloatArray  #: Mesh units, negative inside when signed. Infinite if nothing lies within max_distance.
     site: IntArray  #: Site of the mesh, see :class:`Sites`. -1 if none.
     triangle: IntArray  #: Smallest index of a triangle that contains the site. -1 if none.
+    #: Unit vector in which the distance grows: (..., 3). None unless the call asks for it, see
+    #: :meth:`ClosestPointQuery.__call__`.
+    gradient: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,12 +128,20 @@ class ClosestPointQuery(Rebuilt):
         """Reason for this rule, one sentence."""
         return str(self._query.sign_reason)
 
-    def __call__(self, points: Any, *, threads: int = 0, progress: Progress = False) -> ClosestPoints:
+    def __call__(
+        self, points: Any, *, gradient: bool = False, threads: int = 0, progress: Progress = False
+    ) -> ClosestPoints:
         """Returns the closest points of queries of shape (..., 3).
 
         Parameters
         ----------
         points : array of shape (..., 3)
+        gradient : bool
+            If true, the result has the gradient of the distance at each query. It points away from the surface outside,
+            and towards it inside. On the surface, within rounding, it is the normal of the closest site: the
+            pseudonormal of an edge or vertex (:func:`pseudonormals`), with length 1. It is NaN if nothing lies within
+            max_distance, or if the query lies on a site without a normal. On the medial axis it is one of several
+            directions.
         threads, progress
             As for :func:`distance_field`.
 
@@ -140,12 +151,24 @@ class ClosestPointQuery(Rebuilt):
         >>> query = blum.ClosestPointQuery(blum.generate("box"))
         >>> query([[0, 0, 5], [0, 0, 0.4]]).distance.round(6).tolist()
         [4.5, -0.1]
+        >>> query([[0, 0, 5], [0.1, 0, 0.5]], gradient=True).gradient.tolist()
+        [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]
         """
         rows, shape = points_and_shape(points, "points")
+        count = integer(threads, "threads")
+        slopes = None
         with reporting(progress) as report:
-            found, distance, site, triangle = self._query.nearest(rows, integer(threads, "threads"), report)
+            if gradient:
+                columns, slopes = self._query.nearest_with_gradients(rows, count, report)
+            else:
+                columns = self._query.nearest(rows, count, report)
+        found, distance, site, triangle = columns
         return ClosestPoints(
-            found.reshape((*shape, 3)), distance.reshape(shape), site.reshape(shape), triangle.reshape(shape)
+            found.reshape((*shape, 3)),
+            distance.reshape(shape),
+            site.reshape(shape),
+            triangle.reshape(shape),
+            None if slopes is None else slopes.reshape((*shape, 3)),
         )
 
     def within(self, points: Any, distance: Real, *, threads: int = 0, progress: Progress = False) -> NearPrimitives:

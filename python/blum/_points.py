@@ -39,8 +39,8 @@ class SignedDistances(Shown):
 
     distance: FloatArray  #: Mesh units, negative inside. Infinite if nothing lies within max_distance.
     #: Unit vector in which the distance grows: (..., 3). It points away from the surface outside, and towards it
-    #: inside. NaN on the surface, within rounding, and if nothing lies within max_distance. On the medial axis it is
-    #: one of several directions.
+    #: inside. On the surface it is the normal of the site, see :meth:`ClosestPointQuery.__call__`. NaN if nothing lies
+    #: within max_distance. On the medial axis it is one of several directions.
     gradient: FloatArray
     closest: FloatArray  #: Closest point of the mesh: (..., 3).
     site: IntArray  #: Site of the mesh, see :class:`Sites`. -1 if none.
@@ -93,12 +93,11 @@ def signed_distance(
     of = as_mesh(mesh, weld=weld)
     rows, shape = points_and_shape(points, "points")
     query = ClosestPointQuery(of, threads=threads, progress=progress, **options)
-    found = query(rows, threads=threads, progress=progress)
-    closest, distance = np.ascontiguousarray(found.closest), np.ascontiguousarray(found.distance)
-    gradient: FloatArray = _core.gradients(rows, closest, distance)
+    found = query(rows, gradient=True, threads=threads, progress=progress)
+    assert found.gradient is not None
     return SignedDistances(
         found.distance.reshape(shape),
-        gradient.reshape((*shape, 3)),
+        found.gradient.reshape((*shape, 3)),
         found.closest.reshape((*shape, 3)),
         found.site.reshape(shape),
         found.triangle.reshape(shape),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/core/radix_sort.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/pseudonormals.hpp"
 #include "blum/geometry/sites.hpp"
 #include "field/kernels/morton.hpp"
 #include "field/point_search.hpp"
@@ -27,6 +29,7 @@ namespace {
 /// A range is short enough that the first one, which runs alone, costs little. Only winding numbers need longer ranges,
 /// in which queries share work.
 constexpr std::size_t queries_per_range = 32;
+constexpr std::size_t gradients_per_range = 4096;
 /// Upper bound on the rounding error of a sum of two distances, relative to the lengths involved.
 constexpr double rounding = 1e-12;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
@@ -146,6 +149,7 @@ struct ClosestPointQuery::Data {
     moved.vertices = vertices;
     validate(moved);
     search_.reset();
+    normals_.reset();
     is_prepared_ = false;
     std::copy(vertices.begin(), vertices.end(), mesh.vertices.begin());
     // The plan depends on the triangles as they were given.
@@ -249,6 +253,22 @@ struct ClosestPointQuery::Data {
     return is_worth_it ? search_.get() : nullptr;
   }
 
+  /// Returns the normals of the sites. If signs do not need them, the first call computes them.
+  [[nodiscard]] const Pseudonormals& normals(const Context& context) const {
+    if (sides.normals() != nullptr) return *sides.normals();
+    const std::scoped_lock lock(normals_mutex_);
+    if (!normals_) normals_.emplace(mesh, sites, context);
+    return *normals_;
+  }
+
+  /// Returns the gradient at a query on the surface.
+  [[nodiscard]] std::optional<Vec3d> gradient_on_surface(const ClosestPoint& found, const Context& context) const {
+    if (!found.site.has_value()) return std::nullopt;
+    const Vec3d& normal = normals(context).normal(found.site);
+    const double size = length(normal);
+    return size > 0 ? std::optional(normal / size + Vec3d{}) : std::nullopt;  // + Vec3d{} turns -0 into 0
+  }
+
   void prepare(std::size_t queries, const Context& context) {
     if (!PointSearch::is_worth_building(queries, sites)) return;
     if (!search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
@@ -271,6 +291,8 @@ struct ClosestPointQuery::Data {
 
  private:
   std::vector<Triangle> given_triangles_;  ///< triangles of the given mesh; empty if `mesh` has the same
+  mutable std::mutex normals_mutex_;
+  mutable std::optional<Pseudonormals> normals_;
   mutable std::mutex search_mutex_;
   mutable std::unique_ptr<const PointSearch> search_;
   /// If true, search_for() uses `search_` for all calls with at least PointSearch::fewest queries.
@@ -304,6 +326,33 @@ const std::string& ClosestPointQuery::sign_reason() const {
 
 ClosestPoint ClosestPointQuery::nearest(const Vec3d& query) const {
   return data_->finished(query, data_->bvh.nearest(query, data_->max_distance));
+}
+
+std::optional<Vec3d> ClosestPointQuery::gradient(const Vec3d& query, const ClosestPoint& found) const {
+  const std::optional<Vec3d> away = blum::gradient(query, found);
+  return away ? away : data_->gradient_on_surface(found, {});
+}
+
+std::vector<std::optional<Vec3d>> ClosestPointQuery::gradients(std::span<const Vec3d> queries,
+                                                               std::span<const ClosestPoint> found,
+                                                               const Context& context) const {
+  if (queries.size() != found.size()) {
+    throw InvalidOption("there are " + std::to_string(queries.size()) + " queries and " + std::to_string(found.size()) +
+                        " results; gradients need one result for each query");
+  }
+  std::vector<std::optional<Vec3d>> out(queries.size());
+  std::atomic<bool> is_any_on_surface{false};
+  parallel_for(context, queries.size(), gradients_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      out[k] = blum::gradient(queries[k], found[k]);
+      if (!out[k] && found[k].site.has_value()) is_any_on_surface.store(true, std::memory_order_relaxed);
+    }
+  });
+  if (!is_any_on_surface) return out;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (!out[k]) out[k] = data_->gradient_on_surface(found[k], context);
+  }
+  return out;
 }
 
 void ClosestPointQuery::refit(std::span<const Vec3d> vertices, const Context& context) {

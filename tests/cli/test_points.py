@@ -98,7 +98,10 @@ def test_samples_of_the_surface(box, tmp_path):
     run("query", box, tmp_path / "s.ply", "-o", tmp_path / "d.npz")
     again = np.load(tmp_path / "d.npz")
     assert np.array_equal(again["points"], found["points"])
-    assert np.isnan(again["gradient"]).all()
+    assert np.allclose(again["gradient"], found["normal"])  # the points lie on the faces
+    run("sample", box, "-n", "100", "-o", tmp_path / "on.npz", "--near", "--sigma", "0")
+    on = np.load(tmp_path / "on.npz")
+    assert np.allclose(np.abs(on["gradient"]).max(1), 1) and np.abs(on["distance"]).max() < 1e-15
     assert run_json("sample", box, "-n", "+2.5e3", "-o", tmp_path / "many.npz")["points"] == 2500
     run("sample", box, "-n", "400", "-o", tmp_path / "even.npz", "--blue-noise")
     even = np.load(tmp_path / "even.npz")["points"]

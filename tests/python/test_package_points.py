@@ -22,10 +22,29 @@ def test_signed_distances_are_those_of_closest_points():
     assert np.mean(np.abs(grown - 1) < 1e-3) > 0.99
 
 
+def test_gradients_of_queries():
+    box = blum.generate("box")
+    query = blum.ClosestPointQuery(box)
+    places = np.array([[[0.1, 0, 0.5], [0, 0.5, 0.5]], [[0, 0, 2], [0.3, 0, 0]]])
+    assert query(places).gradient is None
+    found = query(places, gradient=True)
+    root = np.sqrt(0.5)
+    assert np.allclose(found.gradient, [[[0, 0, 1], [0, root, root]], [[0, 0, 1], [1, 0, 0]]], atol=1e-15)
+    assert np.array_equal(found.gradient, blum.signed_distance(box, places).gradient)
+    assert np.array_equal(found.distance, query(places).distance)
+    # The normal of a vertex is its pseudonormal, and the same bytes for any number of threads.
+    mesh = blum.generate("organic", frequency=10)
+    query = blum.ClosestPointQuery(mesh)
+    found = query(mesh.vertices, gradient=True)
+    normals = blum.pseudonormals(mesh)[: len(mesh.vertices)]
+    assert np.allclose(found.gradient, normals / np.linalg.norm(normals, axis=1)[:, None], atol=1e-14)
+    assert np.array_equal(found.gradient, query(mesh.vertices, gradient=True, threads=1).gradient)
+
+
 def test_undefined_gradients_are_nan():
     box = blum.generate("box")
-    found = blum.signed_distance(box, [[0, 0, 0.5], [0, 0, 2], [0, 0, 9]], max_distance=3)
-    assert np.isnan(found.gradient[0]).all() and found.distance[0] == 0
+    found = blum.signed_distance(box, [[0.1, 0, 0.5], [0, 0, 2], [0, 0, 9]], max_distance=3)
+    assert found.gradient[0].tolist() == [0, 0, 1] and found.distance[0] < 1e-15
     assert found.gradient[1].tolist() == [0, 0, 1]
     assert np.isnan(found.gradient[2]).all() and found.distance[2] == np.inf and found.site[2] == -1
     with pytest.raises(blum.InvalidOption, match="query 1"):

@@ -6,7 +6,8 @@
 
 namespace blum::cli {
 
-Complex points_with_distances(std::span<const Vec3d> points, std::span<const ClosestPoint> found) {
+Complex points_with_distances(std::span<const Vec3d> points, std::span<const ClosestPoint> found,
+                              std::span<const std::optional<Vec3d>> gradients) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Complex out;
   out.positions.assign(points.begin(), points.end());
@@ -18,7 +19,7 @@ Complex points_with_distances(std::span<const Vec3d> points, std::span<const Clo
   const auto triangle = out.vertex_columns.add<std::int32_t>("triangle");
   for (std::size_t k = 0; k < points.size(); ++k) {
     const ClosestPoint& one = found[k];
-    const std::optional<Vec3d> direction = blum::gradient(points[k], one);
+    const std::optional<Vec3d>& direction = gradients[k];
     distance[k] = one.distance;
     site[k] = one.site.to_file();
     triangle[k] = one.triangle.to_file();

@@ -155,7 +155,7 @@ void answer(PointFile& file, const ClosestPointQuery& query, const Arguments& a,
   spent.read += watch.lap();
   const std::vector<ClosestPoint> found = query.nearest(queries, context);
   spent.query += watch.lap();
-  Complex points = points_with_distances(queries, found);
+  Complex points = points_with_distances(queries, found, query.gradients(queries, found, context));
   write_points(file.output, points,
                {{"tool", "blum query"},
                 {"source", fs::path(a.mesh).filename().string()},

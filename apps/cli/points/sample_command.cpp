@@ -85,6 +85,19 @@ Request read(const Arguments& a) {
   return out;
 }
 
+/// Returns the gradient at each sample. A query is only built if samples lie on the surface, for example with sigma 0.
+std::vector<std::optional<Vec3d>> gradients_at(const NearSamples& near, const MeshView& mesh, SignMode sign,
+                                               const Context& context) {
+  std::vector<std::optional<Vec3d>> out(near.points.size());
+  bool is_any_on_surface = false;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k] = gradient(near.points[k], near.closest[k]);
+    is_any_on_surface |= !out[k] && near.closest[k].site.has_value();
+  }
+  if (!is_any_on_surface) return out;
+  return ClosestPointQuery(mesh, {.sign = sign}, context).gradients(near.points, near.closest, context);
+}
+
 /// Sampled points. The facts about signs are only for points near the surface.
 struct Samples {
   Complex points;
@@ -102,7 +115,7 @@ Samples samples_of(const Arguments& a, const Request& asked, const MeshView& mes
     return out;
   }
   NearSamples near = sample_near(mesh, asked.count, asked.near, context);
-  out.points = points_with_distances(near.points, near.closest);
+  out.points = points_with_distances(near.points, near.closest, gradients_at(near, mesh, asked.near.sign, context));
   for (const ClosestPoint& found : near.closest) out.inside += found.distance < 0 ? 1 : 0;
   out.sign_rule = near.sign_rule;
   out.sign_reason = std::move(near.sign_reason);

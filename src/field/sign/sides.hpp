@@ -41,6 +41,9 @@ class Sides {
   /// Returns the winding numbers; null if the closest sites decide all sides.
   [[nodiscard]] const WindingNumber* winding() const { return winding_ ? &*winding_ : nullptr; }
 
+  /// Returns the normals of the sites; null if the sides do not depend on them.
+  [[nodiscard]] const Pseudonormals* normals() const { return normals_ ? &*normals_ : nullptr; }
+
   /// Returns the number of sites that do not decide the side, so that queries closest to them need a winding number.
   [[nodiscard]] std::size_t open_site_count() const;
 

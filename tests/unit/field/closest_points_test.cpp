@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/mesh_places.hpp"
@@ -111,6 +113,91 @@ TEST(ClosestPoints, HaveGradientsOfLengthOneNextToTheSurface) {
       }
     }
     EXPECT_GT(told, 300U) << off;
+  }
+}
+
+TEST(ClosestPoints, HaveGradientsThatDifferencesConfirm) {
+  const double step = 1e-6;
+  for (const TriangleMesh& mesh : {make_torus(), make_box({}), make_organic({.frequency = 8})}) {
+    for (const SignMode mode : {SignMode::automatic, SignMode::winding, SignMode::none}) {
+      const ClosestPointQuery query(mesh, {.sign = mode});
+      Random random(4);
+      std::vector<Vec3d> places(300);
+      for (Vec3d& p : places) {
+        for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = random.uniform(-1.2, 1.2);
+      }
+      const auto gradients = query.gradients(places, query.nearest(places));
+      std::size_t close = 0;
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        ASSERT_TRUE(gradients[k]);
+        Vec3d slope;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          Vec3d by;
+          by[axis] = step;
+          slope[axis] = (query.nearest(places[k] + by).distance - query.nearest(places[k] - by).distance) / (2 * step);
+        }
+        if (length(slope - *gradients[k]) < 1e-4) ++close;
+      }
+      EXPECT_GT(close, places.size() - 5) << "differences across the medial axis may disagree";
+    }
+  }
+}
+
+// On the surface of a ball, the gradient is radial; on a box it is the face's normal, or the mean of several.
+TEST(ClosestPoints, HaveNormalsAsGradientsOnTheSurface) {
+  TriangleMesh ball = make_sphere();
+  TriangleMesh inverted = ball;
+  reverse_triangles(inverted);
+  for (const TriangleMesh* mesh : {&ball, &inverted}) {
+    for (const SignMode mode : {SignMode::automatic, SignMode::none}) {
+      if (mesh == &inverted && mode == SignMode::none) continue;  // no rule turns the triangles
+      const ClosestPointQuery query(*mesh, {.sign = mode});
+      const std::vector<Vec3d>& places = mesh->vertices;
+      const std::vector<ClosestPoint> found = query.nearest(places);
+      const auto gradients = query.gradients(places, found);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        ASSERT_EQ(found[k].distance, 0);
+        EXPECT_EQ(blum::gradient(places[k], found[k]), std::nullopt);
+        ASSERT_TRUE(gradients[k]);
+        EXPECT_NEAR(length(*gradients[k]), 1, 1e-14);
+        EXPECT_GT(dot(*gradients[k], places[k] / length(places[k])), 0.999);
+        EXPECT_EQ(gradients[k], query.gradient(places[k], found[k]));
+      }
+    }
+  }
+  const ClosestPointQuery query(make_box({}));
+  const auto at = [&](const Vec3d& p) { return query.gradient(p, query.nearest(p)).value(); };
+  EXPECT_EQ(at({0.1, 0.2, 0.5}), (Vec3d{0, 0, 1}));
+  EXPECT_EQ(at({-0.5, 0.2, 0.1}), (Vec3d{-1, 0, 0}));
+  EXPECT_LT(length(at({0.5, 0.2, 0.5}) - Vec3d{1, 0, 1} / std::sqrt(2.0)), 1e-15);
+  EXPECT_LT(length(at({0.5, 0.5, -0.5}) - Vec3d{1, 1, -1} / std::sqrt(3.0)), 1e-15);
+}
+
+TEST(ClosestPoints, HaveNoGradientWithoutANormal) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}};
+  mesh.segments = {{0, 1}};
+  const ClosestPointQuery query(mesh, {.max_distance = 1});
+  const std::vector<Vec3d> places{{0.5, 0, 0}, {0.5, 0.5, 0}, {0.5, 9, 0}};
+  const auto gradients = query.gradients(places, query.nearest(places));
+  EXPECT_EQ(gradients[0], std::nullopt);
+  EXPECT_EQ(gradients[1], (Vec3d{0, 1, 0}));
+  EXPECT_EQ(gradients[2], std::nullopt);
+  EXPECT_THROW((void)query.gradients(places, {}), InvalidOption);
+}
+
+TEST(ClosestPoints, HaveNormalsOfTheMovedMeshAfterRefit) {
+  const TriangleMesh box = make_box({});
+  for (const SignMode mode : {SignMode::automatic, SignMode::none}) {
+    ClosestPointQuery query(box, {.sign = mode});
+    const auto at = [&](const Vec3d& p) { return query.gradient(p, query.nearest(p)).value(); };
+    EXPECT_EQ(at({0.1, 0.2, 0.5}), (Vec3d{0, 0, 1}));
+    std::vector<Vec3d> turned = box.vertices;
+    for (Vec3d& p : turned) p = {p.z, p.x, p.y};
+    for (Vec3d& p : turned) p.z *= 2;
+    query.refit(turned);
+    EXPECT_EQ(at({0.1, 0.2, 1}), (Vec3d{0, 0, 1}));
+    EXPECT_EQ(at({0.5, 0.2, 0.3}), (Vec3d{1, 0, 0}));
   }
 }
 
