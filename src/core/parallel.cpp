@@ -74,7 +74,6 @@ class ArenaPool {
   std::mutex mutex_;
   std::map<int, Arenas> arenas_;
 };
-#endif
 
 /// Admits helpers to a loop until the loop closes. Helpers that come later must not touch the loop, which has ended.
 class Gate {
@@ -101,7 +100,12 @@ class Gate {
   std::atomic<std::uint32_t> state_{0};  ///< number of helpers inside, and `closed`
 };
 
-#if defined(BLUM_THREADS_TBB)
+/// Closes a gate at the end of a scope, also if an invitation fails.
+struct Closing {
+  Gate& gate;
+  ~Closing() { gate.close(); }
+};
+
 /// Number of helpers that were invited by any loop, but did not start yet.
 std::atomic<int>& waiting_helpers() {
   static std::atomic<int> count{0};
@@ -110,37 +114,41 @@ std::atomic<int>& waiting_helpers() {
 
 /// Runs `run` on the calling thread, and on helpers as far as threads of TBB are free. The loop does not wait for
 /// helpers that have not started when its work is done. So a busy machine does not delay it.
-void run_workers(int workers, const std::function<void(int)>& run) {
+/// @return  false if nothing was run, because too many helpers of other loops have not started yet.
+bool run_workers(int workers, const std::function<void(int)>& run) {
   // An arena with more slots than TBB has threads would cause a warning. One slot belongs to the calling thread.
   const int slots = std::min(workers, tbb::info::default_concurrency());
   // While no thread of TBB is free, invitations would only use memory.
-  constexpr int most_waiting = 256;
-  if (slots <= 1 || waiting_helpers() > most_waiting) return run(0);
+  constexpr int most_waiting = 4096;
+  if (waiting_helpers() > most_waiting) return false;
   ArenaPool::Lease lease(ArenaPool::instance(), slots);
   const auto gate = std::make_shared<Gate>();
+  const Closing closing{*gate};
   for (int worker = 1; worker < slots; ++worker) {
-    ++waiting_helpers();
     lease.arena().enqueue([gate, &run, worker] {
       --waiting_helpers();
       if (!gate->enter()) return;
       run(worker);
       gate->leave();
     });
+    ++waiting_helpers();
   }
   run(0);
-  gate->close();
+  return true;
 }
 #elif defined(BLUM_THREADS_STD)
 /// Calls run(0) to run(workers - 1), concurrently, and waits until all calls have returned.
-void run_workers(int workers, const std::function<void(int)>& run) {
+bool run_workers(int workers, const std::function<void(int)>& run) {
   std::vector<std::jthread> threads;
   threads.reserve(static_cast<std::size_t>(workers - 1));
   for (int worker = 1; worker < workers; ++worker) threads.emplace_back([&run, worker] { run(worker); });
   run(0);
+  return true;
 }
 #else
-void run_workers(int /*workers*/, const std::function<void(int)>& run) {
+bool run_workers(int /*workers*/, const std::function<void(int)>& run) {
   run(0);
+  return true;
 }
 #endif
 
@@ -240,14 +248,10 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain, 
   };
   if (workers == 1) {
     run_all(0);
-  } else if (start == Start::at_once) {
-    run_workers(workers, run_all);
-  } else {
+  } else if (start != Start::at_once || !run_workers(workers, run_all)) {
     const Trial trial;
     for (std::size_t done = 1; run_one(0) && done < ranges; ++done) {
-      if (!trial.needs_helpers(done, ranges)) continue;
-      run_workers(static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(workers), ranges - done)), run_all);
-      break;
+      if (trial.needs_helpers(done, ranges) && run_workers(workers, run_all)) break;
     }
   }
   if (failure) std::rethrow_exception(failure);

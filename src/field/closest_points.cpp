@@ -11,6 +11,7 @@
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/core/huge_pages.hpp"
 #include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/radix_sort.hpp"
@@ -29,6 +30,7 @@ namespace {
 /// A range is short enough that the first one, which runs alone, costs little. Only winding numbers need longer ranges,
 /// in which queries share work.
 constexpr std::size_t queries_per_range = 32;
+constexpr std::size_t checks_per_range = 32768;
 constexpr std::size_t gradients_per_range = 4096;
 /// Upper bound on the rounding error of a sum of two distances, relative to the lengths involved.
 constexpr double rounding = 1e-12;
@@ -67,6 +69,7 @@ std::vector<std::uint32_t> order_along_curve(std::span<const Vec3d> queries) {
 void prefetch_to_write([[maybe_unused]] const ClosestPoint* point) {
 #if defined(__GNUC__)
   __builtin_prefetch(point, 1);
+  __builtin_prefetch(&point->triangle, 1);  // the end of the result may be in the next cache line
 #endif
 }
 
@@ -275,14 +278,23 @@ struct ClosestPointQuery::Data {
     is_prepared_ = true;
   }
 
-  void check(std::span<const Vec3d> queries) const {
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      if (is_in_range(queries[i])) continue;
-      throw InvalidOption("query " + std::to_string(i) +
-                          (is_finite(queries[i])
-                               ? " lies too far from the mesh (more than 1e140 times its longest side)"
-                               : " has a coordinate that is not finite"));
-    }
+  void check(std::span<const Vec3d> queries, const Context& context) const {
+    std::atomic<std::size_t> first_bad{queries.size()};
+    parallel_for(context, queries.size(), checks_per_range, "", [&](const WorkRange& range) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        if (is_in_range(queries[i])) continue;
+        std::size_t known = first_bad;
+        while (i < known && !first_bad.compare_exchange_weak(known, i)) {
+        }
+        return;
+      }
+    });
+    const std::size_t bad = first_bad;
+    if (bad == queries.size()) return;
+    throw InvalidOption("query " + std::to_string(bad) +
+                        (is_finite(queries[bad])
+                             ? " lies too far from the mesh (more than 1e140 times its longest side)"
+                             : " has a coordinate that is not finite"));
   }
 
   [[nodiscard]] bool is_in_range(const Vec3d& q) const {
@@ -364,7 +376,7 @@ void ClosestPointQuery::prepare_for_many(std::size_t queries, const Context& con
 }
 
 void ClosestPointQuery::for_each_nearest(std::span<const Vec3d> queries, Use use, const Context& context) const {
-  data_->check(queries);
+  data_->check(queries, context);
   if (const PointSearch* search = data_->search_for(queries.size(), context)) {
     search->nearest(queries, data_->max_distance, data_->bvh, context,
                     [&](std::span<const PointSearch::Answer> group) { data_->finish(queries, group, use); });
@@ -378,7 +390,7 @@ void ClosestPointQuery::for_each_nearest(std::span<const Vec3d> queries, Use use
 }
 
 std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {
-  std::vector<ClosestPoint> results(queries.size());
+  std::vector<ClosestPoint> results = detail::large_list<ClosestPoint>(queries.size());
   const auto put = [&](std::span<const FoundPoint> group) {
     for (std::size_t k = 0; k < group.size(); ++k) {
       if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
@@ -424,14 +436,14 @@ NearPrimitives gathered(std::span<const Vec3d> queries, const Context& context, 
 NearPrimitives ClosestPointQuery::within(std::span<const Vec3d> queries, double distance,
                                          const Context& context) const {
   if (!(distance >= 0)) throw InvalidOption("distance is " + std::to_string(distance) + "; it must be at least 0");
-  data_->check(queries);
+  data_->check(queries, context);
   const double limit = std::min(distance, data_->max_distance);
   return gathered(queries, context, [&](const Vec3d& query) { return data_->bvh.within(query, limit); });
 }
 
 NearPrimitives ClosestPointQuery::nearest_primitives(std::span<const Vec3d> queries, std::size_t k,
                                                      const Context& context) const {
-  data_->check(queries);
+  data_->check(queries, context);
   return gathered(queries, context,
                   [&](const Vec3d& query) { return data_->bvh.nearest_primitives(query, k, data_->max_distance); });
 }

@@ -99,7 +99,7 @@ def test_samples_of_the_surface(box, tmp_path):
     again = np.load(tmp_path / "d.npz")
     assert np.array_equal(again["points"], found["points"])
     assert np.allclose(again["gradient"], found["normal"])  # the points lie on the faces
-    run("sample", box, "-n", "100", "-o", tmp_path / "on.npz", "--near", "--sigma", "0")
+    run("sample", box, "-n", "100", "-o", tmp_path / "on.npz", "--near", "--sigma", "1e-18")
     on = np.load(tmp_path / "on.npz")
     assert np.allclose(np.abs(on["gradient"]).max(1), 1) and np.abs(on["distance"]).max() < 1e-15
     assert run_json("sample", box, "-n", "+2.5e3", "-o", tmp_path / "many.npz")["points"] == 2500

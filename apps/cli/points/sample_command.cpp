@@ -85,7 +85,7 @@ Request read(const Arguments& a) {
   return out;
 }
 
-/// Returns the gradient at each sample. A query is only built if samples lie on the surface, for example with sigma 0.
+/// Returns the gradient at each sample. A query is only built if samples lie on the surface, within rounding.
 std::vector<std::optional<Vec3d>> gradients_at(const NearSamples& near, const MeshView& mesh, SignMode sign,
                                                const Context& context) {
   std::vector<std::optional<Vec3d>> out(near.points.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "blum/core/huge_pages.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/radix_sort.hpp"
 #include "field/kernels/morton.hpp"
@@ -91,7 +92,7 @@ PointEngine::Ordered PointEngine::order(std::span<const Vec3d> queries, const Co
   out.points.side = std::max({size.x, size.y, size.z});
   constexpr std::uint32_t cells = 1U << MortonPoints::levels;
   const double scale = out.points.side > 0 ? cells / out.points.side : 0;
-  out.order.resize(count);
+  out.order = detail::large_list<detail::KeyedIndex>(count);
   parallel_for(context, count, grain, "", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const Vec3d at = (kernels::to_double(positions[i]) - box.lower) * scale;
@@ -102,12 +103,13 @@ PointEngine::Ordered PointEngine::order(std::span<const Vec3d> queries, const Co
       out.order[i] = {code, static_cast<std::uint32_t>(i)};
     }
   });
-  detail::radix_sort(out.order);
+  std::vector<detail::KeyedIndex> scratch = detail::large_list<detail::KeyedIndex>(count);
+  detail::radix_sort(out.order, scratch);
   for (Buffer<float>& coordinate : out.points.coordinate) {
     coordinate = Buffer<float>(count + MortonPoints::padding);
     std::fill_n(coordinate.data() + count, MortonPoints::padding, 0.0F);
   }
-  out.points.code.resize(count);
+  out.points.code = detail::large_list<std::uint32_t>(count);
   parallel_for(context, count, grain, "", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const Vec3f& at = positions[out.order[k].index];

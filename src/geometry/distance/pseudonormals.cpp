@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "blum/core/huge_pages.hpp"
 #include "blum/core/parallel.hpp"
 #include "geometry/box_scale.hpp"
 #include "geometry/distance/triangle_frame.hpp"
@@ -20,7 +21,7 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
 }  // namespace
 
 Pseudonormals::Pseudonormals(const MeshView& mesh, const SiteTable& sites, const Context& context)
-    : normals_(sites.size()) {
+    : normals_(detail::large_list<Vec3d>(sites.size())) {
   const double scale = unit_scale(bounds(mesh));
   const std::size_t edge_base = sites.vertex_count();
   const std::size_t face_base = edge_base + sites.edge_count();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "blum/core/huge_pages.hpp"
 #include "blum/core/parallel.hpp"
 #include "geometry/box_scale.hpp"
 #include "geometry/distance/site_feet.hpp"
@@ -57,7 +58,7 @@ SiteProjection::Data::Data(const MeshView& mesh, const SiteTable& sites, const C
     : scale(unit_scale(bounds(mesh))),
       unscale(1 / scale),
       positions(mesh.vertices.size()),
-      faces(mesh.triangles.size()) {
+      faces(detail::large_list<TriangleFrame>(mesh.triangles.size())) {
   parallel_for(context, positions.size(), grain, "", [&](const WorkRange& range) {
     for (std::size_t v = range.begin; v < range.end; ++v) positions[v] = mesh.vertices[v] * scale;
   });

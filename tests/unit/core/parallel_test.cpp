@@ -115,20 +115,22 @@ TEST(ParallelFor, RunsShortLoopsOnTheCallingThread) {
   EXPECT_GT(alone, loops / 2);
 }
 
-/// Returns true if a second thread ran a range of a loop while the first range waited for it, for at most ten seconds.
-bool has_company(int ranges_before, Start start) {
-  std::atomic<int> begun{0};
+/// Returns true if another thread ran a range of a loop while the calling thread waited for it, for at most ten
+/// seconds.
+bool has_company(std::size_t ranges_before, Start start) {
   std::atomic<bool> is_joined{false};
+  const std::thread::id caller = std::this_thread::get_id();
   const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   const auto body = [&](const WorkRange& range) {
-    if (range.begin < static_cast<std::size_t>(ranges_before)) {
+    if (std::this_thread::get_id() != caller) {
+      is_joined = true;
+    } else if (range.begin < ranges_before) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      return;
+    } else {
+      while (!is_joined && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
     }
-    if (++begun == 2) is_joined = true;
-    while (!is_joined && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
   };
-  parallel_for({.threads = 2}, static_cast<std::size_t>(ranges_before) + 2, 1, "", body, start);
+  parallel_for({.threads = 2}, ranges_before + 2, 1, "", body, start);
   return is_joined;
 }
 

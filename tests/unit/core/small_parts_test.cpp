@@ -1,12 +1,15 @@
-// Proves that bit_count() agrees with std::popcount(), and that short lists in place behave like std::vector.
+// Proves that bit_count() agrees with std::popcount(), and that short lists in place behave like std::vector. Large
+// lists have default values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "blum/core/bits.hpp"
+#include "blum/core/huge_pages.hpp"
 #include "blum/core/inline_list.hpp"
 #include "blum/core/random.hpp"
 
@@ -57,6 +60,15 @@ TEST(InlineList, BehavesLikeAVector) {
     InlineList<Item, 16> other;
     other = copy;
     ASSERT_TRUE(std::equal(other.begin(), other.end(), expected.begin(), expected.end()));
+  }
+}
+
+// On both sides of the size from which lists use huge pages.
+TEST(LargeList, HoldsDefaultValues) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{300000}}) {
+    const std::vector<Item> list = detail::large_list<Item>(size);
+    ASSERT_EQ(list.size(), size);
+    EXPECT_TRUE(std::all_of(list.begin(), list.end(), [](const Item& item) { return item == Item{}; }));
   }
 }
 

@@ -186,6 +186,22 @@ TEST(ClosestPoints, HaveNoGradientWithoutANormal) {
   EXPECT_THROW((void)query.gradients(places, {}), InvalidOption);
 }
 
+TEST(ClosestPoints, NameTheFirstBadQueryOfMany) {
+  const ClosestPointQuery query(make_box({}));
+  std::vector<Vec3d> places(200000, Vec3d{1, 2, 3});
+  for (const std::size_t bad : {199999U, 150001U, 70000U}) {
+    places[bad].y = NAN;
+    for (const int threads : {1, 4}) {
+      try {
+        (void)query.nearest(places, {.threads = threads});
+        FAIL() << bad;
+      } catch (const InvalidOption& error) {
+        EXPECT_EQ(std::string(error.what()), "query " + std::to_string(bad) + " has a coordinate that is not finite");
+      }
+    }
+  }
+}
+
 TEST(ClosestPoints, HaveNormalsOfTheMovedMeshAfterRefit) {
   const TriangleMesh box = make_box({});
   for (const SignMode mode : {SignMode::automatic, SignMode::none}) {
