@@ -118,9 +118,9 @@ class ClosestPointQuery {
                         const Context& context = {}) const;
 
   /// Returns the gradient of the distance at a query, which has length 1. Off the surface, it is that of the function
-  /// blum::gradient(). On the surface (within rounding) the distance has several directions of growth, and the result
-  /// is the normal of the closest site: that of the face, or the direction of the Pseudonormals of the edge or vertex.
-  /// If warnings() reports triangles that face the wrong way, the normals are those of the reversed triangles.
+  /// blum::gradient(). On the surface (within rounding) the distance grows in several directions. The result is then
+  /// the normal of the closest site: that of the face, or the direction of the edge's or vertex's Pseudonormals. If
+  /// warnings() reports triangles that face the wrong way, the normals are those of the reversed triangles.
   /// @param found  result of nearest(query).
   /// @return       nullopt if nothing was found, or if the site has no normal: segments, points, triangles without
   /// area. Cost: 0.01 us. The first query on the surface computes all normals, unless signs need them: O(triangles).
